@@ -1,0 +1,50 @@
+# Needs make and Python 3.11 or newer. Another Python: make PYTHON=python3.13 demo (after make clean).
+PYTHON ?= python3
+# Arguments for pytest: make test ARGS="-k friction"
+ARGS ?=
+
+BIN := .venv/bin
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+
+.PHONY: help demo test check format clean
+.DEFAULT_GOAL := help
+# a .venv that could not be finished is made anew the next time
+.DELETE_ON_ERROR:
+
+help:            ## this list
+	@sed -n 's/^\([a-z]*\):.*## /make \1\t/p' Makefile
+
+demo: .venv/installed            ## run the demonstration
+	$(BIN)/tracewire demo
+
+test: .venv/installed-test            ## run the tests
+	$(BIN)/python -m pytest --numprocesses auto $(ARGS)
+
+check: .venv/installed-test            ## all checks: style, types, tests
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+	$(BIN)/python -m pytest --numprocesses auto $(ARGS)
+
+format: .venv/installed-test            ## repair style where it can be done by rule
+	$(BIN)/ruff check --fix
+	$(BIN)/ruff format
+
+clean:            ## remove .venv, caches and build products
+	rm -rf .venv dist build .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find solver blocks tests benchmarks -name __pycache__ -prune -exec rm -rf {} +
+
+# A stamp is as old as the last installation; a newer pyproject.toml installs again.
+.venv/installed: pyproject.toml | $(BIN)/python
+	@echo "Installing tracewire into .venv, once ..."
+	@$(INSTALL) -e .
+	@touch $@
+
+.venv/installed-test: pyproject.toml | $(BIN)/python
+	@echo "Installing tracewire and its checks into .venv, once ..."
+	@$(INSTALL) -e '.[test]'
+	@touch $@
+
+$(BIN)/python:
+	@$(PYTHON) -c 'import sys; sys.version_info >= (3, 11) or sys.exit("tracewire needs Python 3.11 or newer, and $(PYTHON) is %d.%d. Name another: make PYTHON=python3.12 demo" % sys.version_info[:2])'
+	@$(PYTHON) -m venv --clear .venv

@@ -1,0 +1,79 @@
+"""Sources: signals that depend on nothing but the time."""
+
+from tracewire.library import Block, Effect, Input, Output, Parameter
+
+constant = Block(
+    name="constant",
+    doc="A value that does not change.",
+    parameters=(Parameter("value"),),
+    outputs=(Output("y", "value"),),
+)
+
+bias = Block(
+    name="bias",
+    doc="A constant torque or force that nothing else explains.",
+    parameters=(Parameter("level", doc="the torque or force, of either sign"),),
+    outputs=(Output("force", "level", doc="acts on the body"),),
+    effect=Effect("level"),
+)
+
+time = Block(
+    name="time",
+    doc="The time of the run.",
+    outputs=(Output("y", "t", "s"),),
+)
+
+sine = Block(
+    name="sine",
+    doc="A sine wave around an offset.",
+    parameters=(
+        Parameter("amplitude"),
+        Parameter("omega", "rad/s", "angular frequency, 2*pi over the period"),
+        Parameter("phase", "rad", default=0.0),
+        Parameter("offset", default=0.0),
+    ),
+    outputs=(Output("y", "amplitude*sin(omega*t + phase) + offset"),),
+)
+
+square = Block(
+    name="square",
+    doc="A square wave, amplitude times the sign of sin(2*pi*frequency*t + phase), first positive.",
+    parameters=(
+        Parameter("amplitude"),
+        Parameter("frequency", "Hz", "periods in a second"),
+        Parameter("phase", "rad", default=0.0),
+    ),
+    outputs=(
+        Output("y", "amplitude*(1 - 2*mod(floor(2*frequency*t + phase/pi), 2))", doc="jumps"),
+    ),
+)
+
+step = Block(
+    name="step",
+    doc="A jump from an offset by a height.",
+    parameters=(
+        Parameter("height"),
+        Parameter("at", "s", "the time of the jump", default=0.0),
+        Parameter("offset", doc="the value before the jump", default=0.0),
+    ),
+    outputs=(Output("y", "offset + (height if t >= at else 0)", doc="jumps"),),
+)
+
+ramp = Block(
+    name="ramp",
+    doc="A signal that rises evenly from a time on.",
+    parameters=(
+        Parameter("slope", doc="rise in a second"),
+        Parameter("at", "s", "the time where it begins", default=0.0),
+        Parameter("offset", doc="the value before that time", default=0.0),
+    ),
+    outputs=(Output("y", "offset + (slope*(t - at) if t >= at else 0)"),),
+)
+
+table = Block(
+    name="table",
+    doc="Straight lines through points, held before the first and after the last.",
+    inputs=(Input("of", doc="where the table is read: the time, unless wired", default="t"),),
+    parameters=(Parameter("points", doc="pairs [x, y], x ascending", kind="points"),),
+    outputs=(Output("y", "interp(of, points)"),),
+)

@@ -1,0 +1,61 @@
+"""Switching: blocks whose formula changes with the sign of a signal, located as events."""
+
+from tracewire.library import Block, Input, Output, Parameter
+
+LIMITS = (Parameter("low", doc="the lower limit"), Parameter("high", doc="the upper limit"))
+
+switch = Block(
+    name="switch",
+    doc="One signal while the control is at or above a threshold, another below it.",
+    inputs=(
+        Input("control"),
+        Input("above", doc="passed on while control >= threshold"),
+        Input("below", doc="passed on while control < threshold"),
+    ),
+    parameters=(Parameter("threshold", default=0.0),),
+    outputs=(Output("y", "above if control >= threshold else below"),),
+)
+
+sign = Block(
+    name="sign",
+    doc="One above zero, minus one below.",
+    inputs=(Input("of"),),
+    outputs=(Output("y", "sign(of)", doc="at zero, any value from -1 to 1 that holds it there"),),
+)
+
+abs_ = Block(
+    name="abs",
+    doc="The absolute value.",
+    inputs=(Input("of"),),
+    outputs=(Output("y", "abs(of)"),),
+)
+
+min_ = Block(
+    name="min",
+    doc="The smaller of two signals.",
+    inputs=(Input("of"), Input("other")),
+    outputs=(Output("y", "min(of, other)"),),
+)
+
+max_ = Block(
+    name="max",
+    doc="The larger of two signals.",
+    inputs=(Input("of"), Input("other")),
+    outputs=(Output("y", "max(of, other)"),),
+)
+
+saturation = Block(
+    name="saturation",
+    doc="A signal that is held at its limits.",
+    inputs=(Input("of"),),
+    parameters=LIMITS,
+    outputs=(Output("y", "high if of >= high else (low if of <= low else of)"),),
+)
+
+dead_zone = Block(
+    name="dead_zone",
+    doc="What a signal exceeds its limits by, and zero between them.",
+    inputs=(Input("of"),),
+    parameters=LIMITS,
+    outputs=(Output("y", "of - high if of >= high else (of - low if of <= low else 0)"),),
+)

@@ -1,0 +1,96 @@
+"""tracewire: block diagrams that are simulated, fitted to data, and traced to what they lack.
+
+The names here are imported from their rooms when they are first used, so that the command line
+starts fast.
+"""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tracewire.compile import Model, compile
+    from tracewire.diagram import Diagram, read, read_text
+    from tracewire.errors import TracewireError
+    from tracewire.fit import Fit, fit, fminsearch, load_measured, optimset
+    from tracewire.library import Block, Effect, Input, Output, Parameter, State, load_library
+    from tracewire.show import report
+    from tracewire.solve import Limits, Run, simulate
+    from tracewire.trace import Found, trace
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "Block",
+    "Diagram",
+    "Effect",
+    "Fit",
+    "Found",
+    "Input",
+    "Limits",
+    "Model",
+    "Output",
+    "Parameter",
+    "Run",
+    "State",
+    "TracewireError",
+    "compile",
+    "fit",
+    "fminsearch",
+    "load_library",
+    "load_measured",
+    "optimset",
+    "read",
+    "read_text",
+    "report",
+    "simulate",
+    "trace",
+]
+
+ROOM_OF = {
+    "compile": "compile Model",
+    "diagram": "Diagram read read_text",
+    "errors": "TracewireError",
+    "fit": "Fit fit fminsearch load_measured optimset",
+    "library": "Block Effect Input Output Parameter State load_library",
+    "show": "report",
+    "solve": "Limits Run simulate",
+    "trace": "Found trace",
+}
+
+
+def __getattr__(name: str) -> object:
+    for room, names in ROOM_OF.items():
+        if name in names.split():
+            return getattr(import_module(f"tracewire.{room}"), name)
+    raise AttributeError(f"module 'tracewire' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]
+
+
+class _Package(ModuleType):
+    """The package, on which `compile`, `fit` and `trace` stay the functions.
+
+    Importing the room of the same name sets the attribute to the room's module; a property lets
+    that pass without effect.
+    """
+
+    @staticmethod
+    def _function(room: str) -> property:
+        def get(_: ModuleType) -> object:
+            return getattr(import_module(f"tracewire.{room}"), room)
+
+        def ignore(_: ModuleType, module: object) -> None:
+            pass
+
+        return property(get, ignore)
+
+
+for _room in ("compile", "fit", "trace"):
+    setattr(_Package, _room, _Package._function(_room))
+sys.modules[__name__].__class__ = _Package

@@ -1,0 +1,114 @@
+"""The command `tracewire`: its verbs, and what becomes of their errors."""
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+from collections.abc import Sequence
+from typing import Annotated
+
+import typer
+from typer.main import get_command
+
+from tracewire.cli.blocks import blocks
+from tracewire.cli.check import check
+from tracewire.cli.demo import demo
+from tracewire.cli.fit import fit
+from tracewire.cli.output import print_problems
+from tracewire.cli.run import run
+from tracewire.cli.show import show
+from tracewire.cli.trace import trace
+from tracewire.errors import Problem, TracewireError
+
+INTERRUPTED = 130
+STOPPED = Problem("interrupted; nothing was finished")
+USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
+"""The base of every usage error; typer has its own copy of click or uses the installed one."""
+
+app = typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode="rich")
+
+
+@app.callback(invoke_without_command=True)
+def tracewire_(
+    version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
+) -> None:
+    """Simulate block diagrams, fit them to measured data, trace what they lack.
+
+    \b
+    Examples:
+      tracewire check pendulum.yaml
+      tracewire show pendulum.yaml --equations
+      tracewire run pendulum.yaml --figure swing.png
+      tracewire run pendulum.yaml --set "phi=13.6 deg" --output swing.csv
+      tracewire fit pendulum.yaml --report fit.html
+      tracewire trace pendulum.yaml --apply
+      tracewire blocks dry_friction
+    """
+    if version:
+        typer.echo(f"tracewire {_version()}")
+        raise typer.Exit
+
+
+# One line registers a verb. A verb imports what is slow to import inside its function.
+app.command()(check)
+app.command()(show)
+app.command()(run)
+app.command()(fit)
+app.command()(trace)
+app.command()(blocks)
+app.command()(demo)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit code.
+
+    0: done; 1: the work failed; 2: the input is wrong; 130: interrupted. Every error is told in
+    words on stderr, and with --json on stdout as well; --debug shows the traceback, too.
+    """
+    given = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
+    as_json, debug = "--json" in given, "--debug" in given
+    for stream in (sys.stdout, sys.stderr):  # a terminal without a letter must not stop the work
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")
+    try:
+        ended: object = get_command(app).main(given, prog_name="tracewire", standalone_mode=False)
+        sys.stdout.flush()
+        if ended != INTERRUPTED:  # what typer makes of an interrupt
+            return ended if isinstance(ended, int) else 0
+        problems, code = [STOPPED], INTERRUPTED
+    except BrokenPipeError:  # the reader, such as `head`, has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except (Exception, KeyboardInterrupt) as error:
+        problems, code = _told(error)
+        if debug:
+            traceback.print_exception(error)
+    print_problems(problems, as_json)
+    return code
+
+
+def _version() -> str:
+    # the package stands above the rooms: they do not import it, but it is there when they run
+    return str(sys.modules["tracewire"].__version__)
+
+
+def _told(error: BaseException) -> tuple[list[Problem], int]:
+    """What to say of an error, and the exit code."""
+    if isinstance(error, TracewireError):
+        return list(error.problems), error.exit_code
+    if isinstance(error, USAGE_ERROR):
+        return [_usage(error)], 2
+    if isinstance(error, KeyboardInterrupt | typer.Abort):
+        return [STOPPED], INTERRUPTED
+    what = f"internal error ({type(error).__name__}: {error})"
+    return [Problem(what, hint="Please report it; --debug shows the traceback.")], 1
+
+
+def _usage(error: Exception) -> Problem:
+    context = getattr(error, "ctx", None)
+    path = context.command_path if context is not None else "tracewire"
+    message = error.format_message() if hasattr(error, "format_message") else str(error)
+    what, _, meant = message.strip().partition(" Did you mean ")
+    hint = f"Did you mean {meant} " if meant else ""
+    return Problem(what.rstrip("."), hint=f"{hint}See '{path} --help'.")

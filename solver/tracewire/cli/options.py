@@ -1,0 +1,39 @@
+"""Options that several verbs share, and the way from a path to a model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tracewire.cli.output import working
+
+if TYPE_CHECKING:
+    from tracewire.compile import Model
+
+DiagramPath = Annotated[
+    str, typer.Argument(metavar="DIAGRAM", help="A diagram file (YAML).", show_default=False)
+]
+Libraries = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--library",
+        metavar="PATH",
+        help="A Python file or folder of further blocks; it is run, so trust it. Repeatable.",
+        show_default=False,
+    ),
+]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
+Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
+
+
+def load_model(
+    path: str, libraries: Sequence[str] | None = None, record: Sequence[str] | None = None
+) -> Model:
+    """The compiled model of a diagram file. Raises DiagramError, BlockError, OptionError."""
+    with working(f"compiling {path}"):
+        from tracewire.compile import compile
+        from tracewire.diagram import read
+
+        return compile(read(path, libraries or ()), record or ())

@@ -1,0 +1,135 @@
+"""What the command line prints: results to stdout; problems and progress to stderr."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from tracewire.errors import OptionError, Problem, unknown
+
+if TYPE_CHECKING:
+    from tracewire.show.summary import Table
+
+WIDTH_OF_A_PIPE = 200
+
+
+def print_text(text: str) -> None:
+    """Print plain text to stdout."""
+    typer.echo(text)
+
+
+def print_table(table: Table) -> None:
+    """Print a table with its title to stdout; columns that hold numbers are aligned right."""
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table as RichTable
+    from rich.text import Text
+
+    terminal = sys.stdout.isatty()
+    console = Console(width=None if terminal else WIDTH_OF_A_PIPE, highlight=False)
+    shown = RichTable(
+        title=Text(table.title, style="bold") if table.title else None,
+        title_justify="left",
+        box=box.SIMPLE_HEAD,
+        pad_edge=False,
+    )
+    for n, name in enumerate(table.header):
+        right = n in table.numeric
+        shown.add_column(
+            Text(name), justify="right" if right else "left", overflow="fold", no_wrap=right
+        )
+    for row in table.rows:
+        shown.add_row(*(Text(cell) for cell in row))  # Text: `[rad]` is no markup
+    console.print(shown)
+
+
+def print_json(data: object) -> None:
+    """Print data as JSON to stdout; what is not finite becomes null."""
+    typer.echo(json.dumps(plain(data), indent=2, ensure_ascii=False, allow_nan=False))
+
+
+def plain(data: object) -> Any:
+    """Data in the types of JSON: arrays are lists, dataclasses objects, NaN and infinity null."""
+    if isinstance(data, bool | int | str | None):
+        return data
+    if isinstance(data, float):
+        return data if math.isfinite(data) else None
+    if isinstance(data, Mapping):
+        return {str(key): plain(value) for key, value in data.items()}
+    if is_dataclass(data) and not isinstance(data, type):
+        return {field.name: plain(getattr(data, field.name)) for field in fields(data)}
+    if hasattr(data, "tolist"):
+        return plain(data.tolist())
+    if isinstance(data, Sequence | set | frozenset):
+        return [plain(value) for value in data]
+    return str(data)
+
+
+def print_problems(problems: Sequence[Problem], as_json: bool = False) -> None:
+    """Print problems one a line to stderr, and with `as_json` as one object to stdout."""
+    for problem in problems:
+        typer.echo(" ".join(str(problem).split("\n")), err=True)
+    if as_json:
+        print_json({"error": [_record(problem) for problem in problems]})
+
+
+def _record(problem: Problem) -> dict[str, object]:
+    place = problem.place
+    where = {"file": place.file, "line": place.line, "column": place.column, "block": place.block}
+    return where | {"what": problem.what, "exists": problem.exists, "hint": problem.hint}
+
+
+def note(text: str) -> None:
+    """Print a line to stderr: progress or a warning, no result."""
+    typer.echo(text, err=True)
+
+
+@contextmanager
+def working(text: str) -> Iterator[Callable[[str], None]]:
+    """Show on a terminal's stderr what is being done; elsewhere nothing is shown.
+
+    It gives a function that changes the text, for work that can tell how far it is.
+    """
+    if not sys.stderr.isatty():
+        yield lambda changed: None
+        return
+    from rich.console import Console
+    from rich.text import Text
+
+    with Console(stderr=True).status(Text(text)) as status:
+        yield lambda changed: status.update(Text(changed))
+
+
+def check_target(path: str | None, endings: Sequence[str], what: str) -> None:
+    """Refuse, before the work, a file that could not be written after it. Raises OptionError."""
+    if path is None:
+        return
+    file = Path(path)
+    if file.suffix not in endings:
+        problem = unknown("file ending", file.suffix, endings)
+        hint = f"End the name of the {what} in {' or '.join(endings)}."
+        raise OptionError([Problem(f"'{path}': {problem.what}", hint=hint)])
+    if file.is_dir():
+        raise OptionError([Problem(f"'{path}' is a folder", hint="Name a file.")])
+    if not file.parent.is_dir():
+        hint = "Make the folder first, or name another."
+        raise OptionError([Problem(f"there is no folder '{file.parent}'", hint=hint)])
+
+
+@contextmanager
+def writing(path: str) -> Iterator[None]:
+    """Tell in words that a file cannot be written. Raises OptionError."""
+    try:
+        yield
+    except OSError as error:
+        hint = "Check its name and rights, and the space on the disk."
+        reason = error.strerror or str(error)
+        raise OptionError([Problem(f"'{path}' cannot be written: {reason}", hint=hint)]) from error

@@ -1,0 +1,104 @@
+"""`name=value` of the command line: numbers with or without a unit, for parameters and states."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
+
+from tracewire.errors import FormulaError, OptionError, Problem, unknown
+
+if TYPE_CHECKING:
+    from tracewire.compile import Model
+
+NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+ASSIGNMENT = re.compile(rf"\s*([^=\s]+)\s*=\s*({NUMBER})(?:\s*([^\s\d.].*?|1\s*/.*?))?\s*")
+HINT = "Write it like {option} k=2.5 or {option} 'phi=13.6 deg'."
+
+Declared = tuple[str, str, float]
+"""What a name stands for: full name, unit in SI, and the factor of a number without a unit."""
+
+
+def parameter_values_of(
+    model: Model, texts: Iterable[str], option: str = "--set"
+) -> dict[str, float]:
+    """The parameters that `name=value` texts give, by full name in SI.
+
+    A number without a unit is in the unit in which the diagram's file gives the parameter, as it
+    is in a preset. Raises OptionError: a text that cannot be read, an unknown name, a unit of
+    another quantity.
+    """
+    parameters = model.flat.parameters
+
+    def declared(name: str) -> Declared | Problem:
+        if name not in parameters:
+            return unknown("parameter", name, parameters)
+        parameter = parameters[name]
+        return name, parameter.unit, parameter.factor
+
+    return _assigned(texts, option, declared)
+
+
+def start_values_of(
+    model: Model, texts: Iterable[str], option: str = "--start"
+) -> dict[str, float]:
+    """The start values that `name=value` texts give, by the full name of the state in SI.
+
+    A number without a unit is in SI. Raises OptionError as `parameter_values_of` does.
+    """
+    from tracewire.diagram import find_state
+
+    units = {state.name: state.unit for state in model.flat.states}
+
+    def declared(name: str) -> Declared | Problem:
+        found = name if name in units else find_state(model.diagram, name)
+        if found is None or found not in units:
+            return unknown("state", name, units)
+        return found, units[found], 1.0
+
+    return _assigned(texts, option, declared)
+
+
+def _assigned(
+    texts: Iterable[str], option: str, declared: Callable[[str], Declared | Problem]
+) -> dict[str, float]:
+    values: dict[str, float] = {}
+    problems: list[Problem] = []
+    for text in texts:
+        match = ASSIGNMENT.fullmatch(text)
+        if match is None:
+            what = f"{option} '{text}' is not a name, '=' and a number"
+            problems.append(Problem(what, hint=HINT.format(option=option)))
+            continue
+        name, number, unit_text = match.groups()
+        found = declared(name)
+        if isinstance(found, Problem):
+            problems.append(found)
+            continue
+        full, unit, factor = found
+        if full in values:
+            what = f"{option} gives '{full}' twice"
+            problems.append(Problem(what, hint="Leave one out."))
+        try:
+            if unit_text:
+                factor = _factor(text, unit_text, unit, option)
+        except (FormulaError, OptionError) as error:
+            problems += error.problems
+        values[full] = float(number) * factor
+        if not math.isfinite(values[full]):
+            problems.append(Problem(f"{option} '{text}' is too large for a number"))
+    if problems:
+        raise OptionError(problems)
+    return values
+
+
+def _factor(text: str, given: str, declared: str, option: str) -> float:
+    """The factor from the given unit to SI; a name that declares no unit takes any."""
+    from tracewire.formula import read_unit, same_quantity
+
+    unit = read_unit(given)
+    if declared not in ("", "1", given, unit.text) and not same_quantity(given, declared):
+        what = f"{option} '{text}': '{given}' is another quantity than {declared}"
+        raise OptionError([Problem(what, hint=f"Give it in {declared}, or without a unit.")])
+    return unit.factor

@@ -1,0 +1,298 @@
+"""From a diagram to flat equations: subsystems dissolved, wires replaced by what they carry."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import reduce
+
+import networkx as nx
+
+from tracewire.compile.flat import Flat, FlatBlock, FlatEvent, FlatParameter, FlatState
+from tracewire.diagram import BlockUse, Diagram, Points, Value, Wire, state_names
+from tracewire.errors import DiagramError, Place, Problem
+from tracewire.formula import CONSTANTS, Call, Expression, Name, Number, names_of, rename
+from tracewire.library import Block, Parameter
+
+
+def flatten(diagram: Diagram) -> Flat:
+    """The flat equations of a checked diagram.
+
+    Raises DiagramError where signals form a loop without an integrator.
+    """
+    return _Flattener(diagram).flat()
+
+
+def _scaled(formula: Expression, factor: float) -> Expression:
+    if factor == 1.0:
+        return formula
+    if isinstance(formula, Number):
+        return Number(formula.value * factor)
+    return Call("*", (formula, Number(factor)))
+
+
+def _factor(value: Value, declared: float) -> float:
+    """The factor to SI of a value that replaces a declared one.
+
+    A plain number without a unit is meant in the unit of the declaration; a formula of parameters
+    is in SI, as these are.
+    """
+    own = value.unit or value.factor != 1.0 or names_of(value.formula)
+    return value.factor if own else declared
+
+
+def _folded(sign: str, terms: list[Expression], empty: float) -> Expression:
+    """The sum or product of terms; a sum takes away a term that is negative."""
+
+    def joined(a: Expression, b: Expression) -> Expression:
+        if sign == "+" and isinstance(b, Call) and b.function == "neg":
+            return Call("-", (a, *b.arguments))
+        return Call(sign, (a, b))
+
+    return reduce(joined, terms) if terms else Number(empty)
+
+
+class _Flattener:
+    def __init__(self, diagram: Diagram) -> None:
+        self.top = diagram
+        self.states: dict[str, FlatState] = {}
+        self.signals: dict[str, Expression] = {}
+        self.parameters: dict[str, FlatParameter] = {}
+        self.tables: dict[str, Points] = {}
+        self.events: list[FlatEvent] = []
+        self.blocks: dict[str, FlatBlock] = {}
+        self.units: dict[str, str] = {}
+
+    def flat(self) -> Flat:
+        top = self.top
+        inputs = {name: Name(name) for name in top.inputs}
+        self.units |= {name: port.unit for name, port in top.inputs.items()}
+        self.add_parameters(top, "", {})
+        self.add_diagram(top, "", "", inputs)
+        scope = _Scope(top, "", inputs)
+        span = top.span or (Value(Number(0.0)), Value(Number(1.0)))
+        record = tuple(top.record) or tuple(self.states)
+        return Flat(
+            title=top.title or top.file.stem,
+            states=tuple(self.states.values()),
+            signals=self.ordered(),
+            parameters=self.parameters,
+            inputs={
+                name: None if port.default is None else self.value(port.default, scope)
+                for name, port in top.inputs.items()
+            },
+            tables=self.tables,
+            events=tuple(self.events),
+            record=tuple(self.recorded(name, scope) for name in record),
+            span=(self.value(span[0], scope), self.value(span[1], scope)),
+            every=None if top.every is None else self.value(top.every, scope),
+            presets={
+                name: {key: self.preset(key, value, scope) for key, value in preset.items()}
+                for name, preset in top.presets.items()
+            },
+            blocks=self.blocks,
+            units=self.units,
+        )
+
+    def value(self, value: Value, scope: _Scope) -> Expression:
+        return _scaled(rename(value.formula, scope.resolve), value.factor)
+
+    def preset(self, key: str, value: Value, scope: _Scope) -> Expression:
+        declared = self.parameters.get(key)
+        factor = _factor(value, 1.0 if declared is None else declared.factor)
+        return _scaled(rename(value.formula, scope.resolve), factor)
+
+    def recorded(self, name: str, scope: _Scope) -> str:
+        if name in self.signals or name in self.states or name in self.top.inputs:
+            return name
+        resolved = scope.resolve(name)
+        return resolved.name if isinstance(resolved, Name) else name
+
+    def add_parameters(
+        self, diagram: Diagram, path: str, given: Mapping[str, tuple[Value, _Scope]]
+    ) -> None:
+        """The parameters of a diagram; those of a subsystem may be given by its use."""
+        own = _Scope(diagram, path, {})
+        for name, default in diagram.parameters.items():
+            value, scope = given.get(name, (default, own))
+            factor = _factor(value, default.factor) if name in given else value.factor
+            self.parameters[path + name] = FlatParameter(
+                name=path + name,
+                formula=_scaled(rename(value.formula, scope.resolve), factor),
+                unit=value.unit or default.unit,
+                fit=value.fit,
+                factor=factor,
+                place=value.place,
+            )
+
+    def add_diagram(
+        self, diagram: Diagram, path: str, definition: str, inputs: Mapping[str, Expression]
+    ) -> None:
+        scope = _Scope(diagram, path, inputs)
+        for use in diagram.blocks.values():
+            if use.subsystem is not None:
+                self.add_subsystem(use, use.subsystem, scope)
+            else:
+                self.add_block(use, diagram.library[use.type], scope, definition)
+        for number, event in enumerate(diagram.events):
+            self.events.append(
+                FlatEvent(
+                    name=f"{path}events[{number}]",
+                    when=rename(event.when, scope.resolve),
+                    crosses=event.crosses,
+                    set={
+                        scope.state(name): rename(formula, scope.resolve)
+                        for name, formula in event.set.items()
+                    },
+                    place=event.place,
+                )
+            )
+
+    def add_subsystem(self, use: BlockUse, inside: Diagram, scope: _Scope) -> None:
+        path = f"{scope.path}{use.name}."
+        given = {
+            name: (value, scope) for name, value in use.settings.items() if isinstance(value, Value)
+        }
+        self.add_parameters(inside, path, given)
+        inputs: dict[str, Expression] = {}
+        inner = _Scope(inside, path, inputs)
+        for name, port in inside.inputs.items():
+            if name in use.inputs:
+                inputs[name] = scope.wire(use.inputs[name][0])
+            elif port.default is not None:
+                inputs[name] = self.value(port.default, inner)
+        self.add_diagram(inside, path, f"{use.type}.", inputs)
+        for port_name, wire in inside.outputs.items():
+            self.signals[path + port_name] = inner.wire(wire)
+            self.units[path + port_name] = use.unit
+
+    def add_block(self, use: BlockUse, block: Block, scope: _Scope, definition: str) -> None:
+        path = scope.path + use.name
+        place = Place(use.place.file, use.place.line, use.place.column, path)
+        names: dict[str, Expression] = {}
+        manies: dict[str, list[Expression]] = {}
+        for parameter in block.parameters:
+            names[parameter.name] = self.setting(use, parameter, scope)
+        for parameter in block.parameters:  # a default may be a formula of other parameters
+            if isinstance(parameter.default, str) and parameter.name not in use.settings:
+                names[parameter.name] = rename(
+                    block.defaults[parameter.name], lambda name: names.get(name, Name(name))
+                )
+        states = state_names(block, path)
+        names |= {inner: Name(outer) for inner, outer in states.items()}
+        for port in block.inputs:
+            wires = use.inputs.get(port.name, ())
+            if port.many:
+                manies[port.name] = [scope.wire(wire) for wire in wires]
+            elif wires:
+                names[port.name] = scope.wire(wires[0])
+            else:
+                default = block.port_defaults[port.name]
+                names[port.name] = rename(default, lambda name: names.get(name, Name(name)))
+
+        def written(formula: Expression) -> Expression:
+            return rename(
+                _without_manies(formula, manies), lambda name: names.get(name, Name(name))
+            )
+
+        for state in block.states:
+            name = states[state.name]
+            start = written(block.starts[state.name])
+            rate = written(block.rates[state.name])
+            unit = use.unit or state.unit
+            self.states[name] = FlatState(name, rate, start, unit, place)
+            self.units[name] = unit
+        for output in block.outputs:
+            formula = written(block.formulas[output.name])
+            name = path if len(block.outputs) == 1 else f"{path}.{output.name}"
+            self.blocks[name] = FlatBlock(
+                name, use.type, definition + use.name, _resolved(use.local, scope), place
+            )
+            if formula != Name(name):  # an integrator's output is its state
+                self.signals[name] = formula
+                self.units[name] = use.unit or output.unit
+
+    def setting(self, use: BlockUse, parameter: Parameter, scope: _Scope) -> Expression:
+        value = use.settings.get(parameter.name)
+        if isinstance(value, Points):
+            table = f"{scope.path}{use.name}.{parameter.name}"
+            self.tables[table] = value
+            return Name(table)
+        if isinstance(value, Value):
+            formula = self.value(value, scope)
+            if not value.named:
+                return formula
+            name = f"{scope.path}{use.name}.{parameter.name}"
+            self.parameters[name] = FlatParameter(
+                name, formula, value.unit or parameter.unit, value.fit, value.factor, value.place
+            )
+            return Name(name)
+        if value is not None:
+            return rename(value, scope.resolve)
+        default = parameter.default
+        return Number(float(default)) if isinstance(default, int | float) else Number(0.0)
+
+    def ordered(self) -> dict[str, Expression]:
+        """The signals, each after those it reads, else in the order of the diagram."""
+        position = {name: number for number, name in enumerate(self.signals)}
+        graph: nx.DiGraph[str] = nx.DiGraph()
+        graph.add_nodes_from(self.signals)
+        for name, formula in self.signals.items():
+            graph.add_edges_from((read, name) for read in names_of(formula) if read in self.signals)
+        try:
+            order = nx.lexicographical_topological_sort(graph, position.__getitem__)
+            return {name: self.signals[name] for name in order}
+        except nx.NetworkXUnfeasible:
+            loop = [edge[0] for edge in nx.find_cycle(graph)]
+            what = f"algebraic loop: {' -> '.join([*loop, loop[0]])}"
+            block = self.blocks.get(loop[0])
+            hint = "Break it with an integrator, or solve the equation by hand."
+            place = block.place if block else Place()
+            raise DiagramError([Problem(what, place, (), hint)]) from None
+
+
+def _without_manies(formula: Expression, manies: Mapping[str, list[Expression]]) -> Expression:
+    """The formula with sum(port) and product(port) written out."""
+    if not isinstance(formula, Call):
+        return formula
+    first = formula.arguments[0]
+    if formula.function in ("sum", "product") and isinstance(first, Name) and first.name in manies:
+        plus = formula.function == "sum"
+        return _folded("+" if plus else "*", manies[first.name], 0.0 if plus else 1.0)
+    return Call(formula.function, tuple(_without_manies(a, manies) for a in formula.arguments))
+
+
+def _resolved(local: Mapping[str, str], scope: _Scope) -> dict[str, str]:
+    found = {symbol: scope.resolve(name) for symbol, name in local.items()}
+    return {symbol: node.name for symbol, node in found.items() if isinstance(node, Name)}
+
+
+class _Scope:
+    """The names that are visible in one diagram, and the full names that they stand for."""
+
+    def __init__(self, diagram: Diagram, path: str, inputs: Mapping[str, Expression]) -> None:
+        self.diagram, self.path, self.inputs = diagram, path, inputs
+
+    def wire(self, wire: Wire) -> Expression:
+        carried = self.resolve(wire.signal)
+        return Call("neg", (carried,)) if wire.negative else carried
+
+    def state(self, name: str) -> str:
+        use = self.diagram.blocks[name]
+        block = self.diagram.library[use.type]
+        return next(iter(state_names(block, self.path + name).values()))
+
+    def resolve(self, name: str) -> Expression:
+        if name in self.inputs:
+            return self.inputs[name]
+        if name == "t" or name in CONSTANTS:
+            return Name(name)
+        head, _, rest = name.partition(".")
+        use = self.diagram.blocks.get(head)
+        if use is None:
+            return Name(self.path + name)
+        if use.subsystem is not None:
+            port = rest or next(iter(use.subsystem.outputs), "")
+            return Name(f"{self.path}{head}.{port}")
+        if len(self.diagram.library[use.type].outputs) == 1:
+            return Name(self.path + head)
+        return Name(self.path + name)

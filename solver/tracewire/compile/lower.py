@@ -1,0 +1,290 @@
+"""From flat equations to the tape: every relation becomes a mode and the guard that changes it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Literal
+
+from tracewire.compile.differentiate import linear_in_t
+from tracewire.compile.flat import Flat
+from tracewire.compile.tape import BINARY, UNARY, Entry, Tape
+from tracewire.errors import DiagramError, Place, Problem
+from tracewire.formula import CONSTANTS, Call, Expression, Name, Number, to_text
+
+ModeKind = Literal["sign", "floor", "segment"]
+
+
+@dataclass(frozen=True)
+class Mode:
+    """A frozen choice of the model and the guard that changes it.
+
+    kind `sign`: 1 where guard >= 0, else 0. `floor`: the whole number below the guard. `segment`:
+    the piece of table `table` on which the guard lies. `timed`: the guard is a*t + b with these
+    entries, so its changes are known times. `holds`: at guard = 0 a `dry` may hold the guard at
+    zero. `at_zero`: the sign mode that the user's comparison gives at exactly zero.
+    """
+
+    kind: ModeKind
+    guard: int
+    leaf: int
+    signal: str
+    text: str
+    timed: tuple[int, int] | None = None
+    holds: bool = False
+    at_zero: int = 1
+    table: int = -1
+
+
+@dataclass
+class Lowered:
+    """The tape of a model with its roots: entries of signals, rates, starts, resets; the modes."""
+
+    tape: Tape = field(default_factory=Tape)
+    modes: list[Mode] = field(default_factory=list)
+    entries: dict[str, int] = field(default_factory=dict)
+    states: list[int] = field(default_factory=list)
+    rates: list[int] = field(default_factory=list)
+    starts: list[int] = field(default_factory=list)
+    tables: list[str] = field(default_factory=list)
+    resets: list[tuple[int, str, dict[int, int]]] = field(default_factory=list)
+
+
+def lower(flat: Flat) -> Lowered:
+    """The tape of flat equations.
+
+    `resets` are (mode of `when`, direction, {state: entry of its new value}).
+    """
+    return _Lowering(flat).lowered()
+
+
+class _Lowering:
+    def __init__(self, flat: Flat) -> None:
+        self.flat = flat
+        self.out = Lowered()
+        self.tape = self.out.tape
+        self.t = self.tape.push("t")
+        self.by_guard: dict[tuple[str, int], int] = {}
+        self.signal = ""
+
+    def lowered(self) -> Lowered:
+        flat, out, tape = self.flat, self.out, self.tape
+        out.entries["t"] = self.t
+        for name, value in CONSTANTS.items():
+            out.entries[name] = tape.constant(value)
+        for number, name in enumerate(flat.parameters):
+            out.entries[name] = tape.push("param", payload=number)
+        for number, state in enumerate(flat.states):
+            entry = tape.push("state", payload=number)
+            out.entries[state.name] = entry
+            out.states.append(entry)
+        out.tables = [*flat.tables, *flat.inputs]
+        for name in flat.inputs:
+            self.signal = name
+            out.entries[name] = self.interpolated(self.t, name)
+        for name, formula in flat.signals.items():
+            self.signal = name
+            out.entries[name] = self.lower(formula)
+        for state in flat.states:
+            self.signal = state.name
+            out.rates.append(self.lower(state.rate))
+            out.starts.append(self.start(state.start, state.name, state.place))
+        index = {state.name: number for number, state in enumerate(flat.states)}
+        for event in flat.events:
+            self.signal = event.name
+            when = self.condition(event.when, strict=False, always=True)
+            mode = next(i for i, m in enumerate(out.modes) if m.leaf in tape.needed([when]))
+            flipped = tape.entries[when].op == "not"
+            crosses = {"up": "down", "down": "up"}.get(event.crosses, "both")
+            values = {index[name]: self.lower(formula) for name, formula in event.set.items()}
+            out.resets.append((mode, crosses if flipped else event.crosses, values))
+        return out
+
+    def start(self, formula: Expression, name: str, place: Place) -> int:
+        entry = self.lower(formula)
+        if not self.tape.leaves([entry]) <= {"param", "const"}:
+            what = f"the start '{to_text(formula)}' reads a signal"
+            hint = "A start value may only read parameters."
+            at = Place(place.file, place.line, place.column, name)
+            raise DiagramError([Problem(what, at, (), hint)])
+        return entry
+
+    def static(self, entry: int) -> bool:
+        """Whether an entry changes only where parameters or modes do, and so needs no guard."""
+        return self.tape.leaves([entry]) <= {"param", "const", "mode", "hold"}
+
+    def lower(self, node: Expression) -> int:
+        if isinstance(node, Number):
+            return self.tape.constant(node.value)
+        if isinstance(node, Name):
+            return self.out.entries[node.name]
+        function, arguments = node.function, node.arguments
+        special: dict[str, Callable[[tuple[Expression, ...]], int]] = {
+            "if": self.choice,
+            "sign": self.sign,
+            "abs": self.absolute,
+            "min": lambda a: self.extreme(a, largest=False),
+            "max": lambda a: self.extreme(a, largest=True),
+            "floor": lambda a: self.floor(self.lower(a[0])),
+            "mod": self.modulo,
+            "dry": self.dry,
+            "interp": self.interp,
+        }
+        if function in special:
+            return special[function](arguments)
+        if function in ("<", "<=", ">", ">=", "and", "or", "not"):
+            return self.boolean(node)
+        if function in UNARY or function in BINARY:
+            return self.tape.push(function, *(self.lower(argument) for argument in arguments))
+        raise AssertionError(f"no entry for {function}")
+
+    def boolean(self, node: Call) -> int:
+        push = self.tape.push
+        if node.function == "not":
+            return push("not", self.lower(node.arguments[0]))
+        if node.function in ("and", "or"):
+            parts = [self.lower(argument) for argument in node.arguments]
+            result = parts[0]
+            for part in parts[1:]:
+                result = push(node.function, result, part)
+            return result
+        left, right = node.arguments
+        difference = Call("-", (left, right))
+        match node.function:
+            case ">=":
+                return self.condition(difference, strict=False)
+            case ">":
+                return self.condition(difference, strict=True)
+            case "<":
+                return push("not", self.condition(difference, strict=False))
+            case _:
+                return push("not", self.condition(difference, strict=True))
+
+    def condition(self, guard: Expression, strict: bool, always: bool = False) -> int:
+        """The entry of guard >= 0 (or > 0)."""
+        text = to_text(guard)
+        if isinstance(guard, Call) and guard.arguments[-1:] == (Number(0.0),):
+            text = to_text(guard.arguments[0])
+        return self.positive(self.lower(guard), text, strict, always=always)
+
+    def positive(
+        self,
+        guard: int,
+        text: str,
+        strict: bool = False,
+        holds: bool = False,
+        always: bool = False,
+    ) -> int:
+        """The entry that is 1 where guard >= 0 (or > 0): a mode, shared up to sign.
+
+        A guard that never changes within a mode combination is compared on the spot, unless
+        `always` asks for a mode: the event of a reset needs one.
+        """
+        tape = self.tape
+        if self.static(guard) and not always:
+            return tape.push("gt" if strict else "ge", guard, tape.constant(0.0))
+        entry = tape.entries[guard]
+        if entry.op == "neg":
+            inner = self.positive(entry.operands[0], f"-({text})", not strict, holds, always)
+            return tape.push("not", inner)
+        mirrored = tape.known.get(Entry("-", entry.operands[::-1])) if entry.op == "-" else None
+        if mirrored is not None and ("sign", mirrored) in self.by_guard:
+            mode = self.mode("sign", mirrored, text, holds=holds)
+            return tape.push("not", self.out.modes[mode].leaf)
+        mode = self.mode("sign", guard, text, at_zero=0 if strict else 1, holds=holds)
+        return self.out.modes[mode].leaf
+
+    def mode(
+        self,
+        kind: ModeKind,
+        guard: int,
+        text: str,
+        at_zero: int = 1,
+        holds: bool = False,
+        table: int = -1,
+    ) -> int:
+        """The index of the mode of a guard; one guard has one mode, whoever asks."""
+        modes = self.out.modes
+        key = (kind if table < 0 else f"{kind}{table}", guard)
+        found = self.by_guard.get(key)
+        if found is not None:
+            old = modes[found]
+            if holds and not old.holds:
+                modes[found] = Mode(
+                    kind, guard, old.leaf, old.signal, old.text, old.timed, True, old.at_zero, table
+                )
+            return found
+        index = self.by_guard[key] = len(modes)
+        leaf = self.tape.push("mode", payload=index)
+        reads_t = "t" in self.tape.leaves([guard])
+        timed = linear_in_t(self.tape, guard, self.t) if reads_t else None
+        modes.append(Mode(kind, guard, leaf, self.signal, text, timed, holds, at_zero, table))
+        return index
+
+    def choice(self, arguments: tuple[Expression, ...]) -> int:
+        condition, then, other = (self.lower(argument) for argument in arguments)
+        return self.tape.push("select", condition, then, other)
+
+    def sign(self, arguments: tuple[Expression, ...]) -> int:
+        return self.sign_of(self.lower(arguments[0]), to_text(arguments[0]))
+
+    def sign_of(self, guard: int, text: str, holds: bool = False) -> int:
+        tape, push = self.tape, self.tape.push
+        one = tape.constant(1.0)
+        if self.static(guard):
+            zero = tape.constant(0.0)
+            above = push("select", push("gt", guard, zero), one, zero)
+            return push("select", push("ge", guard, zero), above, tape.constant(-1.0))
+        positive = self.positive(guard, text, holds=holds)
+        return push("-", push("*", tape.constant(2.0), positive), one)
+
+    def absolute(self, arguments: tuple[Expression, ...]) -> int:
+        value = self.lower(arguments[0])
+        positive = self.positive(value, to_text(arguments[0]))
+        return self.tape.push("select", positive, value, self.tape.push("neg", value))
+
+    def extreme(self, arguments: tuple[Expression, ...], largest: bool) -> int:
+        push = self.tape.push
+        result = self.lower(arguments[0])
+        for argument in arguments[1:]:
+            other = self.lower(argument)
+            text = f"{to_text(arguments[0])} - {to_text(argument)}"
+            above = self.positive(push("-", result, other), text)
+            pair = (result, other) if largest else (other, result)
+            result = push("select", above, *pair)
+        return result
+
+    def floor(self, value: int) -> int:
+        if self.static(value):
+            return self.tape.push("floor", value)
+        return self.out.modes[self.mode("floor", value, f"floor in {self.signal}")].leaf
+
+    def modulo(self, arguments: tuple[Expression, ...]) -> int:
+        push = self.tape.push
+        value, base = (self.lower(argument) for argument in arguments)
+        whole = self.floor(push("/", value, base))
+        return push("-", value, push("*", base, whole))
+
+    def dry(self, arguments: tuple[Expression, ...]) -> int:
+        """slip*sign(u), or a level within +-stick while the mode holds u at zero."""
+        push = self.tape.push
+        guard, slip, stick = (self.lower(argument) for argument in arguments)
+        sign = self.sign_of(guard, to_text(arguments[0]), holds=True)
+        if slip == stick or self.static(guard):
+            return push("*", sign, slip)
+        mode = next(i for i, m in enumerate(self.out.modes) if m.leaf in self.tape.needed([sign]))
+        held = push("hold", payload=mode)
+        level = push("select", held, stick, slip)
+        return push("*", sign, level)
+
+    def interp(self, arguments: tuple[Expression, ...]) -> int:
+        table = arguments[1]
+        if not isinstance(table, Name):
+            raise AssertionError("interp reads a table by its name")
+        return self.interpolated(self.lower(arguments[0]), table.name)
+
+    def interpolated(self, value: int, name: str) -> int:
+        push, table = self.tape.push, self.out.tables.index(name)
+        leaf = push("table", payload=table)
+        mode = self.mode("segment", value, f"breakpoint of {name}", table=table)
+        return push("segment", leaf, value, self.out.modes[mode].leaf)

@@ -1,0 +1,94 @@
+"""The wiring of one diagram: every name that it uses exists, and is of the right kind."""
+
+from __future__ import annotations
+
+from tracewire.diagram.body import Body, Reference
+from tracewire.diagram.diagram import Diagram
+from tracewire.diagram.names import find_signal, outputs_of, signals
+from tracewire.diagram.problems import clip
+from tracewire.errors import Place
+
+
+def check_names(diagram: Diagram, body: Body) -> None:
+    """Note each name in a formula, wire, reset or output that does not exist in the diagram."""
+    for reference in body.references:
+        if not _exists(diagram, reference) and not body.problems.skips():
+            _explain(diagram, reference, body)
+    for name, place in body.resets:
+        _check_reset(diagram, name, place, body)
+    _check_outputs(diagram, body)
+
+
+def _exists(diagram: Diagram, reference: Reference) -> bool:
+    name, sees = reference.name, reference.sees
+    if sees != "signal" and name in diagram.parameters:
+        return True
+    if sees == "either" and name == "t":
+        return True
+    return sees != "parameter" and find_signal(diagram, name) is not None
+
+
+def _explain(diagram: Diagram, reference: Reference, body: Body) -> None:
+    name, sees, place = reference.name, reference.sees, reference.place
+    problems, shown = body.problems, clip(reference.name)
+    head, _, port = name.partition(".")
+    use = diagram.blocks.get(head)
+    is_signal = find_signal(diagram, name) is not None
+    if sees == "parameter" and (is_signal or name == "t"):
+        what = f"'{shown}' is {'the time' if name == 't' else 'a signal'}, and a value is fixed"
+        hint = "A value may use parameters only; for a formula of signals use an expression block."
+        problems.add(what, place, tuple(sorted(diagram.parameters)), hint)
+    elif sees == "parameter":
+        problems.unknown("parameter", name, diagram.parameters, place)
+    elif sees == "signal" and name in diagram.parameters:
+        hint = "Put it into a block of type constant, and name that."
+        problems.add(f"'{shown}' is a parameter, and not a signal", place, (), hint)
+    elif sees == "signal" and name == "t":
+        hint = "Use a block of type clock or expression."
+        problems.add("'t' is the time, and not a signal", place, (), hint)
+    elif use is not None:
+        outputs = outputs_of(use, diagram.library) or ()
+        several = tuple(f"{head}.{output}" for output in outputs)
+        if port:
+            problems.unknown("output", name, several, place)
+        else:
+            what = f"block '{head}' has {len(outputs) or 'no'} outputs"
+            problems.add(what, place, several, "Name one of them." if outputs else "")
+    elif sees == "signal":
+        problems.unknown("signal", name, signals(diagram), place)
+    else:
+        existing = [*signals(diagram), *diagram.parameters, "t"]
+        problems.unknown("signal or parameter", name, existing, place)
+
+
+def _check_reset(diagram: Diagram, name: str, place: Place, body: Body) -> None:
+    library, use = diagram.library, diagram.blocks.get(name)
+    if use is not None and use.subsystem is None:
+        if use.type not in library or len(library[use.type].states) == 1:
+            return
+        count = len(library[use.type].states)
+        what = f"block '{name}' has {count or 'no'} states, and an event sets a block with one"
+        body.problems.add(what, place, _one_state(diagram))
+    else:
+        body.problems.unknown("state", name, _one_state(diagram), place)
+
+
+def _one_state(diagram: Diagram) -> tuple[str, ...]:
+    library = diagram.library
+    plain = [use for use in diagram.blocks.values() if use.subsystem is None]
+    known = [use for use in plain if use.type in library]
+    return tuple(sorted(use.name for use in known if len(library[use.type].states) == 1))
+
+
+def _check_outputs(diagram: Diagram, body: Body) -> None:
+    """An output port may have the name of a part of the subsystem only if it carries just that.
+
+    Both have the same path from outside, so that `bearing.torque` would mean two things.
+    """
+    for name, wire in diagram.outputs.items():
+        carried = find_signal(diagram, wire.signal)
+        itself = carried == find_signal(diagram, name) and not wire.negative
+        if carried and name in body.defined and not itself:
+            kind, place = body.defined[name]
+            what = f"two definitions of '{name}': an output here, and {kind} in line {place.line}"
+            body.problems.add(what, wire.place, (), "Rename one.")

@@ -1,0 +1,145 @@
+"""The nouns of a diagram file: what the user wrote, checked, with the place of every part."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+from tracewire.errors import Place
+from tracewire.formula import Expression
+from tracewire.library import Library
+
+Use = Literal["train", "gate", "validate"]
+Crosses = Literal["up", "down", "both"]
+
+
+@dataclass(frozen=True)
+class Value:
+    """A number or a formula over parameters; `factor` times it is the value in SI.
+
+    `unit` is the SI unit to show. `fit` holds the bounds in SI of a value that a fit may change.
+    `named`: the user wrote a mapping ({value: ..., unit: ..., fit: ...}), so the value is a
+    parameter of its own that can be set and fitted.
+    """
+
+    formula: Expression
+    unit: str = ""
+    factor: float = 1.0
+    fit: tuple[float, float] | None = None
+    named: bool = False
+    place: Place = Place()
+
+
+@dataclass(frozen=True)
+class Points:
+    """A table: points (x ascending, y), in SI, for interp()."""
+
+    x: tuple[float, ...]
+    y: tuple[float, ...]
+    place: Place = Place()
+
+
+@dataclass(frozen=True)
+class Wire:
+    """A connection from a signal of the same diagram: a block, `block.output`, or an input."""
+
+    signal: str
+    negative: bool = False
+    place: Place = Place()
+
+
+@dataclass(frozen=True)
+class BlockUse:
+    """One block of a diagram: a library block, or a subsystem of the diagram (`subsystem`)."""
+
+    name: str
+    type: str
+    inputs: Mapping[str, tuple[Wire, ...]]
+    settings: Mapping[str, Value | Points | Expression]
+    unit: str = ""
+    local: Mapping[str, str] = field(default_factory=dict)
+    subsystem: Diagram | None = None
+    place: Place = Place()
+
+
+@dataclass(frozen=True)
+class InputPort:
+    """A named input of a diagram. `default` is used by a run that gives no source for it."""
+
+    name: str
+    unit: str = ""
+    default: Value | None = None
+    place: Place = Place()
+
+
+@dataclass(frozen=True)
+class Event:
+    """A reset: where `when` crosses zero, the states in `set` get new values, all read from x⁻."""
+
+    when: Expression
+    crosses: Crosses
+    set: Mapping[str, Expression]
+    place: Place = Place()
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A measured signal: the column of the file, the factor to SI, its noise and its offset."""
+
+    signal: str
+    column: str
+    factor: float = 1.0
+    unit: str = ""
+    sigma: float | None = None
+    offset: Value | None = None
+    place: Place = Place()
+
+
+@dataclass(frozen=True)
+class Series:
+    """A measured record: file, use, columns of time, signals and inputs, start, and the window.
+
+    `start` gives start values of this record by state; None there is a free start value. `begin`
+    and `end` cut the record, in the file's time in s.
+    """
+
+    name: str
+    file: Path
+    use: Use
+    time: str
+    channels: Mapping[str, Channel]
+    inputs: Mapping[str, Channel] = field(default_factory=dict)
+    start: Mapping[str, Value | None] = field(default_factory=dict)
+    preset: str = ""
+    begin: float | None = None
+    end: float | None = None
+    place: Place = Place()
+
+
+@dataclass(frozen=True)
+class Diagram:
+    """A diagram, or a subsystem of one, with everything that its file says.
+
+    `file` and `text` are those of the file the diagram was read from; an edit of the diagram is an
+    edit of that text. `library` holds the blocks that it may use.
+    """
+
+    name: str
+    file: Path
+    text: str
+    library: Library
+    title: str = ""
+    span: tuple[Value, Value] | None = None
+    every: Value | None = None
+    record: Mapping[str, Place] = field(default_factory=dict)
+    inputs: Mapping[str, InputPort] = field(default_factory=dict)
+    outputs: Mapping[str, Wire] = field(default_factory=dict)
+    parameters: Mapping[str, Value] = field(default_factory=dict)
+    blocks: Mapping[str, BlockUse] = field(default_factory=dict)
+    subsystems: Mapping[str, Diagram] = field(default_factory=dict)
+    events: tuple[Event, ...] = ()
+    presets: Mapping[str, Mapping[str, Value]] = field(default_factory=dict)
+    measured: Mapping[str, Series] = field(default_factory=dict)
+    place: Place = Place()

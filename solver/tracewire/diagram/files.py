@@ -1,0 +1,66 @@
+"""Files that a diagram names: whether they can be read, and the text of a diagram file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tracewire.errors import DiagramError, Place, Problem, unknown
+
+MOST_BYTES = 1_000_000
+MOST_LENGTH = 4096
+
+
+def problem_of(path: Path, place: Place) -> Problem | None:
+    """Why `path` is no file that can be read, or None. `place` is where it is named."""
+    try:
+        if len(str(path)) > MOST_LENGTH or "\0" in str(path):
+            return Problem("no file can have this name", place, hint="Check the path.")
+        if path.is_file():
+            return None
+        if path.is_dir():
+            names = sorted(entry.name for entry in path.iterdir() if entry.is_file())
+            return Problem(f"'{path}' is a folder", place, tuple(names), "Name a file in it.")
+        if path.exists():
+            what = f"'{path}' is not a regular file"
+            return Problem(what, place, hint="Copy its content into a file.")
+        if not path.parent.is_dir():
+            what = f"there is no file '{path}', and no folder '{path.parent}'"
+            return Problem(what, place, hint="Check the path.")
+        names = sorted(entry.name for entry in path.parent.iterdir() if entry.is_file())
+    except (OSError, ValueError) as error:
+        return _unreadable(path, error, place)
+    alike = [name for name in names if Path(name).suffix == path.suffix]
+    problem = unknown("file", path.name, alike or names, place)
+    return Problem(f"{problem.what} in '{path.parent}'", place, problem.exists, problem.hint)
+
+
+def load(path: Path, place: Place = Place()) -> str:
+    """The text of a diagram file, byte for byte (line ends and a byte order mark are kept).
+
+    Raises DiagramError: no such file, a folder, larger than 1 MB, not UTF-8.
+    """
+    problem = problem_of(path, place)
+    if problem is not None:
+        raise DiagramError([problem])
+    try:
+        with path.open("rb") as file:
+            content = file.read(MOST_BYTES + 1)
+    except OSError as error:
+        raise DiagramError([_unreadable(path, error, place)]) from None
+    if len(content) > MOST_BYTES:
+        hint = "Put subsystems into files of their own and include them; data belongs into CSV."
+        what = f"'{path}' is larger than {MOST_BYTES // 1_000_000} MB, too large for a diagram"
+        raise DiagramError.one(what, place, hint=hint)
+    try:
+        return content.decode("utf-8")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        column = error.start - (content.rfind(b"\n", 0, error.start) + 1) + 1
+        what = f"the byte 0x{content[error.start]:02x} is not UTF-8 text"
+        hint = "Save the file as text, in UTF-8."
+        raise DiagramError.one(what, Place(str(path), line, column), hint=hint) from None
+
+
+def _unreadable(path: Path, error: OSError | ValueError, place: Place) -> Problem:
+    reason = getattr(error, "strerror", None) or str(error)
+    return Problem(f"'{path}' cannot be read: {reason}", place, hint="Check its name and rights.")

@@ -1,0 +1,142 @@
+"""Where the parts of a diagram stand in its text: the nodes behind the nouns, for edits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tracewire.diagram.diagram import BlockUse, Diagram, Value
+from tracewire.diagram.names import find_parameter, parameters
+from tracewire.diagram.problems import Problems
+from tracewire.diagram.strict import Entries, Node, compose
+from tracewire.errors import DiagramError, OptionError, TracewireError, unknown
+from tracewire.formula import Number
+
+
+@dataclass(frozen=True)
+class Spot:
+    """A parameter in the text: its node, its value, and the factor to SI of a number put there.
+
+    `into`: the block that shall get a value of its own, because others share the node.
+    """
+
+    name: str
+    node: Node
+    value: Value
+    factor: float
+    into: Entries | None = None
+
+
+class Outline:
+    """The nodes of a diagram's text, found by the names of its parts."""
+
+    def __init__(self, diagram: Diagram) -> None:
+        self.top = diagram
+        root = compose(diagram.text, diagram.file, Problems())
+        if not isinstance(root, Entries):
+            raise DiagramError.one("a diagram must be a mapping", root.place)
+        self.root = root
+        self.definitions: dict[str, tuple[Diagram, Entries]] = {"": (diagram, root)}
+        self._define("", diagram, root)
+        self.nodes = {id(inside): entries for inside, entries in self.definitions.values()}
+        self.uses = _count_uses(diagram)
+
+    def _define(self, path: str, diagram: Diagram, entries: Entries) -> None:
+        subsystems = entries.values.get("subsystems")
+        for name, _, node in subsystems if isinstance(subsystems, Entries) else ():
+            if isinstance(node, Entries):
+                inner = f"{path}.{name}" if path else name
+                self.definitions[inner] = diagram.subsystems[name], node
+                self._define(inner, diagram.subsystems[name], node)
+
+    def block(self, path: str) -> tuple[Diagram, Entries, str]:
+        """The diagram that a block stands in, the node of its `blocks`, and the block's name.
+
+        path: `torque`, or `bearing.total` in the definition `bearing`; the definition of a nested
+        subsystem may be named without those around it where that is clear. Raises OptionError.
+        """
+        where, _, name = path.rpartition(".")
+        found = [where] if where in self.definitions else []
+        found = found or [other for other in self.definitions if other.endswith(f".{where}")]
+        if len(found) > 1:
+            what = f"'{path}' may mean several blocks"
+            raise OptionError.one(what, exists=[f"{other}.{name}" for other in found])
+        if not found:
+            included = self.top.subsystems.get(where)
+            if included is not None:
+                raise _elsewhere(included)
+            raise OptionError([unknown("subsystem", where, (p for p in self.definitions if p))])
+        inside, entries = self.definitions[found[0]]
+        blocks = entries.values.get("blocks")
+        if name not in inside.blocks or not isinstance(blocks, Entries):
+            raise OptionError([unknown("block", name, inside.blocks)])
+        return inside, blocks, name
+
+    def parameter(self, path: str) -> Spot:
+        """Where the value of a parameter of a run is written. Raises OptionError."""
+        value = find_parameter(self.top, path)
+        if value is None:
+            raise OptionError([unknown("parameter", path, parameters(self.top))])
+        inside, entries, rest = self.top, self.root, path
+        while "." in rest:
+            head, _, rest = rest.partition(".")
+            use, line = inside.blocks[head], _part(entries, "blocks", head)
+            assert isinstance(line, Entries)
+            if rest in use.settings:
+                return _given(rest, line.values[rest], value, use)
+            assert use.subsystem is not None
+            entries = self._entries(use.subsystem)
+            shared = self.uses[id(use.subsystem)] > 1
+            if rest in use.subsystem.parameters:
+                node = _part(entries, "parameters", rest)
+                return Spot(rest, node, value, value.factor, line if shared else None)
+            if shared:
+                what = f"'{path}' stands in '{use.type}', which several blocks are"
+                hint = f"Make it a parameter of '{use.type}'."
+                raise OptionError.one(what, use.subsystem.place, hint=hint)
+            inside = use.subsystem
+        return Spot(rest, _part(entries, "parameters", rest), value, value.factor)
+
+    def _entries(self, diagram: Diagram) -> Entries:
+        if id(diagram) not in self.nodes:
+            raise _elsewhere(diagram)
+        return self.nodes[id(diagram)]
+
+
+def _given(name: str, node: Node, value: Value, use: BlockUse) -> Spot:
+    """A setting of a block; a number takes the unit of a subsystem's parameter, a formula none."""
+    own = isinstance(node, Entries) and "unit" in node.values
+    factor = value.factor
+    if use.subsystem is not None and not own and not isinstance(value.formula, Number):
+        factor = use.subsystem.parameters[name].factor
+    return Spot(name, node, value, factor)
+
+
+def _part(entries: Entries, section: str, name: str) -> Node:
+    node = entries.values[section]
+    assert isinstance(node, Entries)
+    return node.values[name]
+
+
+def _elsewhere(diagram: Diagram) -> TracewireError:
+    what = f"the subsystem '{diagram.name}' is defined in another file"
+    hint = "Edit that file, or move the subsystem into the diagram's own."
+    return OptionError.one(what, diagram.place, hint=hint)
+
+
+def _count_uses(top: Diagram) -> dict[int, int]:
+    """How many parts of the whole diagram are made from each definition, by the id of it."""
+    inner_first: dict[int, Diagram] = {}
+
+    def visit(diagram: Diagram) -> None:
+        for use in diagram.blocks.values():
+            if use.subsystem is not None and id(use.subsystem) not in inner_first:
+                visit(use.subsystem)
+        inner_first[id(diagram)] = diagram
+
+    visit(top)
+    counts = dict.fromkeys(inner_first, 0) | {id(top): 1}
+    for diagram in reversed(inner_first.values()):
+        for use in diagram.blocks.values():
+            if use.subsystem is not None:
+                counts[id(use.subsystem)] += counts[id(diagram)]
+    return counts

@@ -1,0 +1,72 @@
+"""The problems of a diagram, collected while it is read, so that they are told together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from tracewire.errors import DiagramError, Place, Problem, TracewireError, unknown
+
+MOST_PROBLEMS = 100
+MOST_COMPARED = 20_000
+MOST_SHOWN = 60
+
+
+def clip(text: str) -> str:
+    """The text as it is quoted in a message: one line, and not too long of it."""
+    line = " ".join(text.split())
+    return line if len(line) <= MOST_SHOWN else f"{line[: MOST_SHOWN - 3]}..."
+
+
+class Problems:
+    """What is wrong, in the order in which it was found; beyond `MOST_PROBLEMS` only a count."""
+
+    def __init__(self) -> None:
+        self.found: list[Problem] = []
+        self.more = 0
+        self.compared = 0
+
+    def add(self, what: str, place: Place, exists: Iterable[str] = (), hint: str = "") -> None:
+        """Note one problem."""
+        self._note(Problem(what, place, tuple(exists), hint))
+
+    def unknown(
+        self, kind: str, name: str, existing: Iterable[str], place: Place, hint: str = ""
+    ) -> None:
+        """Note that there is no such name, and which there are."""
+        if self.skips():
+            return
+        names = sorted(set(existing))
+        self.compared += len(names)
+        if self.compared <= MOST_COMPARED:
+            self._note(unknown(kind, clip(name), names, place, hint))
+        else:  # the search for a near name takes a tenth of a millisecond for each that exists
+            self._note(Problem(f"unknown {kind} '{clip(name)}'", place, tuple(names), hint))
+
+    def skips(self) -> bool:
+        """Whether there are enough problems already; if so this one is only counted."""
+        full = len(self.found) >= MOST_PROBLEMS
+        self.more += full
+        return full
+
+    def take(self, error: TracewireError) -> None:
+        """Note the problems of an error that ends here."""
+        for problem in error.problems:
+            self._note(problem)
+
+    def raise_found(self, file: str) -> None:
+        """Raise what was noted, by line; the problems of `file` come before those of others."""
+        if not self.found:
+            return
+
+        def order(problem: Problem) -> tuple[bool, str, int, int]:
+            place = problem.place
+            return place.file != file, place.file, place.line, place.column
+
+        told = sorted(dict.fromkeys(self.found), key=order)
+        if self.more:
+            told.append(Problem(f"and {self.more} more problems", Place(file)))
+        raise DiagramError(told)
+
+    def _note(self, problem: Problem) -> None:
+        if not self.skips():
+            self.found.append(problem)

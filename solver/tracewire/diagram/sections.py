@@ -1,0 +1,117 @@
+"""The sections that every diagram and subsystem may have, but for its blocks."""
+
+from __future__ import annotations
+
+from typing import get_args
+
+from tracewire.diagram.body import NAMES, Body
+from tracewire.diagram.diagram import Crosses, Event, InputPort, Value, Wire
+from tracewire.diagram.problems import clip
+from tracewire.diagram.strict import Entries, Items, Node, Scalar
+from tracewire.diagram.values import NO_UNIT, read_formula, read_value
+from tracewire.diagram.wires import read_wire
+from tracewire.formula import Expression, Number, is_name
+
+CROSSES: dict[str, Crosses] = {word: word for word in get_args(Crosses)}
+
+
+def read_inputs(node: Node, body: Body) -> dict[str, InputPort]:
+    """`inputs`: a list of names, or a mapping of names to {unit, default}."""
+    found: dict[str, InputPort] = {}
+    if not isinstance(node, Entries):
+        for name in body.scalars(node, "'inputs'"):
+            body.define("an input", name)
+            found.setdefault(name.text, InputPort(name.text, place=body.place(name)))
+        return found
+    for text, key, value in node:
+        body.define("an input", key)
+        properties = body.entries(value, f"input '{clip(text)}'", "{unit: N m, default: 0}")
+        unit, default = NO_UNIT, None
+        if properties is not None:
+            body.check_keys(properties, ("unit", "default"), "key of an input")
+            if "unit" in properties.values:
+                unit = body.unit(properties.values["unit"])
+            if "default" in properties.values:
+                default = read_value(properties.values["default"], body, unit=unit, fit=False)
+        found[text] = InputPort(text, unit.text, default, body.place(key))
+    return found
+
+
+def read_outputs(node: Node, body: Body) -> dict[str, Wire]:
+    """`outputs` of a subsystem: a mapping of ports to signals, or a list of signals."""
+    found: dict[str, Wire] = {}
+    if isinstance(node, Entries):
+        named = list(node)
+    else:
+        scalars = body.scalars(node, "'outputs'")
+        named = [(scalar.text, scalar, scalar) for scalar in scalars]
+    for name, key, value in named:
+        if name in found:
+            what = f"two definitions of the output '{clip(name)}'"
+            body.problems.add(what, body.place(key), (), "Remove or rename one.")
+        elif not is_name(name):
+            hint = f"{NAMES} A port gets a name by 'outputs: {{name: signal}}'."
+            what = f"'{clip(name)}' cannot be the name of an output"
+            body.problems.add(what, body.place(key), (), hint)
+        else:
+            wire = read_wire(value, body, f"output '{name}'")
+            found[name] = Wire("", place=body.place(key)) if wire is None else wire
+    return found
+
+
+def read_parameters(node: Node, body: Body) -> dict[str, Value]:
+    """`parameters`: a mapping of names to values."""
+    found: dict[str, Value] = {}
+    entries = body.entries(node, "'parameters'", "{k: 2.5, J: {value: 4e-4, unit: kg m^2}}")
+    for name, key, given in entries or ():
+        body.define("a parameter", key)
+        value = read_value(given, body)
+        # a name that is there with a wrong value shall not be called unknown elsewhere too
+        found[name] = Value(Number(0.0), place=body.place(key)) if value is None else value
+    return found
+
+
+def read_events(node: Node, body: Body) -> tuple[Event, ...]:
+    """`events`: a list of {when, crosses, set}."""
+    if not isinstance(node, Items):
+        hint = "Write it like [{when: theta - 1, crosses: up, set: {omega: -omega}}]."
+        body.problems.add("'events' must be a list", body.place(node), (), hint)
+        return ()
+    events = (_read_event(item, body) for item in node.items)
+    return tuple(event for event in events if event is not None)
+
+
+def _read_event(node: Node, body: Body) -> Event | None:
+    entries = body.entries(node, "an event", "{when: theta - 1, crosses: up, set: {omega: 0}}")
+    if entries is None:
+        return None
+    body.check_keys(entries, ("when", "crosses", "set"), "key of an event")
+    crosses: Crosses = "both"
+    if "crosses" in entries.values:
+        given = entries.values["crosses"]
+        word = body.text(given, "'crosses'") or ""
+        if word in CROSSES:
+            crosses = CROSSES[word]
+        else:
+            body.problems.unknown("direction", word, CROSSES, body.place(given))
+    when_node = body.required(entries, "when", "an event")
+    when = None if when_node is None else read_formula(when_node, body, "either")
+    set_node = body.required(entries, "set", "an event")
+    resets: dict[str, Expression] = {}
+    if set_node is not None:
+        states = body.entries(set_node, "'set' of an event", "{omega: -0.5*omega}")
+        for name, key, given in states or ():
+            formula = read_formula(given, body, "either")
+            body.resets.append((name, body.place(key)))
+            if formula is not None:
+                resets[name] = formula
+        if states is not None and not states.keys:
+            body.problems.add("an event must set a state", body.place(set_node))
+    return None if when is None else Event(when, crosses, resets, body.place(entries))
+
+
+def read_title(node: Node, body: Body) -> str:
+    """`title`: any text."""
+    if isinstance(node, Scalar) and node.style in ("|", ">"):
+        return " ".join(node.text.split())
+    return body.text(node, "'title'") or ""

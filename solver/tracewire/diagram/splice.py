@@ -1,0 +1,141 @@
+"""Changes of a text at the marks of its nodes, which leave every other character as it is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from tracewire.diagram.strict import Entries, Items, Node, Scalar
+from tracewire.errors import DiagramError, Place, TracewireError
+
+
+@dataclass(frozen=True)
+class Change:
+    """`text` in place of the characters from `start` to `end`."""
+
+    start: int
+    end: int
+    text: str
+
+
+def changed(text: str, changes: Sequence[Change]) -> str:
+    """The text with all changes made; they must not overlap."""
+    for change in sorted(changes, key=lambda change: change.start, reverse=True):
+        text = text[: change.start] + change.text + text[change.end :]
+    return text
+
+
+def end_of(node: Node) -> int:
+    """Where the text of a node ends, without blanks and comments behind it."""
+    if isinstance(node, Scalar) or node.flow:
+        return node.end
+    parts = node.items if isinstance(node, Items) else tuple(node.values.values())
+    return max(end_of(part) for part in parts)
+
+
+def replaced(node: Node, new: str) -> Change:
+    """The node's text exchanged; a text block (| or >) is refused."""
+    if isinstance(node, Scalar) and node.style in ("|", ">"):
+        raise _refused(node)
+    return Change(node.start, end_of(node), new)
+
+
+def entry_after(text: str, entries: Entries, after: str, name: str, value: str) -> Change:
+    """`name: value` as a new entry behind the entry `after`, laid out as that is."""
+    key, node = entries.keys[after], entries.values[after]
+    end = end_of(node)
+    if entries.flow:
+        return Change(end, end, f", {name}: {value}")
+    indent = _indent(text, key)
+    width = node.start - key.start if node.place.line == key.place.line else 0
+    return _line_after(text, end, f"{indent}{f'{name}:'.ljust(width - 1)} {value}")
+
+
+def entry_last(text: str, entries: Entries, name: str, value: str) -> Change:
+    """`name: value` as the last entry of a mapping."""
+    if not entries.keys:
+        return Change(entries.start + 1, entries.start + 1, f"{name}: {value}")
+    return entry_after(text, entries, list(entries.keys)[-1], name, value)
+
+
+def item_last(text: str, items: Items, value: str) -> Change:
+    """`value` as the last item of a list."""
+    if not items.items:
+        return Change(items.start + 1, items.start + 1, value)
+    last = items.items[-1]
+    end = end_of(last)
+    if items.flow:
+        return Change(end, end, f", {value}")
+    return _line_after(text, end, text[_line_start(text, last.start) : last.start] + value)
+
+
+def without_entry(text: str, entries: Entries, name: str) -> Change:
+    """The entry taken out: its lines, or its part of a mapping in braces."""
+    key, node = entries.keys[name], entries.values[name]
+    if not entries.flow:
+        _indent(text, key)
+        return Change(_line_start(text, key.start), _line_end(text, end_of(node)), "")
+    parts = [(k.start, end_of(entries.values[n])) for n, k in entries.keys.items()]
+    return _without_part(text, parts, list(entries.keys).index(name))
+
+
+def without_items(text: str, key: Scalar, items: Items, indices: Sequence[int]) -> list[Change]:
+    """Items taken out of the list that is the value of `key`."""
+    parts = [(item.start, end_of(item)) for item in items.items]
+    kept = [i for i in range(len(parts)) if i not in indices]
+    if items.flow:
+        if len(indices) == 1:
+            return [_without_part(text, parts, indices[0])]
+        inside = ", ".join(text[parts[i][0] : parts[i][1]] for i in kept)
+        return [Change(parts[0][0], parts[-1][1], inside)]
+    changes = [
+        Change(_line_start(text, parts[i][0]), _line_end(text, parts[i][1]), "") for i in indices
+    ]
+    if not kept:
+        colon = text.index(":", key.end) + 1
+        changes.append(Change(colon, colon, " []"))
+    return changes
+
+
+def _without_part(text: str, parts: Sequence[tuple[int, int]], index: int) -> Change:
+    """One part of a list in brackets taken out with one of the commas beside it."""
+    start, end = parts[index]
+    if len(parts) == 1:
+        return Change(start, end, "")
+    if index > 0 and "#" not in text[parts[index - 1][1] : start]:
+        return Change(parts[index - 1][1], end, "")
+    if index == 0 and "#" not in text[end : parts[1][0]]:
+        return Change(start, parts[1][0], "")
+    comma = text.find(",", end, parts[index + 1][0]) if index + 1 < len(parts) else -1
+    return Change(start, comma + 1 if comma >= 0 else end, "")
+
+
+def _line_start(text: str, at: int) -> int:
+    return text.rfind("\n", 0, at) + 1
+
+
+def _line_end(text: str, at: int) -> int:
+    """Behind the line break of the line in which `at` stands."""
+    found = text.find("\n", at)
+    return len(text) if found < 0 else found + 1
+
+
+def _line_after(text: str, at: int, line: str) -> Change:
+    end = _line_end(text, at)
+    ending = "\r\n" if "\r\n" in text else "\n"
+    if text.endswith("\n", 0, end):
+        return Change(end, end, line + ending)
+    return Change(end, end, ending + line)
+
+
+def _indent(text: str, key: Scalar) -> str:
+    indent = text[_line_start(text, key.start) : key.start].removeprefix("\ufeff")
+    if indent.strip():
+        raise _refused(key)
+    return indent
+
+
+def _refused(node: Scalar) -> TracewireError:
+    what = "the text is laid out here in a way that cannot be edited by program"
+    place = Place(node.place.file, node.place.line, node.place.column)
+    return DiagramError.one(what, place, hint="Write 'name: value' on one line.")

@@ -1,0 +1,249 @@
+"""A strict subset of YAML as nodes that know their place.
+
+What a diagram needs of YAML is mappings, lists and text. Refused are duplicate and empty keys, keys
+without a value, anchors and aliases (which can unfold to any size), merge keys, tags, and a second
+document. A plain scalar that matches `NUMBER` is a number (`1e-3` is one, unlike in YAML 1.1);
+every other scalar is text: `yes`, `on`, `null` and dates have no meaning of their own.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import yaml
+from yaml.reader import Reader
+
+from tracewire.diagram.problems import Problems, clip
+from tracewire.errors import DiagramError, Place
+
+MOST_DEPTH = 60
+MOST_KEY = 100
+NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?")
+STRANGE_BREAK = re.compile("\r(?!\n)|[\x85\u2028\u2029]")
+PARSER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # only its events are used
+BROKEN = "Check indentation, colons, quotes and brackets here and in the line above."
+
+
+@dataclass(frozen=True)
+class Scalar:
+    """A text or number; `text[start:end]` of the file holds it with its quotes."""
+
+    text: str
+    place: Place
+    start: int
+    end: int
+    style: str = ""  # empty where it is plain, else the quote or the sign of a text block
+
+    @property
+    def number(self) -> float | None:
+        """The number that a plain scalar is, or None."""
+        if self.style or not NUMBER.fullmatch(self.text):
+            return None
+        value = float(self.text)
+        return value if math.isfinite(value) else None
+
+
+@dataclass(frozen=True)
+class Items:
+    """A list. `flow`: it stands in brackets; without them `end` is where the next node begins."""
+
+    items: tuple[Node, ...]
+    place: Place
+    start: int
+    end: int
+    flow: bool
+
+
+@dataclass(frozen=True)
+class Entries:
+    """A mapping: the node of each key and of its value. `flow` and `end` as in a list."""
+
+    keys: dict[str, Scalar]
+    values: dict[str, Node]
+    place: Place
+    start: int
+    end: int
+    flow: bool
+
+    def __iter__(self) -> Iterator[tuple[str, Scalar, Node]]:
+        return ((name, key, self.values[name]) for name, key in self.keys.items())
+
+
+Node = Scalar | Items | Entries
+
+
+def compose(text: str, file: Path, problems: Problems) -> Node:
+    """The root node of a YAML text.
+
+    What can be read over is noted in `problems`. Raises DiagramError where it cannot: not YAML, no
+    content, nested too deeply, a second document.
+    """
+    mark = 1 if text.startswith("\ufeff") else 0  # the parser does not count a byte order mark
+    _check_characters(text, str(file), mark)
+    try:
+        return _Composer(str(file), mark, problems).compose(text[mark:])
+    except yaml.MarkedYAMLError as error:
+        spot = error.problem_mark or error.context_mark
+        place = Place(str(file), spot.line + 1, spot.column + 1) if spot else Place(str(file))
+        said = " ".join(part for part in (error.context, error.problem) if part)
+        tab = "cannot start any token" in said and "\t" in text.splitlines()[place.line - 1]
+        hint = "Indent with blanks, never with tabs." if tab else BROKEN
+        raise DiagramError.one(f"this is not YAML: {said}", place, hint=hint) from None
+    except yaml.YAMLError as error:
+        what = f"this is not YAML: {clip(str(error))}"
+        raise DiagramError.one(what, Place(str(file)), hint=BROKEN) from None
+
+
+def _check_characters(text: str, file: str, mark: int) -> None:
+    for pattern, what in (
+        (Reader.NON_PRINTABLE, "is no character of a text file"),
+        (STRANGE_BREAK, "ends a line in YAML, but not in an editor"),
+    ):
+        found = pattern.search(text, mark)
+        if found:
+            at = found.start()
+            line, column = text.count("\n", 0, at) + 1, at - text.rfind("\n", 0, at)
+            what = f"the character U+{ord(found.group()):04X} {what}"
+            raise DiagramError.one(what, Place(file, line, column), hint="Remove it.")
+
+
+@dataclass
+class _Open:
+    """A list or mapping whose end has not come yet; None stands for a node that was refused."""
+
+    event: yaml.CollectionStartEvent
+    nodes: list[Node | None] = field(default_factory=list)
+
+
+class _Composer:
+    """Builds nodes from the events of the YAML parser, without recursion."""
+
+    def __init__(self, file: str, mark: int, problems: Problems) -> None:
+        self.file, self.mark, self.problems = file, mark, problems
+        self.root: Node | None = None
+        self.open: list[_Open] = []
+        self.told_anchor = False
+
+    def compose(self, text: str) -> Node:
+        documents = 0
+        for event in yaml.parse(text, Loader=PARSER):
+            if isinstance(event, yaml.DocumentStartEvent):
+                documents += 1
+                if documents > 1:
+                    hint = "Remove the line '---', or use a file for each."
+                    raise self.stopped("a second document begins here", event, hint)
+            elif isinstance(event, yaml.NodeEvent):
+                self.refuse_anchor_and_tag(event)
+                self.node(event)
+            elif isinstance(event, yaml.CollectionEndEvent):
+                self.close(event)
+        empty = isinstance(self.root, Scalar) and not self.root.text
+        if self.root is None or empty:
+            if self.problems.found:
+                self.problems.raise_found(self.file)
+            hint = "A diagram has at least 'blocks:'."
+            raise DiagramError.one("the file is empty", Place(self.file), hint=hint)
+        return self.root
+
+    def place(self, event: yaml.Event) -> Place:
+        start = event.start_mark
+        return Place(self.file, start.line + 1, start.column + 1) if start else Place(self.file)
+
+    def span(self, first: yaml.Event, last: yaml.Event) -> tuple[int, int]:
+        """Where the text of a node begins and ends; the parser gives each of its events marks."""
+        marks = (first.start_mark, last.end_mark)
+        start, end = (mark.index + self.mark if mark else 0 for mark in marks)
+        return start, end
+
+    def stopped(self, what: str, event: yaml.Event, hint: str) -> DiagramError:
+        self.problems.add(what, self.place(event), (), hint)
+        return DiagramError(self.problems.found)
+
+    def refuse_anchor_and_tag(self, event: yaml.NodeEvent) -> None:
+        if event.anchor is not None and not self.told_anchor:
+            self.told_anchor = True  # one is enough: where there is an anchor there are aliases
+            what = f"the anchor or alias '{clip(event.anchor)}' is not allowed in a diagram"
+            hint = "Name a value under 'parameters', or a part under 'subsystems'."
+            self.problems.add(what, self.place(event), (), hint)
+        tag = getattr(event, "tag", None)
+        if tag is not None:
+            what = f"the tag '{clip(tag)}' is not allowed in a diagram"
+            self.problems.add(what, self.place(event), (), "Remove it; put quotes around a '!'.")
+
+    def node(self, event: yaml.NodeEvent) -> None:
+        if isinstance(event, yaml.ScalarEvent):
+            start, end = self.span(event, event)
+            self.put(Scalar(event.value, self.place(event), start, end, event.style or ""))
+        elif isinstance(event, yaml.CollectionStartEvent):
+            if len(self.open) == MOST_DEPTH:
+                hint = "Use subsystems, or files of them with 'include'."
+                raise self.stopped(f"nested deeper than {MOST_DEPTH} levels", event, hint)
+            self.open.append(_Open(event))
+        else:  # an alias: what it stands for is not read, so the rest would only mislead
+            raise DiagramError(self.problems.found)
+
+    def close(self, event: yaml.CollectionEndEvent) -> None:
+        frame = self.open.pop()
+        place = self.place(frame.event)
+        start, end = self.span(frame.event, event)
+        flow = bool(frame.event.flow_style)
+        if isinstance(frame.event, yaml.MappingStartEvent):
+            keys, values = self.pairs(frame.nodes)
+            self.put(Entries(keys, values, place, start, end, flow))
+        else:
+            items = [node for node in frame.nodes if node is not None]
+            for node in items:
+                if _is_empty(node):
+                    self.problems.add("an entry of this list is empty", node.place)
+            kept = tuple(node for node in items if not _is_empty(node))
+            self.put(Items(kept, place, start, end, flow))
+
+    def put(self, node: Node | None) -> None:
+        if self.open:
+            self.open[-1].nodes.append(node)
+        else:
+            self.root = node
+
+    def pairs(self, nodes: list[Node | None]) -> tuple[dict[str, Scalar], dict[str, Node]]:
+        keys: dict[str, Scalar] = {}
+        values: dict[str, Node] = {}
+        for key, value in zip(nodes[::2], nodes[1::2], strict=True):
+            if key is None or not self.is_key(key, keys) or not isinstance(key, Scalar):
+                continue
+            if value is None:
+                continue
+            if _is_empty(value):
+                hint = "Write a value behind the colon, or remove the line."
+                self.problems.add(f"'{key.text}' has no value", key.place, (), hint)
+                continue
+            keys[key.text], values[key.text] = key, value
+        return keys, values
+
+    def is_key(self, key: Node, keys: dict[str, Scalar]) -> bool:
+        what, hint = "", ""
+        if not isinstance(key, Scalar):
+            what = "a key must be a name, not a list or mapping"
+            hint = "Is a quote missing, or a blank behind a colon?"
+        elif key.number is not None:
+            what, hint = f"a key must be a name, not the number {clip(key.text)}", ""
+        elif not key.text.strip():
+            what = "a key is empty"
+        elif key.text == "<<":
+            what, hint = "merge keys (<<) are not allowed in a diagram", "Write the entries out."
+        elif len(key.text) > MOST_KEY:
+            what = f"the key '{clip(key.text)}' is longer than {MOST_KEY} characters"
+        elif key.text in keys:
+            first = keys[key.text].place
+            what = f"two definitions of '{clip(key.text)}': it stands in line {first.line} already"
+            hint = "Remove or rename one."
+        if what:
+            self.problems.add(what, key.place, (), hint)
+        return not what
+
+
+def _is_empty(node: Node) -> bool:
+    return isinstance(node, Scalar) and not node.text and not node.style

@@ -1,0 +1,156 @@
+"""The section `blocks`: each line a library block or a subsystem, its wires and its settings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+from tracewire.diagram.body import OF_A_BLOCK, Body, Reference
+from tracewire.diagram.diagram import BlockUse, Diagram, Points, Value, Wire
+from tracewire.diagram.problems import clip
+from tracewire.diagram.strict import Entries, Node, Scalar
+from tracewire.diagram.values import read_formula, read_points, read_value
+from tracewire.diagram.wires import read_wires
+from tracewire.errors import Place
+from tracewire.formula import Expression, Number, is_name
+from tracewire.library import Block, Input, Parameter
+
+Find = Callable[[str, Place], Block | Diagram | None]
+"""The block or subsystem of a type; where there is none the problem is noted already."""
+EXAMPLE = "{type: gain, of: theta, k: 2}"
+
+
+def read_blocks(node: Node, body: Body, find: Find) -> dict[str, BlockUse]:
+    """`blocks`: a mapping of names to block lines."""
+    found: dict[str, BlockUse] = {}
+    for name, key, line in body.entries(node, "'blocks'", f"{{column: {EXAMPLE}}}") or ():
+        body.define("a block", key)
+        found[name] = _read_block(name, key, line, body, find)
+    return found
+
+
+def _read_block(name: str, key: Scalar, line: Node, body: Body, find: Find) -> BlockUse:
+    place = body.place(key, name)
+    unread = BlockUse(name, "", {}, {}, place=place)
+    entries = body.entries(line, f"block '{clip(name)}'", EXAMPLE, name)
+    if entries is None:
+        return unread
+    type_node = body.required(entries, "type", f"block '{clip(name)}'", name)
+    type_name = None if type_node is None else body.text(type_node, "a type", name)
+    if type_node is None or type_name is None:
+        return unread
+    kind = find(type_name, body.place(type_node, name))
+    unit = body.unit(entries.values["unit"], name).text if "unit" in entries.values else ""
+    local = {}
+    if "place" in entries.values:
+        local = _read_local(entries.values["place"], type_name, body, name)
+    if kind is None:
+        return replace(unread, unit=unit, local=local)
+    ports, parameters = _shape(kind)
+    body.check_keys(
+        entries, (*ports, *parameters, *OF_A_BLOCK), f"input or parameter of '{type_name}'", name
+    )
+    inputs: dict[str, tuple[Wire, ...]] = {}
+    for port in ports.values():
+        if port.name in entries.values:
+            given = entries.values[port.name]
+            wires = read_wires(given, body, f"input '{port.name}'", port.many, name)
+            inputs[port.name] = wires
+        elif port.default is None:
+            what = f"input '{port.name}' is not connected"
+            hint = f"Write {port.name}: {'[a, b]' if port.many else 'signal'}."
+            body.problems.add(what, place, (), hint)
+    settings = _read_settings(entries, kind, parameters, body, name, place)
+    inside = kind if isinstance(kind, Diagram) else None
+    return BlockUse(name, type_name, inputs, settings, unit, local, inside, place)
+
+
+def _shape(kind: Block | Diagram) -> tuple[dict[str, Input], dict[str, Parameter]]:
+    """The inputs and parameters of a block or subsystem."""
+    if isinstance(kind, Block):
+        return {p.name: p for p in kind.inputs}, {p.name: p for p in kind.parameters}
+    ports = {
+        name: Input(name, port.unit, default=None if port.default is None else "0")
+        for name, port in kind.inputs.items()
+    }
+    return ports, {name: Parameter(name, default=0.0) for name in kind.parameters}
+
+
+def _read_settings(
+    entries: Entries,
+    kind: Block | Diagram,
+    parameters: Mapping[str, Parameter],
+    body: Body,
+    name: str,
+    place: Place,
+) -> dict[str, Value | Points | Expression]:
+    settings: dict[str, Value | Points | Expression] = {}
+    for parameter in parameters.values():
+        node = entries.values.get(parameter.name)
+        if node is None:
+            if parameter.default is None:
+                what = f"parameter '{parameter.name}' is not given"
+                hint = f"Write {parameter.name}: ..."
+                body.problems.add(what, place, (), hint)
+            continue
+        given: Value | Points | Expression | None
+        if parameter.kind == "points":
+            given = read_points(node, body, name)
+        elif parameter.kind == "formula":
+            given = read_formula(node, body, "either", name)
+        else:
+            given = read_value(node, body, name)
+            if given is not None:
+                _check_bounds(given, parameter, body)
+                if isinstance(kind, Diagram):
+                    given = in_unit_of(given, kind.parameters[parameter.name])
+        if given is not None:
+            settings[parameter.name] = given
+    return settings
+
+
+def in_unit_of(given: Value, declared: Value) -> Value:
+    """A value for a parameter that is declared elsewhere.
+
+    A number without a unit is in the unit of the declaration; a formula is in SI, as everywhere.
+    """
+    if given.unit or given.factor != 1.0:
+        return given
+    factor = declared.factor if isinstance(given.formula, Number) else 1.0
+    bounds = given.fit and (given.fit[0] * factor, given.fit[1] * factor)
+    # the unit is never empty where there is a factor, so that nobody takes the value for a bare one
+    unit = declared.unit or ("" if declared.factor == 1.0 else "1")
+    return replace(given, unit=unit, factor=factor, fit=bounds)
+
+
+def _check_bounds(value: Value, parameter: Parameter, body: Body) -> None:
+    if not isinstance(value.formula, Number):
+        return
+    number = value.formula.value * value.factor
+    low, high = parameter.low, parameter.high
+    unit = f" {parameter.unit}" if parameter.unit else ""
+    if low is not None and number < low:
+        what = f"parameter '{parameter.name}' must be at least {low:g}{unit}, not {number:g}"
+        body.problems.add(what, value.place)
+    if high is not None and number > high:
+        what = f"parameter '{parameter.name}' must be at most {high:g}{unit}, not {number:g}"
+        body.problems.add(what, value.place)
+
+
+def _read_local(node: Node, type_name: str, body: Body, name: str) -> dict[str, str]:
+    """`place` of a sum: the local signals by which a trace tries effects there."""
+    if type_name != "sum":
+        what = f"only a sum has 'place', and '{clip(name)}' is a {clip(type_name)}"
+        hint = "Name the sum of the forces or torques that drive a rate."
+        body.problems.add(what, body.place(node, name), (), hint)
+        return {}
+    found: dict[str, str] = {}
+    for symbol, key, given in body.entries(node, "'place'", "{q: theta, v: omega}", name) or ():
+        signal = body.text(given, f"'{clip(symbol)}' of a place", name)
+        if not is_name(symbol):
+            what = f"'{clip(symbol)}' cannot be a symbol of a place"
+            body.problems.add(what, body.place(key, name), (), "Use q, v, or another plain name.")
+        elif signal is not None:
+            body.references.append(Reference(signal, "signal", body.place(given, name)))
+            found[symbol] = signal
+    return found

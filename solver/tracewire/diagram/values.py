@@ -1,0 +1,163 @@
+"""Values of a diagram file: numbers, formulas, units, bounds, and tables of points."""
+
+from __future__ import annotations
+
+import math
+
+from tracewire.data import read_columns
+from tracewire.diagram.body import Body, Reference, Sees
+from tracewire.diagram.diagram import Points, Value
+from tracewire.diagram.problems import clip
+from tracewire.diagram.strict import Entries, Items, Node, Scalar
+from tracewire.errors import DataError, FormulaError, Place
+from tracewire.formula import CONSTANTS, Call, Expression, Number, Unit, names_of, parse
+
+FREE = (-math.inf, math.inf)
+UNBOUNDED = {"inf": math.inf, "+inf": math.inf, "-inf": -math.inf}
+OF_BLOCKS = {
+    "sum": "Use a block of type sum, or write a + b.",
+    "product": "Use a block of type product, or write a*b.",
+    "interp": "Use a block that has a table of points.",
+}
+"""Functions that read a port or a table; a diagram's own formulas have neither."""
+NO_UNIT = Unit("", 1.0)
+
+
+def read_formula(node: Node, body: Body, sees: Sees, block: str = "") -> Expression | None:
+    """A formula over the names that `sees` allows, or None with a problem noted."""
+    place = body.place(node, block)
+    if not isinstance(node, Scalar):
+        body.problems.add("a formula must be a text, such as 2*k", place)
+        return None
+    if node.style in ("'", '"'):
+        place = Place(place.file, place.line, place.column + 1, place.block)
+    try:
+        formula = parse(node.text, place)
+    except FormulaError as error:
+        body.problems.take(error)
+        return None
+    for function in sorted(_functions(formula) & OF_BLOCKS.keys()):
+        what = f"formula '{clip(node.text)}': {function} is for the formulas of block declarations"
+        body.problems.add(what, place, (), OF_BLOCKS[function])
+        return None
+    for name in names_of(formula):
+        if name not in CONSTANTS:
+            body.references.append(Reference(name, sees, place))
+    return formula
+
+
+def _functions(formula: Expression) -> set[str]:
+    if not isinstance(formula, Call):
+        return set()
+    return {formula.function}.union(*(_functions(argument) for argument in formula.arguments))
+
+
+def read_value(
+    node: Node, body: Body, block: str = "", unit: Unit = NO_UNIT, fit: bool = True
+) -> Value | None:
+    """A value: a number, a formula over parameters, or a mapping of value, unit and fit.
+
+    unit: the unit of a value that names none itself. fit: whether bounds may be given.
+    """
+    if isinstance(node, Scalar):
+        formula = read_formula(node, body, "parameter", block)
+        if formula is None:
+            return None
+        return Value(formula, unit.text, unit.factor, place=body.place(node, block))
+    if isinstance(node, Items):
+        what = "a value is a number, a formula, or a mapping, and not a list"
+        hint = "Write it like 2.5, 2*k, or {value: 2.5, unit: N m, fit: [0, 5]}."
+        body.problems.add(what, body.place(node, block), (), hint)
+        return None
+    keys = ("value", "unit", "fit") if fit else ("value", "unit")
+    body.check_keys(node, keys, "key of a value", block)
+    given = body.required(node, "value", "a value in a mapping", block)
+    if "unit" in node.values:
+        unit = body.unit(node.values["unit"], block)
+    formula = None if given is None else read_formula(given, body, "parameter", block)
+    bounds = None
+    if fit and "fit" in node.values:
+        bounds = read_bounds(node.values["fit"], body, block)
+    if formula is None:
+        return None
+    if bounds and isinstance(formula, Number) and not bounds[0] <= formula.value <= bounds[1]:
+        what = (
+            f"the value {formula.value:g} is outside of its bounds {bounds[0]:g} to {bounds[1]:g}"
+        )
+        body.problems.add(what, body.place(node, block), (), "Widen 'fit', or change the value.")
+    scaled = (bounds[0] * unit.factor, bounds[1] * unit.factor) if bounds else None
+    place = body.place(node, block)
+    return Value(formula, unit.text, unit.factor, scaled, named=True, place=place)
+
+
+def read_bounds(node: Node, body: Body, block: str = "") -> tuple[float, float] | None:
+    """The bounds of a fit, in the unit of the value: `free`, or [low, high] (-inf, inf allowed)."""
+    if isinstance(node, Scalar) and node.text == "free":
+        return FREE
+    hint = "Write fit: [low, high] in the unit of the value, or fit: free."
+    if not isinstance(node, Items) or len(node.items) != 2:
+        what = "the bounds of a fit are two numbers"
+        body.problems.add(what, body.place(node, block), (), hint)
+        return None
+    ends = []
+    for item in node.items:
+        if isinstance(item, Scalar) and item.text in UNBOUNDED:
+            ends.append(UNBOUNDED[item.text])
+        else:
+            end = body.number(item, "a bound of a fit", block)
+            if end is None:
+                return None
+            ends.append(end)
+    low, high = ends
+    if not low < high:
+        what = f"the lower bound {low:g} is not below the upper bound {high:g}"
+        body.problems.add(what, body.place(node, block), (), hint)
+        return None
+    return low, high
+
+
+def read_points(node: Node, body: Body, block: str) -> Points | None:
+    """A table of points: [[x, y], ...], or {file, x, y} with the names of two columns."""
+    place = body.place(node, block)
+    if isinstance(node, Entries):
+        return _points_of_file(node, body, block)
+    if not isinstance(node, Items):
+        hint = "Write it like [[0, 0], [1, 2]], or {file: table.csv, x: column, y: column}."
+        body.problems.add("a table of points must be a list of pairs", place, (), hint)
+        return None
+    points: list[tuple[float, float]] = []
+    for item in node.items:
+        if not isinstance(item, Items) or len(item.items) != 2:
+            hint = "Write it like [0.5, 2]."
+            body.problems.add("a point must be a pair [x, y]", body.place(item, block), (), hint)
+            return None
+        x, y = (body.number(part, "a coordinate of a point", block) for part in item.items)
+        if x is None or y is None:
+            return None
+        if points and x <= points[-1][0]:
+            what = f"the points must ascend in x, and {x:g} is not above {points[-1][0]:g}"
+            body.problems.add(what, body.place(item, block), (), "Sort them.")
+            return None
+        points.append((x, y))
+    if len(points) < 2:
+        body.problems.add("a table needs at least two points", place)
+        return None
+    return Points(tuple(x for x, _ in points), tuple(y for _, y in points), place)
+
+
+def _points_of_file(node: Entries, body: Body, block: str) -> Points | None:
+    keys = ("file", "x", "y")
+    body.check_keys(node, keys, "key of a table", block)
+    parts = [body.required(node, key, "a table from a file", block) for key in keys]
+    texts = [None if part is None else body.text(part, "it", block) for part in parts]
+    if None in texts:
+        return None
+    file, x, y = (text or "" for text in texts)
+    try:
+        columns = read_columns(body.folder / file, {"y": y}, x, place=body.place(node, block))
+    except DataError as error:
+        body.problems.take(error)
+        return None
+    # read_columns promises at least two rows, ascending
+    xs, ys = (tuple(column.tolist()) for column in (columns.time, columns.values["y"]))
+    return Points(xs, ys, body.place(node, block))

@@ -1,0 +1,31 @@
+"""The formula language: a small, checked subset of Python expressions.
+
+A formula is arithmetic (`+ - * / **`), comparisons (`< <= > >=`), `and / or / not`, the choice
+`a if c else b`, and the functions of `FUNCTIONS`. Nothing else parses, and text, depth and size are
+bounded, so a formula from a stranger can do nothing but arithmetic. It is never given to `eval`.
+"""
+
+from tracewire.formula.evaluate import evaluate
+from tracewire.formula.expression import Call, Expression, Name, Number, names_of, rename
+from tracewire.formula.functions import CONSTANTS, FUNCTIONS
+from tracewire.formula.parse import is_name, parse
+from tracewire.formula.text import to_text
+from tracewire.formula.units import Unit, read_unit, same_quantity
+
+__all__ = [
+    "CONSTANTS",
+    "FUNCTIONS",
+    "Call",
+    "Expression",
+    "Name",
+    "Number",
+    "Unit",
+    "evaluate",
+    "is_name",
+    "names_of",
+    "parse",
+    "read_unit",
+    "rename",
+    "same_quantity",
+    "to_text",
+]

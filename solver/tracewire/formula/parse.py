@@ -1,0 +1,235 @@
+"""From text to a formula: Python's own grammar, and only the nodes that we know."""
+
+from __future__ import annotations
+
+import ast
+import keyword
+import math
+import re
+import warnings
+from functools import lru_cache
+
+from tracewire.errors import FormulaError, Place, Problem, unknown
+from tracewire.formula.expression import Call, Expression, Name, Number
+from tracewire.formula.functions import CONSTANTS, FUNCTIONS
+
+MOST_CHARACTERS = 4000
+MOST_NODES = 1000
+MOST_DEPTH = 60
+
+ARITHMETIC: dict[type[ast.operator], str] = {
+    ast.Add: "+",
+    ast.Sub: "-",
+    ast.Mult: "*",
+    ast.Div: "/",
+    ast.Pow: "**",
+}
+RELATIONS: dict[type[ast.cmpop], str] = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
+INSTEAD: dict[type[ast.operator], str] = {
+    ast.BitXor: "Write ** for a power.",
+    ast.Mod: "Write mod(a, b).",
+    ast.FloorDiv: "Write floor(a/b).",
+}
+NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+BY_NAME = {"sum": "a port", "product": "a port", "interp": "a table of points"}
+LANGUAGE = (
+    "A formula knows + - * / **, < <= > >=, and/or/not, 'a if c else b' and: "
+    + ", ".join(FUNCTIONS)
+    + "."
+)
+
+
+def is_name(text: str) -> bool:
+    """Whether a block, parameter or port may be called this: letters, digits, `_`, not reserved.
+
+    Reserved are the words of the formula language, those of Python, and names that begin with `__`.
+    """
+    reserved = keyword.iskeyword(text) or text in CONSTANTS or text in FUNCTIONS or text == "t"
+    return bool(NAME.fullmatch(text)) and not reserved and not text.startswith("__")
+
+
+class _Refused(Exception):
+    """A part of the text that is outside the language."""
+
+    def __init__(self, what: str, column: int = 0, hint: str = "") -> None:
+        super().__init__(what)
+        self.what, self.column, self.hint = what, column, hint
+
+
+def parse(text: str, place: Place = Place()) -> Expression:
+    """The formula that `text` writes.
+
+    `place` is where the text begins in its file; errors point into the text from there.
+    Raises FormulaError: not a formula, an unknown function, a wrong number of arguments, too large,
+    a condition where a number is meant.
+    """
+    try:
+        return _parse(text)
+    except _Refused as refused:
+        column = place.column + refused.column if place.column else 0
+        at = Place(place.file, place.line, column, place.block)
+        shown = text if len(text) <= 80 else text[:77] + "..."
+        problem = Problem(f"formula '{shown}': {refused.what}", at, (), refused.hint)
+        raise FormulaError([problem]) from None
+
+
+@lru_cache(maxsize=4096)
+def _parse(text: str) -> Expression:
+    if len(text) > MOST_CHARACTERS:
+        raise _Refused(f"it has {len(text)} characters, at most {MOST_CHARACTERS} are allowed")
+    if not text.strip():
+        raise _Refused("there is no text", 0, LANGUAGE)
+    if "#" in text:
+        raise _Refused("a formula holds no comment", text.index("#"), "")
+    if "\x00" in text or len(text.strip().splitlines()) > 1:
+        raise _Refused("it must stand on one line of text")
+    lead = len(text) - len(text.lstrip())
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # Python's advice on its own grammar is not ours
+            tree = ast.parse(text.strip(), mode="eval")
+    except SyntaxError as error:
+        raise _Refused(
+            f"it does not parse ({error.msg})", lead + max((error.offset or 1) - 1, 0), LANGUAGE
+        ) from None
+    except (ValueError, RecursionError, MemoryError):
+        raise _Refused("it does not parse (nested too deeply, or no text)") from None
+    return _Converter(lead).value(tree.body, 0)
+
+
+class _Converter:
+    """Turns the nodes of Python's grammar into ours, counting them."""
+
+    def __init__(self, lead: int) -> None:
+        self.lead, self.count = lead, 0
+
+    def refuse(self, node: ast.AST, what: str, hint: str = LANGUAGE) -> _Refused:
+        return _Refused(what, self.lead + getattr(node, "col_offset", 0), hint)
+
+    def convert(self, node: ast.expr, depth: int) -> Expression:
+        self.count += 1
+        if depth > MOST_DEPTH:
+            raise self.refuse(node, f"it is nested deeper than {MOST_DEPTH}", "Use several blocks.")
+        if self.count > MOST_NODES:
+            raise self.refuse(node, f"it has more than {MOST_NODES} parts", "Use several blocks.")
+        match node:
+            case ast.Constant(value=value):
+                return self.number(node, value)
+            case ast.Name() | ast.Attribute():
+                return Name(self.path(node))
+            case ast.UnaryOp(op=op, operand=operand):
+                return self.unary(node, op, operand, depth + 1)
+            case ast.BinOp(left=left, op=op, right=right):
+                return self.binary(node, op, left, right, depth)
+            case ast.BoolOp(op=op, values=values):
+                sign = "and" if isinstance(op, ast.And) else "or"
+                return Call(sign, tuple(self.condition(value, depth + 1) for value in values))
+            case ast.Compare():
+                return self.compare(node, depth)
+            case ast.IfExp(test=test, body=body, orelse=orelse):
+                condition = self.condition(test, depth + 1)
+                return Call(
+                    "if",
+                    (condition, self.value(body, depth + 1), self.value(orelse, depth + 1)),
+                )
+            case ast.Call():
+                return self.call(node, depth)
+            case _:
+                what = type(node).__name__.lower()
+                raise self.refuse(node, f"a {what} is not part of the formula language")
+
+    def number(self, node: ast.expr, value: object) -> Number:
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise self.refuse(node, f"{value!r} is not a number")
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
+        if not math.isfinite(number):
+            raise self.refuse(node, "the number is too large for double precision", "")
+        return Number(number)
+
+    def path(self, node: ast.expr) -> str:
+        parts: list[str] = []
+        part = node
+        while isinstance(part, ast.Attribute):
+            parts.append(part.attr)
+            part = part.value
+        if not isinstance(part, ast.Name):
+            raise self.refuse(node, "a dot may only join names")
+        parts.append(part.id)
+        for name in parts:
+            if name in FUNCTIONS:
+                raise self.refuse(node, f"{name} is a function", f"Write {name}(...).")
+            if not NAME.fullmatch(name) or name.startswith("__"):
+                hint = "Use the letters a to z, digits and _, and no __ in front."
+                raise self.refuse(node, f"'{name}' cannot be a name", hint)
+        return ".".join(reversed(parts))
+
+    def unary(self, node: ast.UnaryOp, op: ast.unaryop, term: ast.expr, depth: int) -> Expression:
+        if isinstance(op, ast.Not):
+            return Call("not", (self.condition(term, depth),))
+        if isinstance(op, ast.Invert):
+            raise self.refuse(node, "the sign '~' is not part of the formula language")
+        operand = self.value(term, depth)
+        if isinstance(op, ast.UAdd):
+            return operand
+        return Number(-operand.value) if isinstance(operand, Number) else Call("neg", (operand,))
+
+    def binary(
+        self, node: ast.BinOp, op: ast.operator, left: ast.expr, right: ast.expr, depth: int
+    ) -> Expression:
+        sign = ARITHMETIC.get(type(op))
+        if sign is None:
+            hint = INSTEAD.get(type(op), LANGUAGE)
+            raise self.refuse(node, "an operator is not part of the formula language", hint)
+        return Call(sign, (self.value(left, depth + 1), self.value(right, depth + 1)))
+
+    def value(self, node: ast.expr, depth: int) -> Expression:
+        converted = self.convert(node, depth)
+        if is_condition(converted):
+            raise self.refuse(node, "a comparison is not a number", "Write 'a if c else b'.")
+        return converted
+
+    def condition(self, node: ast.expr, depth: int) -> Expression:
+        converted = self.convert(node, depth)
+        if not is_condition(converted):
+            raise self.refuse(node, "a condition must be a comparison, such as x >= 0")
+        return converted
+
+    def compare(self, node: ast.Compare, depth: int) -> Expression:
+        terms = [self.value(term, depth + 1) for term in (node.left, *node.comparators)]
+        parts: list[Expression] = []
+        for op, left, right in zip(node.ops, terms, terms[1:], strict=False):
+            sign = RELATIONS.get(type(op))
+            if sign is None:
+                hint = "Signals are real numbers: compare with <= or >=, or use a band."
+                raise self.refuse(node, "only < <= > >= compare signals", hint)
+            parts.append(Call(sign, (left, right)))
+        return parts[0] if len(parts) == 1 else Call("and", tuple(parts))
+
+    def call(self, node: ast.Call, depth: int) -> Expression:
+        if not isinstance(node.func, ast.Name):
+            raise self.refuse(node, "only named functions can be called")
+        name = node.func.id
+        function = FUNCTIONS.get(name)
+        if function is None:
+            problem = unknown("function", name, FUNCTIONS)
+            raise self.refuse(node, problem.what, problem.hint or LANGUAGE)
+        if node.keywords or any(isinstance(argument, ast.Starred) for argument in node.args):
+            raise self.refuse(node, f"arguments of {name} are given by position", "")
+        given = len(node.args)
+        if given < function.least or (function.most is not None and given > function.most):
+            wanted = f"{function.least} argument{'s' if function.least > 1 else ''}"
+            wanted = wanted if function.most else f"at least {wanted}"
+            raise self.refuse(node, f"{name} takes {wanted}, {given} given", "")
+        arguments = tuple(self.value(argument, depth + 1) for argument in node.args)
+        if name in BY_NAME and not isinstance(arguments[-1], Name):
+            raise self.refuse(node, f"{name} reads {BY_NAME[name]} by its name", "")
+        return Call(name, arguments)
+
+
+def is_condition(expression: Expression) -> bool:
+    """Whether the formula is true or false and not a number."""
+    relations = ("<", "<=", ">", ">=", "and", "or", "not")
+    return isinstance(expression, Call) and expression.function in relations

@@ -1,0 +1,90 @@
+"""Units: what a user writes behind a value, and the factor that turns it into SI."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+from tracewire.errors import FormulaError, Place, Problem
+
+if TYPE_CHECKING:
+    from pint import UnitRegistry
+
+MOST_CHARACTERS = 60
+
+SYMBOL = r"(?:kg|mol|cd|rad|sr|Hz|Pa|Wb|Ohm|m|s|A|K|N|J|W|C|V|F|S|T|H)"
+POWER = r"(?:\s*(?:\^|\*\*)\s*[+-]?\d{1,2}(?:\.\d{1,2})?)"
+COHERENT = re.compile(rf"(?:1|{SYMBOL}{POWER}?)(?:(?:\s*[*/]\s*|\s+){SYMBOL}{POWER}?)*")
+"""Products and quotients of coherent SI units: their factor is 1, and they need no unit library."""
+WELL_FORMED = re.compile(rf"(?:1(?!\d)|[^\W\d]++{POWER}?|[°%]|[()\s]|\){POWER}|[*/](?!\*))+")
+"""Units and whole powers only: the unit library works out any number, such as 9**9**9, for ever."""
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit: the text that is shown for SI values, and the factor from the user's unit to SI.
+
+    `deg` has the factor pi/180 and is shown as `rad`; a unit that is SI already has the factor 1
+    and keeps the user's text. Hz is 1/s, never 2 pi/s.
+    """
+
+    text: str
+    factor: float
+
+
+@lru_cache(maxsize=1)
+def _registry() -> UnitRegistry[Any]:
+    import pint  # half a second: only units that are not coherent SI pay for it
+
+    return pint.UnitRegistry(autoconvert_offset_to_baseunit=False)
+
+
+@lru_cache(maxsize=1024)
+def _convert(text: str) -> Unit:
+    registry = _registry()
+    try:
+        unit = registry.parse_units(text)
+        quantity = (1.0 * unit).to_base_units()
+        if registry.Quantity(0.0, unit).to_base_units().magnitude != 0:
+            raise ValueError("a scale with an offset, such as degC, has no factor")
+    except Exception as error:  # pint raises its own, tokenizer and arithmetic errors alike
+        raise ValueError(type(error).__name__) from None
+    factor = float(quantity.magnitude)
+    # pint's base of mass is the kilogram and its base of angle is the radian, as ours
+    if not math.isfinite(factor) or factor <= 0:
+        raise ValueError("factor")
+    return Unit(text, 1.0) if factor == 1.0 else Unit(f"{quantity.units:~C}", factor)
+
+
+def read_unit(text: str, place: Place = Place()) -> Unit:
+    """The unit that `text` names, such as `kg m^2`, `N m s/rad` or `deg`; '' is the number 1.
+
+    Raises FormulaError where the text is no unit.
+    """
+    if text.strip() in ("", "1"):
+        return Unit("", 1.0)
+    try:
+        if len(text) > MOST_CHARACTERS:
+            raise ValueError("length")
+        if COHERENT.fullmatch(text.strip()):
+            return Unit(text.strip(), 1.0)
+        if not WELL_FORMED.fullmatch(text):
+            raise ValueError("grammar")
+        return _convert(text.strip())
+    except ValueError:
+        hint = "Write it like 'kg m^2', 'N m s/rad', 'deg' or '1/s'."
+        raise FormulaError([Problem(f"'{text[:60]}' is not a unit", place, (), hint)]) from None
+
+
+def same_quantity(one: str, other: str) -> bool:
+    """Whether two units measure the same quantity, such as `mN m` and `kg m^2/s^2`; '' is a number.
+
+    Radians count as numbers. Raises FormulaError where a text is no unit.
+    """
+    for text in (one, other):
+        read_unit(text)
+    first, second = (_registry().parse_units(text.strip() or "1") for text in (one, other))
+    return bool(first.is_compatible_with(second))

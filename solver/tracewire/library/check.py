@@ -1,0 +1,153 @@
+"""What is wrong with a block declaration: names, formulas, units, bounds, effect."""
+
+from __future__ import annotations
+
+import keyword
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Literal
+
+from tracewire.errors import FormulaError, Place, Problem, unknown
+from tracewire.formula import CONSTANTS, Call, Expression, Name, is_name, parse, read_unit
+
+if TYPE_CHECKING:
+    from tracewire.library.declare import Block, Effect, Input, Output, Parameter, State
+
+Use = Literal["value", "wires", "points"]
+READ_BY: dict[Use, str] = {
+    "value": "by its name alone",
+    "wires": "by sum() or product()",
+    "points": "as the second argument of interp()",
+}
+
+
+def check_block(block: Block) -> list[Problem]:
+    """Every problem of a declaration, in the order of its parts."""
+    place = Place(block.place.file, block.place.line, 0, block.name)
+    wires: Use = "wires"
+    value: Use = "value"
+    ports = {port.name: wires if port.many else value for port in block.inputs}
+    parameters = {p.name: _use(p) for p in block.parameters}
+    numbers = {p.name: value for p in block.parameters if p.kind == "number"}
+    time = {"t": value}
+    everything = ports | parameters | {state.name: value for state in block.states} | time
+    problems = _check_names(block, place)
+    for output in block.outputs:
+        problems += _check_formula(output.formula, everything, place)
+    for state in block.states:
+        problems += _check_formula(state.rate, everything, place)
+        problems += _check_formula(state.start, numbers, place)
+    problems += _check_parameters(block.parameters, place)
+    for port in block.inputs:
+        if port.default is not None:
+            problems += _check_formula(port.default, numbers | time, place)
+    parts: list[Input | Output | Parameter | State]
+    parts = [*block.inputs, *block.parameters, *block.states, *block.outputs]
+    for item in parts:
+        try:
+            read_unit(item.unit, place)
+        except FormulaError as error:
+            problems += error.problems
+    if block.effect is not None:
+        problems += _check_effect(block, block.effect, place)
+    return problems
+
+
+def _use(parameter: Parameter) -> Use:
+    return "points" if parameter.kind == "points" else "value"
+
+
+def _check_names(block: Block, place: Place) -> list[Problem]:
+    problems = []
+    if not block.outputs:
+        problems.append(Problem("a block needs at least one output", place))
+    if not block.doc.strip():
+        problems.append(Problem("a block needs a sentence that says what it is", place))
+    visible = [port.name for port in block.inputs]
+    visible += [parameter.name for parameter in block.parameters]
+    visible += [state.name for state in block.states]
+    outputs = [output.name for output in block.outputs]
+    # a block may be called like a function of the language: its name stands in no formula
+    good = block.name.isascii() and block.name.isidentifier() and not keyword.iskeyword(block.name)
+    bad = [] if good else [block.name]
+    for name in bad + [name for name in (*visible, *outputs) if not is_name(name)]:
+        hint = "Use letters, digits and _, and no word of the formula language."
+        problems.append(Problem(f"'{name}' cannot be used as a name", place, (), hint))
+    for names in (visible, outputs):
+        for name in sorted({name for name in names if names.count(name) > 1}):
+            problems.append(Problem(f"'{name}' is declared twice", place))
+    return problems
+
+
+def _check_formula(text: str, visible: dict[str, Use], place: Place) -> list[Problem]:
+    try:
+        formula = parse(text, place)
+    except FormulaError as error:
+        return list(error.problems)
+    problems = []
+    for name, use in dict.fromkeys(_uses(formula)):
+        if name not in visible and name not in CONSTANTS:
+            problems.append(unknown("name", name, visible, place, f"It stands in '{text}'."))
+        elif use != visible.get(name, "value"):
+            right = READ_BY[visible.get(name, "value")]
+            problems.append(Problem(f"formula '{text}': '{name}' is read {right}", place))
+    return problems
+
+
+def _uses(formula: Expression, use: Use = "value") -> Iterator[tuple[str, Use]]:
+    """Each name in the formula, and how it is read there."""
+    if isinstance(formula, Name):
+        yield formula.name, use
+    elif isinstance(formula, Call):
+        for number, argument in enumerate(formula.arguments):
+            if formula.function in ("sum", "product"):
+                yield from _uses(argument, "wires")
+            elif formula.function == "interp" and number == 1:
+                yield from _uses(argument, "points")
+            else:
+                yield from _uses(argument)
+
+
+def _check_parameters(parameters: Sequence[Parameter], place: Place) -> list[Problem]:
+    problems = []
+    before: dict[str, Use] = {}  # a default reads what stands before it: no default is a circle
+    for p in parameters:
+        low = float("-inf") if p.low is None else p.low
+        high = float("inf") if p.high is None else p.high
+        if low > high:
+            what = f"the bounds of '{p.name}' are {low:g} to {high:g}"
+            problems.append(Problem(what, place, (), "Give the lower one first."))
+        if isinstance(p.default, str):
+            problems += _check_formula(p.default, before, place)
+        elif p.default is not None and not low <= p.default <= high:
+            what = f"the default {p.default:g} of '{p.name}' is outside {low:g} to {high:g}"
+            problems.append(Problem(what, place))
+        if p.kind == "number":
+            before[p.name] = "value"
+    return problems
+
+
+def _check_effect(block: Block, effect: Effect, place: Place) -> list[Problem]:
+    parameters = {p.name for p in block.parameters if p.kind == "number"}
+    ports = {port.name for port in block.inputs}
+    problems = []
+    if effect.coefficient not in parameters:
+        problems.append(unknown("parameter", effect.coefficient, parameters, place))
+    strange = [name for name in effect.inputs if name not in ports]
+    problems += [unknown("input", name, ports, place) for name in strange]
+    missing = [p.name for p in block.inputs if p.default is None and p.name not in effect.inputs]
+    hint = "Say which local signal each reads: q or v."
+    if missing:
+        what = f"the effect leaves the inputs {', '.join(missing)} unconnected"
+        problems.append(Problem(what, place, (), hint))
+    for name, symbol in effect.inputs.items():
+        if symbol not in ("q", "v"):
+            what = f"the effect wires '{name}' to '{symbol}'"
+            problems.append(Problem(what, place, ("q", "v"), hint))
+    unset = [p.name for p in block.parameters if p.default is None and p.name != effect.coefficient]
+    if unset:
+        what = f"the effect leaves the parameters {', '.join(unset)} without a value"
+        problems.append(Problem(what, place, (), "Give each a default."))
+    if len(block.outputs) > 1:
+        what = f"an effect has one output, and this block has {len(block.outputs)}"
+        problems.append(Problem(what, place, (), "Declare the others in a block of their own."))
+    return problems

@@ -1,0 +1,136 @@
+"""What a person, or a program, wants to read about the blocks of a library."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import asdict
+
+from tracewire.errors import BlockError, unknown
+from tracewire.library.declare import Block, Input, Output, Parameter
+from tracewire.library.load import Library
+
+
+def palette(library: Library) -> str:
+    """A table of all blocks: family, block and the sentence that says what it is."""
+    rows = sorted((library.families.get(name, ""), name, library[name].doc) for name in library)
+    return _table([("family", "block", "what it is"), *rows])
+
+
+def describe(library: Library, name: str) -> str:
+    """One block in full, as plain text: ports, parameters, states, formulas, effect, source.
+
+    Raises BlockError: the library has no block of this name.
+    """
+    block = _find(library, name)
+    lines = [f"{block.name}: {block.doc}", ""]
+    lines += _section("inputs", [(p.name, p.unit, _wiring(p), p.doc) for p in block.inputs])
+    lines += _section("parameters", [(p.name, p.unit, _range(p), p.doc) for p in block.parameters])
+    lines += _section(
+        "states", [(s.name, s.unit, f"rate = {s.rate}", f"start = {s.start}") for s in block.states]
+    )
+    lines += _section(
+        "outputs", [(o.name, o.unit, _at_once(block, o), o.doc) for o in block.outputs]
+    )
+    lines += ["formulas", *(f"  {o.name} = {o.formula}" for o in block.outputs), ""]
+    if block.effect is not None:
+        lines.append(_effect(block))
+    if block.source:
+        lines.append(f"Source: {block.source}")
+    lines.append(f"Declared in {block.place}.")
+    return "\n".join(lines)
+
+
+def describe_json(library: Library, name: str) -> dict[str, object]:
+    """One block in full, in lists and dictionaries that `json` can write.
+
+    Raises BlockError: the library has no block of this name.
+    """
+    block = _find(library, name)
+    feedthrough = {o.name: _feedthrough(block, o.name) for o in block.outputs}
+    effect = block.effect
+    return {
+        "name": block.name,
+        "family": library.families.get(name, ""),
+        "doc": block.doc,
+        "inputs": [asdict(port) for port in block.inputs],
+        "parameters": [asdict(parameter) for parameter in block.parameters],
+        "states": [asdict(state) for state in block.states],
+        "outputs": [asdict(o) | {"feedthrough": feedthrough[o.name]} for o in block.outputs],
+        "effect": None
+        if effect is None
+        else {
+            "coefficient": effect.coefficient,
+            "inputs": dict(effect.inputs),
+            "sign": effect.sign,
+        },
+        "source": block.source,
+        "place": {"file": block.place.file, "line": block.place.line},
+    }
+
+
+def _find(library: Library, name: str) -> Block:
+    if name not in library:
+        raise BlockError([unknown("block", name, library)])
+    return library[name]
+
+
+def _feedthrough(block: Block, output: str) -> list[str]:
+    """The inputs of an output, in the order of declaration, and the formulas that users give."""
+    inputs = block.feedthrough(output)
+    given = [f"what '{p.name}' reads" for p in block.parameters if p.kind == "formula"]
+    return [port.name for port in block.inputs if port.name in inputs] + given
+
+
+def _at_once(block: Block, output: Output) -> str:
+    names = _feedthrough(block, output.name)
+    return f"depends at once on {', '.join(names)}" if names else "no feedthrough"
+
+
+def _wiring(port: Input) -> str:
+    text = "one wire or several, each with a sign" if port.many else "a wire"
+    return text if port.default is None else f"{text}; not connected: {port.default}"
+
+
+def _range(parameter: Parameter) -> str:
+    default = parameter.default
+    value = default if isinstance(default, str) else "" if default is None else f"{default:g}"
+    parts = [f"default {value}" if value else "must be given"]
+    if parameter.kind != "number":
+        parts.append({"points": "a table of points", "formula": "a formula"}[parameter.kind])
+    if parameter.low is not None and parameter.high is not None:
+        parts.append(f"{parameter.low:g} to {parameter.high:g}")
+    elif parameter.low is not None:
+        parts.append(f"at least {parameter.low:g}")
+    elif parameter.high is not None:
+        parts.append(f"at most {parameter.high:g}")
+    return ", ".join(parts)
+
+
+def _effect(block: Block) -> str:
+    effect = block.effect
+    assert effect is not None
+    symbols = {"q": "the coordinate", "v": "the rate"}
+    wires = [
+        f"{port} reads {symbols[symbol]} of the place" for port, symbol in effect.inputs.items()
+    ]
+    sign = "positive only" if effect.sign else "of either sign"
+    text = "; ".join([f"coefficient {effect.coefficient}, {sign}", *wires])
+    return f"An effect that a trace tries: {text}."
+
+
+def _section(title: str, rows: list[tuple[str, str, str, str]]) -> list[str]:
+    if not rows:
+        return []
+    shown = [(f"  {name}", f"[{unit}]" if unit else "", *rest) for name, unit, *rest in rows]
+    return [title, _table(shown), ""]
+
+
+def _table(rows: Iterable[tuple[str, ...]]) -> str:
+    """The rows as text in columns; a column that is empty everywhere is left out."""
+    columns = [column for column in zip(*rows, strict=True) if any(column)]
+    widths = [max(map(len, column)) for column in columns]
+    lines = zip(*columns, strict=True)
+    return "\n".join(
+        "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip()
+        for line in lines
+    )

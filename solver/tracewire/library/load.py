@@ -1,0 +1,93 @@
+"""From folders of block files to a library of blocks."""
+
+from __future__ import annotations
+
+import runpy
+import traceback
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path
+from types import MappingProxyType
+
+from tracewire.errors import BlockError, Place, Problem
+from tracewire.library.declare import Block
+from tracewire.shipped import shipped
+
+
+@dataclass(frozen=True)
+class Library:
+    """The blocks that a diagram may use, by name, and the family (file) of each."""
+
+    blocks: Mapping[str, Block]
+    families: Mapping[str, str] = field(default_factory=dict)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.blocks
+
+    def __getitem__(self, name: str) -> Block:
+        return self.blocks[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.blocks)
+
+    def effects(self) -> list[Block]:
+        """The blocks that may be tried as a missing effect."""
+        return [block for block in self.blocks.values() if block.effect is not None]
+
+
+def load_library(extra: Iterable[str | Path] = ()) -> Library:
+    """The shipped blocks, and those of the files and folders that the user names.
+
+    Block files are Python and run when they are read: only name libraries that you trust. A file
+    that has not changed is not read again. Files whose name begins with `_` hold no blocks. Raises
+    BlockError: a folder without block files, a file that cannot be read, a declaration that is
+    wrong, a name declared twice.
+    """
+    blocks: dict[str, Block] = {}
+    families: dict[str, str] = {}
+    problems: list[Problem] = []
+    for folder in (shipped("blocks"), *(Path(path).resolve() for path in extra)):
+        files = [folder] if folder.is_file() else sorted(folder.glob("[!_]*.py"))
+        if not files:
+            hint = "A library is a .py file of block declarations, or a folder of them."
+            problems.append(Problem("there are no block files here", Place(str(folder)), (), hint))
+        for file in files:
+            try:
+                found = _read(file, file.stat().st_mtime_ns)
+            except BlockError as error:
+                problems += error.problems
+                continue
+            for block in found:
+                if blocks.setdefault(block.name, block) is not block:
+                    there = blocks[block.name].place
+                    what = f"the block '{block.name}' is already declared in {there}"
+                    problems.append(Problem(what, block.place, (), "Give it another name."))
+                families.setdefault(block.name, file.stem)
+    if problems:
+        raise BlockError(problems)
+    return Library(MappingProxyType(blocks), MappingProxyType(families))
+
+
+@lru_cache(maxsize=1024)
+def _read(file: Path, changed: int) -> tuple[Block, ...]:
+    """The blocks that a file declares; `changed` is its time, so that a file is read once."""
+    if file.suffix != ".py":
+        raise BlockError([Problem("this is not a Python file", Place(str(file)))])
+    try:
+        # a full module name, so that a family called math.py cannot shadow the standard library
+        found = runpy.run_path(str(file), run_name=f"tracewire.blocks.{file.stem}")
+    except BlockError:
+        raise
+    except Exception as error:  # a user's library may fail in any way while it is read
+        what = f"the block file cannot be read: {type(error).__name__}: {error}"
+        raise BlockError([Problem(what, Place(str(file), _line(error, file)))]) from error
+    return tuple({id(b): b for b in found.values() if isinstance(b, Block)}.values())
+
+
+def _line(error: Exception, file: Path) -> int:
+    """The line of the file in which the error arose; 0 where it is not known."""
+    if isinstance(error, SyntaxError):
+        return error.lineno or 0
+    frames = traceback.extract_tb(error.__traceback__)
+    return next((f.lineno or 0 for f in reversed(frames) if f.filename == str(file)), 0)

@@ -1,0 +1,100 @@
+"""The look that all figures share, and how a figure becomes a file."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.errors import OptionError, unknown
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+ENDINGS = (".png", ".svg", ".pdf")
+WIDTH = 9.0
+
+# told apart with every kind of colour vision (Okabe and Ito, 2008)
+LINES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
+MEASURED, BEFORE, AFTER = "#4D4D4D", "#E69F00", "#0072B2"
+MARK, QUIET = "#B22222", "#8C8C8C"
+STICK = "#D9D4C7"
+USES = {"train": "#CFE3F2", "gate": "#E4DAF0", "validate": "#D5EBDD"}
+
+STYLE: dict[Any, Any] = {
+    "figure.dpi": 110,
+    "savefig.dpi": 110,
+    "font.size": 9.5,
+    "axes.titlesize": 10,
+    "axes.labelsize": 9.5,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.edgecolor": "#666666",
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": "#E6E6E6",
+    "grid.linewidth": 0.7,
+    "xtick.color": "#444444",
+    "ytick.color": "#444444",
+    "lines.linewidth": 1.3,
+    "legend.frameon": False,
+    "legend.fontsize": 9,
+    "axes.formatter.useoffset": False,
+    "axes.formatter.limits": (-3, 4),
+    "text.parse_math": False,  # a `$` in a user's title is a `$`
+    "svg.hashsalt": "tracewire",  # the same run gives the same file
+    "agg.path.chunksize": 10_000,
+}
+
+
+@contextmanager
+def styled() -> Iterator[None]:
+    """The style of tracewire's figures, for as long as one is drawn and saved."""
+    import matplotlib
+
+    with matplotlib.rc_context(STYLE), warnings.catch_warnings():
+        # a title in letters that the font lacks is drawn with boxes
+        warnings.filterwarnings("ignore", "Glyph .* missing", UserWarning)
+        yield
+
+
+def panels(
+    heights: Sequence[float], title: str = "", sharex: bool = True
+) -> tuple[Figure, list[Axes]]:
+    """A figure with one panel above the other, of the given heights in inches."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(WIDTH, sum(heights) + 0.7), layout="constrained")
+    grid = figure.subplots(
+        len(heights), 1, sharex=sharex, squeeze=False, height_ratios=list(heights)
+    )
+    if title:
+        figure.suptitle(title, fontsize=12, x=0.01, ha="left")
+    return figure, list(grid[:, 0])
+
+
+def save(figure: Figure, path: str | Path) -> Path:
+    """Write a figure to .png, .svg or .pdf. Raises OptionError for another ending, and OSError."""
+    path = Path(path)
+    if path.suffix not in ENDINGS:
+        raise OptionError([unknown("ending of a figure", path.suffix, ENDINGS)])
+    dated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
+    figure.savefig(path, metadata=dated.get(path.suffix))
+    return path
+
+
+def fit_time(panel: Axes, t: NDArray[np.float64]) -> None:
+    """Let the time axis end where the samples do."""
+    if t[-1] > t[0]:
+        panel.set_xlim(float(t[0]), float(t[-1]))
+
+
+def with_unit(name: str, unit: str) -> str:
+    """`name [unit]`, or the name alone."""
+    return f"{name} [{unit}]" if unit else name

@@ -1,0 +1,290 @@
+"""Diagrams, models and runs as tables, texts, and data for programs."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from tracewire.compile import Model
+from tracewire.diagram import Diagram
+
+if TYPE_CHECKING:
+    from tracewire.fit import Measured
+    from tracewire.solve import Run
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table to show: title, header, rows of text; `numeric` are the columns of numbers."""
+
+    title: str
+    header: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    numeric: frozenset[int] = field(default_factory=frozenset)
+
+
+def shown(value: float) -> str:
+    """A number for a table."""
+    return f"{value:.6g}"
+
+
+# --- diagrams and models ------------------------------------------------------------------------
+
+
+def parameters_table(model: Model) -> Table:
+    """Parameters: value and unit in SI, and the bounds of those that a fit may change.
+
+    Where a parameter is written in another unit, its number in the file stands beside it.
+    """
+    rows = []
+    written = any(p.factor != 1.0 for p in model.flat.parameters.values())
+    for name, value in _values(model).items():
+        parameter = model.flat.parameters[name]
+        bounds = "" if parameter.fit is None else _bounds(parameter.fit)
+        cells = [name, shown(value), parameter.unit, bounds]
+        if written:
+            cells.append("" if parameter.factor == 1.0 else shown(value / parameter.factor))
+        rows.append(tuple(cells))
+    header = ("parameter", "value", "unit", "fit", *(["in the file"] if written else []))
+    return Table("parameters", header, tuple(rows), frozenset({1, 4} if written else {1}))
+
+
+def states_table(model: Model) -> Table:
+    """States: start and rate, as formulas."""
+    from tracewire.formula import to_text
+
+    rows = tuple(
+        (state.name, state.unit, to_text(state.start), to_text(state.rate))
+        for state in model.flat.states
+    )
+    return Table("states", ("state", "unit", "start", "rate"), rows)
+
+
+def recorded_table(model: Model) -> Table:
+    """Recorded signals, their units and the types of their blocks."""
+    blocks, units = model.flat.blocks, model.flat.units
+    rows = tuple(
+        (name, units.get(name, ""), blocks[name].type if name in blocks else "")
+        for name in model.recorded
+    )
+    return Table("recorded signals", ("signal", "unit", "block"), rows)
+
+
+def places_table(model: Model) -> Table:
+    """Places where an effect may be tried: the sum, its coordinate q and rate v."""
+    from tracewire.trace.places import find_places
+
+    rows = tuple((place.name, place.v, place.q) for place in find_places(model))
+    return Table("places", ("sum", "rate v", "coordinate q"), rows)
+
+
+def overview(model: Model) -> dict[str, object]:
+    """What `show` tells, as data."""
+    from tracewire.trace.places import find_places
+
+    flat, values = model.flat, _values(model)
+    return {
+        "title": flat.title,
+        "file": str(model.diagram.file),
+        "parameters": {
+            name: {"value": values[name], "unit": p.unit, "fit": p.fit, "factor": p.factor}
+            for name, p in flat.parameters.items()
+        },
+        "states": [
+            dict(zip(("name", "unit", "start", "rate"), row, strict=True))
+            for row in states_table(model).rows
+        ],
+        "recorded": {name: flat.units.get(name, "") for name in model.recorded},
+        "places": find_places(model),
+        "presets": list(flat.presets),
+        "measured": list(model.diagram.measured),
+    }
+
+
+def contents(model: Model) -> dict[str, object]:
+    """What is in a model, counted."""
+    flat = model.flat
+    return {
+        "title": flat.title,
+        "blocks": len({block.place.block for block in flat.blocks.values()}),
+        "states": list(model.states),
+        "parameters": len(flat.parameters),
+        "free": [name for name, p in flat.parameters.items() if p.fit is not None],
+        "presets": list(flat.presets),
+        "recorded": list(model.recorded),
+        "events": len(flat.events),
+    }
+
+
+def series_contents(series: Measured) -> dict[str, object]:
+    """What is in a measured series."""
+    return {
+        "name": series.name,
+        "use": series.use,
+        "file": series.file,
+        "samples": len(series.t),
+        "from": float(series.t[0]),
+        "to": float(series.t[-1]),
+        "signals": list(series.values),
+        "inputs": list(series.inputs),
+    }
+
+
+def contents_text(found: Mapping[str, object], measured: Sequence[Mapping[str, object]]) -> str:
+    """`contents` and the measured series as lines."""
+    lines = [str(found["title"])]
+    lines.append(f"  blocks      {found['blocks']}")
+    for key in ("states", "recorded", "presets"):
+        lines.append(f"  {key:<12}{_listed(found[key])}")
+    lines.append(f"  parameters  {found['parameters']}; free in a fit: {_listed(found['free'])}")
+    if found["events"]:
+        lines.append(f"  events      {found['events']}")
+    for series in measured:
+        lines.append(
+            f"  measured    {series['name']} ({series['use']}): {series['samples']} samples from "
+            f"{series['from']:g} to {series['to']:g} s of {_listed(series['signals'])}"
+        )
+    return "\n".join(lines)
+
+
+def tree(diagram: Diagram) -> list[dict[str, object]]:
+    """Blocks of a diagram, with what they read, and what is inside of subsystems."""
+    found: list[dict[str, object]] = []
+    for use in diagram.blocks.values():
+        reads = {
+            port: [("-" if wire.negative else "") + wire.signal for wire in wires]
+            for port, wires in use.inputs.items()
+        }
+        entry: dict[str, object] = {"name": use.name, "type": use.type, "reads": reads}
+        if use.subsystem is not None:
+            entry["blocks"] = tree(use.subsystem)
+        found.append(entry)
+    return found
+
+
+def tree_text(diagram: Diagram, indent: str = "") -> str:
+    """Blocks of a diagram, one a line: name, type, and what its inputs read."""
+    names = max((len(name) for name in diagram.blocks), default=0)
+    types = max((len(use.type) for use in diagram.blocks.values()), default=0)
+    lines = []
+    for use in diagram.blocks.values():
+        reads = ", ".join(
+            f"{port}: " + " ".join(("-" if w.negative else "") + w.signal for w in wires)
+            for port, wires in use.inputs.items()
+        )
+        lines.append(f"{indent}{use.name:<{names}}  {use.type:<{types}}  {reads}".rstrip())
+        if use.subsystem is not None:
+            lines.append(tree_text(use.subsystem, indent + "    "))
+    return "\n".join(lines)
+
+
+# --- runs ---------------------------------------------------------------------------------------
+
+
+def run_table(run: Run) -> Table:
+    """Recorded signals of a run: start, end, least and greatest sample."""
+    rows = tuple(
+        (name, run.units.get(name, ""), *map(shown, _extremes(run, name))) for name in run.signals
+    )
+    header = ("signal", "unit", "start", "end", "min", "max")
+    return Table(run.title, header, rows, frozenset({2, 3, 4, 5}))
+
+
+def events_table(run: Run) -> Table:
+    """The log of events, with the states that jumped."""
+    rows = []
+    for event in run.events:
+        jumps = [
+            f"{name}: {shown(event.before[name])} -> {shown(after)}"
+            for name, after in event.after.items()
+            if after != event.before[name]
+        ]
+        where = f"{event.guard} {event.direction}".strip()
+        rows.append((f"{event.time:.9g}", event.kind, event.block, where, ", ".join(jumps)))
+    return Table(
+        "events", ("t [s]", "kind", "block", "guard", "jumps"), tuple(rows), frozenset({0})
+    )
+
+
+def run_text(run: Run) -> str:
+    """What happened in a run and what it cost, in two lines."""
+    counts = ", ".join(f"{count} {kind}" for kind, count in event_counts(run).items())
+    cost = run.statistics
+    return (
+        f"events: {counts or 'none'}\n"
+        f"{run.t[-1] - run.t[0]:g} s simulated in {cost.seconds:.3g} s: {cost.steps} steps, "
+        f"{cost.rejected} rejected, {cost.evaluations} evaluations"
+    )
+
+
+def run_data(run: Run, samples: bool = False) -> dict[str, object]:
+    """A run as data; the samples only where they are asked for."""
+    signals = {}
+    for name in run.signals:
+        start, end, least, greatest = _extremes(run, name)
+        unit = run.units.get(name, "")
+        signals[name] = {"unit": unit, "start": start, "end": end, "min": least, "max": greatest}
+    data: dict[str, object] = {
+        "title": run.title,
+        "span": [float(run.t[0]), float(run.t[-1])],
+        "parameters": run.parameters,
+        "start": run.start,
+        "final": run.final,
+        "signals": signals,
+        "event_counts": event_counts(run),
+        "events": run.events,
+        "statistics": run.statistics,
+        "warnings": run.warnings,
+    }
+    return data | {"samples": {"t": run.t, **run.signals}} if samples else data
+
+
+def event_counts(run: Run) -> dict[str, int]:
+    """How many events of each kind there were."""
+    return dict(Counter(event.kind for event in run.events))
+
+
+def stick_intervals(run: Run) -> dict[str, list[tuple[float, float]]]:
+    """The times in s during which a block sticks, by block.
+
+    A block whose first event is a slip stuck from the start; one that does not slip again sticks to
+    the end.
+    """
+    begin, end = float(run.t[0]), float(run.t[-1])
+    since: dict[tuple[str, str], float] = {}
+    known: set[tuple[str, str]] = set()
+    found: dict[str, list[tuple[float, float]]] = {}
+    for event in run.events:
+        key = (event.block, event.guard)
+        if event.kind == "stick":
+            since.setdefault(key, event.time)
+        elif event.kind == "slip" and (key in since or key not in known):
+            found.setdefault(event.block, []).append((since.pop(key, begin), event.time))
+        known.add(key)
+    for (block, _), time in since.items():
+        found.setdefault(block, []).append((time, end))
+    return found
+
+
+def _extremes(run: Run, name: str) -> tuple[float, float, float, float]:
+    values = run[name]
+    return float(values[0]), float(values[-1]), float(values.min()), float(values.max())
+
+
+def _values(model: Model) -> dict[str, float]:
+    from tracewire.solve import parameter_values
+
+    return parameter_values(model, {})
+
+
+def _bounds(bounds: tuple[float, float]) -> str:
+    free = bounds == (float("-inf"), float("inf"))
+    return "free" if free else f"{shown(bounds[0])} to {shown(bounds[1])}"
+
+
+def _listed(names: object) -> str:
+    assert isinstance(names, Sequence)
+    few = ", ".join(map(str, names[:8]))
+    return (few or "none") + (f" and {len(names) - 8} more" if len(names) > 8 else "")

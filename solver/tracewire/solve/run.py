@@ -1,0 +1,94 @@
+"""The result of a simulation: samples of the recorded signals and the log of events."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.errors import OptionError, Problem, unknown
+
+Vector = NDArray[np.float64]
+EventKind = Literal["crossing", "scheduled", "reset", "impact", "stick", "slip", "rest"]
+EventDirection = Literal["up", "down", ""]
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happened at an instant.
+
+    `time` in s; `block` the signal whose formula holds the guard; `guard` the text that crossed
+    zero, `direction` the way it went; `before` and `after` the states x⁻ and x⁺ by name.
+    """
+
+    time: float
+    kind: EventKind
+    block: str
+    guard: str
+    direction: EventDirection
+    before: Mapping[str, float]
+    after: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """What a run cost: accepted and rejected steps, evaluations of the rates, method by mode."""
+
+    steps: int
+    rejected: int
+    evaluations: int
+    stiff_steps: int
+    seconds: float
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A simulated solution: `run.t` (N,) in s, `run["name"]` (N,) in SI, and `run.events`.
+
+    A sample at the time of an event is the right limit. `parameters` and `start` are the values
+    that were used; `final` holds the states at the end.
+    """
+
+    title: str
+    t: Vector
+    signals: Mapping[str, Vector]
+    units: Mapping[str, str]
+    events: tuple[Event, ...]
+    parameters: Mapping[str, float]
+    start: Mapping[str, float]
+    final: Mapping[str, float]
+    statistics: Statistics
+    warnings: tuple[str, ...] = ()
+
+    def __getitem__(self, name: str) -> Vector:
+        if name not in self.signals:
+            hint = "Add it to `record:` of the diagram, or to `record=` of compile."
+            raise OptionError([unknown("recorded signal", name, self.signals, hint=hint)])
+        return self.signals[name]
+
+    def save(self, path: str | Path) -> Path:
+        """Write the samples to a .csv file, or samples and events to an .npz file."""
+        path = Path(path)
+        if path.suffix == ".csv":
+            with path.open("w", newline="") as file:
+                writer = csv.writer(file)
+                writer.writerow(["t", *self.signals])
+                rows = zip(self.t, *self.signals.values(), strict=True)
+                writer.writerows([repr(float(value)) for value in row] for row in rows)
+        elif path.suffix == ".npz":
+            events = {
+                "event_time": np.array([event.time for event in self.events]),
+                "event_kind": np.array([event.kind for event in self.events], dtype=str),
+                "event_block": np.array([event.block for event in self.events], dtype=str),
+            }
+            with path.open("wb") as file:
+                np.savez(file, allow_pickle=False, t=self.t, **self.signals, **events)
+        else:
+            what = f"a run cannot be saved as '{path.name}'"
+            raise OptionError([Problem(what, hint="End the name in .csv or .npz.")])
+        return path

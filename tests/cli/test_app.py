@@ -1,0 +1,167 @@
+"""The command line as a whole: help, exit codes, and errors in words."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+import tracewire
+from tracewire.cli import main
+from tracewire.errors import DataError, FitError, Place, Problem
+
+SOLVER = Path(tracewire.__file__).parents[1]
+VERBS = ("check", "show", "run", "fit", "trace", "blocks")
+
+
+def raising(error: BaseException) -> Callable[..., None]:
+    def fail(*_: object, **__: object) -> None:
+        raise error
+
+    return fail
+
+
+def test_help_opens_with_examples_and_names_every_verb(call: Any) -> None:
+    told = call("--help")
+    assert told.code == 0
+    before_options = told.out.partition("Options")[0]
+    assert before_options.count("tracewire ") >= 5
+    assert all(f" {verb} " in told.out for verb in VERBS)
+
+
+def test_without_a_verb_it_helps(call: Any) -> None:
+    assert call().out == call("--help").out
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_each_verb_has_help_and_the_common_options(call: Any, verb: str) -> None:
+    told = call(verb, "--help")
+    assert told.code == 0
+    assert all(option in told.out for option in ("--json", "--library", "--debug", "Example"))
+
+
+def test_version(call: Any) -> None:
+    assert call("--version").out == f"tracewire {tracewire.__version__}\n"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["chek"], "No such command 'chek'. Did you mean 'check'? See 'tracewire --help'."),
+        (["run"], "Missing argument 'DIAGRAM'. See 'tracewire run --help'."),
+        (["run", "a.yaml", "--rtol", "small"], "'--rtol'"),
+        (["run", "a.yaml", "--span", "1"], "'--span' requires 2 arguments"),
+        (["show", "a.yaml", "--equation"], "--equations"),
+    ],
+)
+def test_a_wrong_command_line_is_told_in_one_line(
+    call: Any, arguments: list[str], said: str
+) -> None:
+    told = call(*arguments)
+    assert told.code == 2
+    assert told.out == ""
+    assert said in told.err
+    assert told.err.count("\n") == 1
+
+
+def test_a_wrong_command_line_is_json_too(call: Any) -> None:
+    told = call("run", "--json")
+    assert told.code == 2
+    assert [problem["what"] for problem in told.data["error"]] == ["Missing argument 'DIAGRAM'"]
+
+
+def test_problems_stand_one_a_line_and_in_json(
+    call: Any, swing: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problems = [
+        Problem("the first is wrong", Place("a.yaml", 3, 5, "omega"), ("x", "y"), "Do this."),
+        Problem("the second\nis wrong"),
+    ]
+    monkeypatch.setattr("tracewire.diagram.read", raising(DataError(problems)))
+    told = call("check", swing, "--json")
+    assert told.code == 2
+    assert told.err.splitlines() == [
+        "a.yaml:3:5: block 'omega': the first is wrong; there are: x, y. Do this.",
+        "the second is wrong.",
+    ]
+    assert told.data["error"][0] == {
+        "file": "a.yaml",
+        "line": 3,
+        "column": 5,
+        "block": "omega",
+        "what": "the first is wrong",
+        "exists": ["x", "y"],
+        "hint": "Do this.",
+    }
+    assert len(told.data["error"]) == 2
+
+
+def test_work_that_failed_exits_with_1(
+    call: Any, swing: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tracewire.diagram.read", raising(FitError([Problem("no fit")])))
+    assert call("check", swing).code == 1
+
+
+def test_an_unexpected_error_asks_for_a_report(
+    call: Any, swing: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tracewire.diagram.read", raising(ZeroDivisionError("by\nzero")))
+    told = call("check", swing)
+    assert told.code == 1
+    assert told.err == (
+        "internal error (ZeroDivisionError: by zero). "
+        "Please report it; --debug shows the traceback.\n"
+    )
+
+
+def test_debug_shows_the_traceback(
+    swing: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("tracewire.diagram.read", raising(ZeroDivisionError("zero")))
+    assert main(["check", str(swing), "--debug"]) == 1
+    assert "Traceback" in capsys.readouterr().err
+
+
+def test_an_interrupt_is_told_and_exits_with_130(
+    call: Any, swing: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tracewire.diagram.read", raising(KeyboardInterrupt()))
+    told = call("check", swing)
+    assert told.code == 130
+    assert told.err.splitlines()[-1] == "interrupted; nothing was finished."
+
+
+def test_the_package_runs_as_a_module(swing: Path) -> None:
+    # the module's own process: no terminal, the exit code of main, and nothing on stderr
+    done = subprocess.run(
+        [sys.executable, "-m", "tracewire", "check", swing.name],
+        cwd=swing.parent,
+        env={"PYTHONPATH": str(SOLVER), "PYTHONDONTWRITEBYTECODE": "1"},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.endswith("no problems\n")
+
+
+def test_help_and_blocks_import_no_heavy_library() -> None:
+    heavy = {"numpy", "scipy", "networkx", "matplotlib", "pint"}
+    program = (
+        "import sys; from tracewire.cli import main; main(['--help']); main(['blocks', 'gain']); "
+        f"print(sorted({heavy} & set(sys.modules)))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        env={"PYTHONPATH": str(SOLVER), "PYTHONDONTWRITEBYTECODE": "1"},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
+    )
+    assert done.stdout.splitlines()[-1] == "[]"

@@ -1,0 +1,173 @@
+"""`check`, `show` and `blocks`: what they tell of a good diagram, and of a broken one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+BLOCK = """\
+from tracewire.library import Block, Input, Output
+
+doubled = Block(
+    name="doubled",
+    doc="Twice its input.",
+    inputs=(Input("of"),),
+    outputs=(Output("twice", "2*of"),),
+)
+"""
+
+
+def replaced(file: Path, old: str, new: str) -> Path:
+    text = file.read_text(encoding="utf-8")
+    assert old in text
+    file.write_text(text.replace(old, new), encoding="utf-8")
+    return file
+
+
+def test_check_counts_what_is_there(call: Any, swing: Path) -> None:
+    told = call("check", swing)
+    assert (told.code, told.err) == (0, "")
+    lines = told.out.splitlines()
+    assert lines[0] == "Pendulum with a dry bearing"
+    assert lines[-1] == "no problems"
+    assert any("free in a fit: k, slip" in line for line in lines)
+    assert any("run_1 (train): 3 samples from 1 to 2 s of theta" in line for line in lines)
+
+
+def test_check_as_json(call: Any, swing: Path) -> None:
+    data = call("check", swing, "--json").data
+    assert data["problems"] == []
+    assert (data["blocks"], data["parameters"]) == (6, 4)
+    assert data["states"] == ["theta", "omega"]
+    assert data["presets"] == ["free"]
+    assert data["measured"][0]["samples"] == 3
+
+
+def test_a_missing_diagram_is_named_with_its_neighbours(call: Any, swing: Path) -> None:
+    told = call("check", swing.with_name("swig.yaml"))
+    assert told.code == 2
+    assert "swig.yaml" in told.err
+    assert "Did you mean 'swing.yaml'?" in told.err
+
+
+def test_every_problem_of_a_diagram_is_told_at_once_with_its_place(call: Any, swing: Path) -> None:
+    replaced(swing, "type: integrator, of: alpha", "type: integratr, of: alpha")
+    replaced(swing, "[column, bearing]", "[colum, bearing]")
+    told = call("check", swing, "--json")
+    assert told.code == 2
+    assert told.err.count("\n") == 2
+    told_of = [(p["line"], p["block"], p["hint"]) for p in told.data["error"]]
+    assert told_of == [
+        (11, "omega", "Did you mean 'integrator'?"),
+        (14, "torque", "Did you mean 'column'?"),
+    ]
+
+
+def test_check_reads_the_measured_files(call: Any, swing: Path) -> None:
+    replaced(swing.with_name("run_1.csv"), "1.5,0.2", "1.5,o.2")
+    told = call("check", swing)
+    assert told.code == 2
+    assert "run_1.csv:3" in told.err
+
+
+def test_check_names_a_measured_file_that_is_missing(call: Any, swing: Path) -> None:
+    swing.with_name("run_1.csv").unlink()
+    told = call("check", swing)
+    assert told.code == 2
+    assert f"{swing}:19" in told.err
+    assert "run_1.csv" in told.err
+
+
+def test_show_has_parameters_states_signals_and_places(call: Any, swing: Path) -> None:
+    out = call("show", swing).out
+    for words in ("0.001 to 0.01", "free", "kg m^2", "recorded signals", "presets: free"):
+        assert words in out
+    # 60 deg is shown in SI, and beside it as the file has it
+    assert any(line.split()[:3] == ["phi", "1.0472", "rad"] for line in out.splitlines())
+    assert any(line.split() == ["torque", "omega", "theta"] for line in out.splitlines())
+
+
+def test_show_as_json(call: Any, swing: Path) -> None:
+    data = call("show", swing, "--json").data
+    assert data["parameters"]["k"]["fit"] == [1e-3, 1e-2]
+    assert data["parameters"]["slip"]["fit"] == [None, None]  # infinite bounds are no JSON
+    assert data["places"] == [
+        {"name": "torque", "definition": "torque", "v": "omega", "q": "theta"}
+    ]
+    assert data["states"][0] == {"name": "theta", "unit": "rad", "start": "phi", "rate": "omega"}
+    assert "source" not in data
+
+
+def test_show_equations_has_the_users_names_and_nothing_else(call: Any, swing: Path) -> None:
+    lines = call("show", swing, "--equations").out.splitlines()
+    assert "theta' = omega" in lines
+    assert "torque = column + bearing" in lines
+    assert not any("recorded" in line for line in lines)
+
+
+def test_show_source_is_python(call: Any, swing: Path) -> None:
+    source = call("show", swing, "--source").out
+    assert {"rhs", "guards"} <= set(compile(source, "source", "exec").co_names)
+    assert call("show", swing, "--source", "--json").data["source"].rstrip() == source.rstrip()
+
+
+def test_show_tree_goes_into_subsystems(call: Any, swing: Path) -> None:
+    replaced(
+        swing, "bearing: {type: dry_friction, rate: omega, slip: slip}", "bearing: {type: rub}"
+    )
+    replaced(swing, "[column, bearing]", "[column, -bearing.out]")
+    with swing.open("a", encoding="utf-8") as file:
+        file.write(
+            "subsystems:\n  rub:\n    outputs: {out: still}\n"
+            "    blocks: {still: {type: constant, value: 0}}\n"
+        )
+    lines = call("show", swing, "--tree").out.splitlines()
+    inside = next(n for n, line in enumerate(lines) if line.split()[0] == "bearing") + 1
+    assert lines[inside].split() == ["still", "constant"]
+    assert lines[inside].startswith("    ")
+    assert lines[inside + 1].split() == ["torque", "sum", "of:", "column", "-bearing.out"]
+    data = call("show", swing, "--tree", "--json").data
+    assert data["tree"][3]["blocks"][0]["name"] == "still"
+
+
+def test_blocks_lists_them_and_describes_one(call: Any) -> None:
+    listed = call("blocks").out
+    assert "dry_friction" in listed
+    assert "integrator" in listed
+    assert "slip" in call("blocks", "dry_friction").out
+
+
+def test_blocks_as_json(call: Any) -> None:
+    one = call("blocks", "gain", "--json").data
+    every = call("blocks", "--json").data["blocks"]
+    assert one in every
+    assert one["parameters"][0]["name"] == "k"
+
+
+def test_an_unknown_block_is_told_with_the_nearest(call: Any) -> None:
+    told = call("blocks", "dry_frction")
+    assert told.code == 2
+    assert "Did you mean 'dry_friction'?" in told.err
+
+
+def test_a_library_of_the_user_is_read_where_it_is_named(
+    call: Any, swing: Path, tmp_path: Path
+) -> None:
+    library = tmp_path / "mine.py"
+    library.write_text(BLOCK, encoding="utf-8")
+    replaced(swing, "column: {type: gain, of: theta, k: -k, unit: N m}",
+             "column: {type: doubled, of: theta}")  # fmt: skip
+    assert call("check", swing).code == 2
+    assert call("check", swing, "--library", library).code == 0
+    assert "Twice its input." in call("blocks", "doubled", "--library", library).out
+
+
+@pytest.mark.parametrize("content", ["x = 1/0\n", "def broken(:\n"])
+def test_a_library_that_fails_is_named(call: Any, tmp_path: Path, content: str) -> None:
+    library = tmp_path / "mine.py"
+    library.write_text(content, encoding="utf-8")
+    told = call("blocks", "--library", library)
+    assert told.code == 2
+    assert f"{library}:1: the block file cannot be read" in told.err

@@ -1,0 +1,186 @@
+"""`trace` on a short record with a strong effect that its diagram lacks, and on one without."""
+
+from __future__ import annotations
+
+import io
+import json
+from contextlib import redirect_stderr, redirect_stdout
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles import pendulum
+from tracewire.cli import main
+from tracewire.diagram import read
+
+DIAGRAM = """\
+title: Short swing   # to be traced
+span: [0, 6]
+parameters:
+  w0_squared: {value: 38, unit: 1/s^2, fit: [10, 90]}   # g/l
+blocks:
+  theta: {type: integrator, of: omega, start: {value: 45, unit: deg}, unit: rad}
+  omega: {type: integrator, of: acceleration, unit: rad/s}
+  height: {type: sin, of: theta}
+  gravity: {type: gain, of: height, k: -w0_squared}
+  acceleration: {type: sum, of: [gravity]}
+measured:
+  swing:
+    file: swing.csv
+    time: t
+    signals: {theta: {column: theta, sigma: 1e-3}}
+    start: {theta: free, omega: free}
+"""
+LEVEL = 0.8
+
+
+APPLIED = "coulomb:      {type: coulomb, rate: omega, level: {value: "
+
+
+def write_record(folder: Path) -> None:
+    """A free swing from rest at 45 deg with dry friction, and noise of 0.001 rad."""
+    t = np.arange(0.0, 6.001, 0.02)
+    theta = pendulum.solve(t, np.radians(45), w0_squared=40.0, c=0.0, f_c=LEVEL).theta
+    theta = theta + 1e-3 * np.random.default_rng(2).standard_normal(t.size)
+    rows = "".join(f"{a:.2f},{b:.5f}\n" for a, b in zip(t, theta, strict=True))
+    (folder / "swing.csv").write_text("t,theta\n" + rows, encoding="utf-8")
+
+
+@dataclass(frozen=True)
+class Traced:
+    """One trace of the diagram that lacks the friction, with everything written that can be."""
+
+    folder: Path
+    code: int
+    data: Any
+    err: str
+
+
+@pytest.fixture(scope="module")
+def traced(tmp_path_factory: pytest.TempPathFactory) -> Traced:
+    folder = tmp_path_factory.mktemp("swing")
+    write_record(folder)
+    (folder / "swing.yaml").write_text(DIAGRAM, encoding="utf-8")
+    arguments = ["--apply", "--output", str(folder / "x.patch")]
+    arguments += ["--report", str(folder / "report.html"), "--json"]
+    out, err = io.StringIO(), io.StringIO()
+    with redirect_stdout(out), redirect_stderr(err):
+        code = main(["trace", str(folder / "swing.yaml"), *arguments])
+    return Traced(folder, code, json.loads(out.getvalue()), err.getvalue())
+
+
+def test_the_missing_effect_is_named_with_place_and_coefficient(traced: Traced) -> None:
+    assert traced.code == 0
+    assert traced.data["verdict"] == "effect"
+    (effect,) = traced.data["effects"]
+    assert (effect["name"], effect["place"]) == ("coulomb", "acceleration")
+    assert effect["params"]["level"] == pytest.approx(LEVEL, rel=0.02)
+    assert traced.data["parameters"]["w0_squared"] == pytest.approx(40, rel=0.01)
+
+
+def test_json_has_the_errors_on_data_that_played_no_part(traced: Traced) -> None:
+    data = traced.data
+    assert data["rmse_after"] < 0.2 * data["rmse_before"]
+    assert data["rmse_after"] == pytest.approx(1e-3, rel=0.3)
+    assert data["sigma"] == {"theta": 1e-3}
+    assert data["s2_before"] > 10 > 2 > data["s2_after"]
+    assert {"effects", "bic", "s2", "remark"} == set(data["ranking"][0])
+    assert data["words"]
+    assert data["dropped"] == []
+
+
+def test_progress_goes_to_stderr(traced: Traced) -> None:
+    lines = traced.err.splitlines()
+    assert lines[0] == "fitting the declared model"
+    assert any(line.startswith("refitting with coulomb @ acceleration") for line in lines)
+
+
+def test_apply_adds_the_block_and_keeps_the_comments(traced: Traced) -> None:
+    file = traced.folder / "swing.yaml"
+    assert str(file) in traced.data["written"]
+    before, after = DIAGRAM.splitlines(), file.read_text(encoding="utf-8").splitlines()
+    new = [line for line in after if line not in before]
+    assert len(after) == len(before) + 1
+    assert [line.split(":")[0].strip() for line in new] == ["w0_squared", "acceleration", "coulomb"]
+    assert new[0].endswith("# g/l")
+    assert "of: [gravity, coulomb]" in new[1]
+    assert APPLIED in new[2]
+    assert read(file).blocks["coulomb"].type == "coulomb"
+
+
+def test_the_patch_has_the_same_lines(traced: Traced) -> None:
+    patch = (traced.folder / "x.patch").read_text(encoding="utf-8").splitlines()
+    added = [line[1:] for line in patch if line.startswith("+") and not line.startswith("+++")]
+    text = (traced.folder / "swing.yaml").read_text(encoding="utf-8").splitlines()
+    assert added == [line for line in text if line not in DIAGRAM.splitlines()]
+
+
+def test_the_report_has_verdict_ranking_change_and_figures(traced: Traced) -> None:
+    report = traced.folder / "report.html"
+    assert traced.data["written"][0] == str(report)
+    text = report.read_text(encoding="utf-8")
+    for words in ("Trace of Short swing", "coulomb", "What was tried", "gate", APPLIED):
+        assert words in text
+    for figure in ("held_out.png", "residual.png"):
+        assert f'src="{figure}"' in text
+        assert (traced.folder / figure).read_bytes().startswith(b"\x89PNG")
+
+
+def test_nothing_is_found_where_nothing_is_missing(call: Any, tmp_path: Path) -> None:
+    write_record(tmp_path)
+    file = tmp_path / "swing.yaml"
+    text = DIAGRAM.replace(
+        "{type: sum, of: [gravity]}",
+        "{type: sum, of: [gravity, rub]}\n"
+        "  rub: {type: coulomb, rate: omega, level: {value: 0.5, fit: [0, 9]}}",
+    )
+    file.write_text(text, encoding="utf-8")
+    told = call("trace", file, "--apply")
+    assert told.code == 0
+    assert told.out.startswith("verdict: null\nNothing is missing beyond the noise of the data.")
+    assert "effects" not in told.out.partition("tried")[0]
+    assert file.read_text(encoding="utf-8") == text
+
+
+def test_a_record_that_is_too_short_is_told(call: Any, tmp_path: Path) -> None:
+    write_record(tmp_path)
+    csv = tmp_path / "swing.csv"
+    csv.write_text("".join(csv.read_text().splitlines(keepends=True)[:41]), encoding="utf-8")
+    (tmp_path / "swing.yaml").write_text(DIAGRAM, encoding="utf-8")
+    told = call("trace", tmp_path / "swing.yaml", "--json")
+    assert told.code == 2
+    assert "the series 'swing' has 40 samples, too few to trace anything" in told.err
+    assert "too few" in told.data["error"][0]["what"]
+
+
+def test_a_diagram_without_measured_series_is_told(call: Any, tmp_path: Path) -> None:
+    (tmp_path / "swing.yaml").write_text(DIAGRAM.partition("measured:")[0], encoding="utf-8")
+    told = call("trace", tmp_path / "swing.yaml")
+    assert told.code == 2
+    assert "the diagram names no measured series. Add one under `measured:`" in told.err
+
+
+def test_a_bad_record_is_told_with_its_line(call: Any, tmp_path: Path) -> None:
+    (tmp_path / "swing.csv").write_text("t,theta\n0,0\n0.1,NaN\n0.2,1\n", encoding="utf-8")
+    (tmp_path / "swing.yaml").write_text(DIAGRAM, encoding="utf-8")
+    told = call("trace", tmp_path / "swing.yaml")
+    assert told.code == 2
+    assert "swing.csv:3: column 'theta' is not finite in this row." in told.err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--report", "a.txt"], "unknown file ending '.txt'. End the name of the report in .md or"),
+        (["--output", "no/a.patch"], "there is no folder 'no'. Make the folder first"),
+    ],
+)
+def test_a_target_that_cannot_be_written_is_told_before_the_work(
+    call: Any, tmp_path: Path, arguments: list[str], said: str
+) -> None:
+    told = call("trace", tmp_path / "not_even_read.yaml", *arguments)
+    assert (told.code, told.out) == (2, "")
+    assert said in told.err
+    assert told.err.count("\n") == 1

@@ -1,0 +1,345 @@
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+from diagram.small_library import LIBRARY, PENDULUM, made
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tracewire.diagram import (
+    Diagram,
+    Value,
+    add_addend,
+    add_offset,
+    difference,
+    find_parameter,
+    read_text,
+    remove_addend,
+    set_values,
+    write,
+)
+from tracewire.errors import DiagramError, OptionError
+from tracewire.formula import Number
+
+DRAG = "{type: viscous, rate: omega, c: {value: 1e-5, unit: N m s/rad, fit: [0, 1]}}"
+
+
+def changes(old: Diagram, new: Diagram) -> tuple[list[str], list[str]]:
+    """The lines that went and those that came; every other line is the same, byte for byte."""
+    lines = difference(old, new).splitlines()[2:]
+    gone = [line[1:] for line in lines if line.startswith("-")]
+    come = [line[1:] for line in lines if line.startswith("+")]
+    return gone, come
+
+
+def signals(diagram: Diagram, name: str) -> list[str]:
+    return [wire.signal for wire in diagram.blocks[name].inputs["of"]]
+
+
+def si(value: Value | None) -> float:
+    assert value is not None and isinstance(value.formula, Number)
+    return value.formula.value * value.factor
+
+
+def test_an_addend_is_two_lines() -> None:
+    old = made(PENDULUM)
+    new = add_addend(old, "torque", "drag", DRAG)
+    torque = (
+        "  torque:  {type: sum, of: [column, bearing.torque, drive%s], place: {q: theta, v: omega}}"
+    )
+    assert changes(old, new) == ([torque % ""], [torque % ", drag", f"  drag:    {DRAG}"])
+    assert signals(new, "torque")[-1] == "drag"
+    assert new.blocks["drag"].settings["c"].fit == (0.0, 1.0)
+    assert add_addend(old, "torque", "drag", f"drag: {DRAG}\n").text == new.text
+
+
+def test_an_addend_of_a_list_of_lines_inside_a_subsystem() -> None:
+    old = made(PENDULUM)
+    line = "{type: viscous, rate: rate, c: 0}"
+    new = add_addend(old, "journal_bearing.total", "drag", line)
+    assert changes(old, new) == ([], ["          - drag", f"      drag: {line}"])
+    assert "          - friction   # dry\n          - drag\n      drag:" in new.text
+    assert remove_addend(new, "journal_bearing.total", "drag").text == old.text
+
+
+GAIN = "b: {type: gain, of: i, k: 1}"
+STATE = "i: {type: integrator, of: s}"
+LAYOUTS = [
+    f"blocks: {{{STATE}, s: {{type: sum, of: %s}}, {GAIN}}}",
+    f"blocks:\n  {STATE}\n  s: {{type: sum, of: %s}}  # c\n  {GAIN}",
+    f"blocks:\n    {STATE}\n    {GAIN}\n    s:\n        type: sum\n        of: %s",
+]
+LISTS = {
+    "i": ["i"],
+    "'i'": ["i"],
+    "-i.y": ["i.y"],
+    "[]": [],
+    "[i]": ["i"],
+    "[i, ]": ["i"],
+    "[ i, b ]": ["i", "b"],
+    "[b, i, b]": ["b", "i", "b"],
+    "[-b,\n          i   # the second\n          ]": ["b", "i"],
+    "[b, # one, and\n          i]": ["b", "i"],
+}
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+@pytest.mark.parametrize("given", LISTS)
+@pytest.mark.parametrize("ending", ["", "\n", "\r\n"])
+def test_every_layout_of_a_sum_can_be_added_to(layout: str, given: str, ending: str) -> None:
+    old = made((layout % given).replace("\n", ending or "\n") + ending)
+    new = add_addend(old, "s", "drag", "{type: viscous, rate: i, c: 1}")
+    assert signals(new, "s") == [*LISTS[given], "drag"]
+    assert ("\r\n" in new.text) == ("\r\n" in old.text)
+    assert "\n" not in new.text.replace("\r\n", "") or "\r\n" not in old.text
+    assert [c for c in ("# c", "# the second", "# one, and") if c in old.text] == [
+        c for c in ("# c", "# the second", "# one, and") if c in new.text
+    ]
+    back = remove_addend(new, "s", "drag")
+    assert signals(back, "s") == LISTS[given]
+    assert "drag" not in back.blocks
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+@pytest.mark.parametrize("given", ["b", "[b]", "[i, b]", "[b, i, -b]", "[b, # one\n        i]"])
+def test_every_layout_of_a_sum_can_be_taken_from(layout: str, given: str) -> None:
+    old = made(layout % given)
+    new = remove_addend(old, "s", "b")
+    assert signals(new, "s") == [name for name in signals(old, "s") if name != "b"]
+    assert "b" not in new.blocks
+    assert ("# one" in old.text) == ("# one" in new.text)
+
+
+@pytest.mark.parametrize("items", ["- b", "- b   # x\n      - i", "- i\n      - -b", "- b.y"])
+def test_lines_of_a_list_are_taken_out(items: str) -> None:
+    text = f"""\
+blocks:
+  i: {{type: integrator, of: s}}
+  s:
+    type: sum
+    of:   # the addends
+      {items}
+  b: {{type: gain, of: i, k: 1}}
+"""
+    new = remove_addend(made(text), "s", "b")
+    assert "b" not in new.blocks
+    assert "# the addends" in new.text
+    assert signals(new, "s") == (["i"] if "i" in items else [])
+
+
+def test_a_block_that_is_read_elsewhere_stays() -> None:
+    old = made(PENDULUM)
+    new = remove_addend(old, "torque", "column")
+    assert "column" not in new.blocks
+    kept = made(PENDULUM.replace("record: [theta", "record: [column, theta"))
+    assert "column" in remove_addend(kept, "torque", "column").blocks
+    assert signals(remove_addend(old, "torque", "drive"), "torque") == ["column", "bearing.torque"]
+    assert "bearing" in remove_addend(old, "torque", "bearing").blocks  # it is recorded
+
+
+def test_values_are_written_in_the_users_unit() -> None:
+    text = """\
+parameters:
+  a: {value: 90, unit: deg, fit: [0, 180]}   # an angle
+  b: 2
+  c: a/2
+blocks: {d: {type: viscous, rate: d, c: {unit: N m s/rad, value: '1'}}}
+""".replace("rate: d,", "rate: i,").replace("{d: {", "{i: {type: integrator, of: d}, d: {")
+    old = made(text)
+    new = set_values(old, {"a": math.pi / 4, "b": 1 / 3, "c": 1e-7, "d.c": 20})
+    assert "  a: {value: 45, unit: deg, fit: [0, 180]}   # an angle\n" in new.text
+    assert "  b: 0.333333\n  c: 1e-07\n" in new.text
+    assert "c: {unit: N m s/rad, value: 20}" in new.text
+    assert changes(old, set_values(old, {"b": 3}))[1] == ["  b: 3"]
+    assert set_values(old, {}).text == old.text
+
+
+@settings(deadline=None)
+@given(st.floats(1e-3, 1e-2))
+def test_a_value_within_its_bounds_stays_within_them(value: float) -> None:
+    new = set_values(made(PENDULUM), {"stiffness": value})
+    assert si(new.parameters["stiffness"]) == pytest.approx(value, rel=1e-5)
+
+
+def test_a_value_outside_of_its_bounds_is_refused() -> None:
+    with pytest.raises(DiagramError, match="outside of its bounds"):
+        set_values(made(PENDULUM), {"stiffness": 1.0})
+    with pytest.raises(OptionError, match="parameter 'stiffness' cannot become nan"):
+        set_values(made(PENDULUM), {"stiffness": math.nan})
+
+
+def test_a_bound_is_not_crossed_by_rounding() -> None:
+    old = made("parameters: {a: {value: 0.1, fit: [0, 0.12345678]}}\nblocks: {}")
+    assert "value: 0.12345678," in set_values(old, {"a": 0.12345678}).text
+    assert (
+        "value: 0.123457," in set_values(made(old.text.replace("678", "9")), {"a": 0.1234567}).text
+    )
+
+
+SHARED = """\
+blocks:
+  one: {type: tilted, angle: 5}
+  two: {type: tilted, angle: tilt}
+  three: {type: tilted}   # as it is
+  four:
+    type: tilted
+  only: {type: single}
+parameters: {tilt: 1}
+subsystems:
+  tilted:
+    outputs: {y: e}
+    parameters: {angle: {value: 10, unit: deg, fit: [0, 90]}}
+    blocks: {e: {type: expression, formula: angle}, d: {type: viscous, rate: e, c: {value: 1}}}
+  single:
+    parameters: {c: {value: 1}}
+    blocks: {a: {type: tilted}, d: {type: viscous, rate: a, c: {value: 1}}}
+"""
+
+
+def test_a_parameter_of_a_shared_subsystem_is_set_on_its_use() -> None:
+    old = made(SHARED)
+    half = math.pi / 6
+    new = set_values(old, {f"{name}.angle": half for name in ("one", "two", "three", "four")})
+    assert "  one: {type: tilted, angle: 30}\n" in new.text
+    assert "  two: {type: tilted, angle: 30}\n" in new.text
+    copy = "{value: 30, unit: deg, fit: [0, 90]}"
+    assert f"  three: {{type: tilted, angle: {copy}}}   # as it is\n" in new.text
+    assert f"    type: tilted\n    angle: {copy}\n" in new.text
+    for name in ("one", "two", "three", "four"):
+        assert si(find_parameter(new, f"{name}.angle")) == pytest.approx(half)
+    assert new.subsystems == made(new.text).subsystems
+    assert si(new.subsystems["tilted"].parameters["angle"]) == pytest.approx(math.pi / 18)
+
+
+def test_a_parameter_of_a_subsystem_that_is_used_once_is_set_in_its_definition() -> None:
+    old = made(SHARED)
+    new = set_values(old, {"only.c": 2, "only.d.c": 3})
+    assert "    parameters: {c: {value: 2}}\n" in new.text
+    assert "c: {value: 3}" in new.text
+    new = set_values(old, {"only.a.angle": math.pi / 3})
+    assert "a: {type: tilted, angle: {value: 60, unit: deg, fit: [0, 90]}}," in new.text
+
+
+def test_a_setting_inside_a_shared_subsystem_is_not_set() -> None:
+    with pytest.raises(
+        OptionError, match=r"stands in 'tilted', which several blocks are\. Make it"
+    ):
+        set_values(made(SHARED), {"one.d.c": 3})
+
+
+def test_names_that_do_not_exist_are_refused() -> None:
+    old = made(PENDULUM)
+    with pytest.raises(
+        OptionError, match=r"unknown parameter 'stifness'.*Did you mean 'stiffness'"
+    ):
+        set_values(old, {"stifness": 1})
+    with pytest.raises(OptionError, match=r"unknown block 'torq'.*Did you mean 'torque'"):
+        add_addend(old, "torq", "a", "{}")
+    with pytest.raises(OptionError, match=r"unknown subsystem 'bearing'.*'journal_bearing'"):
+        add_addend(old, "bearing.total", "a", "{}")
+    with pytest.raises(OptionError, match="'column' is a gain, and has no input for several"):
+        add_addend(old, "column", "a", "{}")
+    with pytest.raises(OptionError, match="unknown addend of 'torque' 'theta'; there are: bearing"):
+        remove_addend(old, "torque", "theta")
+    with pytest.raises(DiagramError, match="two definitions of 'theta'"):
+        add_addend(old, "torque", "theta", DRAG)
+    with pytest.raises(DiagramError, match="unknown block type 'vicous'"):
+        add_addend(old, "torque", "drag", DRAG.replace("viscous", "vicous"))
+
+
+def test_a_nested_definition_may_be_named_in_short_where_it_is_clear() -> None:
+    text = """
+blocks: {a: {type: outer}}
+subsystems:
+  outer:
+    blocks: {b: {type: inner}}
+    subsystems: {inner: {blocks: {s: {type: sum, of: []}}}}
+"""
+    line = "{type: viscous, rate: s, c: 0}".replace("rate: s", "rate: i")
+    text = text.replace("of: []}", "of: []}, i: {type: integrator, of: s}")
+    assert add_addend(made(text), "inner.s", "d", line) == add_addend(
+        made(text), "outer.inner.s", "d", line
+    )
+    twice = text + text[text.index("  outer:") :].replace("outer", "other")
+    with pytest.raises(
+        OptionError, match=r"may mean several blocks; there are: outer[.]inner[.]s,"
+    ):
+        add_addend(made(twice), "inner.s", "d", line)
+
+
+def test_an_explicit_key_is_not_edited() -> None:
+    text = "blocks:\n  ? s\n  : {type: sum, of: []}\n  i: {type: integrator, of: s}\n"
+    with pytest.raises(DiagramError, match="laid out here in a way that cannot be edited"):
+        add_addend(made(text), "s", "d", "{type: viscous, rate: i, c: 0}")
+
+
+SERIES = """\
+blocks: {theta: {type: integrator, of: theta}}
+measured:
+  one: {file: run.csv, time: t, signals: {theta: angle}}   # first
+  two: {file: run.csv, time: t, use: gate, signals: {theta: {column: angle, unit: deg}}}
+  three:
+    file: run.csv
+    time: t
+    use: validate
+    signals:
+      theta.y:
+        column: angle   # of the disc
+        offset: {value: 3, fit: free}
+"""
+
+
+def test_an_offset_is_added_to_each_series(tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text("")
+    old = made(SERIES, tmp_path / "d.yaml")
+    new = add_offset(old, "theta", math.pi / 180, (-math.pi / 18, math.pi / 18))
+    assert "signals: {theta: {column: angle, offset: {value: 0.0174533, fit: [" in new.text
+    assert "{column: angle, unit: deg, offset: {value: 1, fit: [-10, 10]}}}}\n" in new.text
+    assert "        column: angle   # of the disc\n        offset: {value: 0.0174533, fit: [" in (
+        new.text
+    )
+    for series in new.measured.values():
+        offset = series.channels["theta"].offset
+        assert si(offset) == pytest.approx(math.pi / 180, rel=1e-5)
+        assert offset.fit == pytest.approx((-math.pi / 18, math.pi / 18))
+    assert "fit" not in add_offset(old, "theta", 0.1).text.partition("one:")[2].partition("two:")[0]
+    assert (
+        "offset: {value: 0, fit: free}" in add_offset(old, "theta", 0, (-math.inf, math.inf)).text
+    )
+    assert ", fit: [0, inf]}" in add_offset(old, "theta", 0.1, (0, math.inf)).text
+    with pytest.raises(OptionError, match="unknown measured signal 'omega'; there are: theta"):
+        add_offset(old, "omega", 0.1)
+
+
+def test_write_leaves_other_files_alone(tmp_path: Path) -> None:
+    file = tmp_path / "a.yaml"
+    text = PENDULUM.replace("\n", "\r\n")
+    diagram = read_text(text, file, library=LIBRARY)
+    assert write(diagram, file) == file
+    assert file.read_bytes() == text.encode()
+    write(set_values(diagram, {"stiffness": 2e-3}), str(file))
+    assert b"value: 0.002," in file.read_bytes()
+    other = tmp_path / "b.yaml"
+    other.write_text("mine")
+    with pytest.raises(OptionError, match="there is a file of this name"):
+        write(diagram, other)
+    assert other.read_text() == "mine"
+    write(diagram, other, overwrite=True)
+    assert other.read_bytes() == text.encode()
+    with pytest.raises(OptionError, match="cannot be written"):
+        write(diagram, tmp_path / "nowhere" / "c.yaml")
+
+
+def test_write_elsewhere_checks_the_files_that_are_named(tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text("")
+    (tmp_path / "sub").mkdir()
+    diagram = made(SERIES, tmp_path / "d.yaml")
+    with pytest.raises(DiagramError, match=r"unknown file 'run\.csv'"):
+        write(diagram, tmp_path / "sub" / "d.yaml")
+    assert not (tmp_path / "sub" / "d.yaml").exists()
+    assert write(diagram, tmp_path / "e.yaml").exists()
+
+
+def test_equal_texts_do_not_differ() -> None:
+    assert difference(made(PENDULUM), made(PENDULUM)) == ""

@@ -1,0 +1,204 @@
+"""The criterion is what the paper's appendix says, and its derivatives are those of the model."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from fit.models import LINE, OSCILLATOR, C, K, T, criterion_of, made, oscillation, series
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tracewire.errors import DataError
+from tracewire.fit import Criterion, Measured, Segment, Unknown
+
+LINE_MODEL = made(LINE)
+
+
+def at(criterion: Criterion, **values: float) -> np.ndarray:
+    """The scaled unknowns with some values by name."""
+    z = criterion.begin()
+    for n, unknown in enumerate(criterion.unknowns):
+        z[n] = values.get(unknown.name, unknown.value) / criterion.scales[n]
+    return z
+
+
+@given(
+    st.floats(-3, 3),
+    st.floats(-3, 3),
+    st.lists(st.floats(-10, 10), min_size=2, max_size=20),
+)
+@settings(max_examples=30, deadline=None)
+def test_the_criterion_is_the_mean_square_over_two(a: float, b: float, y: list[float]) -> None:
+    t = np.arange(len(y)) * 0.25
+    criterion = criterion_of(LINE_MODEL, series(y, t=t))
+    by_hand = np.mean((np.array(y) - (a * t + b)) ** 2) / 2
+    assert criterion.value(at(criterion, a=a, b=b)) == pytest.approx(by_hand, rel=1e-6, abs=1e-12)
+
+
+def test_series_and_signals_add_up_each_with_its_own_mean() -> None:
+    short = T[:31]
+    first = Measured("both", "train", T, {"x": 0 * T + 1, "slope": 0 * T + 3})
+    second = series(0 * short - 2, "short", t=short)
+    criterion = criterion_of(made(LINE, ("x", "slope")), first, second)
+    by_hand = np.mean((1 - T) ** 2) / 2 + (3 - 1) ** 2 / 2 + np.mean((-2 - short) ** 2) / 2
+    assert criterion.value(at(criterion, a=1, b=0)) == pytest.approx(by_hand)
+
+
+def test_residuals_are_in_units_of_the_noise_of_their_own_series() -> None:
+    first = series(0 * T + 1, "first", sigma={"x": 0.5})
+    second = series(0 * T + 1, "second", sigma={"x": 0.1})
+    criterion = criterion_of(LINE_MODEL, first, second)
+    residuals = criterion.residuals(at(criterion, a=0, b=0))
+    assert residuals[0] == pytest.approx(np.full((121, 1), -2.0))
+    assert residuals[1] == pytest.approx(np.full((121, 1), -10.0))
+
+
+def test_a_given_sigma_counts_instead_of_the_declared_one() -> None:
+    declared = criterion_of(LINE_MODEL, series(0 * T + 1, sigma={"x": 0.5}))
+    given_ = Criterion(LINE_MODEL, declared.segments, declared.unknowns, {}, sigma={"x": 0.25})
+    assert given_.residuals(at(given_, a=0, b=0))[0] == pytest.approx(np.full((121, 1), -4.0))
+
+
+def test_a_given_sigma_must_name_every_signal() -> None:
+    whole = criterion_of(LINE_MODEL, series(T))
+    with pytest.raises(DataError, match="no sigma is known of x in run, but of others"):
+        Criterion(LINE_MODEL, whole.segments, whole.unknowns, {}, sigma={"slope": 1.0})
+
+
+def test_sigma_of_some_signals_only_is_told() -> None:
+    model = made(LINE, ("x", "slope"))
+    both = {"x": 0 * T, "slope": 0 * T}
+    with pytest.raises(DataError) as caught:
+        criterion_of(model, Measured("run", "train", T, both, sigma={"x": 0.1, "slope": None}))
+    assert str(caught.value) == (
+        "no sigma is known of slope in run, but of others. "
+        "Give every measured signal a sigma, or none."
+    )
+    with pytest.raises(DataError, match="no sigma is known of x in second, but of others"):
+        criterion_of(model, series(0 * T, sigma={"x": 0.1}), series(0 * T, "second"))
+
+
+def test_a_declared_offset_is_added_to_the_model() -> None:
+    criterion = criterion_of(LINE_MODEL, series(T + 0.25, offset={"x": 0.25}))
+    assert criterion.value(at(criterion, a=1, b=0)) == pytest.approx(0, abs=1e-15)
+
+
+def test_a_free_offset_is_an_unknown_of_all_series() -> None:
+    bounds = {"x": (-1.0, 1.0)}
+    criterion = criterion_of(
+        LINE_MODEL, series(T, free_offsets=bounds), series(T, "other", free_offsets=bounds)
+    )
+    assert [u.name for u in criterion.unknowns] == ["a", "b", "offset.x"]
+    z = at(criterion, a=1, b=0, **{"offset.x": 0.5})
+    assert criterion.value(z) == pytest.approx(2 * 0.5**2 / 2)
+    named, _ = criterion.split(z)
+    assert named == pytest.approx({"a": 1, "b": 0, "offset.x": 0.5})
+
+
+def test_what_is_fixed_may_be_a_parameter_or_an_offset() -> None:
+    segments = criterion_of(LINE_MODEL, series(T)).segments
+    fixed = {"a": 1.0, "b": 0.5, "offset.x": -0.5}
+    assert Criterion(LINE_MODEL, segments, [], fixed).value(np.empty(0)) == pytest.approx(0)
+
+
+def test_the_preset_and_the_inputs_of_a_series_count() -> None:
+    text = """\
+span: [0, 6]
+inputs: {drive: {default: 0}}
+parameters: {b: {value: 0, fit: free}, c: 0}
+blocks: {x: {type: integrator, of: rate}, rate: {type: sum, of: [drive, level]},
+  level: {type: constant, value: c}}
+presets: {rising: {c: 2}}
+"""
+    driven = series(T + T**2 / 2, "driven", inputs={"drive": (T, 1 + T)})
+    preset = series(2 * T, "preset", preset="rising")
+    criterion = criterion_of(made(text), driven, preset)
+    assert criterion.value(criterion.begin()) == pytest.approx(0, abs=1e-12)
+
+
+def test_derivatives_are_those_of_the_exact_solution() -> None:
+    measured = series(oscillation(T, x0=0.9))
+    criterion = criterion_of(made(OSCILLATOR), measured, rtol=1e-10)
+    z = at(criterion, k=K, c=C)
+    h = 1e-6
+    exact = np.stack(
+        [
+            (oscillation(T, 0.9, k=K + h) - oscillation(T, 0.9, k=K - h)) / (2 * h),
+            (oscillation(T, 0.9, c=C + h) - oscillation(T, 0.9, c=C - h)) / (2 * h),
+        ],
+        axis=1,
+    )
+    residuals = criterion.residuals(z)
+    (one_sided,) = criterion.derivatives(z, residuals)
+    (central,) = criterion.derivatives(z, residuals, central=True)
+    assert one_sided / criterion.scales == pytest.approx(exact, abs=1e-3)
+    assert central / criterion.scales == pytest.approx(exact, abs=1e-6)
+
+
+@pytest.mark.parametrize("central", [False, True])
+@pytest.mark.parametrize("value", [0.0, 1.0])
+def test_derivatives_at_a_bound_stay_inside(central: bool, value: float) -> None:
+    tried: list[float] = []
+
+    class Watched(Criterion):
+        def outputs(self, segment, named, start):  # type: ignore[no-untyped-def]
+            tried.append(named["a"])
+            return super().outputs(segment, named, start)
+
+    whole = criterion_of(LINE_MODEL, series(T))
+    criterion = Watched(LINE_MODEL, whole.segments, [Unknown("a", value, 0.0, 1.0)], {"b": 0.0})
+    z = criterion.begin()
+    (matrix,) = criterion.derivatives(z, criterion.residuals(z), central=central)
+    assert matrix[:, 0] == pytest.approx(T, abs=1e-6)
+    assert all(0 <= a <= 1 for a in tried)
+
+
+def test_a_free_start_touches_its_own_segment_only() -> None:
+    model = made(OSCILLATOR)
+    free = {"x": None, "v": 0.0}
+    measured = [series(oscillation(T), f"run_{n}", start=free) for n in (1, 2)]
+    criterion = criterion_of(model, *measured)
+    z = criterion.begin()
+    assert len(z) == 2 + 2
+    matrices = criterion.derivatives(z, criterion.residuals(z))
+    # the solution is linear in its start: d x / d x0 is the free oscillation itself
+    named, _ = criterion.split(z)
+    own = oscillation(T, k=named["k"], c=named["c"])
+    for n, matrix in enumerate(matrices):
+        assert matrix[:, 2 + n] / criterion.scales[2 + n] == pytest.approx(own, abs=1e-5)
+        assert np.all(matrix[:, 3 - n] == 0)
+    _, starts = criterion.split(z)
+    assert starts == [{"x": pytest.approx(1, abs=1e-3)}] * 2
+
+
+def test_moved_puts_the_values_back() -> None:
+    criterion = criterion_of(made(OSCILLATOR), series(oscillation(T), start={"x": None, "v": 0.0}))
+    z = criterion.begin() * 1.5
+    unknowns, segments = criterion.moved(z)
+    again = Criterion(criterion.model, segments, unknowns, {})
+    assert again.begin() * again.scales == pytest.approx(z * criterion.scales)
+
+
+def test_the_criterion_on_other_segments_keeps_everything_else() -> None:
+    criterion = criterion_of(LINE_MODEL, series(T, sigma={"x": 0.5}))
+    (whole,) = criterion.segments
+    half = Segment(whole.measured, whole.begin, whole.rows[:60])
+    short = criterion.on([half])
+    assert short.begin() == pytest.approx(criterion.begin())
+    assert short.residuals(short.begin())[0].shape == (60, 1)
+    assert short.value(at(short, a=1, b=1)) == pytest.approx((1 / 0.5) ** 2 / 2)
+
+
+def test_a_failed_run_counts_as_far_away() -> None:
+    blow_up = """\
+span: [0, 6]
+parameters: {a: {value: 1, fit: free}}
+blocks: {x: {type: integrator, of: r, start: 1}, r: {type: expression, formula: a*x**2}}
+"""
+    criterion = criterion_of(made(blow_up), series(0.1 * np.sin(T)))
+    assert criterion.failure is None
+    failed = criterion.value(at(criterion, a=1))  # 1/(1 - t) has no value at t = 1
+    assert np.isfinite(failed)
+    assert "x" in str(criterion.failure)
+    assert failed > criterion.value(at(criterion, a=0.1)) > 0
+    z = at(criterion, a=1)
+    assert np.isfinite(criterion.derivatives(z, criterion.residuals(z))[0]).all()

@@ -1,0 +1,216 @@
+"""Figures are files with something in them, and say in words what they cannot draw."""
+
+from __future__ import annotations
+
+import struct
+import xml.etree.ElementTree as ElementTree
+import zlib
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+import pytest
+from tracewire.compile import compile
+from tracewire.diagram import read_text
+from tracewire.errors import OptionError
+from tracewire.show import plot_fit, plot_residual, plot_run
+from tracewire.show.figures import group_signals
+from tracewire.show.summary import run_table, stick_intervals
+from tracewire.solve import Event, Run, Statistics, simulate
+
+T = np.linspace(0.0, 4.0, 81)
+
+
+def run_of(signals: dict[str, tuple[str, Any]], events: tuple[Event, ...] = ()) -> Run:
+    return Run(
+        title="A run worth $5",
+        t=T,
+        signals={name: np.asarray(values, dtype=float) for name, (_, values) in signals.items()},
+        units={name: unit for name, (unit, _) in signals.items()},
+        events=events,
+        parameters={},
+        start={},
+        final={},
+        statistics=Statistics(1, 0, 1, 0, 0.0),
+    )
+
+
+def event(time: float, kind: Any, block: str) -> Event:
+    return Event(time, kind, block, f"guard of {block}", "", {}, {})
+
+
+def pixels(path: Path) -> tuple[int, int, set[bytes]]:
+    """Width, height and the distinct rows of a PNG file, read without the library that wrote it."""
+    data = path.read_bytes()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+    width, height = struct.unpack(">II", data[16:24])
+    at, packed = 8, b""
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at : at + 8])
+        packed += data[at + 8 : at + 8 + length] if kind == b"IDAT" else b""
+        at += 12 + length
+    raw = zlib.decompress(packed)
+    size = len(raw) // height
+    return width, height, {raw[n * size : (n + 1) * size] for n in range(height)}
+
+
+def texts(path: Path) -> str:
+    """The comments that an SVG file has before each text: the text itself."""
+    parser = ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True))
+    root = ElementTree.parse(path, parser).getroot()
+    return "\n".join(
+        str(node.text)
+        for node in root.iter(ElementTree.Comment)  # type: ignore[arg-type]
+    )
+
+
+SWING = run_of(
+    {"theta": ("rad", np.cos(3 * T)), "psi": ("rad", np.sin(T)), "x": ("m", 5 * T), "u": ("", T)},
+    (event(0.5, "slip", "rub"), event(1.0, "stick", "rub"), event(2.0, "slip", "rub"),
+     event(2.5, "impact", "stop"), event(3.0, "crossing", "gate"), event(3.5, "stick", "rub")),
+)  # fmt: skip
+
+
+def test_a_run_becomes_a_png_with_content(tmp_path: Path) -> None:
+    width, height, rows = pixels(plot_run(SWING, tmp_path / "run.png"))
+    assert width > 600
+    assert height > 400
+    assert len(rows) > height / 4  # an empty figure repeats a few rows
+
+
+def test_a_figure_names_signals_units_events_and_title(tmp_path: Path) -> None:
+    said = texts(plot_run(SWING, tmp_path / "run.svg"))
+    for words in ("A run worth $5", "theta", "[rad]", "x [m]", "t [s]", "rub", "stop", "impact"):
+        assert words in said
+
+
+def test_the_same_run_gives_the_same_file(tmp_path: Path) -> None:
+    first, second = plot_run(SWING, tmp_path / "a.svg"), plot_run(SWING, tmp_path / "b.svg")
+    assert first.read_bytes() == second.read_bytes()
+
+
+def test_drawing_leaves_the_global_style_alone(tmp_path: Path) -> None:
+    before = dict(matplotlib.rcParams)
+    plot_run(SWING, tmp_path / "run.png")
+    assert dict(matplotlib.rcParams) == before
+
+
+def test_signals_share_a_panel_when_unit_and_range_are_alike() -> None:
+    run = run_of(
+        {
+            "a": ("rad", T),
+            "b": ("m", T),
+            "c": ("rad", 3 * T),
+            "tiny": ("rad", 1e-3 * T),  # a flat line beside a
+            "u": ("", T),
+            "w": ("", T),  # no unit: it may be another quantity
+        }
+    )
+    assert group_signals(run) == [["a", "c"], ["b"], ["tiny"], ["u"], ["w"]]
+
+
+def test_a_panel_holds_four_lines_at_most() -> None:
+    run = run_of({f"x{n}": ("m", T) for n in range(9)})
+    assert [len(group) for group in group_signals(run)] == [4, 4, 1]
+
+
+def test_many_panels_are_cut_and_the_title_says_so(tmp_path: Path) -> None:
+    run = run_of({f"x{n}": ("", T) for n in range(18)})
+    assert "the first 16 of 18 panels" in texts(plot_run(run, tmp_path / "run.svg"))
+
+
+def test_a_constant_run_without_events_is_drawn(tmp_path: Path) -> None:
+    assert plot_run(run_of({"x": ("m", 0 * T)}), tmp_path / "run.png").is_file()
+
+
+def test_letters_without_a_glyph_do_not_stop_a_figure(tmp_path: Path) -> None:
+    assert plot_run(run_of({"角度": ("", T)}), tmp_path / "run.png").is_file()
+
+
+def test_stick_intervals_reach_from_the_start_and_to_the_end() -> None:
+    assert stick_intervals(SWING) == {"rub": [(0.0, 0.5), (1.0, 2.0), (3.5, 4.0)]}
+
+
+def test_stick_intervals_of_a_simulated_friction() -> None:
+    """x'' = -x - F sign(x'), x(0) = 1.05, F = 0.1: after five half swings, at 5 pi, it sticks."""
+    text = """\
+span: [0, 20]
+blocks:
+  x: {type: integrator, of: v, start: 1.05}
+  v: {type: integrator, of: force}
+  spring: {type: gain, of: x, k: -1}
+  rub: {type: coulomb, rate: v, level: 0.1}
+  force: {type: sum, of: [spring, rub]}
+"""
+    found = stick_intervals(simulate(compile(read_text(text))))
+    assert list(found) == ["rub"]
+    assert found["rub"] == [pytest.approx((5 * np.pi, 20.0), abs=1e-5)]
+
+
+def test_run_table_has_start_end_and_extremes() -> None:
+    rows = {row[0]: row[1:] for row in run_table(SWING).rows}
+    assert rows["x"] == ("m", "0", "20", "0", "20")
+
+
+def test_a_fit_becomes_a_figure_with_residuals(tmp_path: Path) -> None:
+    after = np.cos(3 * T)
+    series = [("theta", T, after + 0.1, after * 0.8, after), ("x", T, T, T + 2.0, T + 0.5)]
+    said = texts(plot_fit(tmp_path / "fit.svg", series, ["rad", "m"], "A fit"))
+    for words in ("A fit", "measured", "before", "after", "theta [rad]", "residual [m]"):
+        assert words in said
+    assert "rms of the residual: 2 before, 0.5 after [m]" in said
+    assert "0.1 after [rad]" in said
+
+
+def test_a_residual_figure_names_uses_and_rms(tmp_path: Path) -> None:
+    windows = {"run_1": [(0.0, 2.0, "train"), (2.0, 3.0, "gate"), (3.0, 4.0, "validate")]}
+    series = [("run_1", T, np.full(81, 3.0), np.full(81, -1.0))]
+    said = texts(plot_residual(tmp_path / "r.svg", series, windows, band=2.0))
+    for words in ("train", "gate", "validate", "residual [σ]", "run_1: rms 3 before, 1 after"):
+        assert words in said
+
+
+def test_windows_are_shaded_by_use(tmp_path: Path) -> None:
+    series = [("run_1", T, T, T)]
+    plain = plot_residual(tmp_path / "plain.png", series)
+    shaded = plot_residual(tmp_path / "shaded.png", series, {"run_1": [(1.0, 2.0, "train")]})
+    assert plain.read_bytes() != shaded.read_bytes()
+
+
+def test_more_series_than_are_readable_are_cut(tmp_path: Path) -> None:
+    series = [(f"run_{n}", T, T, T) for n in range(13)]
+    said = texts(plot_residual(tmp_path / "r.svg", series, title="Residual"))
+    assert "Residual (the first 12 of 13 series)" in said
+    assert "run_12" not in said
+
+
+def test_single_samples_are_drawn(tmp_path: Path) -> None:
+    one = np.array([1.0])
+    assert plot_fit(tmp_path / "fit.png", [("x", one, one, one, one)]).is_file()
+
+
+def test_another_ending_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(OptionError, match=r"unknown ending of a figure '.jpg'; there are: .pdf"):
+        plot_run(SWING, tmp_path / "run.jpg")
+
+
+def test_a_run_without_signals_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(OptionError, match=r"no recorded signals to draw. Name signals under"):
+        plot_run(run_of({}), tmp_path / "run.png")
+
+
+def test_arrays_of_different_lengths_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(OptionError, match=r"series 'x' have 81, 81, 80, 81 values. Give the same"):
+        plot_fit(tmp_path / "fit.png", [("x", T, T, T[1:], T)])
+    with pytest.raises(OptionError, match="series 'x' have 81, 0, 81 values"):
+        plot_residual(tmp_path / "r.png", [("x", T, [], T)])
+
+
+def test_a_figure_of_nothing_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(OptionError, match=r"0 series with 0 units cannot be drawn. Give at least"):
+        plot_fit(tmp_path / "fit.png", [])
+    with pytest.raises(OptionError, match="1 series with 2 units"):
+        plot_fit(tmp_path / "fit.png", [("x", T, T, T, T)], ["m", "s"])
+    with pytest.raises(OptionError, match="a figure of no series cannot be drawn"):
+        plot_residual(tmp_path / "r.png", [])

@@ -1,0 +1,72 @@
+from __future__ import annotations
+
+import time
+
+import pytest
+from solve.models import BALL, LIMITS, made, one, run
+from tracewire.errors import SimulationError
+from tracewire.solve import Limits, simulate
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            one("-1 - sqrt(x)", 1.0),
+            r"t = 0\.6137056\d+ s: 'x' is not finite \(nan\).*root of a neg",
+        ),
+        (one("1/(x - 2)", 2.0), r"'rate' is not finite \(nan|inf\).*division by zero"),
+        (one("x*x", 4.0), r"t = 0\.2500\d* s: the step became smaller than.*because of 'x'"),
+        (one("exp(x*x*x)", 5.0), r"t = .* s: .*'x'"),
+        (one("log(t - 0.5)", 0.0), r"t = 0 s: 'rate' is not finite \(nan\)"),
+    ],
+)
+def test_a_run_that_cannot_go_on_names_block_and_time(text: str, message: str) -> None:
+    with pytest.raises(SimulationError, match=message) as caught:
+        run(text)
+    assert "the run stopped at t = " in str(caught.value)
+    assert "; x = " in str(caught.value)
+
+
+def test_a_recorded_signal_that_is_not_finite_is_refused() -> None:
+    text = one("1", 0.0, "  y: {type: expression, formula: 1/(t - 0.5)}")
+    with pytest.raises(
+        SimulationError, match=r"block 'y': the recorded signal 'y' is not finite.*t = 0.5 s"
+    ):
+        run(text, record=("y",), times=[0.0, 0.5, 1.0])
+
+
+def test_the_step_limit() -> None:
+    with pytest.raises(SimulationError, match=r"t = .* s: more than 10 steps.*Loosen rtol"):
+        run(one("cos(50*t)"), limits=Limits(steps=10))
+
+
+def test_the_limit_of_wall_time() -> None:
+    began = time.perf_counter()
+    with pytest.raises(SimulationError, match=r"more than 0.05 s of wall time.*Shorten the span"):
+        run(one("cos(1e6*t)"), rtol=1e-10, limits=Limits(seconds=0.05))
+    assert time.perf_counter() - began < 30
+
+
+@pytest.mark.parametrize("restitution", [0.97, 0.8, 0.5, 0.1, 0.01, 0.0])
+@pytest.mark.parametrize("rtol", [1e-4, 1e-8])
+@pytest.mark.parametrize("method", ["dormand_prince", "rosenbrock"])
+def test_a_ball_never_falls_through_the_floor(restitution: float, rtol: float, method: str) -> None:
+    values = {"restitution": restitution}
+    result = simulate(
+        made(BALL), parameters=values, span=(0, 150), rtol=rtol, method=method, limits=LIMITS
+    )
+    assert result["x"].min() > -1e-9
+    assert result.final["x"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_chatter_names_guard_block_and_time() -> None:
+    text = """
+span: [0, 3]
+blocks:
+  x: {type: integrator, of: v, start: 1}
+  v: {type: integrator, of: a}
+  a: {type: expression, formula: -sign(x + 0.2*v*abs(v))}
+"""
+    with pytest.raises(SimulationError, match=r"block 'a'.*t = .* s"):
+        run(text, span=(0, 20))

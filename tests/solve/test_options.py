@@ -1,0 +1,83 @@
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from solve.models import BALL, OSCILLATOR, made, run
+from tracewire.errors import OptionError
+from tracewire.solve import simulate
+
+DRIVEN = "span: [0, 1]\ninputs: [u]\nblocks: {x: {type: integrator, of: u}}"
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"method": "rk45"}, r"unknown method 'rk45'; there are: auto, dormand_prince, rosenbrock"),
+        ({"rtol": 0.0}, r"rtol = 0 and atol = 0 cannot be met.*Take rtol between"),
+        ({"rtol": 2.0}, r"rtol = 2 "),
+        ({"rtol": float("nan")}, r"rtol = nan "),
+        ({"atol": -1.0}, r"atol = -1 cannot be met"),
+        ({"span": (1, 1)}, r"the span from 1 to 1 s is empty"),
+        ({"span": (0, float("inf"))}, r"the span from 0 to inf s is empty"),
+        ({"times": [0.0, 0.0]}, r"the sample times do not ascend"),
+        ({"times": [1.0, 0.5]}, r"the sample times do not ascend"),
+        ({"times": []}, r"the sample times do not ascend"),
+        (
+            {"span": (0, 1), "times": [0.5, 2.0]},
+            r"sample times from 0.5 to 2 s are not within the span from 0 to 1 s",
+        ),
+        ({"parameters": {"restitutoin": 1.0}}, r"unknown parameter.*Did you mean 'restitution'"),
+        ({"parameters": {"restitution": float("nan")}}, r"'restitution' is given as nan"),
+        ({"start": {"y": 1.0}}, r"unknown state 'y'; there are: v, x"),
+        ({"start": {"x": float("inf")}}, r"the start of 'x' is inf"),
+        ({"preset": "late"}, r"unknown preset 'late'; there is no preset here"),
+        ({"inputs": {"u": ([0.0], [1.0])}}, r"unknown input 'u'; there is no input here"),
+    ],
+)
+def test_an_option_that_does_not_fit_is_refused(options: dict[str, Any], message: str) -> None:
+    with pytest.raises(OptionError, match=message):
+        simulate(made(BALL), **options)
+
+
+@pytest.mark.parametrize(
+    "table",
+    [([0.0, 1.0], [1.0]), ([1.0, 0.0], [1.0, 2.0]), ([0.0, 1.0], [1.0, float("nan")]), ([], [])],
+)
+def test_a_measured_input_that_is_not_usable_is_refused(table: tuple[Any, Any]) -> None:
+    with pytest.raises(OptionError, match="table of the input 'u' is not usable"):
+        run(DRIVEN, inputs={"u": table})
+
+
+def test_an_input_without_a_source_is_refused() -> None:
+    with pytest.raises(OptionError, match="the input 'u' has no source"):
+        run(DRIVEN)
+
+
+def test_all_problems_are_told_together() -> None:
+    with pytest.raises(OptionError) as caught:
+        simulate(made(BALL), parameters={"a": 1.0, "b": 2.0})
+    assert len(caught.value.problems) == 2
+
+
+@pytest.mark.parametrize("every", [0.0, -1.0, 1e-9])
+def test_an_output_interval_must_be_usable(every: float) -> None:
+    with pytest.raises(OptionError, match="an output every"):
+        run(OSCILLATOR + "every: dt\nparameters: {dt: 1}\n", parameters={"dt": every})
+
+
+def test_samples_follow_the_diagram_or_the_options() -> None:
+    assert len(run(OSCILLATOR).t) == 1001
+    assert run(OSCILLATOR + "every: 0.1\n").t == pytest.approx(np.arange(301) * 0.1)
+    result = run(OSCILLATOR, times=[1.0, 2.0], start={"x": 0.0, "v": 1.0})
+    assert result.t.tolist() == [1.0, 2.0]
+    assert result.start == {"x": 0.0, "v": 1.0}
+    assert run(OSCILLATOR, span=(5, 6)).t[0] == 5.0
+
+
+def test_arguments_are_left_as_they_were() -> None:
+    times, start = np.array([0.5, 1.0]), {"x": 0.5}
+    run(OSCILLATOR, times=times, start=start)
+    assert times.tolist() == [0.5, 1.0]
+    assert start == {"x": 0.5}

@@ -1,0 +1,251 @@
+"""The rooms of solver/tracewire import in one direction, stay small, and run no text as code."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PACKAGE = ROOT / "solver" / "tracewire"
+BLOCKS = ROOT / "blocks"
+
+# a room may import itself and the rooms before it
+ROOMS = ["errors", "shipped", "formula", "library", "data", "diagram", "compile", "solve", "fit"]
+ROOMS += ["trace", "show", "cli"]
+FACADE = {"__init__", "__main__"}  # they stand above the rooms and may import each of them
+BLOCKS_MAY_IMPORT = {"__future__", "tracewire.library"}
+MOST_LINES = 500
+RUNS_ITS_OWN_SOURCE = "compile/source.py"
+UNSAFE_YAML = {"unsafe_load", "unsafe_load_all", "full_load", "full_load_all"}
+SAFE_LOADERS = {"SafeLoader", "CSafeLoader"}
+
+
+def python_files(folder: Path) -> list[Path]:
+    return sorted(folder.rglob("*.py"))
+
+
+def modules(source: str, package: str = "") -> Iterator[tuple[int, str]]:
+    """(line, full name) of each import in `source`, a file of `package`.
+
+    `from a import b` is given as `a.b`: b may be a module. `importlib.import_module("a")` counts.
+    """
+    for node in ast.walk(ast.parse(source)):
+        match node:
+            case ast.Import(names=names):
+                yield from ((node.lineno, name.name) for name in names)
+            case ast.ImportFrom(module=module, names=names, level=level):
+                parts = package.split(".")
+                start = parts[: len(parts) + 1 - level] if level else []
+                base = ".".join([*start, *([module] if module else [])])
+                yield from ((node.lineno, f"{base}.{name.name}") for name in names)
+            case ast.Call(
+                func=ast.Name(id="import_module" | "__import__")
+                | ast.Attribute(attr="import_module"),
+                args=[ast.Constant(value=str(module)), *_],
+            ):
+                yield node.lineno, module
+
+
+def against_the_order(file: str, source: str) -> list[str]:
+    """The imports of `file` (its path inside the package) that its room may not make."""
+    parts = Path(file).with_suffix("").parts
+    if parts[0] in FACADE:
+        return []
+    if parts[0] not in ROOMS:
+        return [f"{file}: the room '{parts[0]}' has no place in the order of ROOMS"]
+    found = []
+    for line, module in modules(source, ".".join(("tracewire", *parts[:-1]))):
+        top, *rest = module.split(".")
+        room = rest[0] if rest else ""
+        if top == "blocks" or (top == "tracewire" and room == "blocks"):
+            found.append(f"{file}:{line}: {module}: blocks are read, never imported by name")
+        elif top == "tracewire" and room not in ROOMS:
+            found.append(f"{file}:{line}: {module}: name the room, not the package above it")
+        elif top == "tracewire" and ROOMS.index(room) > ROOMS.index(parts[0]):
+            found.append(f"{file}:{line}: {module}: '{room}' comes after '{parts[0]}'")
+    return found
+
+
+def bases_of_classes(sources: Mapping[str, str]) -> dict[str, set[str]]:
+    """The base classes that each class of the sources names, without the module before the name."""
+    bases: dict[str, set[str]] = {}
+    for source in sources.values():
+        for node in ast.walk(ast.parse(source)):
+            if isinstance(node, ast.ClassDef):
+                bases.setdefault(node.name, set()).update(last_name(b) for b in node.bases)
+    return bases
+
+
+def last_name(node: ast.expr) -> str:
+    match node:
+        case ast.Name(id=name) | ast.Attribute(attr=name):
+            return name
+    return ""
+
+
+def is_safe(loader: str, bases: Mapping[str, set[str]]) -> bool:
+    if loader in SAFE_LOADERS:
+        return True
+    # a class that names itself as its base would not even import, so this ends
+    return any(is_safe(base, bases) for base in bases.get(loader, set()) - {loader})
+
+
+def runs_text(file: str, source: str, bases: Mapping[str, set[str]]) -> list[str]:
+    """Where `source` could run text as code: eval, exec, a YAML loader that builds any object."""
+    found = []
+    executed = 0
+    tree = ast.parse(source)
+    from_yaml = {
+        name.asname or name.name: name.name
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom) and node.module == "yaml"
+        for name in node.names
+    }
+    for node in ast.walk(tree):
+        match node:
+            case ast.Name(id="eval" | "exec" as name):
+                pass
+            case ast.Attribute(value=ast.Name(id="builtins"), attr="eval" | "exec" as name):
+                pass
+            case ast.Call(func=ast.Attribute(value=ast.Name(id="yaml"), attr=name)):
+                pass
+            case ast.Call(func=ast.Name(id=called)) if called in from_yaml:
+                name = from_yaml[called]
+            case _:
+                continue
+        if name == "exec" and file == RUNS_ITS_OWN_SOURCE:
+            executed += 1
+            if executed == 1:
+                continue
+        if name in {"load", "load_all"} and isinstance(node, ast.Call):
+            given = [k.value for k in node.keywords if k.arg == "Loader"] + node.args[1:2]
+            if given and is_safe(last_name(given[0]), bases):
+                continue
+        elif name not in UNSAFE_YAML | {"eval", "exec"}:
+            continue
+        found.append(f"{file}:{node.lineno}: {name}")
+    return found
+
+
+def sources() -> dict[str, str]:
+    return {
+        file.relative_to(PACKAGE).as_posix(): file.read_text(encoding="utf-8")
+        for file in python_files(PACKAGE)
+    }
+
+
+def test_imports_run_one_way() -> None:
+    read = sources()
+    assert read
+    assert [line for file, text in read.items() for line in against_the_order(file, text)] == []
+
+
+def test_block_files_import_the_library_and_nothing_else() -> None:
+    strangers = [
+        f"{file.relative_to(ROOT)}:{line}: {module}"
+        for file in python_files(BLOCKS)
+        for line, module in modules(file.read_text(encoding="utf-8"))
+        if not any(f"{module}.".startswith(f"{allowed}.") for allowed in BLOCKS_MAY_IMPORT)
+    ]
+    assert strangers == []
+
+
+def test_files_stay_small() -> None:
+    counted = {
+        str(file.relative_to(ROOT)): len(file.read_text(encoding="utf-8").splitlines())
+        for room in ("solver", "blocks", "tests", "benchmarks")
+        for file in python_files(ROOT / room)
+    }
+    assert {file: lines for file, lines in counted.items() if lines > MOST_LINES} == {}
+
+
+def test_every_package_folder_says_what_it_is() -> None:
+    silent = []
+    for folder in {file.parent for file in python_files(PACKAGE)}:
+        front = folder / "__init__.py"
+        if not front.is_file() or not ast.get_docstring(ast.parse(front.read_text("utf-8"))):
+            silent.append(str(folder.relative_to(ROOT)))
+    assert silent == []
+
+
+def test_nothing_runs_text_as_code() -> None:
+    read = sources()
+    bases = bases_of_classes(read)
+    assert [line for file, text in read.items() for line in runs_text(file, text, bases)] == []
+
+
+# The checks themselves are checked: each of these sources must be refused, or let pass.
+
+
+@pytest.mark.parametrize(
+    ("file", "source"),
+    [
+        ("formula/parse.py", "from tracewire.library import Block"),
+        ("formula/parse.py", "from tracewire import library"),
+        ("formula/parse.py", "from ..library.declare import Block"),
+        ("formula/__init__.py", "from ..library import Block"),
+        ("formula/deep/parse.py", "from ... import solve"),
+        ("errors.py", "from . import shipped"),
+        ("errors.py", "def late():\n    import tracewire.cli"),
+        ("solve/run.py", "import tracewire"),
+        ("solve/run.py", "from tracewire import simulate"),
+        ("library/load.py", "import blocks.friction"),
+        ("library/load.py", "from tracewire.blocks import friction"),
+        ("library/load.py", "import_module('tracewire.blocks.friction')"),
+        ("cellar/wine.py", ""),
+    ],
+)
+def test_an_import_against_the_order_is_found(file: str, source: str) -> None:
+    assert len(against_the_order(file, source)) == 1
+
+
+@pytest.mark.parametrize(
+    ("file", "source"),
+    [
+        ("solve/run.py", "from tracewire.compile import Model"),
+        ("solve/run.py", "from ..errors import Problem\nfrom . import steps"),
+        ("compile/source.py", "from .tape import Tape\nimport compileall, trace, blocksworld"),
+        ("__init__.py", "from tracewire.cli import main"),
+    ],
+)
+def test_an_import_in_the_order_passes(file: str, source: str) -> None:
+    assert against_the_order(file, source) == []
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "eval('1')",
+        "import builtins\nbuiltins.exec('1')",
+        "import yaml\nyaml.load(text)",
+        "import yaml\nyaml.load(text, Loader=yaml.Loader)",
+        "import yaml\nyaml.load(text, Loud)",
+        "import yaml\nyaml.unsafe_load(text)",
+        "from yaml import load as read\nread(text, Loader=Loud)",
+        "run = exec",
+    ],
+)
+def test_text_run_as_code_is_found(source: str) -> None:
+    assert len(runs_text("fit/fit.py", source, {"Loud": {"Loader"}})) == 1
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "import yaml\nyaml.load(text, Loader=yaml.SafeLoader)\nyaml.safe_load(text)",
+        "import yaml\nyaml.load(text, Strict)",
+        "import numpy as np\nnp.load(file)\nspecification.loader.exec_module(module)",
+    ],
+)
+def test_what_runs_no_text_passes(source: str) -> None:
+    assert runs_text("fit/fit.py", source, {"Strict": {"Marked"}, "Marked": {"SafeLoader"}}) == []
+
+
+def test_generated_source_is_executed_in_one_place() -> None:
+    once, twice = "exec(code, names)", "exec(code, names)\nexec(code, names)"
+    assert runs_text("compile/source.py", once, {}) == []
+    assert len(runs_text("compile/source.py", twice, {})) == 1
+    assert len(runs_text("solve/source.py", once, {})) == 1
