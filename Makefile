@@ -32,7 +32,7 @@ format: .venv/installed-test            ## repair style where it can be done by 
 
 clean:            ## remove .venv, caches and build products
 	rm -rf .venv dist build .pytest_cache .mypy_cache .ruff_cache .hypothesis
-	find solver blocks tests benchmarks -name __pycache__ -prune -exec rm -rf {} +
+	find solver blocks tests -name __pycache__ -prune -exec rm -rf {} +
 
 # A stamp is as old as the last installation; a newer pyproject.toml installs again.
 .venv/installed: pyproject.toml | $(BIN)/python

@@ -5,9 +5,11 @@ from pathlib import Path
 
 import pytest
 from diagram.small_library import LIBRARY, PENDULUM, made
-from tracewire.diagram import Value, Wire, find_parameter, read
+from tracewire.compile import compile as compile_model
+from tracewire.diagram import Value, Wire, find_parameter, read, read_text
 from tracewire.errors import DiagramError, Place
 from tracewire.formula import Name, Number, parse
+from tracewire.solve import parameter_values
 
 
 def test_the_example_of_the_design_becomes_nouns() -> None:
@@ -190,3 +192,35 @@ def test_read_uses_the_shipped_blocks_and_those_that_are_named(tmp_path: Path) -
 def test_the_same_text_gives_the_same_diagram() -> None:
     assert made(PENDULUM) == made(PENDULUM)
     assert made(PENDULUM).library is LIBRARY
+
+
+def test_a_unit_is_that_of_numbers_and_formulas_of_parameters_are_in_si() -> None:
+    """One rule for values, for what a subsystem is given, and for presets."""
+    model = compile_model(
+        read_text(
+            """
+            parameters:
+              tilt: {value: 90, unit: deg}
+              half: {value: 180/2, unit: deg}
+              same: {value: tilt, unit: deg}
+            blocks:
+              a: {type: arm}
+              b: {type: arm, angle: 180/2}
+              c: {type: arm, angle: tilt}
+              x: {type: integrator, of: x}
+            presets:
+              numbers: {tilt: 45, a.angle: 90/2}
+              formulas: {same: 2*tilt}
+            subsystems:
+              arm:
+                outputs: {y: value}
+                parameters: {angle: {value: 90, unit: deg}}
+                blocks: {value: {type: constant, value: angle}}
+            """
+        )
+    )
+    values = parameter_values(model, {})
+    right = math.pi / 2
+    assert values == pytest.approx(dict.fromkeys(values, right))
+    assert parameter_values(model, {}, "numbers")["a.angle"] == pytest.approx(right / 2)
+    assert parameter_values(model, {}, "formulas")["same"] == pytest.approx(2 * right)

@@ -8,7 +8,7 @@ import pytest
 from oracles.swing import write_pendulum
 from tracewire.compile import compile
 from tracewire.diagram import read
-from tracewire.errors import DataError, TracewireError
+from tracewire.errors import DataError, FitError, TracewireError
 from tracewire.trace import Found, trace
 
 
@@ -82,4 +82,20 @@ def test_without_measured_data_there_is_nothing_to_trace(tmp_path: Path) -> None
     path = write_pendulum(tmp_path)
     path.write_text(path.read_text().split("measured:")[0])
     with pytest.raises(TracewireError, match="names no measured series"):
+        traced(path)
+
+
+def test_a_diagram_that_does_not_run_is_told_with_its_block(tmp_path: Path) -> None:
+    path = write_pendulum(tmp_path, end=6.0)
+    text = path.read_text().replace("k: -w0_squared}", "k: -w0_squared/(c - c)}")
+    path.write_text(text)
+    with pytest.raises(FitError, match="'gravity' is not finite"):
+        traced(path)
+
+
+def test_a_validate_series_with_another_signal_is_refused_before_the_work(tmp_path: Path) -> None:
+    path = write_pendulum(tmp_path, end=6.0)
+    other = "  other: {file: swing.csv, use: validate, time: t, signals: {omega: theta}}\n"
+    path.write_text(path.read_text() + other)
+    with pytest.raises(DataError, match="'omega', which no train series measures"):
         traced(path)

@@ -59,7 +59,7 @@ def store(
     """Write an edited diagram, or its patch, as asked; the paths that were written."""
     if output is None and not apply:
         return []
-    from tracewire.diagram import difference, write
+    from tracewire.diagram import difference
 
     new = edited()
     written = []
@@ -68,7 +68,7 @@ def store(
             Path(output).write_text(difference(diagram, new), encoding="utf-8")
         written.append(output)
     elif output is not None:
-        written.append(str(write(new, output, overwrite=True)))
+        written.append(str(new.write(output, overwrite=True)))
     if apply:
-        written.append(str(write(new, diagram.file, overwrite=True)))
+        written.append(str(new.write(diagram.file, overwrite=True)))
     return written

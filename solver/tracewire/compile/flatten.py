@@ -30,16 +30,6 @@ def _scaled(formula: Expression, factor: float) -> Expression:
     return Call("*", (formula, Number(factor)))
 
 
-def _factor(value: Value, declared: float) -> float:
-    """The factor to SI of a value that replaces a declared one.
-
-    A plain number without a unit is meant in the unit of the declaration; a formula of parameters
-    is in SI, as these are.
-    """
-    own = value.unit or value.factor != 1.0 or names_of(value.formula)
-    return value.factor if own else declared
-
-
 def _folded(sign: str, terms: list[Expression], empty: float) -> Expression:
     """The sum or product of terms; a sum takes away a term that is negative."""
 
@@ -86,7 +76,7 @@ class _Flattener:
             span=(self.value(span[0], scope), self.value(span[1], scope)),
             every=None if top.every is None else self.value(top.every, scope),
             presets={
-                name: {key: self.preset(key, value, scope) for key, value in preset.items()}
+                name: {key: self.value(value, scope) for key, value in preset.items()}
                 for name, preset in top.presets.items()
             },
             blocks=self.blocks,
@@ -95,11 +85,6 @@ class _Flattener:
 
     def value(self, value: Value, scope: _Scope) -> Expression:
         return _scaled(rename(value.formula, scope.resolve), value.factor)
-
-    def preset(self, key: str, value: Value, scope: _Scope) -> Expression:
-        declared = self.parameters.get(key)
-        factor = _factor(value, 1.0 if declared is None else declared.factor)
-        return _scaled(rename(value.formula, scope.resolve), factor)
 
     def recorded(self, name: str, scope: _Scope) -> str:
         if name in self.signals or name in self.states or name in self.top.inputs:
@@ -114,13 +99,12 @@ class _Flattener:
         own = _Scope(diagram, path, {})
         for name, default in diagram.parameters.items():
             value, scope = given.get(name, (default, own))
-            factor = _factor(value, default.factor) if name in given else value.factor
             self.parameters[path + name] = FlatParameter(
                 name=path + name,
-                formula=_scaled(rename(value.formula, scope.resolve), factor),
+                formula=self.value(value, scope),
                 unit=value.unit or default.unit,
                 fit=value.fit,
-                factor=factor,
+                factor=value.factor,
                 place=value.place,
             )
 

@@ -19,7 +19,6 @@ from tracewire.diagram.edit import (
     difference,
     remove_addend,
     set_values,
-    write,
 )
 from tracewire.diagram.names import (
     find_parameter,
@@ -58,5 +57,4 @@ __all__ = [
     "signals",
     "state_names",
     "states",
-    "write",
 ]

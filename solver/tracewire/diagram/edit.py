@@ -10,7 +10,6 @@ import contextlib
 import difflib
 import math
 from collections.abc import Mapping
-from pathlib import Path
 
 from tracewire.diagram.diagram import BlockUse, Diagram, Series
 from tracewire.diagram.names import find_recorded
@@ -28,7 +27,7 @@ from tracewire.diagram.splice import (
     without_items,
 )
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
-from tracewire.errors import DiagramError, OptionError, Place, unknown
+from tracewire.errors import DiagramError, OptionError, unknown
 from tracewire.formula.text import number_text
 
 
@@ -164,28 +163,6 @@ def _offset(
     if "offset" in given.values:
         return replaced(given.values["offset"], text)
     return entry_last(diagram.text, given, "offset", text)
-
-
-def write(diagram: Diagram, path: str | Path, overwrite: bool = False) -> Path:
-    """Write the diagram's text to a file, and return its path.
-
-    Raises OptionError where another file is there already and `overwrite` is not said, or the file
-    cannot be written; DiagramError where files that the diagram names are not found from there.
-    """
-    target = Path(path)
-    try:
-        own = target.exists() and diagram.file.exists() and target.samefile(diagram.file)
-        if target.exists() and not own and not overwrite:
-            hint = "Choose another name, or say that it may be overwritten."
-            raise OptionError.one("there is a file of this name", Place(str(target)), hint=hint)
-        if target.resolve().parent != diagram.file.resolve().parent:
-            read_text(diagram.text, target, library=diagram.library)
-        target.write_bytes(diagram.text.encode())
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        what = f"the file cannot be written: {reason}"
-        raise OptionError.one(what, Place(str(target)), hint="Check its folder.") from None
-    return target
 
 
 def difference(old: Diagram, new: Diagram) -> str:

@@ -9,7 +9,7 @@ from tracewire.diagram.body import OF_A_BLOCK, Body, Reference
 from tracewire.diagram.diagram import BlockUse, Diagram, Points, Value, Wire
 from tracewire.diagram.problems import clip
 from tracewire.diagram.strict import Entries, Node, Scalar
-from tracewire.diagram.values import read_formula, read_points, read_value
+from tracewire.diagram.values import read_formula, read_points, read_value, reads_parameters
 from tracewire.diagram.wires import read_wires
 from tracewire.errors import Place
 from tracewire.formula import Expression, Number, is_name
@@ -116,7 +116,7 @@ def in_unit_of(given: Value, declared: Value) -> Value:
     """
     if given.unit or given.factor != 1.0:
         return given
-    factor = declared.factor if isinstance(given.formula, Number) else 1.0
+    factor = 1.0 if reads_parameters(given.formula) else declared.factor
     bounds = given.fit and (given.fit[0] * factor, given.fit[1] * factor)
     # the unit is never empty where there is a factor, so that nobody takes the value for a bare one
     unit = declared.unit or ("" if declared.factor == 1.0 else "1")

@@ -57,13 +57,14 @@ def read_value(
 ) -> Value | None:
     """A value: a number, a formula over parameters, or a mapping of value, unit and fit.
 
-    unit: the unit of a value that names none itself. fit: whether bounds may be given.
+    unit: the unit of a value that names none itself. fit: whether bounds may be given. A unit is
+    that of the numbers in the file: a formula that reads parameters is in SI, as these are.
     """
     if isinstance(node, Scalar):
         formula = read_formula(node, body, "parameter", block)
         if formula is None:
             return None
-        return Value(formula, unit.text, unit.factor, place=body.place(node, block))
+        return Value(formula, unit.text, _factor(formula, unit), place=body.place(node, block))
     if isinstance(node, Items):
         what = "a value is a number, a formula, or a mapping, and not a list"
         hint = "Write it like 2.5, 2*k, or {value: 2.5, unit: N m, fit: [0, 5]}."
@@ -87,7 +88,17 @@ def read_value(
         body.problems.add(what, body.place(node, block), (), "Widen 'fit', or change the value.")
     scaled = (bounds[0] * unit.factor, bounds[1] * unit.factor) if bounds else None
     place = body.place(node, block)
-    return Value(formula, unit.text, unit.factor, scaled, named=True, place=place)
+    return Value(formula, unit.text, _factor(formula, unit), scaled, named=True, place=place)
+
+
+def _factor(formula: Expression, unit: Unit) -> float:
+    """The factor to SI of a value in a unit."""
+    return 1.0 if reads_parameters(formula) else unit.factor
+
+
+def reads_parameters(formula: Expression) -> bool:
+    """Whether a formula is more than a number that is worked out."""
+    return any(name not in CONSTANTS for name in names_of(formula))
 
 
 def read_bounds(node: Node, body: Body, block: str = "") -> tuple[float, float] | None:

@@ -63,6 +63,11 @@ def share_out(model: Model, measured: Sequence[Measured], cut: bool = False) -> 
         if len(m.t) < 4 * LEAST_SAMPLES:
             what = f"the series '{m.name}' has {len(m.t)} samples, too few to trace anything"
             raise DataError([Problem(what, hint=f"At least {4 * LEAST_SAMPLES} are needed.")])
+    fitted = {signal for m in by_use["train"] for signal in m.values}
+    for m in (*by_use["gate"], *by_use["validate"]):
+        for signal in sorted(set(m.values) - fitted):
+            what = f"the series '{m.name}' measures '{signal}', which no train series measures"
+            raise DataError([Problem(what, hint="Leave it out, or train with it.")])
     train: list[Segment] = []
     gate = [s for m in by_use["gate"] for s in _cut(model, m, 0, len(m.t), cut)]
     validate = [whole_segment(model, m) for m in by_use["validate"]]

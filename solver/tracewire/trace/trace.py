@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.diagram import Diagram, set_values
+from tracewire.errors import FitError
 from tracewire.fit.fit import with_measured_signals
 from tracewire.fit.measured import Measured, load_measured
 from tracewire.fit.result import Fit
@@ -55,11 +56,15 @@ class _Tracing:
         rtol: float,
         progress: Callable[[str], None],
     ) -> None:
-        model = with_measured_signals(subject.model if isinstance(subject, Fit) else subject)
-        self.begun = dict(subject.values) if isinstance(subject, Fit) else {}
+        self.begun: dict[str, float] = {}
+        if isinstance(subject, Fit):
+            self.begun = dict(subject.values)
+            measured = subject.measured if measured is None else measured
+            subject = subject.model
+        model = with_measured_signals(subject, measured)
         self.model, self.tell = model, progress
         self.places = find_places(model)
-        series = tuple(measured or load_measured(model))
+        series = tuple(load_measured(model) if measured is None else measured)
         sigma = channel_noise([m for m in series if m.use != "validate"])
         self.bench = Bench(model, series, sigma, rtol)
         self.stretches = share_out(model, series)
@@ -113,7 +118,7 @@ class _Tracing:
         # far from the noise the residual is so correlated that a score proves nothing: try the best
         least = LEAST_GAIN if now.s2 <= AT_NOISE else -np.inf
         proposals = shortlist(screen, candidates, MOST_EFFECTS - len(now.effects), least)
-        trials = [self.extended(now, proposal, scales) for proposal in proposals]
+        trials = [t for p in proposals if (t := self.extended(now, p, scales)) is not None]
         if not trials:
             return None
         part = min(trials, key=lambda trial: trial.rss).part
@@ -146,8 +151,8 @@ class _Tracing:
                 remark += f" (beside {single.effects[-1]} alone)"
         return passed, remark
 
-    def extended(self, now: Trial, proposal: Proposal, scales: Mapping[str, float]) -> Trial:
-        """The model with more effects, refitted from where it stood."""
+    def extended(self, now: Trial, proposal: Proposal, scales: Mapping[str, float]) -> Trial | None:
+        """The model with more effects, refitted from where it stood; None if it does not run."""
         self.tell("refitting with " + " and ".join(map(str, proposal.effects)))
         added = [(c, 0.0) for c in proposal.effects if c.block is not None]
         model = self.bench.compiled(extend(now.model.diagram, added))
@@ -157,13 +162,19 @@ class _Tracing:
             c.unknown: max(abs(value), 1e-6 * scales[c.unknown]) for c, value in pairs
         }
         effects = (*now.effects, *proposal.effects)
-        return self.bench.refit(model, effects, now.segments, values, sizes)
+        try:
+            return self.bench.refit(model, effects, now.segments, values, sizes)
+        except FitError:
+            self.words.append(f"with {' and '.join(map(str, proposal.effects))} it does not run")
+            return None
 
     def report(
         self, declared: Trial, best: Trial, dropped: tuple[str, ...], screen: Screen | None
     ) -> Found:
         self.tell("checking on the stretch that played no part")
         bench, segments = self.bench, self.stretches.validate
+        if any(s.free for s in segments):
+            self.words.append("only the start states were fitted on it; from there on it runs free")
         before = bench.in_units(segments, bench.elsewhere(declared, segments))
         after = bench.in_units(segments, bench.elsewhere(best, segments))
         values = best.values | dict.fromkeys(dropped, 0.0)

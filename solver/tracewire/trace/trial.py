@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model, compile
 from tracewire.diagram import Diagram
-from tracewire.errors import FitError, Problem
+from tracewire.errors import FitError
 from tracewire.fit.criterion import Criterion, Segment, Unknown
 from tracewire.fit.descent import Descent, descend
 from tracewire.fit.measured import Measured, measured_signals
@@ -101,10 +101,7 @@ class Bench:
         """
         unknowns = self._unknowns(model, effects, values, scales or {})
         criterion = Criterion(model, segments, unknowns, {}, self.rtol, self.sigma)
-        trial = self._descended(model, effects, criterion, steps)
-        if not np.isfinite(trial.rss) or (criterion.failure and trial.s2 > 1e12):
-            raise FitError([Problem(f"the model does not run: {criterion.failure}")])
-        return trial
+        return self._descended(model, effects, criterion, steps)
 
     def grown(
         self,
@@ -168,7 +165,10 @@ class Bench:
         self, model: Model, effects: Sequence[Candidate], criterion: Criterion, steps: int
     ) -> Trial:
         descent = descend(criterion, steps=steps, tolerance=TOLERANCE)
+        criterion.failure = None  # a trial step may fail; where the descent ends it must run
         part = effective_part(criterion.residuals(descent.z))
+        if criterion.failure is not None:
+            raise FitError(criterion.failure.problems)
         return Trial(model, tuple(effects), criterion, descent, part)
 
     def _unknowns(
