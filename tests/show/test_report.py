@@ -222,6 +222,7 @@ def test_a_trace_as_a_report(tmp_path: Path) -> None:
         "these effects are not the whole truth",
         "The last sixth of 'run' is held back.",
         "| coulomb | a | level = 0.25 | bias @ a |",
+        "| k | 4 | 4.5 |",
         "BIC is relative to the diagram before them",
         "| coulomb @ a | -120 | 4 | gate: accepted |",
         "+parameters: {k: {value: 4.5,",

@@ -53,13 +53,14 @@ def trace(
     if as_json:
         print_json(found.as_json() | {"written": written})
         return
-    from tracewire.show.report import effects_table, ranking_table, trace_text
+    from tracewire.show.report import effects_table, moved_table, ranking_table, trace_text
 
     print_text(f"verdict: {found.verdict}")
     for text in trace_text(found):
         print_text(text)
     if found.effects:
         print_table(effects_table(found))
+        print_table(moved_table(found))
     if found.ranking:
         print_table(ranking_table(found))
     if found.patch:

@@ -147,6 +147,17 @@ def effects_table(found: Found) -> Table:
     return Table("effects", header, tuple(rows))
 
 
+def moved_table(found: Found) -> Table:
+    """The declared parameters fitted without and with the effects, in SI: who stood in for whom."""
+    units = {name: value.unit for name, value in found.original.parameters.items()}
+    rows = tuple(
+        (name, shown(value), shown(found.values.get(name, 0.0)), units.get(name, ""))
+        for name, value in found.declared.items()
+    )
+    header = ("parameter", "without the effects", "with them", "unit")
+    return Table("declared parameters", header, rows, frozenset({1, 2}))
+
+
 def ranking_table(found: Found) -> Table:
     """What was refitted: BIC relative to the model before it, mean square residual in sigma."""
     rows = tuple((r.effects, shown(r.bic), shown(r.s2), r.remark) for r in found.ranking)
@@ -198,7 +209,7 @@ def _of_trace(found: Found) -> Report:
         Figure("held_out.png", "Free runs before and after", partial(plot_held_out, found)),
         Figure("residual.png", "Residual before and after", partial(plot_left, found)),
     )
-    tables = (effects_table(found),) if found.effects else ()
+    tables = (effects_table(found), moved_table(found)) if found.effects else ()
     sections = [Section("Verdict", trace_text(found), tables, figures=figures)]
     if found.ranking:
         sections.append(Section("What was tried", (RANKING,), (ranking_table(found),)))
