@@ -139,3 +139,32 @@ subsystems:
 """
     model = compile(read_text(text))
     assert "pair.s = 3*pair.straight" in model.equations
+
+
+@pytest.mark.parametrize("outputs", ["[x, force]", "{x: x, force: force}"])
+def test_an_output_may_have_the_name_of_the_block_that_it_carries(outputs: str) -> None:
+    inside = f"""
+span: [0, 1]
+record: [left.x, left.force, left.rate]
+blocks:
+  left: {{type: body, k: 4}}
+subsystems:
+  body:
+    outputs: {outputs}
+    parameters: {{k: 1}}
+    blocks:
+      x: {{type: integrator, of: rate, start: 1, unit: m}}
+      rate: {{type: integrator, of: force, unit: m/s}}
+      force: {{type: gain, of: x, k: -k}}
+"""
+    result = run(inside)
+    assert result["left.x"][-1] == pytest.approx(math.cos(2.0), abs=1e-5)
+    assert result["left.force"][-1] == pytest.approx(-4 * math.cos(2.0), abs=1e-5)
+    assert made(inside).flat.units["left.x"] == "m"
+
+
+def test_an_output_takes_the_unit_of_what_it_carries() -> None:
+    carried = NESTED.replace("outputs: {force: spring}", "outputs: {force: -spring}").replace(
+        "formula: -half*slack", "formula: -half*slack, unit: N"
+    )
+    assert made(carried).flat.units["left.force"] == "N"

@@ -146,8 +146,12 @@ class _Flattener:
                 inputs[name] = self.value(port.default, inner)
         self.add_diagram(inside, path, f"{use.type}.", inputs)
         for port_name, wire in inside.outputs.items():
-            self.signals[path + port_name] = inner.wire(wire)
-            self.units[path + port_name] = use.unit
+            name, carried = path + port_name, inner.wire(wire)
+            if carried != Name(name):  # a port may have the name of the block that it carries
+                self.signals[name] = carried
+            source = carried.arguments[0] if isinstance(carried, Call) else carried
+            own = self.units.get(source.name, "") if isinstance(source, Name) else ""
+            self.units[name] = use.unit or own
 
     def add_block(self, use: BlockUse, block: Block, scope: _Scope, definition: str) -> None:
         path = scope.path + use.name
