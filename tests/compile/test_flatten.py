@@ -168,3 +168,7 @@ def test_an_output_takes_the_unit_of_what_it_carries() -> None:
         "formula: -half*slack", "formula: -half*slack, unit: N"
     )
     assert made(carried).flat.units["left.force"] == "N"
+
+
+def test_a_model_is_shown_in_a_line() -> None:
+    assert repr(made(NESTED)) == "Model('A mass on two springs': states x, v; 9 parameters)"

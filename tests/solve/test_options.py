@@ -51,8 +51,10 @@ def test_a_measured_input_that_is_not_usable_is_refused(table: tuple[Any, Any]) 
 
 
 def test_an_input_without_a_source_is_refused() -> None:
-    with pytest.raises(OptionError, match="the input 'u' has no source"):
+    with pytest.raises(OptionError, match="the input 'u' has no source") as caught:
         run(DRIVEN)
+    assert "`--series`" in str(caught.value)
+    assert "inputs: {u: {default: 0}}" in str(caught.value)
 
 
 def test_all_problems_are_told_together() -> None:
@@ -65,6 +67,12 @@ def test_all_problems_are_told_together() -> None:
 def test_an_output_interval_must_be_usable(every: float) -> None:
     with pytest.raises(OptionError, match="an output every"):
         run(OSCILLATOR + "every: dt\nparameters: {dt: 1}\n", parameters={"dt": every})
+
+
+def test_an_output_interval_beyond_the_span_is_refused() -> None:
+    with pytest.raises(OptionError, match="every 31 s has one sample only from 0 to 30 s"):
+        run(OSCILLATOR + "every: 31\n")
+    assert run(OSCILLATOR + "every: 30\n").t.tolist() == [0.0, 30.0]
 
 
 def test_samples_follow_the_diagram_or_the_options() -> None:

@@ -30,6 +30,10 @@ class Model:
     lowered: Lowered
     recorded: tuple[str, ...]
 
+    def __repr__(self) -> str:  # with its diagram and library it would fill many screens
+        shown = f"states {', '.join(self.states) or 'none'}; {len(self.parameters)} parameters"
+        return f"Model({self.flat.title!r}: {shown})"
+
     @property
     def states(self) -> tuple[str, ...]:
         """The names of the states, in the order of the state vector."""

@@ -17,6 +17,7 @@ from tracewire.formula import evaluate
 from tracewire.solve import parameter_values
 
 Vector = NDArray[np.float64]
+LARGEST = 1e100  # its square, and sums of such squares, are numbers still
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,14 +84,16 @@ def _load(model: Model, series: Series) -> Measured:
     read = read_columns(Path(series.file), columns, series.time, place=series.place)
     values = parameter_values(model, {}, series.preset)
     rows = _window(series, read)
+    signals = {
+        name: read.values[f"signal {name}"][rows] * channel.factor
+        for name, channel in series.channels.items()
+    }
+    _check_size(series, signals)
     return Measured(
         name=series.name,
         use=series.use,
         t=read.time[rows],
-        values={
-            name: read.values[f"signal {name}"][rows] * channel.factor
-            for name, channel in series.channels.items()
-        },
+        values=signals,
         sigma={name: channel.sigma for name, channel in series.channels.items()},
         offset={
             name: evaluate(channel.offset.formula, values) * channel.offset.factor
@@ -113,6 +116,18 @@ def _load(model: Model, series: Series) -> Measured:
         preset=series.preset,
         file=str(series.file),
     )
+
+
+def _check_size(series: Series, signals: Mapping[str, Vector]) -> None:
+    problems = []
+    for name, values in signals.items():
+        largest = float(np.abs(values).max())
+        if largest > LARGEST:
+            what = f"'{name}' of the series '{series.name}' reaches {largest:.3g}, too large to fit"
+            hint = f"Correct the column '{series.channels[name].column}', or its unit."
+            problems.append(Problem(what, series.place, (), hint))
+    if problems:
+        raise DataError(problems)
 
 
 def _window(series: Series, read: Columns) -> NDArray[np.intp]:

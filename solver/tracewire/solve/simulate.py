@@ -166,6 +166,9 @@ def _samples(
     if not every > 0 or (end - begin) / every > MOST_SAMPLES:
         what = f"an output every {every:g} s from {begin:g} to {end:g} s cannot be kept"
         raise OptionError([Problem(what, hint="Give a larger `every`.")])
+    if every > (end - begin) * (1 + 1e-12):  # a run of one sample would say nothing of its end
+        what = f"an output every {every:g} s has one sample only from {begin:g} to {end:g} s"
+        raise OptionError([Problem(what, hint="Give a smaller `every`, or a longer span.")])
     count = math.floor((end - begin) / every * (1 + 1e-12))
     return np.asarray(np.minimum(begin + every * np.arange(count + 1), end))
 
@@ -186,7 +189,10 @@ def _tables(
         else:
             default = flat.inputs[name]
             if default is None:
-                hint = "Give it as `inputs=`, in the series of `measured:`, or a default."
+                hint = (
+                    "Give it as `inputs=`, run a measured series that has it (`--series`), "
+                    f"or write a default: inputs: {{{name}: {{default: 0}}}}."
+                )
                 problems.append(Problem(f"the input '{name}' has no source", hint=hint))
             else:
                 tables.append(_table(name, [0.0], [evaluate(default, values)]))

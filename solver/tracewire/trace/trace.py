@@ -70,6 +70,8 @@ class _Tracing:
         self.stretches = share_out(model, series)
         self.words: list[str] = []
         self.ranking: list[Ranked] = []
+        if not self.places:
+            self.words.append("no sum of the diagram feeds a rate: only sensor offsets were tried")
 
     def found(self) -> Found:
         declared = self.declared_fit()
