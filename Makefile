@@ -20,11 +20,10 @@ demo: .venv/installed            ## run the demonstration
 test: .venv/installed-test            ## run the tests
 	$(BIN)/python -m pytest --numprocesses auto $(ARGS)
 
-check: .venv/installed-test            ## all checks: style, types, tests
+check: .venv/installed-test            ## style and types
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
-	$(BIN)/python -m pytest --numprocesses auto $(ARGS)
 
 format: .venv/installed-test            ## repair style where it can be done by rule
 	$(BIN)/ruff check --fix
