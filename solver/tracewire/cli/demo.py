@@ -41,7 +41,9 @@ def demo(
     check(torsion)
     print_text("\n--- 2. run it")
     run(torsion, figure=str(folder / "torsion.png"))
-    print_text("\n--- 3. fit nine parameters to a measured record, as in the paper's appendix")
+    print_text(
+        "\n--- 3. fit the nine parameters of the paper's appendix, 100 iterations of its 150"
+    )
     fit(torsion, max_iter=100, report=str(folder / "fit" / "report.md"))
     print_text("\n--- 4. trace what the diagram of a swinging pendulum lacks")
     patch = str(folder / "pendulum.patch")

@@ -176,7 +176,9 @@ class _Tracing:
         self.tell("checking on the stretch that played no part")
         bench, segments = self.bench, self.stretches.validate
         if any(s.free for s in segments):
-            self.words.append("only the start states were fitted on it; from there on it runs free")
+            self.words.append(
+                "on the stretch that played no part only its start states were fitted"
+            )
         before = bench.in_units(segments, bench.elsewhere(declared, segments))
         after = bench.in_units(segments, bench.elsewhere(best, segments))
         values = best.values | dict.fromkeys(dropped, 0.0)
