@@ -1,12 +1,12 @@
 # Needs make and Python 3.11 or newer. Another Python: make PYTHON=python3.13 demo (after make clean).
 PYTHON ?= python3
-# Arguments for pytest: make test ARGS="-k friction"
+# Arguments: make test ARGS="-k friction", make benchmark ARGS=--quick
 ARGS ?=
 
 BIN := .venv/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: help demo test check format clean
+.PHONY: help demo test check benchmark format clean
 .DEFAULT_GOAL := help
 # a .venv that could not be finished is made anew the next time
 .DELETE_ON_ERROR:
@@ -25,6 +25,9 @@ check: .venv/installed-test            ## style and types
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 
+benchmark: .venv/installed-benchmark            ## time it beside other solvers: make benchmark ARGS=--quick
+	$(BIN)/python -m benchmarks $(ARGS)
+
 format: .venv/installed-test            ## repair style where it can be done by rule
 	$(BIN)/ruff check --fix
 	$(BIN)/ruff format
@@ -42,6 +45,11 @@ clean:            ## remove .venv, caches and build products
 .venv/installed-test: pyproject.toml | $(BIN)/python
 	@echo "Installing tracewire and its checks into .venv, once ..."
 	@$(INSTALL) -e '.[test]'
+	@touch $@
+
+.venv/installed-benchmark: pyproject.toml | $(BIN)/python
+	@echo "Installing tracewire and what it is timed against into .venv, once ..."
+	@$(INSTALL) -e '.[benchmark]'
 	@touch $@
 
 $(BIN)/python:

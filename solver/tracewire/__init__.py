@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from tracewire.fit import Fit, fit, fminsearch, load_measured, optimset
     from tracewire.library import Block, Effect, Input, Output, Parameter, State, load_library
     from tracewire.show import report
-    from tracewire.solve import Limits, Run, simulate
+    from tracewire.solve import Interrupted, Limits, Run, Runs, Section, simulate, simulate_many
     from tracewire.trace import Found, trace
 
 __version__ = "0.1.0"
@@ -30,11 +30,14 @@ __all__ = [
     "Fit",
     "Found",
     "Input",
+    "Interrupted",
     "Limits",
     "Model",
     "Output",
     "Parameter",
     "Run",
+    "Runs",
+    "Section",
     "State",
     "TracewireError",
     "compile",
@@ -47,6 +50,7 @@ __all__ = [
     "read_text",
     "report",
     "simulate",
+    "simulate_many",
     "trace",
 ]
 
@@ -57,7 +61,7 @@ ROOM_OF = {
     "fit": "Fit fit fminsearch load_measured optimset",
     "library": "Block Effect Input Output Parameter State load_library",
     "show": "report",
-    "solve": "Limits Run simulate",
+    "solve": "Interrupted Limits Run Runs Section simulate simulate_many",
     "trace": "Found trace",
 }
 

@@ -107,12 +107,6 @@ blocks: {y: {type: sine, amplitude: 2, omega: 1, phase: {value: 30, unit: deg}}}
     assert run(text)["y"][0] == pytest.approx(2 * math.sin(math.pi / 6))
 
 
-def test_an_algebraic_loop_names_the_whole_loop() -> None:
-    with pytest.raises(DiagramError, match=r"a.*b|b.*a") as caught:
-        made("blocks: {a: {type: gain, of: b, k: 1}, b: {type: gain, of: a, k: 2}}")
-    assert "loop" in str(caught.value)
-
-
 def test_a_start_value_reads_only_parameters() -> None:
     text = "blocks: {x: {type: integrator, of: y, start: y}, y: {type: constant, value: 1}}"
     with pytest.raises(DiagramError, match="y"):

@@ -68,4 +68,4 @@ def test_a_shared_guard_turns_the_direction_of_a_reset(when: str, crosses: str, 
     text = one("s", 0.0, more) + f"events:\n  - {{when: {when}, crosses: {crosses}, set: {{x: 0}}}}"
     model = made(text)
     assert len(model.modes) == 1
-    assert model.lowered.resets[0][1] == seen
+    assert model.lowered.resets[0].direction == seen

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from tracewire.diagram import Diagram, read_text
 from tracewire.errors import TracewireError
-from tracewire.library import Block, Input, Library, Output, Parameter, State
+from tracewire.library import Block, Event, Input, Library, Output, Parameter, State
 
 BLOCKS = (
     Block(
@@ -52,10 +52,11 @@ BLOCKS = (
     ),
     Block(
         name="oscillator",
-        doc="two states; only the output `force` reads the input at once",
+        doc="two states and an event; only the output `force` reads the input at once",
         inputs=(Input("push", default="0"),),
         states=(State("x", "v", "0"), State("v", "push - x", "0")),
         outputs=(Output("x", "x"), Output("force", "push - x")),
+        events=(Event("top", when="v", crosses="down", set={"x": "0"}),),
     ),
 )
 LIBRARY = Library({block.name: block for block in BLOCKS}, {})

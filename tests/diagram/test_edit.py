@@ -154,6 +154,15 @@ blocks: {d: {type: viscous, rate: d, c: {unit: N m s/rad, value: '1'}}}
     assert set_values(old, {}).text == old.text
 
 
+def test_a_value_in_a_list_is_set_where_it_stands() -> None:
+    text = "blocks: {x: {type: integrator, of: x, start: [1, {value: 20, unit: deg}, 3]}}\n"
+    diagram = made(text)
+    assert find_parameter(diagram, "x.start[0]") is None
+    assert find_parameter(diagram, "x.start[1,1]") is None
+    changed = set_values(diagram, {"x.start[1]": math.radians(35)})
+    assert changed.text == text.replace("20", "35")
+
+
 @settings(deadline=None)
 @given(st.floats(1e-3, 1e-2))
 def test_a_value_within_its_bounds_stays_within_them(value: float) -> None:

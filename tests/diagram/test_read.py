@@ -224,3 +224,25 @@ def test_a_unit_is_that_of_numbers_and_formulas_of_parameters_are_in_si() -> Non
     assert values == pytest.approx(dict.fromkeys(values, right))
     assert parameter_values(model, {}, "numbers")["a.angle"] == pytest.approx(right / 2)
     assert parameter_values(model, {}, "formulas")["same"] == pytest.approx(2 * right)
+
+
+EVENTS = """
+blocks:
+  o: {type: oscillator}
+  i: {type: integrator, of: o.x}
+events:
+  - {when: o.top, set: {i: o.x, o.v: 0}}
+  - {when: o.force, crosses: up, set: {o.x: 1}}
+  - {every: {value: 5, unit: ms}, offset: 1, set: {i: 0}}
+"""
+
+
+def test_an_event_may_be_that_of_a_block_or_a_clock_and_set_one_of_several_states() -> None:
+    named, crossing, clock = made(EVENTS).events
+    assert named.when == Name("o.top")
+    assert set(named.set) == {"i", "o.v"}
+    assert (crossing.when, crossing.crosses) == (Name("o.force"), "up")
+    assert clock.when is None and clock.every is not None and clock.offset is not None
+    assert clock.every.formula == Number(5.0)
+    assert clock.every.factor == pytest.approx(1e-3)
+    assert clock.offset.formula == Number(1.0)

@@ -10,7 +10,7 @@ from tracewire.formula.functions import FUNCTIONS
 
 NUMBERS = st.floats(allow_nan=False, allow_infinity=False).map(Number)
 NAMES = st.sampled_from(["x", "phi1_dot", "bearing.torque", "t", "pi"]).map(Name)
-PLAIN = [name for name in FUNCTIONS if name not in ("sum", "product", "interp")]
+PLAIN = [name for name in FUNCTIONS if name not in ("sum", "product", "join", "interp")]
 Draw = st.DrawFn
 
 
@@ -20,7 +20,7 @@ def formulas(draw: Draw, depth: int = 4) -> Expression:
     if depth == 0 or draw(st.booleans()):
         return draw(NUMBERS | NAMES)
     terms = formulas(depth - 1)
-    kind = draw(st.sampled_from(["operator", "sign", "choice", "function", "by name"]))
+    kind = draw(st.sampled_from(["operator", "sign", "choice", "function", "by name", "element"]))
     if kind == "operator":
         sign = draw(st.sampled_from(["+", "-", "*", "/", "**"]))
         return Call(sign, (draw(terms), draw(terms)))
@@ -30,9 +30,12 @@ def formulas(draw: Draw, depth: int = 4) -> Expression:
     if kind == "choice":
         return Call("if", (draw(conditions(depth - 1)), draw(terms), draw(terms)))
     if kind == "by name":
-        name = draw(st.sampled_from(["sum", "product", "interp"]))
+        name = draw(st.sampled_from(["sum", "product", "join", "interp"]))
         port = Name("of")
         return Call(name, (draw(terms), port) if name == "interp" else (port,))
+    if kind == "element":
+        index = st.integers(0, 99).map(lambda number: Number(float(number)))
+        return Call("[]", (draw(NAMES), *draw(st.lists(index, min_size=1, max_size=2))))
     name = draw(st.sampled_from(PLAIN))
     least, most = FUNCTIONS[name].least, FUNCTIONS[name].most or 4
     return Call(name, tuple(draw(st.lists(terms, min_size=least, max_size=most))))

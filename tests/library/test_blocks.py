@@ -24,6 +24,11 @@ FAMILIES = {
     " asymmetric_coulomb asymmetric_arctan smoothed_stribeck",
     "stiffness": "linear_stiffness cubic_stiffness asymmetric_stiffness asymmetric_cubic_spring",
     "barrier": "voigt_barrier",
+    "memory": "relay backlash latch toggle counter",
+    "sampling": "sample_and_hold zero_order_hold",
+    "limited": "limited_integrator reset_integrator rate_limiter",
+    "vector": "mux demux dot total matrix_gain solve",
+    "contact": "hard_stop bouncing_body collision one_way_clutch",
 }
 
 
@@ -35,6 +40,18 @@ def test_the_families_hold_the_blocks_that_diagrams_are_written_with() -> None:
 def test_the_effects_are_those_that_a_trace_tries() -> None:
     signs = {block.name: block.effect.sign for block in library().effects() if block.effect}
     assert signs == {"viscous": 1, "coulomb": 1, "quad_drag": 1, "cubic_stiffness": 0, "bias": 0}
+
+
+def text_of(block: Block) -> str:
+    """All that a block does, as the text of its formulas."""
+    given = [o.formula for o in block.outputs] + [s.rate for s in block.states]
+    given += [value for event in block.events for value in event.set.values()]
+    parts = [p for g in given for p in ([g] if isinstance(g, str) else g.values())]
+    parts += [state.start for state in block.states]
+    parts += [mode.start or "" for mode in block.modes]
+    parts += [text for t in block.transitions for text in (t.when, *t.set.values())]
+    parts += [text for e in block.events for text in (*e.guards, e.every or "", e.offset)]
+    return " ".join(parts + [str(port.default) for port in block.inputs])
 
 
 @pytest.mark.parametrize("block", [*library().blocks.values()], ids=[*library()])
@@ -49,9 +66,7 @@ class TestEveryBlock:
         read = set().union(
             *(feed for output in block.outputs if (feed := block.feedthrough(output.name))),
         )
-        text = " ".join([o.formula for o in block.outputs] + [s.rate for s in block.states])
-        text = " ".join([text, *(s.start for s in block.states)])
-        words = set(text.translate(str.maketrans("()+-*/,<>=", " " * 10)).split())
+        words = set(text_of(block).translate(str.maketrans("()[]+-*/,<>=", " " * 12)).split())
         declared = {port.name for port in block.inputs} | {p.name for p in block.parameters}
         assert declared <= words
         assert read <= declared

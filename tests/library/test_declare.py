@@ -84,7 +84,7 @@ COMPLAINTS: dict[str, tuple[dict[str, Any], str]] = {
         "unknown name 'rat'; there are: c, d, of, points, rate, t, x."
         " Did you mean 'rate'? It stands in '-c*rat'.",
     ),
-    "several wires read as one": (output("2*of"), "'of' is read by sum() or product()."),
+    "several wires read as one": (output("2*of"), "'of' is read by sum(), product() or join()."),
     "one wire read as several": (output("sum(rate)"), "'rate' is read by its name alone."),
     "points read as a number": (
         output("points + 1"),

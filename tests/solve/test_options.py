@@ -14,11 +14,14 @@ DRIVEN = "span: [0, 1]\ninputs: [u]\nblocks: {x: {type: integrator, of: u}}"
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"method": "rk45"}, r"unknown method 'rk45'; there are: auto, dormand_prince, rosenbrock"),
+        ({"method": "rk45"}, r"'rk45'; there are: auto, dop853, dormand_prince, rk4, rosenbrock"),
         ({"rtol": 0.0}, r"rtol = 0 and atol = 0 cannot be met.*Take rtol between"),
         ({"rtol": 2.0}, r"rtol = 2 "),
         ({"rtol": float("nan")}, r"rtol = nan "),
-        ({"atol": -1.0}, r"atol = -1 cannot be met"),
+        ({"atol": -1.0}, r"rtol = 1e-06 and atol = -1 cannot be met"),
+        ({"atol": float("inf")}, r"atol = inf cannot be met"),
+        ({"atol": {"x": 1e-9, "v": 0.0}}, r"atol = {x: 1e-09, v: 0} cannot be met.*atol above 0"),
+        ({"atol": {"x": 1e-9, "y": 1e-9}}, r"unknown state 'y'; there are: v, x"),
         ({"span": (1, 1)}, r"the span from 1 to 1 s is empty"),
         ({"span": (0, float("inf"))}, r"the span from 0 to inf s is empty"),
         ({"times": [0.0, 0.0]}, r"the sample times do not ascend"),
@@ -39,6 +42,29 @@ DRIVEN = "span: [0, 1]\ninputs: [u]\nblocks: {x: {type: integrator, of: u}}"
 def test_an_option_that_does_not_fit_is_refused(options: dict[str, Any], message: str) -> None:
     with pytest.raises(OptionError, match=message):
         simulate(made(BALL), **options)
+
+
+def test_an_absolute_tolerance_may_be_given_by_state() -> None:
+    """A state that nobody cares about does not hold up the others."""
+    text = """
+span: [0, 10]
+blocks:
+  x: {type: integrator, of: a, start: 1}
+  a: {type: gain, of: x, k: -1}
+  y: {type: integrator, of: b}
+  b: {type: expression, formula: 1e-3*sin(300*t)}
+"""
+    both = run(text, atol=1e-9).statistics.steps
+    one = run(text, atol={"y": 1.0})
+    assert one.statistics.steps < both / 10
+    assert one.final["x"] == pytest.approx(np.exp(-10), rel=1e-4)
+    usual = run(text, atol={"x": 1e-9, "y": 1e-9})
+    assert usual.statistics.steps == both
+
+
+def test_what_is_left_out_of_the_tolerances_is_as_usual() -> None:
+    finals = [run(OSCILLATOR, rtol=1e-5, atol=atol).final for atol in (None, {}, {"x": 1e-8})]
+    assert finals[0] == finals[1] == finals[2]
 
 
 @pytest.mark.parametrize(

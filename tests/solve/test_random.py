@@ -33,13 +33,14 @@ def test_both_methods_agree_on_smooth_diagrams(x: str, y: str, start: tuple[floa
     runs: list[Run] = []
     for method in ("dormand_prince", "rosenbrock"):
         try:
-            runs.append(simulate(model, method=method, rtol=1e-8, limits=Limits(steps=20_000)))
-        except SimulationError:  # it runs away: for both methods, then
+            runs.append(simulate(model, method=method, rtol=1e-8, limits=Limits(steps=2_000_000)))
+        except SimulationError as error:  # it runs away: for both methods, then
+            assume("steps" not in str(error))  # but one of them may be too slow
             with pytest.raises(SimulationError):
-                simulate(model, rtol=1e-6, limits=Limits(steps=20_000))
+                simulate(model, rtol=1e-6, limits=Limits(steps=2_000_000))
             return
     tall = max(float(np.abs(run[name]).max()) for run in runs for name in "xy")
-    near = simulate(model, rtol=1e-8, limits=Limits(steps=20_000), start={"x": start[0] + 1e-7})
+    near = simulate(model, rtol=1e-8, limits=Limits(steps=2_000_000), start={"x": start[0] + 1e-7})
     stretch = max(float(np.abs(near[name] - runs[0][name]).max()) for name in "xy") / 1e-7
     for name in "xy":
         assert runs[0][name] == pytest.approx(runs[1][name], abs=1e-6 * (1 + tall) * (1 + stretch))
@@ -85,7 +86,7 @@ blocks:
 """
     model = made(text)
     runs = [
-        simulate(model, method=method, rtol=1e-8, limits=Limits(steps=20_000))
+        simulate(model, method=method, rtol=1e-8, limits=Limits(steps=2_000_000))
         for method in ("dormand_prince", "rosenbrock")
     ]
     for name in ("x", "y"):

@@ -4,7 +4,6 @@ import math
 
 import pytest
 from solve.models import BALL, kinds, made, run
-from tracewire.errors import SimulationError
 from tracewire.solve import simulate
 
 FALL = math.sqrt(2 * 10 / 9.81)
@@ -83,8 +82,7 @@ events:
     assert result.final == pytest.approx({"y": 0, "w": 0, "x": 16, "v": 0}, abs=1e-7)
 
 
-def test_a_blow_on_a_body_that_rests_is_refused_with_a_reason() -> None:
-    text = """
+BLOW = """
 span: [0, 30]
 blocks:
   x: {type: integrator, of: v}
@@ -96,8 +94,37 @@ events:
   - {when: x, crosses: down, set: {v: -0.2*v}}
   - {when: y - x - 1, crosses: down, set: {v: "v + 0.5*(w - v)", w: "w - 0.5*(w - v)"}}
 """
-    with pytest.raises(SimulationError, match=r"drives the contact 'x', which rests, into.*spring"):
-        run(text)
+
+
+def test_a_plastic_blow_on_a_body_that_rests_ends_with_both_at_rest() -> None:
+    """The upper of two equal bodies falls 2 onto the lower one, which rests.
+
+    Blow and floor multiply their common rate by -0.2 and by 2/5 in turn: what is left is rest.
+    """
+    result = run(BLOW, rtol=1e-9)
+    blow = math.sqrt(0.4)
+    after = [(event.kind, event.guard) for event in result.events if event.time > 0.1]
+    assert after == [("reset", "x"), ("reset", "y - x - 1"), ("rest", "y - x - 1")]
+    times = [event.time for event in result.events if event.time > 0.1]
+    assert times == pytest.approx([blow] * 3, abs=1e-9)
+    late = result.t > blow
+    for name, exact in {"x": 0, "v": 0, "y": 1, "w": 0}.items():
+        assert result[name][late] == pytest.approx(exact, abs=1e-11)
+
+
+def test_an_elastic_blow_is_handed_on_by_the_body_that_rests() -> None:
+    """Equal bodies swap their rates; the floor gives back a fifth of it, and that is handed up."""
+    elastic = BLOW.replace("0.5*(w - v)", "1*(w - v)")
+    result = run(elastic, rtol=1e-9, span=(0, 0.7))
+    blow, fall = math.sqrt(0.4), 10 * math.sqrt(0.4)
+    after = next(event.after for event in result.events if event.time > 0.1)
+    assert after == pytest.approx({"x": 0, "v": 0, "y": 1, "w": 0.2 * fall}, abs=1e-9)
+    assert (result["v"][result.t > 0.1] == 0).all()
+    since = 0.7 - blow
+    assert result.final["y"] == pytest.approx(1 + 0.2 * fall * since - 5 * since**2, abs=1e-9)
+    assert result.final["x"] == pytest.approx(0, abs=1e-12)
+    end = run(elastic, rtol=1e-9)
+    assert end.final == pytest.approx({"x": 0, "v": 0, "y": 1, "w": 0}, abs=1e-9)
 
 
 def test_counting_crossings_is_no_impact() -> None:
@@ -118,11 +145,25 @@ events:
     assert set(kinds(result)) == {"reset"}
 
 
-def test_a_start_on_a_contact_is_warned_of() -> None:
-    text = BALL.replace("start: 10", "start: 0")
-    result = run(text, span=(0, 1))
-    assert result.final["x"] == pytest.approx(-9.81 / 2)
+ON_THE_FLOOR = BALL.replace("start: 10", "start: 0")
+
+
+def test_a_start_at_rest_on_a_contact_is_held() -> None:
+    result = run(ON_THE_FLOOR)
+    assert set(result["x"]) == set(result["v"]) == {0.0}
+    assert result.events == ()
+    assert result.warnings == ()
+
+
+def test_a_start_that_leaves_a_contact_is_as_any_other() -> None:
+    result = run(ON_THE_FLOOR, span=(0, 0.1), start={"v": 1.0})
+    assert result.warnings == ()
+    assert result.final["x"] == pytest.approx(0.1 - 9.81 / 2 * 0.01)
+
+
+def test_a_start_on_a_contact_and_into_it_is_warned_of() -> None:
+    result = run(ON_THE_FLOOR, span=(0, 1), start={"v": -1.0})
+    assert result.final["x"] == pytest.approx(-1 - 9.81 / 2)
     assert result.warnings == (
         "the start at t = 0 s lies on the guard of events[0], which does not fire there",
     )
-    assert run(text, span=(0, 0.1), start={"v": 1.0}).warnings == ()

@@ -208,16 +208,40 @@ blocks:
     assert [event.guard for event in result.events] == ["x", "x - 2*h"]
 
 
-def test_where_too_many_surfaces_meet_the_run_is_refused() -> None:
-    """Three surfaces through the origin of two states, none of which can be left."""
-    text = """
+CORNER = """
 blocks:
   x: {type: integrator, of: xd}
   y: {type: integrator, of: yd}
   xd: {type: expression, formula: -sign(x) - sign(x + y)}
   yd: {type: expression, formula: -sign(y) - sign(x + y)}
 """
+FOUR = CORNER.replace("-sign(x) -", "-0.1*sign(x) + 0.3*sign(x - y) -")
+
+
+@pytest.mark.parametrize("text", [CORNER, FOUR])
+def test_a_corner_of_many_surfaces_that_cannot_be_left_is_rest(text: str) -> None:
+    """Three or four surfaces meet in the origin; the field of no sector leads away from it."""
     result = run(text)
-    assert result.final == {"x": 0.0, "y": 0.0}
-    with pytest.raises(SimulationError, match=r"no consistent mode at t = 0 s for the guards"):
-        run(text.replace("-sign(x) -", "-0.1*sign(x) + 0.3*sign(x - y) -"))
+    assert np.abs([result["x"], result["y"]]).max() < 1e-15
+    assert result.events == ()
+    assert result.warnings == ()
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "end"),
+    [
+        (0.3, -0.2, 0.625),  # (-0.8, 0) onto x + y = 0, along it with (-0.4, 0.4)
+        (-0.3, 0.2, 0.625),
+        (0.4, 0.2, 0.5),  # (-0.8, -2) onto y = 0, along it with (-0.8, 0)
+        (-0.8, 0.2, 1.25),  # (0.8, 0) onto x + y = 0, along it with (0.4, -0.4)
+    ],
+)
+def test_a_corner_of_four_surfaces_is_reached_when_the_sectors_say_so(
+    x: float, y: float, end: float
+) -> None:
+    result = run(FOUR, start={"x": x, "y": y}, span=(0, 2), rtol=1e-9)
+    assert result.events[-1].time == pytest.approx(end, abs=1e-9)
+    late = result.t > end
+    assert np.abs(np.array([result["x"], result["y"]])[:, late]).max() < 1e-12
+    early = result.t < end - 1e-9
+    assert np.abs(np.array([result["x"], result["y"]])[:, early]).max(axis=0).min() > 0

@@ -72,3 +72,33 @@ def test_the_diagram_can_say_which_sum_is_the_place() -> None:
         Place("column", "column", "phi1_dot", "phi1"),
         Place("contact", "contact", "phi2_dot", "phi2"),
     ]
+
+
+def test_a_sum_of_vectors_is_no_place() -> None:
+    found = places(
+        """
+        blocks:
+          x: {type: integrator, of: v, start: [1, 2]}
+          v: {type: integrator, of: force}
+          force: {type: sum, of: [spring, same], place: {q: x, v: v}}
+          same: {type: sum, of: [spring]}
+          spring: {type: linear_stiffness, of: x, k: 1}
+        """
+    )
+    assert found == []
+
+
+def test_a_sum_in_an_algebraic_loop_is_a_place() -> None:
+    found = places(
+        """
+        blocks:
+          x: {type: integrator, of: v}
+          v: {type: integrator, of: total}
+          total: {type: sum, of: [spring, back, outer]}
+          back: {type: gain, of: total, k: -0.5}
+          spring: {type: linear_stiffness, of: x, k: 1}
+          outer: {type: sum, of: [ring]}
+          ring: {type: gain, of: outer, k: -2}
+        """
+    )
+    assert {place.name for place in found} == {"total", "outer"}

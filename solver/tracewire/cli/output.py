@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import sys
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import fields, is_dataclass
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from tracewire.show.summary import Table
 
 WIDTH_OF_A_PIPE = 200
+SOON = 1.0  # s: what takes no longer needs no progress
 
 
 def print_text(text: str) -> None:
@@ -106,6 +108,28 @@ def working(text: str) -> Iterator[Callable[[str], None]]:
 
     with Console(stderr=True).status(Text(text)) as status:
         yield lambda changed: status.update(Text(changed))
+
+
+def telling(text: str, show: Callable[[str], None]) -> Callable[[float, float], None]:
+    """What tells, from the first second on, which part is done and the time that is left."""
+    began = time.monotonic()
+
+    def tell(part: float, left: float) -> None:
+        if time.monotonic() - began > SOON:
+            rest = f", {_clock(left)} left" if math.isfinite(left) else ""
+            show(f"{text}: {100 * part:.0f} %{rest}")
+
+    return tell
+
+
+def _clock(seconds: float) -> str:
+    """A time in s, in min and s, or in h and min."""
+    whole = math.ceil(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60} s"
+    return f"{whole // 3600} h {whole % 3600 // 60} min"
 
 
 def check_target(path: str | None, endings: Sequence[str], what: str) -> None:

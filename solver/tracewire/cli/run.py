@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -14,6 +15,7 @@ from tracewire.cli.output import (
     print_json,
     print_table,
     print_text,
+    telling,
     working,
     writing,
 )
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from tracewire.compile import Model
+    from tracewire.solve import Interrupted
 
 OUTPUTS = (".csv", ".npz")
 FIGURES = (".png", ".svg", ".pdf")
@@ -94,6 +97,9 @@ def run(
     Examples:
       tracewire run pendulum.yaml --preset as_printed --span 0 4
       tracewire run pendulum.yaml --set "phi=13.6 deg" --figure swing.png
+
+    Ctrl-C keeps the run up to there: in the file of --output, or in DIAGRAM.interrupted.npz in this
+    folder.
     """
     if samples and not as_json:
         what = "--samples prints samples as JSON only"
@@ -108,21 +114,25 @@ def run(
         from tracewire.formula import Number
 
         model = replace(model, flat=replace(model.flat, every=Number(every)))
-    with working(f"simulating {diagram}"):
-        from tracewire.solve import simulate
+    with working(f"simulating {diagram}") as show:
+        from tracewire.solve import Interrupted, simulate
 
         inputs, series_start, series_preset, series_span = _series(model, series)
-        result = simulate(
-            model,
-            parameters=parameters,
-            start=series_start | starts,
-            span=span or series_span,
-            method=method,
-            rtol=rtol,
-            atol=atol,
-            preset=preset or series_preset,
-            inputs=inputs,
-        )
+        try:
+            result = simulate(
+                model,
+                parameters=parameters,
+                start=series_start | starts,
+                span=span or series_span,
+                method=method,
+                rtol=rtol,
+                atol=atol,
+                preset=preset or series_preset,
+                inputs=inputs,
+                progress=telling(f"simulating {diagram}", show),
+            )
+        except Interrupted as error:
+            raise _kept(error, output or f"{Path(diagram).stem}.interrupted.npz") from error
     for warning in result.warnings:
         note(f"warning: {warning}")
     if output is not None:
@@ -145,6 +155,19 @@ def run(
     print_text(summary.run_text(result))
     for path in written:
         print_text(f"written: {path}")
+
+
+def _kept(error: Interrupted, path: str) -> Interrupted:
+    """Save what there is of an interrupted run; the error says where."""
+    if error.run is None:
+        return error
+    with writing(path):
+        error.run.save(path)
+    what = error.problems[0].what
+    some = f"{len(error.run.t)} samples and {len(error.run.events)} events"
+    left_out = " (events go into .npz only)" if path.endswith(".csv") else ""
+    hint = f"The run up to there is in '{path}': {some}{left_out}."
+    return type(error)([Problem(what, hint=hint)], error.run)
 
 
 def _series(model: Model, name: str) -> _Series:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Literal
 
-from tracewire.diagram import Points
+from tracewire.diagram import Crosses, Points
 from tracewire.errors import Place
 from tracewire.formula import Expression
 
@@ -35,12 +36,47 @@ class FlatState:
 
 @dataclass(frozen=True)
 class FlatEvent:
-    """A reset: where `when` crosses zero, states get the values of `set`, all reading x⁻."""
+    """A reset: where `when` crosses zero, states get the values of `set`, all reading x⁻.
+
+    `clocked`: where `when` reaches a whole number; it is then (t - offset)/period. `block` is the
+    path of the block whose event it is, empty for one of a diagram.
+    """
 
     name: str
     when: Expression
-    crosses: str
+    crosses: Crosses
     set: Mapping[str, Expression]
+    place: Place = Place()
+    kind: Literal["reset", "impact"] = "reset"
+    clocked: bool = False
+    block: str = ""
+
+
+@dataclass(frozen=True)
+class FlatTransition:
+    """While a memory is in the mode `source` and the condition `when` holds: it becomes `target`.
+
+    States get the values of `set`, all reading x⁻ and the mode before.
+    """
+
+    source: int
+    target: int
+    when: Expression
+    set: Mapping[str, Expression] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class FlatMemory:
+    """The memory of a block: the number of the mode it is in, by which formulas know it.
+
+    `name` is the block's path and `mode`; `modes` are the names behind the numbers 0, 1, 2, ...;
+    `start` is the formula of the number at the start, over states, signals, parameters and `t`.
+    """
+
+    name: str
+    modes: tuple[str, ...]
+    start: Expression
+    transitions: tuple[FlatTransition, ...]
     place: Place = Place()
 
 
@@ -60,11 +96,27 @@ class FlatBlock:
 
 
 @dataclass(frozen=True)
+class Loop:
+    """Signals that need their own value at the same instant.
+
+    `names` begins with the `unknowns`, at which the loop is opened; each of the others stands after
+    those of the loop that it reads. `text` is a way round it, `place` that of its first block.
+    """
+
+    names: tuple[str, ...]
+    unknowns: tuple[str, ...]
+    text: str
+    place: Place = Place()
+
+
+@dataclass(frozen=True)
 class Flat:
-    """A diagram as equations.
+    """A diagram as equations, each of a number: a vector `q` is its elements `q[0]`, `q[1]`, ...
 
     `signals` maps each signal to its formula over states, parameters, inputs, `t` and other
-    signals, ordered so that a signal stands after those it reads. `outputs` maps the names of
+    signals, ordered so that a signal stands after those it reads; the signals of an algebraic loop
+    stand together, as `loops` tells. `guesses` are values where the search of a loop begins.
+    `shapes` holds the vectors, `(n,)`, and matrices, `(n, m)`, by name. `outputs` maps the names of
     subsystem ports and of blocks to the signal or state that they are.
     """
 
@@ -81,3 +133,7 @@ class Flat:
     presets: Mapping[str, Mapping[str, Expression]]
     blocks: Mapping[str, FlatBlock]
     units: Mapping[str, str]
+    loops: tuple[Loop, ...] = ()
+    guesses: Mapping[str, Expression] = field(default_factory=dict)
+    shapes: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    memories: tuple[FlatMemory, ...] = ()

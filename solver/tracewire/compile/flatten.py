@@ -3,23 +3,49 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import reduce
 
-import networkx as nx
-
-from tracewire.compile.flat import Flat, FlatBlock, FlatEvent, FlatParameter, FlatState
-from tracewire.diagram import BlockUse, Diagram, Points, Value, Wire, state_names
-from tracewire.errors import DiagramError, Place, Problem
-from tracewire.formula import CONSTANTS, Call, Expression, Name, Number, names_of, rename
+from tracewire.compile.expand import expand_vectors
+from tracewire.compile.flat import (
+    Flat,
+    FlatBlock,
+    FlatEvent,
+    FlatMemory,
+    FlatParameter,
+    FlatState,
+)
+from tracewire.compile.happenings import block_events, block_memory, diagram_events, memory_name
+from tracewire.compile.loops import order_signals
+from tracewire.diagram import (
+    Array,
+    BlockUse,
+    Diagram,
+    Points,
+    Value,
+    Wire,
+    element_name,
+    find_state,
+    split_index,
+    state_names,
+)
+from tracewire.errors import Place
+from tracewire.formula import CONSTANTS, Call, Expression, Name, Number, rename
 from tracewire.library import Block, Parameter
+
+LONGEST_FOLD = 100
 
 
 def flatten(diagram: Diagram) -> Flat:
     """The flat equations of a checked diagram.
 
-    Raises DiagramError where signals form a loop without an integrator.
+    Raises DiagramError where the shapes of vectors do not go together.
     """
-    return _Flattener(diagram).flat()
+    flattener = _Flattener(diagram)
+    flat = expand_vectors(flattener.flat(), flattener.places, tuple(diagram.record.values()))
+    places = {**flattener.places, **{name: block.place for name, block in flat.blocks.items()}}
+    signals, loops = order_signals(flat.signals, flat.guesses, flat.blocks, places)
+    return replace(flat, signals=signals, loops=loops)
 
 
 def _scaled(formula: Expression, factor: float) -> Expression:
@@ -38,6 +64,9 @@ def _folded(sign: str, terms: list[Expression], empty: float) -> Expression:
             return Call("-", (a, *b.arguments))
         return Call(sign, (a, b))
 
+    if len(terms) > LONGEST_FOLD:  # by halves: a formula may not nest as deep as that
+        middle = len(terms) // 2
+        return joined(_folded(sign, terms[:middle], empty), _folded(sign, terms[middle:], empty))
     return reduce(joined, terms) if terms else Number(empty)
 
 
@@ -49,8 +78,11 @@ class _Flattener:
         self.parameters: dict[str, FlatParameter] = {}
         self.tables: dict[str, Points] = {}
         self.events: list[FlatEvent] = []
+        self.memories: list[FlatMemory] = []
         self.blocks: dict[str, FlatBlock] = {}
         self.units: dict[str, str] = {}
+        self.guesses: dict[str, Expression] = {}
+        self.places: dict[str, Place] = {}  # of the outputs of subsystems
 
     def flat(self) -> Flat:
         top = self.top
@@ -64,7 +96,8 @@ class _Flattener:
         return Flat(
             title=top.title or top.file.stem,
             states=tuple(self.states.values()),
-            signals=self.ordered(),
+            signals=self.signals,
+            guesses=self.guesses,
             parameters=self.parameters,
             inputs={
                 name: None if port.default is None else self.value(port.default, scope)
@@ -81,6 +114,7 @@ class _Flattener:
             },
             blocks=self.blocks,
             units=self.units,
+            memories=tuple(self.memories),
         )
 
     def value(self, value: Value, scope: _Scope) -> Expression:
@@ -89,8 +123,9 @@ class _Flattener:
     def recorded(self, name: str, scope: _Scope) -> str:
         if name in self.signals or name in self.states or name in self.top.inputs:
             return name
+        name, index = split_index(name)
         resolved = scope.resolve(name)
-        return resolved.name if isinstance(resolved, Name) else name
+        return element_name(resolved.name if isinstance(resolved, Name) else name, index)
 
     def add_parameters(
         self, diagram: Diagram, path: str, given: Mapping[str, tuple[Value, _Scope]]
@@ -118,18 +153,18 @@ class _Flattener:
             else:
                 self.add_block(use, diagram.library[use.type], scope, definition)
         for number, event in enumerate(diagram.events):
-            self.events.append(
-                FlatEvent(
-                    name=f"{path}events[{number}]",
-                    when=rename(event.when, scope.resolve),
-                    crosses=event.crosses,
-                    set={
-                        scope.state(name): rename(formula, scope.resolve)
-                        for name, formula in event.set.items()
-                    },
-                    place=event.place,
-                )
-            )
+            values = {
+                scope.state(name): rename(formula, scope.resolve)
+                for name, formula in event.set.items()
+            }
+
+            def read(given: Expression | Value) -> Expression:
+                if isinstance(given, Value):
+                    return self.value(given, scope)
+                return rename(given, scope.resolve)
+
+            name = f"{path}events[{number}]"
+            self.events += diagram_events(event, name, values, read, path, self.events)
 
     def add_subsystem(self, use: BlockUse, inside: Diagram, scope: _Scope) -> None:
         path = f"{scope.path}{use.name}."
@@ -147,8 +182,10 @@ class _Flattener:
         self.add_diagram(inside, path, f"{use.type}.", inputs)
         for port_name, wire in inside.outputs.items():
             name, carried = path + port_name, inner.wire(wire)
-            if carried != Name(name):  # a port may have the name of the block that it carries
+            itself = carried == Name(name) and (name in self.states or name in self.blocks)
+            if not itself:  # a port may have the name of the block that it carries
                 self.signals[name] = carried
+                self.places[name] = wire.place
             source = carried.arguments[0] if isinstance(carried, Call) else carried
             own = self.units.get(source.name, "") if isinstance(source, Name) else ""
             self.units[name] = use.unit or own
@@ -167,6 +204,7 @@ class _Flattener:
                 )
         states = state_names(block, path)
         names |= {inner: Name(outer) for inner, outer in states.items()}
+        names |= memory_name(block, path)
         for port in block.inputs:
             wires = use.inputs.get(port.name, ())
             if port.many:
@@ -195,9 +233,13 @@ class _Flattener:
             self.blocks[name] = FlatBlock(
                 name, use.type, definition + use.name, _resolved(use.local, scope), place
             )
+            if use.guess is not None:
+                self.guesses[name] = self.array(use.guess, scope)
             if formula != Name(name):  # an integrator's output is its state
                 self.signals[name] = formula
                 self.units[name] = use.unit or output.unit
+        self.events += block_events(block, path, states, written, place)
+        self.memories += block_memory(block, path, states, written, place)
 
     def setting(self, use: BlockUse, parameter: Parameter, scope: _Scope) -> Expression:
         value = use.settings.get(parameter.name)
@@ -205,37 +247,32 @@ class _Flattener:
             table = f"{scope.path}{use.name}.{parameter.name}"
             self.tables[table] = value
             return Name(table)
+        name = f"{scope.path}{use.name}.{parameter.name}"
+        if isinstance(value, Array):
+            names = (element_name(name, (number,)) for number in range(len(value.items)))
+            items = zip(value.items, names, strict=True)
+            return Call("stack", tuple(self.own(item, at, parameter, scope) for item, at in items))
         if isinstance(value, Value):
-            formula = self.value(value, scope)
-            if not value.named:
-                return formula
-            name = f"{scope.path}{use.name}.{parameter.name}"
-            self.parameters[name] = FlatParameter(
-                name, formula, value.unit or parameter.unit, value.fit, value.factor, value.place
-            )
-            return Name(name)
+            return self.own(value, name, parameter, scope)
         if value is not None:
             return rename(value, scope.resolve)
         default = parameter.default
         return Number(float(default)) if isinstance(default, int | float) else Number(0.0)
 
-    def ordered(self) -> dict[str, Expression]:
-        """The signals, each after those it reads, else in the order of the diagram."""
-        position = {name: number for number, name in enumerate(self.signals)}
-        graph: nx.DiGraph[str] = nx.DiGraph()
-        graph.add_nodes_from(self.signals)
-        for name, formula in self.signals.items():
-            graph.add_edges_from((read, name) for read in names_of(formula) if read in self.signals)
-        try:
-            order = nx.lexicographical_topological_sort(graph, position.__getitem__)
-            return {name: self.signals[name] for name in order}
-        except nx.NetworkXUnfeasible:
-            loop = [edge[0] for edge in nx.find_cycle(graph)]
-            what = f"algebraic loop: {' -> '.join([*loop, loop[0]])}"
-            block = self.blocks.get(loop[0])
-            hint = "Break it with an integrator, or solve the equation by hand."
-            place = block.place if block else Place()
-            raise DiagramError([Problem(what, place, (), hint)]) from None
+    def own(self, value: Value, name: str, parameter: Parameter, scope: _Scope) -> Expression:
+        """The formula of a value in a block; a named one is a parameter of the run."""
+        formula = self.value(value, scope)
+        if not value.named:
+            return formula
+        self.parameters[name] = FlatParameter(
+            name, formula, value.unit or parameter.unit, value.fit, value.factor, value.place
+        )
+        return Name(name)
+
+    def array(self, value: Value | Array, scope: _Scope) -> Expression:
+        if isinstance(value, Array):
+            return Call("stack", tuple(self.value(item, scope) for item in value.items))
+        return self.value(value, scope)
 
 
 def _without_manies(formula: Expression, manies: Mapping[str, list[Expression]]) -> Expression:
@@ -243,6 +280,8 @@ def _without_manies(formula: Expression, manies: Mapping[str, list[Expression]])
     if not isinstance(formula, Call):
         return formula
     first = formula.arguments[0]
+    if formula.function == "join" and isinstance(first, Name) and first.name in manies:
+        return Call("join", tuple(manies[first.name]))
     if formula.function in ("sum", "product") and isinstance(first, Name) and first.name in manies:
         plus = formula.function == "sum"
         return _folded("+" if plus else "*", manies[first.name], 0.0 if plus else 1.0)
@@ -262,12 +301,12 @@ class _Scope:
 
     def wire(self, wire: Wire) -> Expression:
         carried = self.resolve(wire.signal)
+        if wire.index:
+            carried = Call("[]", (carried, *(Number(float(i)) for i in wire.index)))
         return Call("neg", (carried,)) if wire.negative else carried
 
     def state(self, name: str) -> str:
-        use = self.diagram.blocks[name]
-        block = self.diagram.library[use.type]
-        return next(iter(state_names(block, self.path + name).values()))
+        return self.path + (find_state(self.diagram, name) or name)
 
     def resolve(self, name: str) -> Expression:
         if name in self.inputs:

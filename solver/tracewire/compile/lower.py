@@ -8,11 +8,20 @@ from typing import Literal
 
 from tracewire.compile.differentiate import linear_in_t
 from tracewire.compile.flat import Flat
+from tracewire.compile.linear import solve_linear
+from tracewire.compile.memory import (
+    Reset,
+    Transition,
+    declare_memories,
+    lower_events,
+    lower_memories,
+)
+from tracewire.compile.solve_loops import lower_loop
 from tracewire.compile.tape import BINARY, UNARY, Entry, Tape
 from tracewire.errors import DiagramError, Place, Problem
 from tracewire.formula import CONSTANTS, Call, Expression, Name, Number, to_text
 
-ModeKind = Literal["sign", "floor", "segment"]
+ModeKind = Literal["sign", "floor", "segment", "memory"]
 
 
 @dataclass(frozen=True)
@@ -22,7 +31,9 @@ class Mode:
     kind `sign`: 1 where guard >= 0, else 0. `floor`: the whole number below the guard. `segment`:
     the piece of table `table` on which the guard lies. `timed`: the guard is a*t + b with these
     entries, so its changes are known times. `holds`: at guard = 0 a `dry` may hold the guard at
-    zero. `at_zero`: the sign mode that the user's comparison gives at exactly zero.
+    zero. `at_zero`: the sign mode that the user's comparison gives at exactly zero. `memory`: the
+    number of the mode of a block with memory, by the order of `names`; its guard is the number at
+    the start, and only the model's transitions change it.
     """
 
     kind: ModeKind
@@ -34,11 +45,17 @@ class Mode:
     holds: bool = False
     at_zero: int = 1
     table: int = -1
+    names: tuple[str, ...] = ()
 
 
 @dataclass
 class Lowered:
-    """The tape of a model with its roots: entries of signals, rates, starts, resets; the modes."""
+    """The tape of a model with its roots: entries of signals, rates, starts, resets; the modes.
+
+    The resets of `flat.events` come first, in their order, and then those of transitions. `loops`
+    holds the modes inside of each algebraic loop: their guards read the solution, which jumps with
+    them, so that they are decided together.
+    """
 
     tape: Tape = field(default_factory=Tape)
     modes: list[Mode] = field(default_factory=list)
@@ -47,24 +64,26 @@ class Lowered:
     rates: list[int] = field(default_factory=list)
     starts: list[int] = field(default_factory=list)
     tables: list[str] = field(default_factory=list)
-    resets: list[tuple[int, str, dict[int, int]]] = field(default_factory=list)
+    resets: list[Reset] = field(default_factory=list)
+    transitions: list[Transition] = field(default_factory=list)
+    loops: list[tuple[int, ...]] = field(default_factory=list)
 
 
 def lower(flat: Flat) -> Lowered:
-    """The tape of flat equations.
-
-    `resets` are (mode of `when`, direction, {state: entry of its new value}).
-    """
-    return _Lowering(flat).lowered()
+    """The tape of flat equations."""
+    return Lowering(flat).lowered()
 
 
-class _Lowering:
+class Lowering:
+    """A tape while it is written; what is lowered next belongs to `signal`."""
+
     def __init__(self, flat: Flat) -> None:
         self.flat = flat
         self.out = Lowered()
         self.tape = self.out.tape
         self.t = self.tape.push("t")
         self.by_guard: dict[tuple[str, int], int] = {}
+        self.index = {state.name: number for number, state in enumerate(flat.states)}
         self.signal = ""
 
     def lowered(self) -> Lowered:
@@ -78,26 +97,24 @@ class _Lowering:
             entry = tape.push("state", payload=number)
             out.entries[state.name] = entry
             out.states.append(entry)
+        declare_memories(self)
         out.tables = [*flat.tables, *flat.inputs]
         for name in flat.inputs:
             self.signal = name
             out.entries[name] = self.interpolated(self.t, name)
+        loops = {loop.unknowns[0]: loop for loop in flat.loops}
         for name, formula in flat.signals.items():
-            self.signal = name
-            out.entries[name] = self.lower(formula)
+            if name in loops:
+                lower_loop(self, loops[name])
+            elif name not in out.entries:
+                self.signal = name
+                out.entries[name] = self.lower(formula)
         for state in flat.states:
             self.signal = state.name
             out.rates.append(self.lower(state.rate))
             out.starts.append(self.start(state.start, state.name, state.place))
-        index = {state.name: number for number, state in enumerate(flat.states)}
-        for event in flat.events:
-            self.signal = event.name
-            when = self.condition(event.when, strict=False, always=True)
-            mode = next(i for i, m in enumerate(out.modes) if m.leaf in tape.needed([when]))
-            flipped = tape.entries[when].op == "not"
-            crosses = {"up": "down", "down": "up"}.get(event.crosses, "both")
-            values = {index[name]: self.lower(formula) for name, formula in event.set.items()}
-            out.resets.append((mode, crosses if flipped else event.crosses, values))
+        lower_events(self)
+        lower_memories(self)
         return out
 
     def start(self, formula: Expression, name: str, place: Place) -> int:
@@ -128,15 +145,28 @@ class _Lowering:
             "floor": lambda a: self.floor(self.lower(a[0])),
             "mod": self.modulo,
             "dry": self.dry,
+            "is_held": self.is_held,
             "interp": self.interp,
         }
         if function in special:
             return special[function](arguments)
         if function in ("<", "<=", ">", ">=", "and", "or", "not"):
             return self.boolean(node)
+        if function == "[]":
+            return self.unknown(node)
         if function in UNARY or function in BINARY:
             return self.tape.push(function, *(self.lower(argument) for argument in arguments))
         raise AssertionError(f"no entry for {function}")
+
+    def unknown(self, node: Call) -> int:
+        """The entry of one unknown of a linear system, written `solve(matrix, right)[index]`."""
+        system, index = node.arguments
+        if not isinstance(system, Call) or not isinstance(index, Number):
+            raise AssertionError("elements of signals are signals of their own")
+        rows, right = (part.arguments for part in system.arguments if isinstance(part, Call))
+        cells = [cell for row in rows if isinstance(row, Call) for cell in row.arguments]
+        matrix = [self.lower(cell) for cell in cells]
+        return solve_linear(self.tape, matrix, [self.lower(f) for f in right])[int(index.value)]
 
     def boolean(self, node: Call) -> int:
         push = self.tape.push
@@ -221,6 +251,21 @@ class _Lowering:
         modes.append(Mode(kind, guard, leaf, self.signal, text, timed, holds, at_zero, table))
         return index
 
+    def memory(self, names: tuple[str, ...]) -> int:
+        """The leaf of a new memory with modes of these names."""
+        modes = self.out.modes
+        leaf = self.tape.push("mode", payload=len(modes))
+        start = self.tape.constant(0.0)
+        modes.append(Mode("memory", start, leaf, self.signal, "/".join(names), names=names))
+        return leaf
+
+    def side(self, condition: int) -> tuple[int, int]:
+        """The number of the mode behind a condition, and the value of the mode where it holds."""
+        entry = self.tape.entries[condition]
+        if entry.op == "not":
+            return int(self.tape.entries[entry.operands[0]].payload), 0
+        return int(entry.payload), 1
+
     def choice(self, arguments: tuple[Expression, ...]) -> int:
         condition, then, other = (self.lower(argument) for argument in arguments)
         return self.tape.push("select", condition, then, other)
@@ -248,7 +293,7 @@ class _Lowering:
         result = self.lower(arguments[0])
         for argument in arguments[1:]:
             other = self.lower(argument)
-            text = f"{to_text(arguments[0])} - {to_text(argument)}"
+            text = to_text(Call("-", (arguments[0], argument)))
             above = self.positive(push("-", result, other), text)
             pair = (result, other) if largest else (other, result)
             result = push("select", above, *pair)
@@ -276,6 +321,14 @@ class _Lowering:
         held = push("hold", payload=mode)
         level = push("select", held, stick, slip)
         return push("*", sign, level)
+
+    def is_held(self, arguments: tuple[Expression, ...]) -> int:
+        """1 while the mode of a guard holds it at zero."""
+        guard = self.lower(arguments[0])
+        if self.static(guard):
+            return self.tape.constant(0.0)
+        mode, _ = self.side(self.positive(guard, to_text(arguments[0])))
+        return self.tape.push("hold", payload=mode)
 
     def interp(self, arguments: tuple[Expression, ...]) -> int:
         table = arguments[1]

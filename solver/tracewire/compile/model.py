@@ -3,46 +3,68 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from tracewire.compile.differentiate import differentiate
+import networkx as nx
+
 from tracewire.compile.flat import Flat
 from tracewire.compile.flatten import flatten
 from tracewire.compile.lower import Lowered, Mode, lower
-from tracewire.compile.source import Function, Writer, guarded, load
+from tracewire.compile.memory import told
+from tracewire.compile.routines import BACKENDS, PREPARE, Backend, Routines, Sizes
+from tracewire.compile.vectors import element_names
 from tracewire.diagram import Diagram, find_recorded
 from tracewire.errors import OptionError, unknown
-from tracewire.formula import to_text
+from tracewire.formula import Expression, names_of, to_text
 
 
 @dataclass(frozen=True)
 class Model:
     """A diagram compiled to a flat ODE with events; parameters and start values stay arguments.
 
-    `functions` holds `rhs`, `guards`, `guard_rates`, `timed`, `outputs`, `starts` and `reset_N`;
-    `source` is their Python text. What not every run needs is written when it is asked for.
+    Its functions have C addresses, compiled when they are first asked for: see `address`. `source`
+    is the Python text of the same functions.
     """
 
     diagram: Diagram
     flat: Flat
     lowered: Lowered
     recorded: tuple[str, ...]
+    backend: Backend = "llvm"
 
     def __repr__(self) -> str:  # with its diagram and library it would fill many screens
         shown = f"states {', '.join(self.states) or 'none'}; {len(self.parameters)} parameters"
         return f"Model({self.flat.title!r}: {shown})"
 
-    @property
+    @cached_property
     def states(self) -> tuple[str, ...]:
         """The names of the states, in the order of the state vector."""
         return tuple(state.name for state in self.flat.states)
 
-    @property
+    @cached_property
     def parameters(self) -> tuple[str, ...]:
         """The names of the parameters, in the order of the parameter vector."""
         return tuple(self.flat.parameters)
+
+    def parameter_formulas(self, preset: str = "") -> Mapping[str, Expression]:
+        """The formula of each parameter, with a preset applied, each after those that it reads."""
+        found = self._parameter_formulas.get(preset)
+        if found is None:
+            formulas = {name: parameter.formula for name, parameter in self.flat.parameters.items()}
+            formulas |= self.flat.presets[preset] if preset else {}
+            graph: nx.DiGraph[str] = nx.DiGraph()
+            graph.add_nodes_from(formulas)
+            for name, formula in formulas.items():
+                graph.add_edges_from((read, name) for read in names_of(formula) if read in formulas)
+            found = {name: formulas[name] for name in nx.topological_sort(graph)}
+            self._parameter_formulas[preset] = found
+        return found
+
+    @cached_property
+    def _parameter_formulas(self) -> dict[str, dict[str, Expression]]:
+        return {}
 
     @property
     def modes(self) -> Sequence[Mode]:
@@ -55,28 +77,7 @@ class Model:
         lines = [f"{name} = {to_text(formula)}" for name, formula in self.flat.signals.items()]
         lines += [f"{state.name}' = {to_text(state.rate)}" for state in self.flat.states]
         lines += [f"{state.name}(t0) = {to_text(state.start)}" for state in self.flat.states]
-        for event in self.flat.events:
-            sets = ", ".join(f"{name} := {to_text(value)}" for name, value in event.set.items())
-            lines.append(f"when {to_text(event.when)} crosses {event.crosses}: {sets}")
-        return "\n".join(lines)
-
-    @cached_property
-    def _roots(self) -> dict[str, tuple[str, list[int]]]:
-        low = self.lowered
-        tape = low.tape
-        guards = [mode.guard for mode in low.modes]
-        timed = [e for mode in low.modes for e in (mode.timed or ())]
-        roots = {
-            "rhs": ("Rates of the states.", low.rates),
-            "outputs": ("Recorded signals.", [low.entries[name] for name in self.recorded]),
-            "guards": ("Guards of the modes.", guards),
-            "guard_rates": ("Rates of the guards.", differentiate(tape, guards, self._flow_seeds)),
-            "timed": ("Slope and value at t = 0 of guards that read only t.", timed),
-            "starts": ("Start values of the states.", low.starts),
-        }
-        for number, (_, _, values) in enumerate(low.resets):
-            roots[f"reset_{number}"] = ("New values of a reset.", list(values.values()))
-        return roots
+        return "\n".join([*lines, *told(self.flat)])
 
     @cached_property
     def _labels(self) -> dict[int, str]:
@@ -92,118 +93,84 @@ class Model:
                 taken.add(label)
         return labels
 
-    def _write(self, careful: bool) -> str:
-        writer = Writer(self.lowered.tape, self._labels, self.parameters)
-        texts = [
-            writer.function(name, doc, roots, careful) for name, (doc, roots) in self._roots.items()
-        ]
-        return "\n\n".join([writer.prepare(careful), *texts])
+    @cached_property
+    def _routines(self) -> Routines:
+        outputs = [self.lowered.entries[name] for name in self.recorded]
+        return Routines(self.lowered, outputs, self._labels, self.backend)
 
     @cached_property
     def source(self) -> str:
         """The Python text of the model's functions."""
-        return self._write(careful=False)
-
-    def guard_derivative(self, mode: int, order: int) -> Function:
-        """A derivative of a guard along the flow, of any order: (value,) of t, x, m, p, k."""
-
-        def roots() -> list[int]:
-            entry = self.lowered.modes[mode].guard
-            for _ in range(order):
-                entry = differentiate(self.lowered.tape, [entry], self._flow_seeds)[0]
-            return [entry]
-
-        return self._on_demand(("derivative", mode, order), roots)
-
-    def guard_curve(self, mode: int) -> Function:
-        """The gradient of a guard's rate in the states, and its change with t: of t, x, m, p, k."""
-
-        def roots() -> list[int]:
-            low = self.lowered
-            rate = differentiate(low.tape, [low.modes[mode].guard], self._flow_seeds)
-            return self._rows(rate, [*low.states, low.entries["t"]])
-
-        return self._on_demand(("curve", mode), roots)
+        return self._routines.text([PREPARE, *self._routines.eager])
 
     @property
-    def guard_gradients(self) -> Function:
-        """The gradients of all guards in the states, row by row: of t, x, m, p, k."""
-        guards = [mode.guard for mode in self.lowered.modes]
-        return self._on_demand(("gradients",), lambda: self._rows(guards, self.lowered.states))
+    def sizes(self) -> Sizes:
+        """The lengths of the arrays of the model's functions."""
+        return self._routines.sizes
 
-    @property
-    def jacobian(self) -> Function:
-        """d rate / d state and, at the end of each row, d rate / d t: of t, x, m, p, k."""
-        low = self.lowered
-        return self._on_demand(
-            ("jacobian",), lambda: self._rows(low.rates, [*low.states, low.entries["t"]])
-        )
+    def address(self, name: str) -> int:
+        """The address of one of the model's C functions, good as long as the model lives.
 
-    def _rows(self, roots: Sequence[int], leaves: Sequence[int]) -> list[int]:
-        """The entries of d root / d leaf, row by row."""
-        tape = self.lowered.tape
-        columns = [differentiate(tape, roots, {leaf: tape.constant(1.0)}) for leaf in leaves]
-        return [column[row] for row in range(len(roots)) for column in columns]
+            void f(double t, const double *x, const double *m, const double *c, const double *k,
+                   double *out)
+
+        x[n]: states. m[2*M]: the values of the modes, and behind them 1.0 for each guard that is
+        held at zero. c: what `prepare` makes of the parameters, which it takes as x. k: the tables,
+        k[j] is the offset of table j; there: count N, x[N], y[N], slope[N-1]. `out` is zeroed by
+        the caller. Functions, with the length of out: prepare (C), rhs (n), outputs (R),
+        guards (M), guard_rates (M), timed (2T), starts (n), resets; compiled when they are first
+        called: jacobian (n*(n+1): d rate/d x, d rate/d t), guard_gradients (M*n), guard_curves
+        (M*(n+1): gradient of the guard's rate, its change with t), guard_second, guard_third,
+        guard_fourth (M: derivatives of the guards along the flow).
+        """
+        return self._routines.address(name)
+
+    def compiled_address(self, name: str) -> int:
+        """The same, but a function that was never called is compiled now.
+
+        For threads of compiled code: the callback behind the other address would wait for Python.
+        """
+        return self._routines.compiled_address(name)
+
+    def derivative(self, of: str, by: Sequence[str]) -> str:
+        """The name of the function d(function `of`) / d(`by`), for `address`.
+
+        of: a function that is no derivative itself (`rhs`, `guards`, `starts`, ...). by: names of
+        states, parameters, or `t`. out: [length of `of`, length of `by`], row by row; modes are
+        frozen.
+        """
+        leaves = [self.lowered.entries[name] for name in by]
+        return self._routines.add_derivative(of, leaves)
 
     def all_signals(
-        self, t: float, x: object, m: object, p: object, k: object
+        self,
+        t: float,
+        x: Sequence[float],
+        m: Sequence[float],
+        p: Sequence[float],
+        k: Sequence[float],
     ) -> tuple[list[str], tuple[float, ...]]:
-        """Every signal by name, in the order of computation: to find what went wrong."""
+        """Every signal by name, in the order of computation: to find what went wrong.
+
+        The arguments are those of the C functions, with the parameters p for the constants.
+        """
         names = [*self.flat.signals, *(f"{state.name}'" for state in self.flat.states)]
         low = self.lowered
-        values = self._on_demand(
-            ("signals",),
-            lambda: [*(low.entries[name] for name in self.flat.signals), *low.rates],
-        )
-        return names, values(t, x, m, p, k)
-
-    def _on_demand(self, key: tuple[object, ...], roots: Callable[[], list[int]]) -> Function:
-        """A function that not every run needs, written when it is first asked for."""
-        found = self._written.get(key)
-        if found is None:
-            entries, both = roots(), []
-            for careful in (False, True):
-                writer = Writer(self.lowered.tape, {}, self.parameters)
-                text = writer.function("values", "Asked for.", entries, careful)
-                both.append(load("\n\n".join([writer.prepare(careful), text]), careful))
-            prepare, values = (guarded(*(made[n] for made in both)) for n in ("prepare", "values"))
-            last: list[object] = [None, ()]  # the parameters, and the constants made of them
-
-            def found(t: float, x: object, m: object, p: object, k: object) -> tuple[float, ...]:
-                if last[0] is not p:
-                    last[:] = p, prepare(p)
-                return values(t, x, m, last[1], k)
-
-            self._written[key] = found
-        return found
-
-    @cached_property
-    def _written(self) -> dict[tuple[object, ...], Function]:
-        return {}
-
-    @cached_property
-    def _flow_seeds(self) -> dict[int, int]:
-        """The derivatives of the states and of t along the flow."""
-        low = self.lowered
-        return dict(zip(low.states, low.rates, strict=True)) | {
-            low.entries["t"]: low.tape.constant(1.0)
-        }
-
-    @cached_property
-    def functions(self) -> Mapping[str, Function]:
-        """The model's functions, by name."""
-        fast = load(self.source, careful=False)
-        careful = load(self._write(careful=True), careful=True)
-        names = ["prepare", *self._roots]
-        return {name: guarded(fast[name], careful[name]) for name in names}
+        entries = [*(low.entries[name] for name in self.flat.signals), *low.rates]
+        self._routines.add("signals", len(entries), lambda: dict(enumerate(entries)))
+        return names, self._routines.evaluate("signals", t, x, m, p, k)
 
 
-def compile(diagram: Diagram, record: Sequence[str] = ()) -> Model:
+def compile(diagram: Diagram, record: Sequence[str] = (), backend: Backend = "llvm") -> Model:
     """The model of a diagram.
 
-    `record` names signals to record beside those of the diagram. Raises DiagramError: an algebraic
-    loop, a start value that reads a signal; OptionError: a recorded signal that does not exist.
+    `record` names signals to record beside those of the diagram. `backend` makes the functions:
+    "llvm" machine code, "python" the readable source. Raises DiagramError: an algebraic loop
+    without a solution, vectors that do not go together, a start value that reads a signal;
+    OptionError: a recorded signal or a back end that does not exist.
     """
+    if backend not in BACKENDS:
+        raise OptionError([unknown("backend", backend, BACKENDS)])
     flat = flatten(diagram)
     lowered = lower(flat)
     known = [
@@ -214,8 +181,10 @@ def compile(diagram: Diagram, record: Sequence[str] = ()) -> Model:
         "t",
     ]
     found = {name: name if name in known else find_recorded(diagram, name) for name in record}
-    problems = [unknown("signal", name, known) for name, full in found.items() if full is None]
-    if problems:
-        raise OptionError(problems)
-    more = [full for full in found.values() if full is not None]
-    return Model(diagram, flat, lowered, tuple(dict.fromkeys((*flat.record, *more))))
+    more = {n: element_names(f, flat.shapes.get(f, ())) for n, f in found.items() if f is not None}
+    there = set(known)
+    wrong = [name for name in record if name not in more or not there.issuperset(more[name])]
+    if wrong:
+        raise OptionError([unknown("signal", name, known) for name in dict.fromkeys(wrong)])
+    recorded = (*flat.record, *(element for elements in more.values() for element in elements))
+    return Model(diagram, flat, lowered, tuple(dict.fromkeys(recorded)), backend)

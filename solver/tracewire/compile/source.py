@@ -1,8 +1,9 @@
 """The first back end: readable Python source from the tape.
 
-Every function takes the time `t`, the states `x`, the modes `m` (holds behind them), the constants
-`c` that `prepare` made of the parameters, and the tables `k`. A second, `careful` version of each
-function gives NaN or infinity where Python would raise; it runs only where the first one failed.
+Every function takes the time `t`, the states `x`, the modes `m` (behind them, what is held), the
+constants `c` that `prepare` made of the parameters, and the tables `k`. A second, `careful` version
+of each function gives NaN or infinity where Python would raise, as C does; it runs only where the
+first one failed.
 """
 
 from __future__ import annotations
@@ -12,24 +13,17 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from tracewire.compile.tape import Tape
+from tracewire.compile import libm
+from tracewire.compile.constants import Constants
+from tracewire.compile.tape import CLOSE, LEAST_SHARE, SEARCHES, Tape
 
 LONGEST_INLINE = 60
-MATH = "sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt floor pow"
 
 Function = Callable[..., tuple[float, ...]]
 
 
-def _careful(function: Callable[..., float]) -> Callable[..., float]:
-    def call(*arguments: float) -> float:
-        try:
-            return function(*arguments)
-        except OverflowError:
-            return math.inf
-        except (ValueError, ZeroDivisionError):
-            return math.nan
-
-    return call
+def _floor(a: float) -> float:
+    return math.copysign(math.floor(a), a)  # math.floor(-0.0) is 0, and that of C is -0.0
 
 
 def _divide(a: float, b: float) -> float:
@@ -38,60 +32,85 @@ def _divide(a: float, b: float) -> float:
     return a / b
 
 
-def _segment(table: tuple[Sequence[float], ...], u: float, piece: float) -> float:
-    """The straight line of a piece; outside the points the table is held."""
-    x, y, slope = table
-    i = int(piece)
-    if i <= 0:
-        return y[0]
-    if i >= len(x):
-        return y[-1]
-    return y[i - 1] + slope[i - 1] * (u - x[i - 1])
+def _segment(k: Sequence[float], table: int, u: float, piece: float) -> float:
+    """The straight line of a piece of a table; outside the points the table is held."""
+    at = int(k[table])
+    count = int(k[at])
+    x, y = at + 1, at + 1 + count
+    if not piece >= 1.0:
+        return k[y]
+    if piece >= count:
+        return k[y + count - 1]
+    i = int(piece) - 1
+    return k[y + i] + k[y + count + i] * (u - k[x + i])
 
 
-def _slope(table: tuple[Sequence[float], ...], piece: float) -> float:
-    x, _, slope = table
-    i = int(piece)
-    return 0.0 if i <= 0 or i >= len(x) else slope[i - 1]
+def _slope(k: Sequence[float], table: int, piece: float) -> float:
+    at = int(k[table])
+    count = int(k[at])
+    inside = 1.0 <= piece < count
+    return k[at + 1 + 2 * count + int(piece) - 1] if inside else 0.0
 
 
-FAST: dict[str, Any] = {name: getattr(math, name) for name in MATH.split()}
-FAST |= {"segment": _segment, "slope": _slope}
-CAREFUL: dict[str, Any] = {name: _careful(getattr(math, name)) for name in MATH.split()}
-CAREFUL |= {"segment": _segment, "slope": _slope, "divide": _divide}
+def _newton(equations: Callable[..., Sequence[float]], guess: Sequence[float]) -> Sequence[float]:
+    """The search that the tape describes; `equations` gives the residuals and then the steps."""
+    size = len(guess)
+    z = old = list(guess)
+    old_step, old_worst, share = [0.0] * size, math.inf, 1.0
+    scale = [abs(value) for value in guess]
+    for _ in range(SEARCHES):
+        found = equations(*z)
+        step = found[size:]
+        worst = found[0] * found[0]
+        for residual in found[1:size]:
+            worst += residual * residual
+        if not worst < old_worst and share > LEAST_SHARE and not _close(step, scale):
+            share *= 0.5
+            z = [a - share * b for a, b in zip(old, old_step, strict=True)]
+            continue
+        old, old_step, old_worst, share = z, list(step), worst, 1.0
+        z = [a - b for a, b in zip(z, step, strict=True)]
+        scale = [abs(a) if abs(a) > s else s for a, s in zip(z, scale, strict=True)]
+        if _close(step, scale):
+            return z
+    return [math.nan] * size
+
+
+def _close(step: Sequence[float], scale: Sequence[float]) -> bool:
+    return all(abs(a) <= CLOSE * s for a, s in zip(step, scale, strict=True))
+
+
+SHARED: dict[str, Any] = {"max": max, "segment": _segment, "slope": _slope, "newton": _newton}
+FAST: dict[str, Any] = {name: getattr(math, name) for name in (*libm.ONE, *libm.TWO, "sqrt")}
+FAST |= {**SHARED, "floor": _floor}
+
+
+def _careful() -> dict[str, Any]:
+    names = (*libm.ONE, *libm.TWO, "sqrt", "floor")
+    return {**SHARED, "divide": _divide} | {name: libm.function(name) for name in names}
 
 
 class Writer:
-    """Writes functions of one tape; what only reads parameters is collected for `prepare`."""
+    """Writes functions of one tape; `modes` is the number of modes."""
 
-    def __init__(self, tape: Tape, labels: Mapping[int, str], parameters: Sequence[str]) -> None:
-        self.tape, self.labels, self.parameters = tape, labels, parameters
-        self.constants: dict[int, int] = {}
-        self.fixed: dict[int, bool] = {}
-
-    def is_fixed(self, index: int) -> bool:
-        """Whether an entry reads only parameters."""
-        found = self.fixed.get(index)
-        if found is None:
-            for i in self.tape.needed([index]):
-                entry = self.tape.entries[i]
-                self.fixed[i] = entry.op in ("param", "const") or (
-                    bool(entry.operands) and all(self.fixed[o] for o in entry.operands)
-                )
-            found = self.fixed[index]
-        return found
+    def __init__(self, tape: Tape, constants: Constants, labels: Mapping[int, str], modes: int):
+        self.tape, self.constants, self.labels, self.modes = tape, constants, labels, modes
 
     def function(self, name: str, doc: str, roots: Sequence[int], careful: bool = False) -> str:
         """The text of a function that returns the roots as a tuple."""
         body = _Body(self, roots, careful)
         lines = [f"def {name}(t, x, m, c, k):", f'    """{doc}"""', *body.lines]
-        return "\n".join([*lines, f"    return ({body.returned})", ""])
+        comma = "," if len(roots) == 1 else ""
+        return "\n".join([*lines, f"    return ({body.returned}{comma})", ""])
 
     def prepare(self, careful: bool = False) -> str:
         """The text of the function that makes the constants `c` of the parameters `p`."""
-        body = _Body(self, list(self.constants), careful, preparing=True)
-        doc = '    """The constants of a run, from its parameters."""'
-        return "\n".join(["def prepare(p):", doc, *body.lines, f"    return ({body.returned})", ""])
+        body = _Body(self, list(self.constants.places), careful, preparing=True)
+        doc = (
+            '    """The constants of a run: its parameters, and what is computed of them alone."""'
+        )
+        returned = ", ".join(part for part in ("*p", body.returned) if part)
+        return "\n".join(["def prepare(p):", doc, *body.lines, f"    return ({returned},)", ""])
 
 
 class _Body:
@@ -102,9 +121,12 @@ class _Body:
         self.tape = writer.tape
         self.lines: list[str] = []
         self.texts: dict[int, str] = {}
-        order = self.reached(roots)
+        order = self.tape.needed(roots) if preparing else writer.constants.order(roots)
         uses = Counter(o for i in order if not self.is_leaf(i) for o in self.operands(i))
         uses.update(roots)
+        for index in order:
+            if self.tape.entries[index].op == "newton":  # what a search reads is computed before
+                uses.update(self.operands(index))
         for index in order:
             text = self.text(index)
             label = writer.labels.get(index)
@@ -115,36 +137,25 @@ class _Body:
             else:
                 self.texts[index] = label or f"v{index}"
                 self.lines.append(f"    {self.texts[index]} = {text}")
-        returned = ", ".join(_bare(self.texts[root]) for root in roots)
-        self.returned = returned + ("," if len(roots) == 1 else "")
+        self.returned = ", ".join(_bare(self.texts[root]) for root in roots)
 
     def is_leaf(self, index: int) -> bool:
         return not self.operands(index)
 
     def operands(self, index: int) -> tuple[int, ...]:
-        if not self.preparing and self.writer.is_fixed(index):
-            return ()
-        return self.tape.entries[index].operands
+        return () if self.place(index) is not None else self.tape.entries[index].operands
 
-    def reached(self, roots: Sequence[int]) -> list[int]:
-        """The entries that this function computes, in order; it stops at constants of the run."""
-        wanted: set[int] = set()
-        stack = list(roots)
-        while stack:
-            index = stack.pop()
-            if index not in wanted:
-                wanted.add(index)
-                stack.extend(self.operands(index))
-        return sorted(wanted)
+    def place(self, index: int) -> int | None:
+        return None if self.preparing else self.writer.constants.place(index)
 
     def text(self, index: int) -> str:
         entry = self.tape.entries[index]
         if entry.op == "const":
             value = float(entry.payload)
             return f"({value!r})" if value < 0 else repr(value)
-        if not self.preparing and self.writer.is_fixed(index):
-            position = self.writer.constants.setdefault(index, len(self.writer.constants))
-            return f"c[{position}]"
+        place = self.place(index)
+        if place is not None:
+            return f"c[{place}]"
         match entry.op:
             case "t":
                 return "t"
@@ -153,12 +164,33 @@ class _Body:
             case "param":
                 return f"p[{entry.payload}]"
             case "mode":
-                return f"m[0][{entry.payload}]"
+                return f"m[{entry.payload}]"
             case "hold":
-                return f"m[1][{entry.payload}]"
+                return f"m[{self.writer.modes} + {entry.payload}]"
             case "table":
-                return f"k[{entry.payload}]"
+                return f"k, {entry.payload}"
+            case "newton":
+                return self.search(index)
+            case "pick":
+                return f"{self.texts[entry.operands[0]]}[{entry.payload}]"
         return self.operation(entry.op, [self.texts[operand] for operand in entry.operands])
+
+    def search(self, index: int) -> str:
+        """Write the function of a search, and give the text that calls it."""
+        entry = self.tape.entries[index]
+        implicit = self.tape.implicits[int(entry.payload)]
+        roots = (*implicit.residuals, *implicit.steps)
+        unknowns = [f"z{n}" for n in range(len(implicit.unknowns))]
+        self.texts |= dict(zip(implicit.unknowns, unknowns, strict=True))
+        self.lines.append(f"    def equations{entry.payload}({', '.join(unknowns)}):")
+        for inner in self.tape.searched(roots):
+            text = self.text(inner)
+            self.texts[inner] = f"v{inner}"
+            self.lines.append(f"        v{inner} = {text}")
+        returned = ", ".join(_bare(self.texts[root]) for root in roots)
+        self.lines.append(f"        return ({returned})")
+        guesses = "".join(f"{_bare(self.texts[g])}, " for g in entry.operands[: len(unknowns)])
+        return f"newton(equations{entry.payload}, ({guesses.rstrip()}))"
 
     def operation(self, op: str, a: list[str]) -> str:
         match op:
@@ -199,8 +231,8 @@ def _bare(text: str) -> str:
 
 def load(source: str, careful: bool) -> dict[str, Any]:
     """The functions of a source text that a Writer made."""
-    namespace: dict[str, Any] = {"__builtins__": {"max": max}}
-    namespace |= CAREFUL if careful else FAST
+    namespace: dict[str, Any] = {"__builtins__": {}}
+    namespace |= _careful() if careful else FAST
     exec(compile(source, "<tracewire model>", "exec"), namespace)
     return namespace
 

@@ -3,6 +3,33 @@
 An entry is an operation on earlier entries. Entries with the same operation and operands are the
 same entry (common subexpressions), operations on constants are done at once (folding), and what
 nothing reads is never written out (dead code).
+
+Systems of equations. A linear system needs no operation of its own: `linear.solve_linear` writes
+its elimination out in entries, and notes each unknown in `Tape.systems`, so that a derivative
+solves the same matrix again and does not go through the elimination. A nonlinear system is two
+operations:
+
+- `newton`, payload i, describes the search for z with r(z) = 0 of `Tape.implicits[i]`. Its operands
+  are the n guesses and behind them every entry that the search reads from outside. The entries
+  `residuals` (r) and `steps` (J^-1 r with J = dr/dz) read the leaves `unknowns` (op `unknown`);
+  these leaves have a value in the search only, and nothing outside of it reads them. Its value is
+  n numbers, so it is never a constant of the run, never folded, and read by `pick` only.
+- `pick`, payload j, operand a `newton`: its unknown j.
+
+The search, the same in every back end, to the bit:
+
+    z = z_old = guess; step_old = 0; worst_old = inf; share = 1; scale_j = |guess_j|
+    SEARCHES times:
+        r, step = residuals and steps at z;   worst = r_0*r_0 + r_1*r_1 + ... (from the left)
+        if not worst < worst_old and share > LEAST_SHARE and not (all |step_j| <= CLOSE*scale_j):
+            share = share/2; z_j = z_old_j - share*step_old_j       (it went too far, or NaN)
+        else:
+            z_old = z; step_old = step; worst_old = worst; share = 1
+            z_j = z_j - step_j; scale_j = |z_j| if |z_j| > scale_j else scale_j
+            if all |step_j| <= CLOSE*scale_j (the new scale): the result is z
+    the result is NaN, n times
+
+It is infinite where J is singular at the guess.
 """
 
 from __future__ import annotations
@@ -41,6 +68,11 @@ BINARY: dict[str, Callable[[float, float], float]] = {
     "or": lambda a, b: max(a, b),
 }
 
+SEARCHES = 100
+LEAST_SHARE = 2.0**-10
+CLOSE = 1e-10
+"""Of a search: its most steps, the least share of a step, the step that is the last one."""
+
 
 @dataclass(frozen=True, slots=True)
 class Entry:
@@ -51,12 +83,39 @@ class Entry:
     payload: float | int = 0
 
 
+@dataclass(frozen=True)
+class System:
+    """A solved linear system M x = f: entries of M row by row, of f, of x; and which x it is."""
+
+    matrix: tuple[int, ...]
+    right: tuple[int, ...]
+    solution: tuple[int, ...]
+    position: int
+
+
+@dataclass(frozen=True)
+class Implicit:
+    """A nonlinear system r(z) = 0: entries of the leaves z, of r, of J row by row, of J^-1 r."""
+
+    unknowns: tuple[int, ...]
+    residuals: tuple[int, ...]
+    jacobian: tuple[int, ...]
+    steps: tuple[int, ...]
+
+
 @dataclass
 class Tape:
     """Entries in an order in which each stands after those it reads."""
 
     entries: list[Entry] = field(default_factory=list)
     known: dict[Entry, int] = field(default_factory=dict)
+    kinds: list[int] = field(default_factory=list)  # of each entry, its leaves as bits
+    bits: dict[str, int] = field(default_factory=dict)  # the bit of each kind of leaf
+    systems: dict[int, System] = field(default_factory=dict)  # of an unknown, where it comes from
+    solved: dict[tuple[tuple[int, ...], tuple[int, ...]], tuple[int, ...]] = field(
+        default_factory=dict
+    )  # of a matrix and a right side, the unknowns
+    implicits: list[Implicit] = field(default_factory=list)
 
     def push(self, op: str, *operands: int, payload: float | int = 0) -> int:
         """The entry of an operation: an old one where it is known, folded where it can be."""
@@ -68,7 +127,15 @@ class Tape:
         if found is None:
             found = self.known[entry] = len(self.entries)
             self.entries.append(entry)
+            kinds = 0 if operands else self.bits.setdefault(op, 1 << len(self.bits))
+            for operand in operands:
+                kinds |= self.kinds[operand]
+            self.kinds.append(kinds)
         return found
+
+    def unknown(self) -> int:
+        """A new leaf for an unknown of a system of equations, until its solution is known."""
+        return self.push("unknown", payload=len(self.entries))
 
     def constant(self, value: float) -> int:
         """The entry of a constant."""
@@ -80,7 +147,7 @@ class Tape:
         return float(entry.payload) if entry.op == "const" else None
 
     def _simplified(self, op: str, operands: tuple[int, ...]) -> int | None:
-        if not operands or op in ("segment", "slope"):
+        if not operands or op in ("segment", "slope", "newton", "pick"):
             return None
         values = [self.value(operand) for operand in operands]
         if all(value is not None for value in values):
@@ -137,6 +204,34 @@ class Tape:
                 return self.push("sqrt", a)
         return None
 
+    def moved_by(self, index: int) -> tuple[int, ...]:
+        """The entries by which an entry changes: its operands, but for an unknown of a system.
+
+        Of a linear system these are its matrix and right side, and of a nonlinear one what the
+        search reads from outside.
+        """
+        system = self.systems.get(index)
+        if system is not None:
+            return system.matrix + system.right
+        entry = self.entries[index]
+        if entry.op == "pick":
+            newton = self.entries[entry.operands[0]]
+            return newton.operands[len(self.implicits[int(newton.payload)].unknowns) :]
+        return entry.operands
+
+    def searched(self, roots: Iterable[int]) -> list[int]:
+        """The operations behind the roots that read unknowns, in order: the body of a search."""
+        unknown = self.bits["unknown"]
+        wanted: set[int] = set()
+        stack = list(roots)
+        while stack:
+            index = stack.pop()
+            operands = self.entries[index].operands
+            if operands and index not in wanted and self.kinds[index] & unknown:
+                wanted.add(index)
+                stack.extend(operands)
+        return sorted(wanted)
+
     def needed(self, roots: Iterable[int]) -> list[int]:
         """The entries that the roots depend on, themselves included, in order."""
         wanted: set[int] = set()
@@ -150,4 +245,7 @@ class Tape:
 
     def leaves(self, roots: Iterable[int]) -> set[str]:
         """The kinds of leaf that the roots depend on: t, state, param, mode, hold."""
-        return {e.op for e in map(self.entries.__getitem__, self.needed(roots)) if not e.operands}
+        kinds = 0
+        for root in roots:
+            kinds |= self.kinds[root]
+        return {op for op, bit in self.bits.items() if kinds & bit}

@@ -14,7 +14,7 @@ from tracewire.formula import Unit, is_name, read_unit
 
 Sees = Literal["parameter", "signal", "either"]
 NAMES = "Use letters, digits and _, no digit in front, and no word of the formula language."
-OF_A_BLOCK = ("type", "unit", "place")
+OF_A_BLOCK = ("type", "unit", "place", "guess")
 
 
 @dataclass(frozen=True)
@@ -39,6 +39,8 @@ class Body:
     path: str = ""
     references: list[Reference] = field(default_factory=list)
     resets: list[tuple[str, Place]] = field(default_factory=list)
+    # names that stand alone as `when`: events of blocks, or signals; and places of `crosses`
+    happenings: list[tuple[Reference, Place | None]] = field(default_factory=list)
     defined: dict[str, tuple[str, Place]] = field(default_factory=dict)
 
     def place(self, node: Node, block: str = "") -> Place:

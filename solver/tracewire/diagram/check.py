@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from tracewire.diagram.body import Body, Reference
 from tracewire.diagram.diagram import Diagram
-from tracewire.diagram.names import find_signal, outputs_of, signals
+from tracewire.diagram.names import (
+    events,
+    find_event,
+    find_signal,
+    find_state,
+    outputs_of,
+    own_states,
+    signals,
+    split_index,
+)
 from tracewire.diagram.problems import clip
 from tracewire.errors import Place
 
@@ -14,6 +23,8 @@ def check_names(diagram: Diagram, body: Body) -> None:
     for reference in body.references:
         if not _exists(diagram, reference) and not body.problems.skips():
             _explain(diagram, reference, body)
+    for reference, crosses in body.happenings:
+        _check_happening(diagram, reference, crosses, body)
     for name, place in body.resets:
         _check_reset(diagram, name, place, body)
     _check_outputs(diagram, body)
@@ -61,23 +72,38 @@ def _explain(diagram: Diagram, reference: Reference, body: Body) -> None:
         problems.unknown("signal or parameter", name, existing, place)
 
 
+def _check_happening(
+    diagram: Diagram, reference: Reference, crosses: Place | None, body: Body
+) -> None:
+    """A name that stands alone as `when`: the event of a block, else a signal."""
+    name, head = reference.name, reference.name.partition(".")[0]
+    event = find_event(diagram, name)
+    if event is not None:
+        if crosses is not None:
+            what = f"'{clip(name)}' is an event of a block, which has a direction of its own"
+            body.problems.add(what, crosses, (), "Take 'crosses' away.")
+    elif not _exists(diagram, reference) and not body.problems.skips():
+        there = [name for name in events(diagram) if name.startswith(f"{head}.")]
+        if there:
+            known = [*there, *(s for s in signals(diagram) if s.startswith(f"{head}."))]
+            body.problems.unknown("event or output", name, known, reference.place)
+        else:
+            _explain(diagram, reference, body)
+
+
 def _check_reset(diagram: Diagram, name: str, place: Place, body: Body) -> None:
-    library, use = diagram.library, diagram.blocks.get(name)
-    if use is not None and use.subsystem is None:
-        if use.type not in library or len(library[use.type].states) == 1:
-            return
-        count = len(library[use.type].states)
-        what = f"block '{name}' has {count or 'no'} states, and an event sets a block with one"
-        body.problems.add(what, place, _one_state(diagram))
+    head = split_index(name)[0].partition(".")[0]
+    use = diagram.blocks.get(head)
+    inside = use is not None and use.subsystem is not None
+    if not inside and find_state(diagram, name) is not None:
+        return
+    several = [state for state in own_states(diagram) if state.startswith(f"{head}.")]
+    if use is not None and name == head and not inside and len(several) != 1:
+        count = len(several) or "no"
+        what = f"block '{name}' has {count} states, and an event sets one"
+        body.problems.add(what, place, tuple(several or own_states(diagram)))
     else:
-        body.problems.unknown("state", name, _one_state(diagram), place)
-
-
-def _one_state(diagram: Diagram) -> tuple[str, ...]:
-    library = diagram.library
-    plain = [use for use in diagram.blocks.values() if use.subsystem is None]
-    known = [use for use in plain if use.type in library]
-    return tuple(sorted(use.name for use in known if len(library[use.type].states) == 1))
+        body.problems.unknown("state", name, own_states(diagram), place)
 
 
 def _check_outputs(diagram: Diagram, body: Body) -> None:
@@ -87,7 +113,7 @@ def _check_outputs(diagram: Diagram, body: Body) -> None:
     """
     for name, wire in diagram.outputs.items():
         carried = find_signal(diagram, wire.signal)
-        itself = carried == find_signal(diagram, name) and not wire.negative
+        itself = carried == find_signal(diagram, name) and not (wire.negative or wire.index)
         if carried and name in body.defined and not itself:
             kind, place = body.defined[name]
             what = f"two definitions of '{name}': an output here, and {kind} in line {place.line}"

@@ -42,25 +42,41 @@ class Points:
 
 
 @dataclass(frozen=True)
-class Wire:
-    """A connection from a signal of the same diagram: a block, `block.output`, or an input."""
+class Array:
+    """A list of values, for a vector: `start: [1, 0]`."""
 
-    signal: str
-    negative: bool = False
+    items: tuple[Value, ...]
     place: Place = Place()
 
 
 @dataclass(frozen=True)
+class Wire:
+    """A connection from a signal of the same diagram: a block, `block.output`, or an input.
+
+    `index` names an element where the signal is a vector or a matrix: `q[1]`.
+    """
+
+    signal: str
+    negative: bool = False
+    place: Place = Place()
+    index: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True)
 class BlockUse:
-    """One block of a diagram: a library block, or a subsystem of the diagram (`subsystem`)."""
+    """One block of a diagram: a library block, or a subsystem of the diagram (`subsystem`).
+
+    `guess` is the value of its outputs at which the search of an algebraic loop begins.
+    """
 
     name: str
     type: str
     inputs: Mapping[str, tuple[Wire, ...]]
-    settings: Mapping[str, Value | Points | Expression]
+    settings: Mapping[str, Value | Array | Points | Expression]
     unit: str = ""
     local: Mapping[str, str] = field(default_factory=dict)
     subsystem: Diagram | None = None
+    guess: Value | Array | None = None
     place: Place = Place()
 
 
@@ -76,11 +92,17 @@ class InputPort:
 
 @dataclass(frozen=True)
 class Event:
-    """A reset: where `when` crosses zero, the states in `set` get new values, all read from x⁻."""
+    """A reset: where `when` crosses zero, the states in `set` get new values, all read from x⁻.
 
-    when: Expression
+    `when` may be the name of an event of a block: it happens where that one does. A clock has
+    `every` instead, a period: it happens at `offset` + k*period.
+    """
+
+    when: Expression | None
     crosses: Crosses
     set: Mapping[str, Expression]
+    every: Value | None = None
+    offset: Value | None = None
     place: Place = Place()
 
 

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-from tracewire.diagram.diagram import BlockUse, Diagram, Value
+import re
+from collections.abc import Sequence
+
+from tracewire.diagram.diagram import Array, BlockUse, Diagram, Value
 from tracewire.formula import Name
-from tracewire.library import Block, Library
+from tracewire.library import Block, Event, Library
+
+INDEX = re.compile(r"\s*\[\s*(\d+(?:\s*,\s*\d+)*)\s*\]$")
 
 
 def outputs_of(use: BlockUse, library: Library) -> tuple[str, ...] | None:
@@ -25,12 +30,33 @@ def signals(diagram: Diagram) -> list[str]:
     return found
 
 
+def split_index(name: str) -> tuple[str, tuple[int, ...]]:
+    """The name of a vector or matrix and the index of an element, of `q[1]` or `M[0, 1]`.
+
+    The index is empty where the name ends with none.
+    """
+    found = INDEX.search(name)
+    if found is None:
+        return name, ()
+    return name[: found.start()], tuple(int(part) for part in found[1].split(","))
+
+
+def element_name(name: str, index: Sequence[int]) -> str:
+    """The full name of an element: `q[1]`, or `M[0,1]`; without an index the name itself."""
+    return f"{name}[{','.join(map(str, index))}]" if index else name
+
+
 def find_signal(diagram: Diagram, name: str) -> str | None:
     """The full name of a signal of this diagram (not of a subsystem's inside), or None.
 
     A block with one output is its own signal; the output of a subsystem is always `block.port`.
-    Of a block whose type is not known any output is taken to exist.
+    Of a block whose type is not known any output is taken to exist. An index behind the name is
+    kept as it is: how many elements a signal has is known when the diagram is compiled.
     """
+    name, index = split_index(name)
+    if index:
+        vector = find_signal(diagram, name)
+        return None if vector is None else element_name(vector, index)
     if name in diagram.inputs:
         return name
     head, _, port = name.partition(".")
@@ -54,7 +80,7 @@ def find_recorded(diagram: Diagram, path: str) -> str | None:
         return found
     head, _, rest = path.partition(".")
     use = diagram.blocks.get(head)
-    if use is None or use.subsystem is None or rest in use.subsystem.inputs:
+    if use is None or use.subsystem is None or split_index(rest)[0] in use.subsystem.inputs:
         return None
     inner = find_recorded(use.subsystem, rest) if rest else None
     return None if inner is None else f"{head}.{inner}"
@@ -84,6 +110,10 @@ def find_state(diagram: Diagram, path: str) -> str | None:
 
     The path may lead into subsystems. None: there is no such state.
     """
+    path, index = split_index(path)
+    if index:
+        vector = find_state(diagram, path)
+        return None if vector is None else element_name(vector, index)
     head, _, rest = path.partition(".")
     use = diagram.blocks.get(head)
     if use is None:
@@ -97,6 +127,29 @@ def find_state(diagram: Diagram, path: str) -> str | None:
     if not rest and len(names) == 1:
         return next(iter(names.values()))
     return names.get(rest)
+
+
+def find_event(diagram: Diagram, name: str) -> Event | None:
+    """The event of a block by block.event, not of one inside a subsystem; None: there is none."""
+    head, _, rest = name.partition(".")
+    use = diagram.blocks.get(head)
+    if use is None or use.subsystem is not None or use.type not in diagram.library:
+        return None
+    events = (event for event in diagram.library[use.type].events if event.name == rest)
+    return next(events, None)
+
+
+def events(diagram: Diagram) -> list[str]:
+    """The events of the blocks of a diagram, each as one would write it."""
+    library = diagram.library
+    plain = [use for use in diagram.blocks.values() if use.subsystem is None]
+    known = [use for use in plain if use.type in library]
+    return [f"{use.name}.{event.name}" for use in known for event in library[use.type].events]
+
+
+def own_states(diagram: Diagram) -> list[str]:
+    """The states of the blocks of a diagram, not of its subsystems."""
+    return _own_states(diagram)
 
 
 def states(diagram: Diagram) -> list[str]:
@@ -128,9 +181,9 @@ def find_parameter(diagram: Diagram, path: str) -> Value | None:
     use = diagram.blocks.get(head)
     if use is None:
         return None
-    given = use.settings.get(rest)
     if use.subsystem is None:
-        return given if isinstance(given, Value) and given.named else None
+        return _named(use).get(rest)
+    given = use.settings.get(rest)
     if rest in use.subsystem.parameters:
         return given if isinstance(given, Value) else use.subsystem.parameters[rest]
     return find_parameter(use.subsystem, rest)
@@ -143,6 +196,16 @@ def parameters(diagram: Diagram) -> list[str]:
         if use.subsystem is not None:
             found += [f"{use.name}.{name}" for name in use.subsystem.parameters]
         else:
-            named = [n for n, v in use.settings.items() if isinstance(v, Value) and v.named]
-            found += [f"{use.name}.{name}" for name in named]
+            found += [f"{use.name}.{name}" for name in _named(use)]
     return found
+
+
+def _named(use: BlockUse) -> dict[str, Value]:
+    """The settings of a block that are parameters of their own; those in a list by their index."""
+    found: dict[str, Value] = {}
+    for name, given in use.settings.items():
+        if isinstance(given, Value):
+            found[name] = given
+        elif isinstance(given, Array):
+            found |= {element_name(name, (n,)): item for n, item in enumerate(given.items)}
+    return {name: value for name, value in found.items() if value.named}

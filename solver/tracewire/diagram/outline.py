@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tracewire.diagram.diagram import BlockUse, Diagram, Value
-from tracewire.diagram.names import find_parameter, parameters
+from tracewire.diagram.names import find_parameter, parameters, split_index
 from tracewire.diagram.problems import Problems
-from tracewire.diagram.strict import Entries, Node, compose
+from tracewire.diagram.strict import Entries, Items, Node, compose
 from tracewire.errors import DiagramError, OptionError, TracewireError, unknown
 from tracewire.formula import Number
 
@@ -81,6 +81,12 @@ class Outline:
             head, _, rest = rest.partition(".")
             use, line = inside.blocks[head], _part(entries, "blocks", head)
             assert isinstance(line, Entries)
+            setting, index = split_index(rest)
+            if setting in use.settings and use.subsystem is None:
+                node = line.values[setting]
+                if index and isinstance(node, Items):
+                    node = node.items[index[0]]
+                return _given(setting, node, value, use)
             if rest in use.settings:
                 return _given(rest, line.values[rest], value, use)
             assert use.subsystem is not None

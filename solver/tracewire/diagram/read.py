@@ -10,7 +10,7 @@ from tracewire.diagram.body import NAMES, Body
 from tracewire.diagram.check import check_names
 from tracewire.diagram.diagram import Diagram
 from tracewire.diagram.files import load
-from tracewire.diagram.loops import Loops, check_parameters
+from tracewire.diagram.loops import check_parameters
 from tracewire.diagram.measured import read_measured
 from tracewire.diagram.problems import Problems, clip
 from tracewire.diagram.sections import (
@@ -102,7 +102,6 @@ class _Definition:
 class _Reader:
     def __init__(self, library: Library, problems: Problems) -> None:
         self.library, self.problems = library, problems
-        self.loops = Loops(problems)
         self.stack: list[_Definition] = []
         self.including: list[Path] = []
         self.included: dict[Path, dict[str, _Definition]] = {}
@@ -181,7 +180,6 @@ class _Reader:
         """Check a diagram of which everything has been read."""
         check_names(diagram, body)
         check_parameters(diagram.parameters, self.problems)
-        self.loops.search(diagram)
         self.sizes[id(diagram)] = sum(
             1 + (self.sizes[id(use.subsystem)] if use.subsystem else 0)
             for use in diagram.blocks.values()

@@ -10,7 +10,7 @@ from tracewire.diagram.problems import clip
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.diagram.values import NO_UNIT, read_formula, read_value
 from tracewire.diagram.wires import read_wire
-from tracewire.formula import Expression, Number, is_name
+from tracewire.formula import Expression, Name, Number, is_name
 
 CROSSES: dict[str, Crosses] = {word: word for word in get_args(Crosses)}
 
@@ -72,7 +72,7 @@ def read_parameters(node: Node, body: Body) -> dict[str, Value]:
 
 
 def read_events(node: Node, body: Body) -> tuple[Event, ...]:
-    """`events`: a list of {when, crosses, set}."""
+    """`events`: a list of {when, crosses, set}, or of {every, offset, set}."""
     if not isinstance(node, Items):
         hint = "Write it like [{when: theta - 1, crosses: up, set: {omega: -omega}}]."
         body.problems.add("'events' must be a list", body.place(node), (), hint)
@@ -85,7 +85,7 @@ def _read_event(node: Node, body: Body) -> Event | None:
     entries = body.entries(node, "an event", "{when: theta - 1, crosses: up, set: {omega: 0}}")
     if entries is None:
         return None
-    body.check_keys(entries, ("when", "crosses", "set"), "key of an event")
+    body.check_keys(entries, ("when", "crosses", "every", "offset", "set"), "key of an event")
     crosses: Crosses = "both"
     if "crosses" in entries.values:
         given = entries.values["crosses"]
@@ -94,8 +94,16 @@ def _read_event(node: Node, body: Body) -> Event | None:
             crosses = CROSSES[word]
         else:
             body.problems.unknown("direction", word, CROSSES, body.place(given))
-    when_node = body.required(entries, "when", "an event")
-    when = None if when_node is None else read_formula(when_node, body, "either")
+    is_clock = "every" in entries.values
+    when = None if is_clock else _read_when(entries, body)
+    every = _read_clock(entries, body) if is_clock else None
+    offset = None
+    if "offset" in entries.values:
+        offset = read_value(entries.values["offset"], body, fit=False)
+        if not is_clock:
+            what = "only a clock has 'offset'"
+            hint = "Write every: ... for an event that happens in equal intervals."
+            body.problems.add(what, body.place(entries.values["offset"]), (), hint)
     set_node = body.required(entries, "set", "an event")
     resets: dict[str, Expression] = {}
     if set_node is not None:
@@ -107,7 +115,36 @@ def _read_event(node: Node, body: Body) -> Event | None:
                 resets[name] = formula
         if states is not None and not states.keys:
             body.problems.add("an event must set a state", body.place(set_node))
-    return None if when is None else Event(when, crosses, resets, body.place(entries))
+    if when is None and every is None:
+        return None
+    return Event(when, crosses, resets, every, offset, body.place(entries))
+
+
+def _read_when(entries: Entries, body: Body) -> Expression | None:
+    """`when` of an event: a formula, or the name of an event of a block."""
+    node = body.required(entries, "when", "an event")
+    when = None if node is None else read_formula(node, body, "either")
+    if isinstance(when, Name) and "." in when.name:
+        crosses = entries.values.get("crosses")
+        place = None if crosses is None else body.place(crosses)
+        body.happenings.append((body.references.pop(), place))
+    return when
+
+
+def _read_clock(entries: Entries, body: Body) -> Value | None:
+    """`every` of an event: a period in s."""
+    for key in ("when", "crosses"):
+        if key in entries.values:
+            what = f"an event has 'every' or '{key}', and not both"
+            body.problems.add(what, body.place(entries.values[key]), (), "Take one away.")
+    node = entries.values["every"]
+    period = read_value(node, body, fit=False)
+    if period is not None and isinstance(period.formula, Number):
+        length = period.formula.value * period.factor
+        if not length > 0:
+            what = f"the period of a clock must be above zero, not {length:g} s"
+            body.problems.add(what, body.place(node))
+    return period
 
 
 def read_title(node: Node, body: Body) -> str:

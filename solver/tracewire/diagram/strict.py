@@ -25,6 +25,7 @@ MOST_KEY = 100
 NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?")
 STRANGE_BREAK = re.compile("\r(?!\n)|[\x85\u2028\u2029]")
 PARSER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # only its events are used
+ELEMENT = re.compile(r"\w\[\d")
 BROKEN = "Check indentation, colons, quotes and brackets here and in the line above."
 
 
@@ -92,6 +93,8 @@ def compose(text: str, file: Path, problems: Problems) -> Node:
         said = " ".join(part for part in (error.context, error.problem) if part)
         tab = "cannot start any token" in said and "\t" in text.splitlines()[place.line - 1]
         hint = "Indent with blanks, never with tabs." if tab else BROKEN
+        if spot and any(map(ELEMENT.search, text.splitlines()[place.line - 1 : place.line])):
+            hint = f'{BROKEN} An element of a vector needs quotes between brackets: {{of: "q[1]"}}.'
         raise DiagramError.one(f"this is not YAML: {said}", place, hint=hint) from None
     except yaml.YAMLError as error:
         what = f"this is not YAML: {clip(str(error))}"

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
+from tracewire.diagram.arrays import read_array, read_formulas
 from tracewire.diagram.body import OF_A_BLOCK, Body, Reference
-from tracewire.diagram.diagram import BlockUse, Diagram, Points, Value, Wire
+from tracewire.diagram.diagram import Array, BlockUse, Diagram, Points, Value, Wire
 from tracewire.diagram.problems import clip
 from tracewire.diagram.strict import Entries, Node, Scalar
-from tracewire.diagram.values import read_formula, read_points, read_value, reads_parameters
+from tracewire.diagram.values import read_points, read_value, reads_parameters
 from tracewire.diagram.wires import read_wires
 from tracewire.errors import Place
 from tracewire.formula import Expression, Number, is_name
@@ -62,7 +63,20 @@ def _read_block(name: str, key: Scalar, line: Node, body: Body, find: Find) -> B
             body.problems.add(what, place, (), hint)
     settings = _read_settings(entries, kind, parameters, body, name, place)
     inside = kind if isinstance(kind, Diagram) else None
-    return BlockUse(name, type_name, inputs, settings, unit, local, inside, place)
+    guess = None
+    if "guess" in entries.values:
+        guess = _read_guess(entries.values["guess"], inside, body, name)
+    return BlockUse(name, type_name, inputs, settings, unit, local, inside, guess, place)
+
+
+def _read_guess(node: Node, inside: Diagram | None, body: Body, name: str) -> Value | Array | None:
+    """`guess` of a block: where the search of an algebraic loop begins."""
+    if inside is None:
+        return read_array(node, body, name, fit=False)
+    what = f"only a block has 'guess', and '{clip(name)}' is a subsystem"
+    hint = "Give it to a block inside, where the loop is."
+    body.problems.add(what, body.place(node, name), (), hint)
+    return None
 
 
 def _shape(kind: Block | Diagram) -> tuple[dict[str, Input], dict[str, Parameter]]:
@@ -83,8 +97,8 @@ def _read_settings(
     body: Body,
     name: str,
     place: Place,
-) -> dict[str, Value | Points | Expression]:
-    settings: dict[str, Value | Points | Expression] = {}
+) -> dict[str, Value | Array | Points | Expression]:
+    settings: dict[str, Value | Array | Points | Expression] = {}
     for parameter in parameters.values():
         node = entries.values.get(parameter.name)
         if node is None:
@@ -93,17 +107,20 @@ def _read_settings(
                 hint = f"Write {parameter.name}: ..."
                 body.problems.add(what, place, (), hint)
             continue
-        given: Value | Points | Expression | None
+        given: Value | Array | Points | Expression | None
         if parameter.kind == "points":
             given = read_points(node, body, name)
         elif parameter.kind == "formula":
-            given = read_formula(node, body, "either", name)
-        else:
+            given = read_formulas(node, body, name)
+        elif isinstance(kind, Diagram):
             given = read_value(node, body, name)
             if given is not None:
-                _check_bounds(given, parameter, body)
-                if isinstance(kind, Diagram):
-                    given = in_unit_of(given, kind.parameters[parameter.name])
+                given = in_unit_of(given, kind.parameters[parameter.name])
+        else:
+            given = read_array(node, body, name)
+            for value in given.items if isinstance(given, Array) else (given,):
+                if value is not None:
+                    _check_bounds(value, parameter, body)
         if given is not None:
             settings[parameter.name] = given
     return settings

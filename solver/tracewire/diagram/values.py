@@ -18,6 +18,7 @@ OF_BLOCKS = {
     "sum": "Use a block of type sum, or write a + b.",
     "product": "Use a block of type product, or write a*b.",
     "interp": "Use a block that has a table of points.",
+    "join": "Use a block of type mux, or write the list [a, b].",
 }
 """Functions that read a port or a table; a diagram's own formulas have neither."""
 NO_UNIT = Unit("", 1.0)
@@ -39,6 +40,11 @@ def read_formula(node: Node, body: Body, sees: Sees, block: str = "") -> Express
     for function in sorted(_functions(formula) & OF_BLOCKS.keys()):
         what = f"formula '{clip(node.text)}': {function} is for the formulas of block declarations"
         body.problems.add(what, place, (), OF_BLOCKS[function])
+        return None
+    if sees == "parameter" and "[]" in _functions(formula):
+        what = f"formula '{clip(node.text)}': a value is made of numbers, which have no elements"
+        hint = "A vector is the signal of a block: use an expression block."
+        body.problems.add(what, place, (), hint)
         return None
     for name in names_of(formula):
         if name not in CONSTANTS:

@@ -6,6 +6,7 @@ import re
 
 from tracewire.diagram.body import Body, Reference
 from tracewire.diagram.diagram import Wire
+from tracewire.diagram.names import split_index
 from tracewire.diagram.problems import clip
 from tracewire.diagram.strict import Items, Node, Scalar
 
@@ -21,7 +22,7 @@ def read_wire(node: Node, body: Body, what: str, block: str = "") -> Wire | None
         return None
     text = node.text.strip()
     negative = text.startswith("-")
-    signal = text[1:].strip() if negative else text
+    signal, index = split_index(text[1:].strip() if negative else text)
     if node.number is not None:
         hint = "Put the number into a block of type constant, and name that."
         body.problems.add(f"{what} takes a signal, not the number {clip(text)}", place, (), hint)
@@ -30,7 +31,7 @@ def read_wire(node: Node, body: Body, what: str, block: str = "") -> Wire | None
         body.problems.add(f"{what} takes a signal, not '{clip(text)}'", place, (), hint)
     else:
         body.references.append(Reference(signal, "signal", place))
-        return Wire(signal, negative, place)
+        return Wire(signal, negative, place, index)
     return None
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tracewire.compile import Model
 from tracewire.errors import DataError, Problem, SimulationError
 from tracewire.fit.measured import Measured
-from tracewire.solve import Limits, simulate
+from tracewire.solve import Interrupted, Limits, simulate
 
 Vector = NDArray[np.float64]
 DIFFERENCE, CENTRAL = 1e-4, 1e-5
@@ -167,6 +167,8 @@ class Criterion:
         sigma = self.sigma[segment.measured.name]
         try:
             outputs = self.outputs(segment, named, start)
+        except Interrupted as error:  # no failed run: the whole search shall stop
+            raise KeyboardInterrupt from error
         except SimulationError as error:
             self.failure = error
             spread = PENALTY * np.maximum(np.std(measured, axis=0), sigma)

@@ -8,7 +8,7 @@ bounded, so a formula from a stranger can do nothing but arithmetic. It is never
 from tracewire.formula.evaluate import evaluate
 from tracewire.formula.expression import Call, Expression, Name, Number, names_of, rename
 from tracewire.formula.functions import CONSTANTS, FUNCTIONS
-from tracewire.formula.parse import is_name, parse
+from tracewire.formula.parse import is_name, parse, parse_condition
 from tracewire.formula.text import to_text
 from tracewire.formula.units import Unit, read_unit, same_quantity
 
@@ -24,6 +24,7 @@ __all__ = [
     "is_name",
     "names_of",
     "parse",
+    "parse_condition",
     "read_unit",
     "rename",
     "same_quantity",

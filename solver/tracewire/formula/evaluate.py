@@ -32,6 +32,9 @@ OPERATIONS: dict[str, Callable[..., float]] = {
     "floor": math.floor,
     "mod": lambda a, b: a - b * math.floor(a / b),
     "dry": lambda u, slip, stick: slip * ((u > 0) - (u < 0)),
+    "is_held": lambda u: 0.0,  # of parameters: nothing moves that could be held
+    "dot": operator.mul,  # a parameter is one number, a vector of one element
+    "solve": lambda matrix, right: right / matrix,
     "sin": math.sin,
     "cos": math.cos,
     "tan": math.tan,

@@ -40,9 +40,17 @@ FUNCTIONS = {
         3,
         "dry(u, slip, stick): slip*sign(u); at u = 0 any value within +-stick that holds u there",
     ),
+    "is_held": Function(
+        1, 1, "is_held(u): 1 while a closed contact or sticking friction holds u at zero, else 0"
+    ),
     "interp": Function(2, 2, "interp(u, points): straight lines through points, held beyond them"),
     "sum": Function(1, 1, "sum(port): the sum of all wires of an input that takes several"),
     "product": Function(1, 1, "product(port): the product of all wires of such an input"),
+    "join": Function(1, 1, "join(port): the vector of all wires of such an input, end to end"),
+    "dot": Function(
+        2, 2, "dot(a, b): the sum of products of two vectors, or a matrix times a vector"
+    ),
+    "solve": Function(2, 2, "solve(M, f): the x with M x = f, of a square matrix and a vector"),
 }
 
 CONSTANTS = {"pi": math.pi}

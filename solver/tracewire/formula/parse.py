@@ -31,7 +31,7 @@ INSTEAD: dict[type[ast.operator], str] = {
     ast.FloorDiv: "Write floor(a/b).",
 }
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
-BY_NAME = {"sum": "a port", "product": "a port", "interp": "a table of points"}
+BY_NAME = {"sum": "a port", "product": "a port", "join": "a port", "interp": "a table of points"}
 LANGUAGE = (
     "A formula knows + - * / **, < <= > >=, and/or/not, 'a if c else b' and: "
     + ", ".join(FUNCTIONS)
@@ -63,8 +63,20 @@ def parse(text: str, place: Place = Place()) -> Expression:
     Raises FormulaError: not a formula, an unknown function, a wrong number of arguments, too large,
     a condition where a number is meant.
     """
+    return _read(text, place, condition=False)
+
+
+def parse_condition(text: str, place: Place = Place()) -> Expression:
+    """The condition that `text` writes: comparisons joined by and, or, not.
+
+    Raises FormulaError as `parse` does, and where the text is a number and no condition.
+    """
+    return _read(text, place, condition=True)
+
+
+def _read(text: str, place: Place, condition: bool) -> Expression:
     try:
-        return _parse(text)
+        return _parse(text, condition)
     except _Refused as refused:
         column = place.column + refused.column if place.column else 0
         at = Place(place.file, place.line, column, place.block)
@@ -74,7 +86,7 @@ def parse(text: str, place: Place = Place()) -> Expression:
 
 
 @lru_cache(maxsize=4096)
-def _parse(text: str) -> Expression:
+def _parse(text: str, condition: bool) -> Expression:
     if len(text) > MOST_CHARACTERS:
         raise _Refused(f"it has {len(text)} characters, at most {MOST_CHARACTERS} are allowed")
     if not text.strip():
@@ -94,7 +106,8 @@ def _parse(text: str) -> Expression:
         ) from None
     except (ValueError, RecursionError, MemoryError):
         raise _Refused("it does not parse (nested too deeply, or no text)") from None
-    return _Converter(lead).value(tree.body, 0)
+    converter = _Converter(lead)
+    return converter.condition(tree.body, 0) if condition else converter.value(tree.body, 0)
 
 
 class _Converter:
@@ -134,9 +147,28 @@ class _Converter:
                 )
             case ast.Call():
                 return self.call(node, depth)
+            case ast.Subscript(value=vector, slice=index):
+                if not isinstance(vector, ast.Name | ast.Attribute):
+                    hint = "Write q[0], or M[0, 1] for an element of a matrix."
+                    raise self.refuse(node, "an index stands behind a name", hint)
+                return Call("[]", (Name(self.path(vector)), *self.indices(index)))
             case _:
                 what = type(node).__name__.lower()
                 raise self.refuse(node, f"a {what} is not part of the formula language")
+
+    def indices(self, node: ast.expr) -> list[Expression]:
+        """The indices of an element: whole numbers from 0, or names of parameters of a block."""
+        found: list[Expression] = []
+        for part in node.elts if isinstance(node, ast.Tuple) else [node]:
+            match part:
+                case ast.Constant(value=int(value)) if not isinstance(value, bool) and value >= 0:
+                    found.append(Number(float(value)))
+                case ast.Name():
+                    found.append(Name(self.path(part)))
+                case _:
+                    hint = "Write q[0] for the first element, and M[0, 1] for one of a matrix."
+                    raise self.refuse(part, "an index is a whole number from 0 on", hint)
+        return found
 
     def number(self, node: ast.expr, value: object) -> Number:
         if isinstance(value, bool) or not isinstance(value, int | float):

@@ -28,6 +28,11 @@ def _write(node: Expression) -> tuple[str, int]:
         return number_text(node.value), (LEVELS["neg"] if signed else ATOM)
     if isinstance(node, Name):
         return node.name, ATOM
+    if node.function == "stack":
+        return f"[{', '.join(to_text(a) for a in node.arguments)}]", ATOM
+    if node.function == "[]":
+        vector, *indices = node.arguments
+        return f"{_write(vector)[0]}[{', '.join(map(to_text, indices))}]", ATOM
     level = LEVELS.get(node.function)
     if level is None:
         return f"{node.function}({', '.join(to_text(a) for a in node.arguments)})", ATOM

@@ -1,23 +1,18 @@
-"""What is wrong with a block declaration: names, formulas, units, bounds, effect."""
+"""What is wrong with a block declaration: names, formulas, units, bounds, modes, effect."""
 
 from __future__ import annotations
 
 import keyword
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from tracewire.errors import FormulaError, Place, Problem, unknown
-from tracewire.formula import CONSTANTS, Call, Expression, Name, is_name, parse, read_unit
+from tracewire.formula import is_name, read_unit
+from tracewire.library.check_formula import Use, check_formula
+from tracewire.library.check_memory import check_by_mode, check_memory
 
 if TYPE_CHECKING:
     from tracewire.library.declare import Block, Effect, Input, Output, Parameter, State
-
-Use = Literal["value", "wires", "points"]
-READ_BY: dict[Use, str] = {
-    "value": "by its name alone",
-    "wires": "by sum() or product()",
-    "points": "as the second argument of interp()",
-}
 
 
 def check_block(block: Block) -> list[Problem]:
@@ -30,16 +25,19 @@ def check_block(block: Block) -> list[Problem]:
     numbers = {p.name: value for p in block.parameters if p.kind == "number"}
     time = {"t": value}
     everything = ports | parameters | {state.name: value for state in block.states} | time
+    everything |= {"mode": value} if block.modes else {}
     problems = _check_names(block, place)
     for output in block.outputs:
-        problems += _check_formula(output.formula, everything, place)
+        what = f"output '{output.name}'"
+        problems += check_by_mode(block, output.formula, what, everything, place)
     for state in block.states:
-        problems += _check_formula(state.rate, everything, place)
-        problems += _check_formula(state.start, numbers, place)
+        what = f"the rate of '{state.name}'"
+        problems += check_by_mode(block, state.rate, what, everything, place)
+        problems += check_formula(state.start, numbers, place)
     problems += _check_parameters(block.parameters, place)
     for port in block.inputs:
         if port.default is not None:
-            problems += _check_formula(port.default, numbers | time, place)
+            problems += check_formula(port.default, numbers | time, place)
     parts: list[Input | Output | Parameter | State]
     parts = [*block.inputs, *block.parameters, *block.states, *block.outputs]
     for item in parts:
@@ -47,6 +45,7 @@ def check_block(block: Block) -> list[Problem]:
             read_unit(item.unit, place)
         except FormulaError as error:
             problems += error.problems
+    problems += check_memory(block, everything, numbers, place)
     if block.effect is not None:
         problems += _check_effect(block, block.effect, place)
     return problems
@@ -65,6 +64,7 @@ def _check_names(block: Block, place: Place) -> list[Problem]:
     visible = [port.name for port in block.inputs]
     visible += [parameter.name for parameter in block.parameters]
     visible += [state.name for state in block.states]
+    visible += ["mode"] if block.modes else []
     outputs = [output.name for output in block.outputs]
     # a block may be called like a function of the language: its name stands in no formula
     good = block.name.isascii() and block.name.isidentifier() and not keyword.iskeyword(block.name)
@@ -75,36 +75,18 @@ def _check_names(block: Block, place: Place) -> list[Problem]:
     for names in (visible, outputs):
         for name in sorted({name for name in names if names.count(name) > 1}):
             problems.append(Problem(f"'{name}' is declared twice", place))
-    return problems
+    return problems + _check_shared(block, place)
 
 
-def _check_formula(text: str, visible: dict[str, Use], place: Place) -> list[Problem]:
-    try:
-        formula = parse(text, place)
-    except FormulaError as error:
-        return list(error.problems)
-    problems = []
-    for name, use in dict.fromkeys(_uses(formula)):
-        if name not in visible and name not in CONSTANTS:
-            problems.append(unknown("name", name, visible, place, f"It stands in '{text}'."))
-        elif use != visible.get(name, "value"):
-            right = READ_BY[visible.get(name, "value")]
-            problems.append(Problem(f"formula '{text}': '{name}' is read {right}", place))
-    return problems
-
-
-def _uses(formula: Expression, use: Use = "value") -> Iterator[tuple[str, Use]]:
-    """Each name in the formula, and how it is read there."""
-    if isinstance(formula, Name):
-        yield formula.name, use
-    elif isinstance(formula, Call):
-        for number, argument in enumerate(formula.arguments):
-            if formula.function in ("sum", "product"):
-                yield from _uses(argument, "wires")
-            elif formula.function == "interp" and number == 1:
-                yield from _uses(argument, "points")
-            else:
-                yield from _uses(argument)
+def _check_shared(block: Block, place: Place) -> list[Problem]:
+    """An output of several has the full name of a state of its name: both must be the same."""
+    states = {state.name for state in block.states} | ({"mode"} if block.modes else set())
+    hint = "Rename one: a diagram knows both by the same name."
+    return [
+        Problem(f"'{output.name}' is a state, and an output that is not it", place, (), hint)
+        for output in block.outputs
+        if len(block.outputs) > 1 and output.name in states and output.formula != output.name
+    ]
 
 
 def _check_parameters(parameters: Sequence[Parameter], place: Place) -> list[Problem]:
@@ -117,7 +99,7 @@ def _check_parameters(parameters: Sequence[Parameter], place: Place) -> list[Pro
             what = f"the bounds of '{p.name}' are {low:g} to {high:g}"
             problems.append(Problem(what, place, (), "Give the lower one first."))
         if isinstance(p.default, str):
-            problems += _check_formula(p.default, before, place)
+            problems += check_formula(p.default, before, place)
         elif p.default is not None and not low <= p.default <= high:
             what = f"the default {p.default:g} of '{p.name}' is outside {low:g} to {high:g}"
             problems.append(Problem(what, place))

@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 
 from tracewire.errors import BlockError, unknown
-from tracewire.library.declare import Block, Input, Output, Parameter
+from tracewire.library.declare import (
+    Block,
+    ByMode,
+    Event,
+    Input,
+    Mode,
+    Output,
+    Parameter,
+    Transition,
+)
 from tracewire.library.load import Library
 
 
@@ -17,7 +26,7 @@ def palette(library: Library) -> str:
 
 
 def describe(library: Library, name: str) -> str:
-    """One block in full, as plain text: ports, parameters, states, formulas, effect, source.
+    """One block in full, as plain text: ports, parameters, states, formulas, modes, events, source.
 
     Raises BlockError: the library has no block of this name.
     """
@@ -26,12 +35,17 @@ def describe(library: Library, name: str) -> str:
     lines += _section("inputs", [(p.name, p.unit, _wiring(p), p.doc) for p in block.inputs])
     lines += _section("parameters", [(p.name, p.unit, _range(p), p.doc) for p in block.parameters])
     lines += _section(
-        "states", [(s.name, s.unit, f"rate = {s.rate}", f"start = {s.start}") for s in block.states]
+        "states",
+        [(s.name, s.unit, f"rate = {_told(s.rate)}", f"start = {s.start}") for s in block.states],
     )
+    lines += _section("modes", [(m.name, "", _started(block, m), m.doc) for m in block.modes])
+    lines += _section("transitions", [_transition(t) for t in block.transitions])
+    events = [(e.name, "", _when(e), _reset(e.set), e.doc) for e in block.events]
+    lines += _section("events", events)
     lines += _section(
         "outputs", [(o.name, o.unit, _at_once(block, o), o.doc) for o in block.outputs]
     )
-    lines += ["formulas", *(f"  {o.name} = {o.formula}" for o in block.outputs), ""]
+    lines += ["formulas", *(f"  {o.name} = {_told(o.formula)}" for o in block.outputs), ""]
     if block.effect is not None:
         lines.append(_effect(block))
     if block.source:
@@ -55,6 +69,9 @@ def describe_json(library: Library, name: str) -> dict[str, object]:
         "inputs": [asdict(port) for port in block.inputs],
         "parameters": [asdict(parameter) for parameter in block.parameters],
         "states": [asdict(state) for state in block.states],
+        "modes": [asdict(mode) for mode in block.modes],
+        "transitions": [asdict(transition) for transition in block.transitions],
+        "events": [asdict(event) | {"when": list(event.guards)} for event in block.events],
         "outputs": [asdict(o) | {"feedthrough": feedthrough[o.name]} for o in block.outputs],
         "effect": None
         if effect is None
@@ -118,7 +135,37 @@ def _effect(block: Block) -> str:
     return f"An effect that a trace tries: {text}."
 
 
-def _section(title: str, rows: list[tuple[str, str, str, str]]) -> list[str]:
+def _told(formula: ByMode) -> str:
+    if isinstance(formula, str):
+        return formula
+    return "; ".join(f"{mode}: {text}" for mode, text in formula.items())
+
+
+def _started(block: Block, mode: Mode) -> str:
+    if mode.start is not None:
+        return f"at the start where {mode.start}"
+    return "at the start" if mode is block.modes[0] else ""
+
+
+def _transition(transition: Transition) -> tuple[str, str, str, str]:
+    ends = f"{transition.source} -> {transition.target}"
+    return ends, "", f"while {transition.when}", _reset(transition.set)
+
+
+def _when(event: Event) -> str:
+    if event.every is not None:
+        shift = "" if event.offset == "0" else f", shifted by {event.offset}"
+        return f"every {event.every} s{shift}"
+    direction = "zero" if event.crosses == "both" else f"zero {event.crosses}"
+    return f"{' or '.join(event.guards)} crosses {direction}"
+
+
+def _reset(values: Mapping[str, ByMode]) -> str:
+    return ", ".join(f"{state} := {_told(formula)}" for state, formula in values.items())
+
+
+def _section(title: str, rows: Iterable[tuple[str, ...]]) -> list[str]:
+    rows = list(rows)
     if not rows:
         return []
     shown = [(f"  {name}", f"[{unit}]" if unit else "", *rest) for name, unit, *rest in rows]

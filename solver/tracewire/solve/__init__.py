@@ -4,50 +4,89 @@
 are frozen and x' = f(x, t, m) is smooth. A crossing of g is on the half-open interval (t0, t1]: a
 zero at a step's start does not fire again. Guards are sampled inside each step, sampled dips are
 refined, and a crossing is located on the dense output and then on true steps, to 1e-14 of the
-span. A frozen formula may be undefined beyond its guard: a trial step that is not finite is
+span. A guard that creeps beyond its level too slowly for any step to see it crosses where it is
+found there. A frozen formula may be undefined beyond its guard: a trial step that is not finite is
 rejected, and where steps underflow at a guard, the guard is crossed. A sample at the time of an
 event is the right limit; the log keeps x⁻ and x⁺.
 
 **Events.** All resets that are due read x⁻ and write x⁺ together; two that write different values
 to one state are an error that names both. Then the modes are evaluated anew until they stand still,
 and the run restarts. The mode is stored, never derived again from a state that sits on the
-surface. A guard that a reset carries over zero changes its mode, but fires no reset of its own.
-Modes that do not stand still are an error: no consistent mode.
+surface. A guard that a reset carries over zero changes its mode, but fires no reset of its own; one
+that is zero and that the reset drives over it (a ball that lies at a wall and is struck) fires at
+the same instant, and reads what the first one wrote. Modes that do not stand still are an error.
+
+**Memory.** A block with memory has named modes that only its transitions change: while the memory
+is `source` and the condition of the transition holds, it becomes `target`, and its reset, if it has
+one, reads x⁻. Transitions are looked at when all other modes stand still; of several of one memory
+the first declared one fires. Transitions that lead back to where they began are an error. A clock
+(`every`) fires at offset + k*period, and at the start where that is such a time.
 
 **Zero at the start, or after a reset.** The modes of all guards that are zero are decided together.
 A combination is consistent when the first non-zero derivative of each guard along the field of
 that combination, up to order 4, has the sign of its mode. One: it is taken. None: a slide. Several:
-the stored one, at the start with a warning. All derivatives zero: the stored one, at the start what
-the comparison says at zero. Relations on the same signal, up to sign, share one mode; where they
-differ at exactly zero (x > 0 and x >= 0), the first one speaks for both.
+the stored one, at the start with a warning. All derivatives zero: the stored one; of a guard that
+was seen beyond, the mode there; at the start what the comparison says at zero. A derivative counts
+as zero below 1e-12 of the largest rate on any side. Relations on the same signal, up to sign,
+share one mode; where they differ at exactly zero (x > 0 and x >= 0), the first one speaks for both.
+A floor that stands on a whole number goes to the side to which its guard goes.
 
 **Sliding.** On a slide over surfaces S the field is the blend sum over patterns of (product of m or
 1 - m) times f, with the fractions m in [0, 1] for which dg/dt = 0 for all g in S. It ends when a
 fraction leaves [0, 1]; the new mode is stored. Up to six surfaces are decided by trying all
 combinations, more by pivoting. Fields in which two sliding modes multiply each other are refused.
 `dry(u, slip, stick)` holds u = 0 while the required level is within +-stick, even if only one of
-the fields points in. Recorded signals on a slide are blends, too.
+the fields points in; not where its sign is wrong, so that it drives. A jump that carries the run
+off the surface ends the slide. Recorded signals on a slide are blends, too. What rounding moves
+off the surface is put back after each step: a body at rest stays where it is for ever. A floor does
+not slide: fields that point to its jump from both sides end as chatter.
 
-**Zeno.** A contact whose flights shorten below what can be resolved closes at
-t + flight/(1 - ratio) and rests: its guard is held at zero by a force in the direction of its last
-reset, until that force would have to pull. The force is no signal. A reset that drives a resting
-contact further in is refused. A run that starts on a contact has had no impact: it is not held, and
-a warning says so.
+**Loops.** The modes of an algebraic loop read what they change. They are changed one at a time, the
+first one first, which ends where each of them moves its own guard the right way; where that goes
+round in a circle all combinations are tried, and none or several that fit are an error.
 
-**Known times.** Guards that are a line in t (square, step, ramp, breakpoints of tables in t) change
-at computed times that steps end on; breakpoints of tables are not logged.
+**Contacts and Zeno.** A reset that turns the rate of its guard is an impact. A contact whose
+flights shorten below what can be resolved closes at t + flight/(1 - ratio) and rests: its guard is
+held at zero by a force in the direction of its reset, until that force would have to pull. A guard
+of an impact that is zero with g' = 0 and g'' < 0 rests at once, at the start and later. The force
+is no signal; `is_held(g)` tells that it acts. A start that lies on a contact and moves into it does
+not fire there, and a warning says so.
 
-**Never hang.** Chatter, underflow of the step, values that are not finite, the step limit and the
-limit of wall time stop a run with block, time, values and what to try.
+**Known times.** Guards that are a line in t (square, step, ramp, clocks, breakpoints of tables in
+t) change at computed times that steps end on; breakpoints of tables are not logged.
 
-**Order at one instant.** What crosses there and what is scheduled there, resets, modes, one sample.
+**Never hang.** Chatter, underflow of the step, values that are not finite, the limits of steps,
+events and wall time stop a run with block, time, values and what to try. A run is paused about ten
+times a second; there Ctrl-C is heard, and raises `Interrupted`, which carries the run up to there.
 
-Not there yet: blocks with memory, clocks and hard stops (so no event of kind `impact`), delays,
-loops through a mode, sensitivities.
+**Order at one instant.** What crosses there and what is scheduled there (clocks, too, which read
+left limits), resets, modes and transitions, one sample.
+
+**How it runs.** `core` holds all of this as functions that numba compiles once per installation;
+they call the model's machine code by address. This room's other files are Python: they fill the
+arrays of a run (`setup`), let the core go on (`execute`), and find words for what went wrong
+(`failures`).
+
+Not there yet: delays; the rate of a state that is held by a stop is still a state, so that friction
+on it keeps its last side while the stop holds.
 """
 
+from tracewire.solve.interrupt import Interrupted
 from tracewire.solve.limits import Limits
+from tracewire.solve.many import Runs, simulate_many
+from tracewire.solve.observers import Section
 from tracewire.solve.run import Event, Run, Statistics
 from tracewire.solve.simulate import parameter_values, simulate
 
-__all__ = ["Event", "Limits", "Run", "Statistics", "parameter_values", "simulate"]
+__all__ = [
+    "Event",
+    "Interrupted",
+    "Limits",
+    "Run",
+    "Runs",
+    "Section",
+    "Statistics",
+    "parameter_values",
+    "simulate",
+    "simulate_many",
+]

@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 from tracewire.errors import OptionError, Problem, unknown
 
 Vector = NDArray[np.float64]
-EventKind = Literal["crossing", "scheduled", "reset", "impact", "stick", "slip", "rest"]
+EventKind = Literal[
+    "crossing", "scheduled", "reset", "impact", "stick", "slip", "rest", "transition"
+]
 EventDirection = Literal["up", "down", ""]
 
 

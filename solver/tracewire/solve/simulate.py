@@ -4,22 +4,33 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
 
-import networkx as nx
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, SimulationError, unknown
-from tracewire.formula import evaluate, names_of
-from tracewire.solve.flow import Flow
-from tracewire.solve.integrate import METHODS, Integration
-from tracewire.solve.limits import Limits, place_of
-from tracewire.solve.record import Recorder
-from tracewire.solve.run import Run, Statistics
+from tracewire.formula import evaluate
+from tracewire.solve.core.arrays import Flow
+from tracewire.solve.core.codes import SAMPLED
+from tracewire.solve.core.methods import NAMES
+from tracewire.solve.execute import Execution, Tell
+from tracewire.solve.failures import place_of
+from tracewire.solve.interrupt import Interrupted
+from tracewire.solve.limits import Limits
+from tracewire.solve.run import Run
+from tracewire.solve.setup import (
+    Table,
+    Tolerance,
+    new_arrays,
+    new_flow,
+    new_plan,
+    new_progress,
+    starts,
+)
 
 Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
 DEFAULT_SAMPLES = 1001
 MOST_SAMPLES = 10_000_000
 
@@ -33,62 +44,95 @@ def simulate(
     times: ArrayLike | None = None,
     method: str = "auto",
     rtol: float = 1e-6,
-    atol: float | None = None,
+    atol: float | Mapping[str, float] | None = None,
+    step: float | None = None,
     preset: str = "",
     inputs: Mapping[str, tuple[ArrayLike, ArrayLike]] | None = None,
     limits: Limits | None = None,
+    progress: Tell | None = None,
 ) -> Run:
     """Simulate a model: integrate x' = f(x, t) with frozen modes between located events.
 
     `parameters` and `start` override the diagram's values by name, in SI; `preset` is applied
     before them. `span` is (from, to) in s, `times` (N,) the ascending sample times in s; without
-    them the diagram's span and its `every`, or 1001 samples. `method` is `auto`,
-    `dormand_prince` or `rosenbrock`. `atol` is rtol/1000 unless given. `inputs` gives measured
-    inputs as (times, values), joined by straight lines.
+    them the diagram's span and its `every`, or 1001 samples. `method` is
+    `dormand_prince` (explicit, order 5), `dop853` (explicit, order 8), `rosenbrock` (stiff, order
+    5), `rk4` (fixed `step` in s, order 4), or `auto`: dormand_prince, and rosenbrock where a mode
+    combination turns out to be stiff. `atol` is rtol/1000 unless given, as a number or by state.
+    `inputs` gives measured inputs as (times, values), joined by straight lines. `progress` is told
+    about ten times a second the part of the span that is done, and the seconds that are left.
 
     Raises OptionError for arguments that do not fit, SimulationError for a run that cannot be
-    finished: it names block, signal and time.
+    finished: it names block, signal and time; of that kind Interrupted, where Ctrl-C stopped it:
+    it carries the run up to there.
     """
     values = parameter_values(model, parameters or {}, preset)
-    given = None if times is None else _ascending(times)
-    begin, end = _span(model, values, span, given)
-    samples = _samples(model, values, begin, end, given)
-    if method != "auto" and method not in METHODS:
-        raise OptionError([unknown("method", method, ["auto", *METHODS])])
-    absolute = rtol * 1e-3 if atol is None else atol
-    if not (1e-14 <= rtol < 1 and 0 < absolute < math.inf):
-        what = f"rtol = {rtol:g} and atol = {absolute:g} cannot be met"
-        raise OptionError([Problem(what, hint="Take rtol between 1e-13 and 0.1 and atol above 0.")])
-    vector = np.array([values[name] for name in model.parameters])
-    flow = Flow(model, vector, _tables(model, values, inputs or {}))
-    states = _start(model, flow, start or {})
-    recorder = Recorder(flow, samples)
-    integration = Integration(
-        flow, (begin, end), recorder, method, (rtol, absolute), limits or Limits()
-    )
-    final = integration.run(states.copy())
-    guardian = integration.guardian
-    signals = {name: recorder.signals[:, n].copy() for n, name in enumerate(model.recorded)}
-    _refuse_nan(model, signals, samples)
+    given = None if times is None else ascending(times)
+    begin, end = span_of(model, values, span, given)
+    samples = samples_of(model, values, begin, end, given)
+    if method != "auto" and method not in NAMES:
+        raise OptionError([unknown("method", method, ["auto", *NAMES])])
+    tolerance = tolerance_of(model, rtol, atol, method, step, end - begin)
+    vector = np.array([*values.values(), 0.0])  # never empty
+    flow = new_flow(model, vector, tables_of(model, values, inputs or {}))
+    x = start_of(model, flow, start or {})
+    state = new_progress(model, x, (begin, end), samples, method, tolerance)
+    arrays = new_arrays(flow, new_plan(model), state)
+    execution = Execution(model, arrays, limits or Limits(), begin, progress)
+    try:
+        execution.run()
+    except Interrupted as error:
+        error.run = run_of(execution, values, x, samples[: state.ints[SAMPLED]])
+        raise
+    refuse_nan(model, state.samples, samples)
+    return run_of(execution, values, x, samples)
+
+
+def run_of(execution: Execution, values: Mapping[str, float], x: Vector, t: Vector) -> Run:
+    """The run with these parameter values, start states (n,) and sample times, as far as it is."""
+    model, state = execution.model, execution.progress
     names = model.states
     return Run(
         title=model.flat.title,
-        t=samples,
-        signals=signals,
+        t=t,
+        signals={name: state.samples[: len(t), n].copy() for n, name in enumerate(model.recorded)},
         units={name: model.flat.units.get(name, "") for name in model.recorded},
-        events=tuple(sorted(recorder.events, key=lambda event: event.time)),
+        events=execution.events,
         parameters=values,
-        start=dict(zip(names, states.tolist(), strict=True)),
-        final=dict(zip(names, final.tolist(), strict=True)),
-        statistics=Statistics(
-            steps=guardian.steps - guardian.rejected,
-            rejected=guardian.rejected,
-            evaluations=flow.evaluations,
-            stiff_steps=guardian.stiff_steps,
-            seconds=guardian.seconds,
-        ),
-        warnings=tuple(integration.warnings),
+        start=dict(zip(names, x.tolist(), strict=True)),
+        final=dict(zip(names, state.x.tolist(), strict=True)),
+        statistics=execution.statistics,
+        warnings=execution.warnings,
     )
+
+
+def tolerance_of(
+    model: Model,
+    rtol: float,
+    atol: float | Mapping[str, float] | None,
+    method: str,
+    step: float | None,
+    length: float,
+) -> Tolerance:
+    """The tolerances as the core takes them."""
+    given = atol if isinstance(atol, Mapping) else {}
+    problems = [unknown("state", name, model.states) for name in given if name not in model.states]
+    if problems:
+        raise OptionError(problems)
+    usual = rtol * 1e-3 if atol is None or isinstance(atol, Mapping) else atol
+    absolute = np.array([given.get(name, usual) for name in model.states], dtype=float)
+    if not (1e-14 <= rtol < 1 and np.all(absolute > 0) and np.all(np.isfinite(absolute))):
+        shown = ", ".join(f"{name}: {value:g}" for name, value in given.items())
+        told = f"{{{shown}}}" if given else f"{usual:g}"
+        what = f"rtol = {rtol:g} and atol = {told} cannot be met"
+        raise OptionError([Problem(what, hint="Take rtol between 1e-13 and 0.1 and atol above 0.")])
+    if (method == "rk4") != (step is not None):
+        what = "the method rk4 needs a step" if step is None else "only the method rk4 takes a step"
+        raise OptionError([Problem(what, hint="Give method='rk4' and step= in s together.")])
+    if step is not None and not 0 < step <= length:
+        what = f"steps of {step:g} s do not fit into a span of {length:g} s"
+        raise OptionError([Problem(what, hint="Give a step above 0 and below the span.")])
+    return Tolerance(rtol, absolute, np.inf if step is None else step)
 
 
 def parameter_values(
@@ -110,21 +154,15 @@ def parameter_values(
     ]
     if problems:
         raise OptionError(problems)
-    formulas = {name: parameter.formula for name, parameter in flat.parameters.items()}
-    if preset:
-        formulas |= flat.presets[preset]
     values = {name: float(value) for name, value in given.items()}
-    graph: nx.DiGraph[str] = nx.DiGraph()
-    graph.add_nodes_from(formulas)
-    for name, formula in formulas.items():
-        graph.add_edges_from((read, name) for read in names_of(formula) if read in formulas)
-    for name in nx.topological_sort(graph):
+    for name, formula in model.parameter_formulas(preset).items():
         if name not in values:
-            values[name] = evaluate(formulas[name], values, flat.parameters[name].place)
+            values[name] = evaluate(formula, values, flat.parameters[name].place)
     return {name: values[name] for name in flat.parameters}
 
 
-def _ascending(times: ArrayLike) -> Vector:
+def ascending(times: ArrayLike) -> Vector:
+    """Sample times (N,) as they are used. Raises OptionError where they do not ascend."""
     samples = np.array(times, dtype=float).ravel()
     increasing = bool(np.all(np.diff(samples) > 0)) and bool(np.isfinite(samples).all())
     if not len(samples) or not increasing:
@@ -133,12 +171,13 @@ def _ascending(times: ArrayLike) -> Vector:
     return samples
 
 
-def _span(
+def span_of(
     model: Model,
     values: Mapping[str, float],
     span: tuple[float, float] | None,
     times: Vector | None,
 ) -> tuple[float, float]:
+    """Begin and end in s: the span that is given, or the diagram's. Raises OptionError."""
     begin, end = span or (evaluate(formula, values) for formula in model.flat.span)
     if span is None and times is not None:
         begin, end = min(begin, times[0]), times[-1]
@@ -149,9 +188,10 @@ def _span(
     return begin, end
 
 
-def _samples(
+def samples_of(
     model: Model, values: Mapping[str, float], begin: float, end: float, times: Vector | None
 ) -> Vector:
+    """The sample times (N,) within a span. Raises OptionError where there is no use in them."""
     if times is not None:
         if times[0] < begin or times[-1] > end:
             what = (
@@ -173,11 +213,12 @@ def _samples(
     return np.asarray(np.minimum(begin + every * np.arange(count + 1), end))
 
 
-def _tables(
+def tables_of(
     model: Model,
     values: Mapping[str, float],
     inputs: Mapping[str, tuple[ArrayLike, ArrayLike]],
-) -> list[Any]:
+) -> list[Table]:
+    """The tables of the model: the diagram's and the inputs. Raises OptionError."""
     flat = model.flat
     problems = [unknown("input", name, flat.inputs) for name in inputs if name not in flat.inputs]
     tables = []
@@ -201,35 +242,35 @@ def _tables(
     return tables
 
 
-def _table(name: str, x: ArrayLike, y: ArrayLike) -> tuple[list[float], list[float], list[float]]:
+def _table(name: str, x: ArrayLike, y: ArrayLike) -> Table:
     xs, ys = np.asarray(x, dtype=float).ravel(), np.asarray(y, dtype=float).ravel()
     good = len(xs) == len(ys) and len(xs) > 0 and bool(np.all(np.diff(xs) > 0))
     if not (good and np.isfinite(xs).all() and np.isfinite(ys).all()):
         hint = "Give as many values as times, times that ascend, and no NaN."
         raise OptionError([Problem(f"the table of the input '{name}' is not usable", hint=hint)])
-    slopes = np.diff(ys) / np.diff(xs)
-    return xs.tolist(), ys.tolist(), slopes.tolist()
+    return xs, ys
 
 
-def _start(model: Model, flow: Flow, given: Mapping[str, float]) -> Vector:
+def start_of(model: Model, flow: Flow, given: Mapping[str, float]) -> Vector:
+    """The start states (n,): the diagram's, changed by `given`. Raises OptionError."""
     names = model.states
     problems = [unknown("state", name, names) for name in given if name not in names]
-    values = list(flow.call("starts", 0.0, np.zeros(len(names))))
+    values = starts(model, flow).tolist()
     for n, name in enumerate(names):
         values[n] = float(given.get(name, values[n]))
         if not math.isfinite(values[n]):
             problems.append(Problem(f"the start of '{name}' is {values[n]}"))
     if problems:
         raise OptionError(problems)
-    return np.array(values)
+    return np.array(values, dtype=float)
 
 
-def _refuse_nan(model: Model, signals: Mapping[str, Vector], t: Vector) -> None:
+def refuse_nan(model: Model, samples: Matrix, t: Vector) -> None:
     """A recorded signal may be undefined where no state depends on it."""
-    for name, values in signals.items():
-        bad = np.flatnonzero(~np.isfinite(values))
+    for n, name in enumerate(model.recorded):
+        bad = np.flatnonzero(~np.isfinite(samples[:, n]))
         if len(bad):
-            when, value = t[bad[0]], values[bad[0]]
+            when, value = t[bad[0]], samples[bad[0], n]
             what = f"the recorded signal '{name}' is not finite ({value}) at t = {when:.9g} s"
             hint = "Look for a division by zero or the root of a negative number in it."
             raise SimulationError([Problem(what, place_of(model, name), (), hint)])

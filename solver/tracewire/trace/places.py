@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from tracewire.compile import Flat, Model
+from tracewire.diagram import split_index
 from tracewire.formula import Name, names_of
 
 PASSED = ("sum", "gain", "divide")
@@ -32,19 +33,22 @@ def find_places(model: Model) -> list[Place]:
     subsystems; the sums that it meets are places of the nearest state. A sum that only feeds
     another place of the same state says nothing new and is left out. Where the diagram itself says
     which sum is the place of a rate (`place: {q: ..., v: ...}`), that sum is the only one. Sums
-    inside subsystems are not tried: what the subsystem puts out enters a sum further up.
+    inside subsystems are not tried: what the subsystem puts out enters a sum further up; nor are
+    sums of vectors.
     """
     flat = model.flat
     coordinates = {s.rate.name: s.name for s in flat.states if isinstance(s.rate, Name)}
     nearest: dict[str, tuple[int, str]] = {}
     for state in flat.states:
+        if split_index(state.name)[1]:
+            continue
         for name, distance in _sums_behind(flat, names_of(state.rate)):
             if name not in nearest or distance < nearest[name][0]:
                 nearest[name] = (distance, state.name)
     told = {
         name: block
         for name, block in flat.blocks.items()
-        if block.type == "sum" and "v" in block.local
+        if block.type == "sum" and "v" in block.local and not split_index(name)[1]
     }
     taken = {block.local["v"] for block in told.values()}
     places = [
@@ -71,14 +75,16 @@ def _sums_behind(flat: Flat, names: tuple[str, ...]) -> Iterator[tuple[str, int]
         block = flat.blocks.get(name)
         if block is not None and block.type not in PASSED:
             continue
-        if block is not None and block.type == "sum":
+        if block is not None and block.type == "sum" and not split_index(name)[1]:
             yield name, distance
         queue.extend((read, distance + 1) for read in names_of(formula))
 
 
 def _only_feeds(flat: Flat, name: str, state: str, nearest: dict[str, tuple[int, str]]) -> bool:
     """Whether a sum has one reader only, which leads to another place of the same state."""
-    while True:
+    seen: set[str] = set()  # an algebraic loop has no end
+    while name not in seen:
+        seen.add(name)
         readers = [n for n, formula in flat.signals.items() if name in names_of(formula)]
         rates = [s for s in flat.states if name in names_of(s.rate)]
         if len(readers) != 1 or rates:
@@ -89,3 +95,4 @@ def _only_feeds(flat: Flat, name: str, state: str, nearest: dict[str, tuple[int,
         block = flat.blocks.get(name)
         if block is not None and block.type not in PASSED:
             return False
+    return False

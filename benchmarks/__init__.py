@@ -1,0 +1,1 @@
+"""Timings of tracewire beside other solvers, at equal accuracy: `python -m benchmarks`."""

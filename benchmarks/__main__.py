@@ -1,0 +1,54 @@
+"""`python -m benchmarks [CASE ...] [--quick] [--rtol 1e-6]`: tables of times at equal accuracy."""
+
+from __future__ import annotations
+
+import argparse
+import platform
+import sys
+import time
+
+import numpy as np
+import scipy
+import tracewire as tw
+
+from benchmarks.cases import CASES
+from benchmarks.options import Options
+from benchmarks.table import console, seconds, show, show_promises
+
+
+def main() -> int:
+    """Measure the cases that are named, or all."""
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks",
+        description="Times of tracewire beside other solvers, at equal accuracy. "
+        "A time is the least of several runs, taken in turn; ratios are of the same session.",
+    )
+    parser.add_argument("case", nargs="*", help=f"of {', '.join(CASES)}; all if none is named")
+    parser.add_argument("--quick", action="store_true", help="fewer runs, slow peers left out")
+    parser.add_argument("--rtol", type=float, default=1e-6, help="of tracewire; default 1e-6")
+    arguments = parser.parse_args()
+    wrong = [name for name in arguments.case if name not in CASES]
+    if wrong:
+        parser.error(f"no case {', '.join(wrong)}; there are {', '.join(CASES)}")
+    options = Options(rtol=arguments.rtol, quick=arguments.quick)
+    screen = console()
+    versions = (
+        f"Python {platform.python_version()}, numpy {np.__version__}, scipy {scipy.__version__}"
+    )
+    screen.print(f"{versions}, {platform.machine()}\n")
+    began, results, failed = time.perf_counter(), [], False
+    for name in arguments.case or CASES:
+        try:
+            for result in CASES[name](options):
+                show(result, screen)
+                results.append(result)
+        except tw.TracewireError as error:
+            failed = True
+            screen.print(f"{name}: tracewire fails: {error}\n", style="bold red")
+    show_promises(results, screen)
+    screen.print(f"\n{seconds(time.perf_counter() - began)} in all")
+    return int(failed)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

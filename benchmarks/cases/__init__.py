@@ -1,0 +1,20 @@
+"""What is measured: each file is a family of tables, found here by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+from benchmarks.cases import bifurcation, many, networks, paper_a, sensitivities, triple
+from benchmarks.options import Options
+from benchmarks.table import Result
+
+Case = Callable[[Options], Iterator[Result]]
+
+CASES: Mapping[str, Case] = {
+    "paper_a": paper_a.measure,
+    "triple": triple.measure,
+    "bifurcation": bifurcation.measure,
+    "networks": networks.measure,
+    "sensitivities": sensitivities.measure,
+    "many": many.measure,
+}

@@ -1,0 +1,102 @@
+"""What blocks and diagrams declare to happen, as flat events and memories."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from tracewire.compile.flat import FlatEvent, FlatMemory, FlatTransition
+from tracewire.diagram import Crosses, Event, Value
+from tracewire.errors import Place
+from tracewire.formula import Call, Expression, Name, Number, parse, parse_condition
+from tracewire.library import Block
+
+Write = Callable[[Expression], Expression]
+"""A formula of a block with its names replaced by full ones."""
+
+
+def memory_name(block: Block, path: str) -> dict[str, Expression]:
+    """The full name of what the formulas of a block with memory know as `mode`."""
+    return {"mode": Name(f"{path}.mode")} if block.modes else {}
+
+
+def block_events(
+    block: Block, path: str, states: Mapping[str, str], write: Write, place: Place
+) -> list[FlatEvent]:
+    """The events of a block; one with several guards is several, of one name."""
+    found: list[FlatEvent] = []
+    for event in block.events:
+        if event.every is None:
+            whens = [write(parse(guard)) for guard in event.guards]
+        else:
+            whens = [clock(write(parse(event.every)), write(parse(event.offset)))]
+        for when in whens:
+            found.append(
+                FlatEvent(
+                    name=f"{path}.{event.name}",
+                    when=when,
+                    crosses="up" if event.every else event.crosses,
+                    set={
+                        states[name]: write(block.read(formula))
+                        for name, formula in event.set.items()
+                    },
+                    place=place,
+                    kind=event.kind,
+                    clocked=event.every is not None,
+                    block=path,
+                )
+            )
+    return found
+
+
+def block_memory(
+    block: Block, path: str, states: Mapping[str, str], write: Write, place: Place
+) -> list[FlatMemory]:
+    """The memory of a block that has modes, else nothing."""
+    transitions = tuple(
+        FlatTransition(
+            source=block.number(transition.source),
+            target=block.number(transition.target),
+            when=write(parse_condition(transition.when)),
+            set={states[name]: write(parse(formula)) for name, formula in transition.set.items()},
+        )
+        for transition in block.transitions
+    )
+    modes = tuple(mode.name for mode in block.modes)
+    start = write(block.start_mode)
+    return [FlatMemory(f"{path}.mode", modes, start, transitions, place)] if modes else []
+
+
+def diagram_events(
+    event: Event,
+    name: str,
+    values: Mapping[str, Expression],
+    read: Callable[[Expression | Value], Expression],
+    path: str,
+    known: Sequence[FlatEvent],
+) -> list[FlatEvent]:
+    """The event of a diagram; one that names a block's event happens wherever that one does.
+
+    read: a formula or value of the diagram with its names replaced by full ones. known: the events
+    of its blocks, and perhaps others.
+    """
+
+    def made(when: Expression, crosses: Crosses, clocked: bool, block: str = "") -> FlatEvent:
+        return FlatEvent(name, when, crosses, values, event.place, "reset", clocked, block)
+
+    if event.every is not None:
+        offset = Number(0.0) if event.offset is None else read(event.offset)
+        return [made(clock(read(event.every), offset), "up", True)]
+    if event.when is None:
+        raise AssertionError("an event has 'when' or 'every'")
+    if isinstance(event.when, Name) and "." in event.when.name:
+        named = path + event.when.name
+        same = [other for other in known if other.name == named]
+        if same:
+            return [made(e.when, e.crosses, e.clocked, e.block) for e in same]
+    return [made(read(event.when), event.crosses, False)]
+
+
+def clock(period: Expression, offset: Expression) -> Expression:
+    """The formula that is a whole number at offset + k*period."""
+    since = Name("t") if offset == Number(0.0) else Call("-", (Name("t"), offset))
+    return Call("/", (since, period))

@@ -1,0 +1,69 @@
+"""From LLVM IR to functions in memory: machine code for this processor, kept by its content."""
+
+from __future__ import annotations
+
+import hashlib
+from collections import OrderedDict
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from threading import RLock
+from typing import Any
+
+import llvmlite.binding as llvm
+
+from tracewire.compile import libm
+from tracewire.compile.machine import PREFIX
+
+LARGE = 1_000_000  # characters of IR, about 6000 blocks, from which on a quick compiler is better:
+# it takes a tenth of the time, and what it makes is 20 % slower
+KEPT = 32
+
+_lock = RLock()
+_kept: OrderedDict[bytes, Native] = OrderedDict()
+
+
+@dataclass(frozen=True)
+class Native:
+    """Functions in memory by their addresses; they live as long as this does."""
+
+    addresses: Mapping[str, int]
+    engine: Any = field(repr=False)
+
+
+def assemble(text: str, names: Iterable[str]) -> Native:
+    """The machine code of the functions `names` of an IR text; the same text is compiled once."""
+    key = hashlib.sha256(text.encode()).digest()
+    with _lock:
+        found = _kept.pop(key, None)
+        if found is None:
+            engine = _engine(text)
+            found = Native({name: engine.get_function_address(name) for name in names}, engine)
+        _kept[key] = found
+        if len(_kept) > KEPT:
+            _kept.popitem(last=False)  # a model that uses it holds it still
+        return found
+
+
+def _engine(text: str) -> Any:
+    _initialize()
+    target = llvm.Target.from_default_triple().create_target_machine(
+        cpu=llvm.get_host_cpu_name(),
+        features=llvm.get_host_cpu_features().flatten(),
+        opt=0 if len(text) > LARGE else 2,
+        jit=True,
+    )
+    # The tape is folded and shared already; passes over the IR only cost time, and they would join
+    # the parts of long functions again.
+    module = llvm.parse_assembly(text)
+    engine = llvm.create_mcjit_compiler(module, target)
+    engine.finalize_object()
+    return engine
+
+
+@cache
+def _initialize() -> None:
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    for name, address in libm.addresses().items():
+        llvm.add_symbol(PREFIX + name, address)

@@ -1,0 +1,270 @@
+"""The functions of a model: what each computes, and its address once a back end has made it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from threading import RLock
+from typing import Any, Literal
+
+from tracewire.compile.constants import Constants
+from tracewire.compile.differentiate import differentiate, gradients
+from tracewire.compile.lower import Lowered
+from tracewire.compile.machine import MachineWriter, machine_text
+from tracewire.compile.pointers import address_of, as_c, when_called
+from tracewire.compile.source import Function, Writer, guarded, load
+
+Backend = Literal["llvm", "python"]
+BACKENDS: tuple[Backend, ...] = ("llvm", "python")
+ORDERS = {"guard_second": 2, "guard_third": 3, "guard_fourth": 4}
+PREPARE = "prepare"
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """The lengths of a model's arrays.
+
+    x[states], m[2*modes], c[constants] of which the first `parameters` are the parameters; out of
+    `outputs` [outputs], of `timed` [2*timed], of `resets` [resets].
+    """
+
+    states: int
+    modes: int
+    parameters: int
+    constants: int
+    outputs: int
+    timed: int
+    resets: int
+
+
+@dataclass(frozen=True)
+class Routine:
+    """What a function computes: the entry at each place of its `out`, 0 where there is none."""
+
+    doc: str
+    size: int
+    roots: Mapping[int, int]
+
+
+def _dense(doc: str, entries: Sequence[int]) -> Routine:
+    return Routine(doc, len(entries), dict(enumerate(entries)))
+
+
+class Routines:
+    """The functions of one tape by name, made when they are first needed.
+
+    The eager ones (`rhs`, `outputs`, ...) are made together and share the constants of `prepare`.
+    The lazy ones (`jacobian`, ...) have the address of a callback until they are made: the first
+    call makes them. That callback needs Python: threads that were started by compiled code must not
+    be the first to call it, see `compiled_address`.
+    """
+
+    def __init__(
+        self, lowered: Lowered, outputs: Sequence[int], labels: Mapping[int, str], backend: Backend
+    ) -> None:
+        low = self.lowered = lowered
+        self.tape, self.labels, self.backend = low.tape, labels, backend
+        self.states, self.modes = len(low.states), len(low.modes)
+        self.lock = RLock()
+        self.constants = Constants(low.tape, sum(e.op == "param" for e in low.tape.entries))
+        self.flow = dict(zip(low.states, low.rates, strict=True))
+        self.flow[low.entries["t"]] = low.tape.constant(1.0)
+        guards = [mode.guard for mode in low.modes]
+        self.eager: dict[str, Routine] = {
+            "rhs": _dense("Rates of the states.", low.rates),
+            "outputs": _dense("Recorded signals.", outputs),
+            "guards": _dense("Guards of the modes.", guards),
+            "guard_rates": _dense("Rates of the guards.", self.along_the_flow(guards, 1)),
+            "timed": _dense(
+                "Slope and value at t = 0 of each guard that reads only t.",
+                [entry for mode in low.modes for entry in mode.timed or ()],
+            ),
+            "starts": _dense("Start values of the states.", low.starts),
+            "resets": _dense(
+                "New values of all resets, one after the other.",
+                [entry for reset in low.resets for entry in reset.values.values()],
+            ),
+        }
+        for routine in self.eager.values():
+            self.constants.collect(routine.roots.values())
+        n, number = self.states, self.modes
+        every = [*low.states, low.entries["t"]]
+        self.lazy: dict[str, tuple[int, Callable[[], Mapping[int, int]]]] = {
+            "jacobian": (n * (n + 1), partial(self.rows, "rhs", every)),
+            "guard_gradients": (number * n, partial(self.rows, "guards", low.states)),
+            "guard_curves": (number * (n + 1), partial(self.rows, "guard_rates", every)),
+        }
+        for name, order in ORDERS.items():
+            self.lazy[name] = number, partial(self._guards_along_the_flow, order)
+        self._made: dict[str, Routine] = {}
+        self._addresses: dict[str, int] = {}
+        self._callbacks: dict[str, int] = {}
+        self._evaluated: dict[str, dict[str, Function]] = {}
+        self._kept: list[Any] = []  # machine code and callbacks, which live as long as this does
+
+    @property
+    def sizes(self) -> Sizes:
+        """The lengths of the arrays."""
+        size = {name: routine.size for name, routine in self.eager.items()}
+        return Sizes(
+            states=self.states,
+            modes=self.modes,
+            parameters=self.constants.parameters,
+            constants=self.constants.size,
+            outputs=size["outputs"],
+            timed=size["timed"] // 2,
+            resets=size["resets"],
+        )
+
+    def size(self, name: str) -> int:
+        """The length of a function's `out`."""
+        if name == PREPARE:
+            return self.constants.size
+        return self.eager[name].size if name in self.eager else self.lazy[name][0]
+
+    def along_the_flow(self, entries: Sequence[int], order: int) -> list[int]:
+        """The total derivatives of entries along the flow with frozen modes."""
+        for _ in range(order):
+            entries = differentiate(self.tape, entries, self.flow)
+        return list(entries)
+
+    def _guards_along_the_flow(self, order: int) -> dict[int, int]:
+        rates = list(self.eager["guard_rates"].roots.values())
+        return dict(enumerate(self.along_the_flow(rates, order - 1)))
+
+    def rows(self, of: str, leaves: Sequence[int]) -> dict[int, int]:
+        """The entries of d out / d leaf of an eager function, row by row; zeros are left out."""
+        routine, width = self.eager[of], len(leaves)
+        columns = {leaf: column for column, leaf in enumerate(leaves)}
+        found = gradients(self.tape, routine.roots.values(), leaves)
+        return {
+            row * width + columns[leaf]: entry
+            for row, gradient in zip(routine.roots, found, strict=True)
+            for leaf, entry in sorted(gradient.items())
+        }
+
+    def add_derivative(self, of: str, leaves: Sequence[int]) -> str:
+        """The name of the lazy function d(out of an eager function) / d(leaves), row by row."""
+        name = f"{of}.by.{'.'.join(map(str, leaves))}"
+        with self.lock:
+            self.add(name, self.size(of) * len(leaves), partial(self.rows, of, tuple(leaves)))
+        return name
+
+    def add(self, name: str, size: int, roots: Callable[[], Mapping[int, int]]) -> None:
+        """A further lazy function: the length of its `out`, and what gives its roots by place."""
+        self.lazy.setdefault(name, (size, roots))
+
+    def routine(self, name: str) -> Routine:
+        """What an eager or lazy function computes."""
+        with self.lock:
+            found = self.eager.get(name) or self._made.get(name)
+            if found is None:
+                size, roots = self.lazy[name]
+                kept = {p: e for p, e in roots().items() if self.tape.value(e) != 0.0}
+                found = self._made[name] = Routine(name.replace("_", " "), size, kept)
+            return found
+
+    def address(self, name: str) -> int:
+        """The address of a function; of a lazy one that was never called, that of its callback."""
+        with self.lock:
+            if name in self._addresses or name not in self.lazy:
+                return self.compiled_address(name)
+            if name not in self._callbacks:
+                callback = when_called(partial(self.compiled_address, name), self.size(name))
+                self._kept.append(callback)
+                self._callbacks[name] = address_of(callback)
+            return self._callbacks[name]
+
+    def compiled_address(self, name: str) -> int:
+        """The address of a function, compiled now where it has not been."""
+        with self.lock:
+            if name not in self._addresses:
+                names = [name] if name in self.lazy else [PREPARE, *self.eager]
+                make = self._machine if self.backend == "llvm" else self._callback
+                self._addresses |= make(names)
+            return self._addresses[name]
+
+    def machine_ir(self, names: Sequence[str]) -> str:
+        """The LLVM IR of functions."""
+        writer = MachineWriter(self.tape, self.constants, self.modes)
+        texts = [
+            writer.prepare(name)
+            if name == PREPARE
+            else writer.function(_symbol(name), self.routine(name).roots)
+            for name in names
+        ]
+        return machine_text(texts)
+
+    def _machine(self, names: Sequence[str]) -> dict[str, int]:
+        from tracewire.compile.native import assemble  # LLVM is loaded by those who compile
+
+        native = assemble(self.machine_ir(names), [_symbol(name) for name in names])
+        self._kept.append(native)
+        return {name: native.addresses[_symbol(name)] for name in names}
+
+    def _callback(self, names: Sequence[str]) -> dict[str, int]:
+        found = self.python(names)
+        arrays = self.states, self.modes, self.constants.size
+        addresses = {}
+        for name in names:
+            if name == PREPARE:
+                prepare = found[name]
+                places: Sequence[int] = range(self.constants.size)
+                callback = as_c(
+                    lambda t, x, m, c, k, prepare=prepare: prepare(x),
+                    places,
+                    self.constants.parameters,
+                    0,
+                    0,
+                )
+            else:
+                callback = as_c(found[name], tuple(self.routine(name).roots), *arrays)
+            self._kept.append(callback)
+            addresses[name] = address_of(callback)
+        return addresses
+
+    def text(self, names: Sequence[str], careful: bool = False) -> str:
+        """The Python text of functions; each returns what is not always 0, in order of place."""
+        writer = Writer(self.tape, self.constants, self.labels, self.modes)
+        parts = []
+        for name in names:
+            if name == PREPARE:
+                parts.append(writer.prepare(careful))
+            else:
+                routine = self.routine(name)
+                roots = list(routine.roots.values())
+                parts.append(writer.function(_symbol(name), routine.doc, roots, careful))
+        return "\n\n".join(parts)
+
+    def python(self, names: Sequence[str]) -> dict[str, Function]:
+        """The Python functions that are written in `text`, careful where the plain ones raise."""
+        fast, careful = (load(self.text(names, c), c) for c in (False, True))
+        return {name: guarded(fast[_symbol(name)], careful[_symbol(name)]) for name in names}
+
+    def evaluate(
+        self,
+        name: str,
+        t: float,
+        x: Sequence[float],
+        m: Sequence[float],
+        p: Sequence[float],
+        k: Sequence[float],
+    ) -> tuple[float, ...]:
+        """All values of a lazy function by its Python text, whatever the back end: for messages."""
+        with self.lock:
+            if name not in self._evaluated:
+                self._evaluated[name] = self.python([PREPARE, name])
+            found, routine = self._evaluated[name], self.routine(name)
+        # numbers of numpy would warn where those of Python raise
+        lists = [[float(value) for value in array] for array in (x, m, p, k)]
+        constants = found[PREPARE](lists[2])
+        values = [0.0] * routine.size
+        given = found[name](float(t), lists[0], lists[1], constants, lists[3])
+        for place, value in zip(routine.roots, given, strict=True):
+            values[place] = value
+        return tuple(values)
+
+
+def _symbol(name: str) -> str:
+    return name.replace(".", "_")

@@ -1,0 +1,48 @@
+"""What is wrong with one formula of a block declaration: its grammar, and what it reads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Literal
+
+from tracewire.errors import FormulaError, Place, Problem, unknown
+from tracewire.formula import CONSTANTS, Call, Expression, Name, parse, parse_condition
+
+Use = Literal["value", "wires", "points"]
+READ_BY: dict[Use, str] = {
+    "value": "by its name alone",
+    "wires": "by sum(), product() or join()",
+    "points": "as the second argument of interp()",
+}
+
+
+def check_formula(
+    text: str, visible: Mapping[str, Use], place: Place, condition: bool = False
+) -> list[Problem]:
+    """The problems of a formula, or of a condition, that may read what is visible."""
+    try:
+        formula = parse_condition(text, place) if condition else parse(text, place)
+    except FormulaError as error:
+        return list(error.problems)
+    problems = []
+    for name, use in dict.fromkeys(_uses(formula)):
+        if name not in visible and name not in CONSTANTS:
+            problems.append(unknown("name", name, visible, place, f"It stands in '{text}'."))
+        elif use != visible.get(name, "value"):
+            right = READ_BY[visible.get(name, "value")]
+            problems.append(Problem(f"formula '{text}': '{name}' is read {right}", place))
+    return problems
+
+
+def _uses(formula: Expression, use: Use = "value") -> Iterator[tuple[str, Use]]:
+    """Each name in the formula, and how it is read there."""
+    if isinstance(formula, Name):
+        yield formula.name, use
+    elif isinstance(formula, Call):
+        for number, argument in enumerate(formula.arguments):
+            if formula.function in ("sum", "product", "join"):
+                yield from _uses(argument, "wires")
+            elif formula.function == "interp" and number == 1:
+                yield from _uses(argument, "points")
+            else:
+                yield from _uses(argument)

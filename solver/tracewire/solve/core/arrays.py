@@ -1,0 +1,314 @@
+"""The arrays of a run: Python makes them, the core finds them by a table of addresses.
+
+A function of the core is given the address of the table, and takes from it what it needs: the
+arrays themselves, as arguments of every function, would make both the compiler and the calls slow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple, cast
+
+import numba
+import numpy as np
+from numba import types
+from numba.extending import intrinsic
+from numpy.typing import NDArray
+
+from tracewire.solve.core.jit import helper
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+Ints = NDArray[np.int64]
+IntMatrix = NDArray[np.int64]
+
+
+class Flow(NamedTuple):
+    """The field of a model for one set of parameters, and the discrete state of a run.
+
+    `address`: of the model's functions, in the order of FUNCTIONS. `m`: the modes (M,) and behind
+    them, per mode, 1 while its guard is held at zero. `c`, `k`: constants and tables. `bound`:
+    FREE, SLIDING or RESTING per mode. `push` (M, n): how the force of a contact acts on the rates.
+    `counts`: evaluations, and how many guards slide and rest.
+    """
+
+    address: Ints
+    m: Vector
+    c: Vector
+    k: Vector
+    bound: Ints
+    push: Matrix
+    counts: Ints
+
+
+class Plan(NamedTuple):
+    """The modes, resets and transitions of a model.
+
+    Per mode: `kind`, `at_zero`, `can_hold`, `table`, `is_timed`; `timed` lists the timed modes.
+    `resets` has rows (trigger mode, direction, first write, number of writes, event kind);
+    `writes` the states that they set. `transitions` has rows (memory mode, source, trigger mode,
+    target, reset, level of the trigger, at_zero). `direct` is, per
+    recorded signal, the state that it is, or -1. `loop` is, per mode, the algebraic loop through
+    it, or -1.
+    """
+
+    kind: Ints
+    at_zero: Ints
+    can_hold: Ints
+    table: Ints
+    is_timed: Ints
+    timed: Ints
+    resets: IntMatrix
+    writes: Ints
+    transitions: IntMatrix
+    direct: Ints
+    loop: Ints
+
+
+class Progress(NamedTuple):
+    """How far a run is: time and step, states, counters, samples, log, and what an error says.
+
+    `stiff` holds the mode combinations that were found stiff. `recent` holds (time, mode) of the
+    last events. `flights` holds, per mode, the last flight of its contact (inf: none) and whether
+    it was too short to be resolved. `info` and `which` say what an error is about. `overlooked`
+    marks the resets whose guard is zero at the start and leaves it as if they fired.
+    """
+
+    now: Vector
+    x: Vector
+    atol: Vector
+    ints: Ints
+    times: Vector
+    samples: Matrix
+    log: Matrix
+    stiff: Matrix
+    recent: Matrix
+    flights: Matrix
+    info: Vector
+    which: Ints
+    overlooked: Ints
+
+
+class Trial(NamedTuple):
+    """A trial step from x over h: x_end and the rate there (n,), the error (n,), the dense output.
+
+    `ends` holds t, h and h times the largest eigenvalue (0 where the method does not say);
+    `stages` (16, n), `matrix` (n, n + 1), `factors` (n, n), `pivots` (n,), `at` (n,) and `guards`
+    (M,) are work space; `rate` (n,) is the rate where the step begins.
+    """
+
+    ends: Vector
+    x: Vector
+    x_end: Vector
+    rate_end: Vector
+    error: Vector
+    inner: Matrix
+    stages: Matrix
+    matrix: Matrix
+    factors: Matrix
+    pivots: Ints
+    rate: Vector
+    at: Vector
+    guards: Vector
+
+
+class Watch(NamedTuple):
+    """The margins to watch while one mode combination lasts: sign*(guard - level), positive.
+
+    Of a fraction on a slide the margin is the distance to 0 or 1, of a contact its force. `to` is
+    the mode beyond. A margin is `armed` once it has been positive: only then may it cross. `rows`
+    (samples, margins) holds the margins over a step, `start` those where it begins, `found` where
+    in the step they cross, `hit` which of them do.
+    """
+
+    mode: Ints
+    kind: Ints
+    to: Vector
+    level: Vector
+    sign: Vector
+    armed: Ints
+    rows: Matrix
+    start: Vector
+    found: Vector
+    hit: Ints
+
+
+class Crossings(NamedTuple):
+    """What reached a level at an instant, per mode: `how` (-1: nothing), `to`, `up`.
+
+    `how` is GUARD, FRACTION of a slide, FORCE of a contact, or TIME; `to` is the mode beyond, `up`
+    1 where the guard went up.
+    """
+
+    how: Ints
+    to: Vector
+    up: Ints
+
+
+class Arrays(NamedTuple):
+    """All arrays of a run."""
+
+    flow: Flow
+    plan: Plan
+    progress: Progress
+    trial: Trial
+    watch: Watch
+    crossings: Crossings
+
+
+def table_of(arrays: Arrays) -> Ints:
+    """Address, rows and columns of each array, in the order of the classes and their fields."""
+    rows = [
+        (array.__array_interface__["data"][0], *array.shape, 1)[:3]
+        for group in cast(Sequence[Sequence[NDArray[Any]]], arrays)
+        for array in group
+    ]
+    return np.array(rows, dtype=np.int64).ravel()
+
+
+def _pointer(_: Any, address: Any) -> tuple[Any, Any]:
+    return _cast(types.CPointer(types.float64), address)
+
+
+def _int_pointer(_: Any, address: Any) -> tuple[Any, Any]:
+    return _cast(types.CPointer(types.int64), address)
+
+
+def _cast(kind: Any, address: Any) -> tuple[Any, Any]:
+    def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        return builder.inttoptr(values[0], context.get_value_type(kind))
+
+    return kind(address), generate
+
+
+pointer: Any = intrinsic(_pointer)
+int_pointer: Any = intrinsic(_int_pointer)
+
+
+@helper
+def vector(core: int, field: int) -> Vector:
+    """A field of numbers."""
+    table = numba.carray(int_pointer(core), (3 * field + 3,))
+    return numba.carray(pointer(table[3 * field]), (table[3 * field + 1],))
+
+
+@helper
+def matrix(core: int, field: int) -> Matrix:
+    """A field of rows of numbers."""
+    table = numba.carray(int_pointer(core), (3 * field + 3,))
+    shape = (table[3 * field + 1], table[3 * field + 2])
+    return numba.carray(pointer(table[3 * field]), shape)
+
+
+@helper
+def ints(core: int, field: int) -> Ints:
+    """A field of whole numbers."""
+    table = numba.carray(int_pointer(core), (3 * field + 3,))
+    return numba.carray(int_pointer(table[3 * field]), (table[3 * field + 1],))
+
+
+@helper
+def int_matrix(core: int, field: int) -> IntMatrix:
+    """A field of rows of whole numbers."""
+    table = numba.carray(int_pointer(core), (3 * field + 3,))
+    shape = (table[3 * field + 1], table[3 * field + 2])
+    return numba.carray(int_pointer(table[3 * field]), shape)
+
+
+@helper
+def flow_of(core: int) -> Flow:
+    """The field of a run."""
+    return Flow(
+        ints(core, 0),
+        vector(core, 1),
+        vector(core, 2),
+        vector(core, 3),
+        ints(core, 4),
+        matrix(core, 5),
+        ints(core, 6),
+    )
+
+
+@helper
+def plan_of(core: int) -> Plan:
+    """The modes, resets and transitions."""
+    return Plan(
+        ints(core, 7),
+        ints(core, 8),
+        ints(core, 9),
+        ints(core, 10),
+        ints(core, 11),
+        ints(core, 12),
+        int_matrix(core, 13),
+        ints(core, 14),
+        int_matrix(core, 15),
+        ints(core, 16),
+        ints(core, 17),
+    )
+
+
+@helper
+def progress_of(core: int) -> Progress:
+    """How far the run is."""
+    return Progress(
+        vector(core, 18),
+        vector(core, 19),
+        vector(core, 20),
+        ints(core, 21),
+        vector(core, 22),
+        matrix(core, 23),
+        matrix(core, 24),
+        matrix(core, 25),
+        matrix(core, 26),
+        matrix(core, 27),
+        vector(core, 28),
+        ints(core, 29),
+        ints(core, 30),
+    )
+
+
+@helper
+def trial_of(core: int) -> Trial:
+    """The trial step."""
+    return Trial(
+        vector(core, 31),
+        vector(core, 32),
+        vector(core, 33),
+        vector(core, 34),
+        vector(core, 35),
+        matrix(core, 36),
+        matrix(core, 37),
+        matrix(core, 38),
+        matrix(core, 39),
+        ints(core, 40),
+        vector(core, 41),
+        vector(core, 42),
+        vector(core, 43),
+    )
+
+
+@helper
+def watch_of(core: int) -> Watch:
+    """What is watched."""
+    return Watch(
+        ints(core, 44),
+        ints(core, 45),
+        vector(core, 46),
+        vector(core, 47),
+        vector(core, 48),
+        ints(core, 49),
+        matrix(core, 50),
+        vector(core, 51),
+        vector(core, 52),
+        ints(core, 53),
+    )
+
+
+@helper
+def crossings_of(core: int) -> Crossings:
+    """What happens now."""
+    return Crossings(
+        ints(core, 54),
+        vector(core, 55),
+        ints(core, 56),
+    )

@@ -1,0 +1,26 @@
+"""The numbers that the core and Python share: kinds, places in arrays, what a run may end with."""
+
+from __future__ import annotations
+
+KINDS = ("sign", "floor", "segment", "memory")
+SIGN, FLOOR, SEGMENT, MEMORY = 0, 1, 2, 3
+UP, DOWN, BOTH = 1, -1, 0
+DIRECTIONS = {"up": UP, "down": DOWN, "both": BOTH}
+# what reaches a level; PASSED: a guard that is found beyond it where a step begins
+GUARD, FRACTION, FORCE, TIME, PASSED = 0, 1, 2, 3, 4
+
+EVENTS = ("crossing", "scheduled", "reset", "impact", "stick", "slip", "rest", "transition")
+CROSSING, SCHEDULED, RESET, IMPACT, STICK, SLIP, REST, TRANSITION = range(8)
+LOG_HEAD = 4  # time, kind, mode, direction; behind them the states before and after
+
+FINISHED, PAUSED, LOG_FULL = 0, 1, 2
+UNDERFLOW, UNDEFINED, CHATTER, NO_MODE, NO_SLIDE = 10, 11, 12, 13, 14
+UNSETTLED, TWO_WRITES, BAD_RESET, NO_END = 15, 16, 17, 18
+
+# places in Progress.now
+T, H, END, LENGTH, RTOL, FIXED, RATIO = range(7)
+# places in Progress.ints
+STEPS, REJECTED, STIFF_STEPS, METHOD, CURRENT, SUSPICIOUS, CALM = range(7)
+SAMPLED, LOGGED, STIFF_ROWS, RECENT, BUDGET, WARNINGS, STAGE, WATCHED = range(7, 15)
+NOT_UNIQUE = 1
+CHATTER_EVENTS = 50

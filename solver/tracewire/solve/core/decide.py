@@ -1,0 +1,239 @@
+"""Which modes hold when guards are zero: the joint derivative test, and the entry of a slide.
+
+The modes of all guards that are zero are decided together. A combination is consistent when the
+first derivative that is not zero of each of these guards along the field of that combination has
+the sign of its mode. None consistent: slide. Several: the stored one.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracewire.solve.core.arrays import Ints, Vector, flow_of, plan_of
+from tracewire.solve.core.flow import (
+    FREE,
+    GUARD_RATES,
+    RESTING,
+    SECOND,
+    SLIDING,
+    bind,
+    evaluate,
+    guard_rates,
+    held,
+    is_affine,
+    is_independent,
+    patterns,
+    rates,
+)
+from tracewire.solve.core.jit import helper, unit
+
+MOST_TOGETHER = 6
+NOTHING = 1e-12
+SLACK = 1e-9
+BLOCK_ROUNDS = 6
+MOST_ROUNDS = 500
+HELD = -1  # in place of a mode: the guard stays on its surface
+UNIQUE, NOT_ALONE, NONE, NO_BLEND = 0, 1, 2, 3
+
+
+@unit
+def decide(core: int, t: float, x: Vector, zero: Ints, fresh: bool) -> int:
+    """Set the modes of the guards `zero`, all of kind sign.
+
+    Every guard on which the flow slides must be among them. The stored modes are unique wherever
+    they are consistent, unless the run is `fresh`. UNIQUE, NOT_ALONE; NONE where no combination
+    and no slide is consistent, NO_BLEND where modes of a slide multiply each other.
+    """
+    flow = flow_of(core)
+    stored = np.empty(len(zero), dtype=np.int64)
+    for n, i in enumerate(zero):
+        stored[n] = HELD if flow.bound[i] == SLIDING else int(flow.m[i] > 0.5)
+    small = _nothing(core, t, x, zero)
+    if len(zero) > MOST_TOGETHER:
+        count, chosen = _pivots(core, t, x, zero, stored, small)
+    else:
+        count, chosen = _combinations(core, t, x, zero, stored, fresh, small)
+    if count == 0:
+        return NONE
+    assign(core, zero, chosen)
+    if flow.counts[SLIDING] > 1 and not is_affine(core, t, x):
+        return NO_BLEND
+    kept = bool(np.all(chosen == stored))
+    return UNIQUE if count == 1 or (kept and not fresh) else NOT_ALONE
+
+
+@unit
+def _nothing(core: int, t: float, x: Vector, zero: Ints) -> float:
+    """Below what a derivative of a guard counts as zero: a part of the largest rate on any side."""
+    flow = flow_of(core)
+    assign(core, zero, np.ones(len(zero), dtype=np.int64))
+    field, largest = np.empty(len(x)), 1e-300
+    for n in range(-1, len(zero)):
+        if n >= 0:
+            flow.m[zero[n]] = 0.0
+        rates(core, t, x, field)
+        for value in field:
+            largest = max(largest, abs(value))
+        if n >= 0:
+            flow.m[zero[n]] = 1.0
+    return NOTHING * largest
+
+
+@helper
+def _combinations(
+    core: int, t: float, x: Vector, zero: Ints, stored: Ints, fresh: bool, small: float
+) -> tuple[int, Ints]:
+    """How many assignments fit, and the one to take.
+
+    Every assignment is tried: friction that can hold first, then signs, then slides of few
+    surfaces, each group from those that change little.
+    """
+    plan = plan_of(core)
+    size = len(zero)
+    total = 3**size
+    ranks, all_ = np.empty(total, dtype=np.int64), np.empty((total, size), dtype=np.int64)
+    for number in range(total):
+        rest, plain, loose, changed = number, 0, 0, 0
+        for n in range(size - 1, -1, -1):
+            value = 1 - rest % 3  # 1, 0, HELD
+            rest //= 3
+            all_[number, n] = value
+            holds = plan.can_hold[zero[n]] == 1
+            plain += value == HELD and not holds
+            loose += value != HELD and holds
+            changed += value != stored[n]
+        ranks[number] = (plain * (size + 1) + loose) * (size + 1) + changed
+    found, chosen = 0, stored.copy()
+    for number in np.argsort(ranks, kind="mergesort"):
+        assignment = all_[number]
+        slides = bool(np.any(assignment == HELD))
+        if found and slides:
+            break
+        assign(core, zero, assignment)
+        if _consistent(core, t, x, zero, assignment, stored, small):
+            same = bool(np.all(assignment == stored))
+            if found == 0 or same:
+                chosen = assignment.copy()
+            found += 1
+            if slides or (same and not fresh):
+                break
+    return found, chosen
+
+
+@helper
+def _pivots(
+    core: int, t: float, x: Vector, zero: Ints, stored: Ints, small: float
+) -> tuple[int, Ints]:
+    """How many assignments fit, and the one to take: the complementarity problem of many surfaces.
+
+    All guards whose rate depends on their own mode begin on the surface; a fraction outside [0, 1]
+    leaves it, a mode against its guard's rate comes back. After a few rounds only the first of
+    these changes, which ends for friction between bodies (K. G. Murty, Note on a Bard-type scheme
+    for solving the complementarity problem, Opsearch 11, 1974).
+    """
+    flow = flow_of(core)
+    now = np.full(len(zero), HELD)
+    assign(core, zero, now)
+    modes = len(flow.bound)
+    moves = patterns(core, GUARD_RATES, t, x, modes)
+    slides = np.flatnonzero(flow.bound == SLIDING)
+    free = np.zeros(len(zero), dtype=np.int64)
+    for n, i in enumerate(zero):
+        row = np.searchsorted(slides, i)
+        if moves[1 + row, i] != 0.0:
+            free[n] = 1
+        else:
+            now[n] = stored[n]
+    along = np.empty(modes)
+    for round_ in range(MOST_ROUNDS):
+        assign(core, zero, now)
+        if _consistent(core, t, x, zero, now, stored, small):
+            return 1, now
+        guard_rates(core, t, x, along)
+        fractions = held(core, t, x)
+        slides = np.flatnonzero(flow.bound == SLIDING)
+        for n, i in enumerate(zero):
+            if not free[n]:
+                continue
+            wrong = False
+            if now[n] == HELD:
+                part = fractions[np.searchsorted(slides, i)]
+                if not -SLACK <= part <= 1 + SLACK:
+                    now[n], wrong = int(part > 0.5), True
+            elif (along[i] > 0) != (now[n] == 1):
+                now[n], wrong = HELD, True
+            if wrong and round_ >= BLOCK_ROUNDS:
+                break
+    return 0, now
+
+
+@helper
+def assign(core: int, zero: Ints, assignment: Ints) -> None:
+    """Give the modes of the guards `zero` their values, HELD included."""
+    flow = flow_of(core)
+    plan = plan_of(core)
+    modes = len(flow.bound)
+    for n, i in enumerate(zero):
+        value = assignment[n]
+        flow.m[modes + i] = 1.0 if value == HELD and plan.can_hold[i] else 0.0
+        flow.m[i] = 0.0 if value == HELD else float(value)
+        bind(core, i, SLIDING if value == HELD else FREE)
+
+
+@unit
+def _consistent(
+    core: int, t: float, x: Vector, zero: Ints, assignment: Ints, stored: Ints, small: float
+) -> bool:
+    flow = flow_of(core)
+    some = flow.counts[SLIDING]
+    if some:
+        fractions = held(core, t, x)[:some]
+        for part in fractions:
+            if not -SLACK <= part <= 1 + SLACK:  # NaN is outside too
+                return False
+        if not is_independent(core, t, x) or _drives(core, t, x):
+            return False
+    along = np.empty(len(flow.bound))
+    guard_rates(core, t, x, along)
+    for n, i in enumerate(zero):
+        value = assignment[n]
+        if value == HELD:
+            continue
+        rate = along[i]
+        if abs(rate) <= small:
+            rate = first_higher(core, t, x, i, small)
+        if rate == 0.0:  # it stays on the surface: what was stored goes on
+            if stored[n] != HELD and value != stored[n]:
+                return False
+        elif (rate > 0) != (value == 1):
+            return False
+    return True
+
+
+@helper
+def _drives(core: int, t: float, x: Vector) -> bool:
+    """Whether a friction that would hold drives its own rate (a wrong sign), so that it cannot."""
+    flow, plan = flow_of(core), plan_of(core)
+    slides = np.flatnonzero(flow.bound == SLIDING)
+    moves = patterns(core, GUARD_RATES, t, x, len(flow.bound))
+    drives = False
+    for row, i in enumerate(slides):
+        drives = drives or (plan.can_hold[i] == 1 and moves[1 + row, i] > 0.0)
+    return drives
+
+
+@helper
+def first_higher(core: int, t: float, x: Vector, i: int, tolerance: float) -> float:
+    """The first derivative of a guard, from the second to the fourth, that is not zero; 0: none.
+
+    On a slide or in a contact they are not known, and count as zero.
+    """
+    flow = flow_of(core)
+    if flow.counts[SLIDING] + flow.counts[RESTING]:
+        return 0.0
+    values = np.empty(len(flow.bound))
+    for order in range(3):
+        evaluate(core, SECOND + order, t, x, values)
+        if abs(values[i]) > tolerance:
+            return float(values[i])
+    return 0.0

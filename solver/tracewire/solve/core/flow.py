@@ -1,0 +1,274 @@
+"""The smooth flow between two events: rates with frozen modes, and Filippov's blend on a slide.
+
+On a slide over surfaces S the field is the sum over patterns of (product of m or 1 - m) times the
+frozen field, with the fractions m for which every sliding guard keeps d(guard)/dt = 0. A contact
+that rests adds force times push, with the forces for which d2(guard)/dt2 = 0.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracewire.solve.core.arrays import Matrix, Vector, flow_of
+from tracewire.solve.core.jit import helper, invoke, unit
+from tracewire.solve.core.linear import factor, solved
+
+FUNCTIONS = (
+    "rhs",
+    "guards",
+    "guard_rates",
+    "outputs",
+    "timed",
+    "resets",
+    "jacobian",
+    "guard_gradients",
+    "guard_curves",
+    "guard_second",
+    "guard_third",
+    "guard_fourth",
+)
+RHS, GUARDS, GUARD_RATES, OUTPUTS, TIMED, RESETS = 0, 1, 2, 3, 4, 5
+JACOBIAN, GRADIENTS, CURVES, SECOND = 6, 7, 8, 9
+FREE, SLIDING, RESTING = 0, 1, 2
+EVALUATIONS = 3  # counts[SLIDING] and counts[RESTING] hold how many guards are so
+DIFFERENCE = 1e-7
+AFFINE = 1e-9
+INDEPENDENT = 1e-10
+
+
+@helper
+def evaluate(core: int, which: int, t: float, x: Vector, out: Vector) -> None:
+    """One of the model's functions with the modes as they stand."""
+    flow = flow_of(core)
+    out[:] = 0.0
+    invoke(flow.address[which], t, x, flow.m, flow.c, flow.k, out)
+
+
+@unit
+def patterns(core: int, which: int, t: float, x: Vector, size: int) -> Matrix:
+    """A function at all sliding modes 0 (row 0), and its change as each of them becomes 1."""
+    flow = flow_of(core)
+    rows = np.empty((1 + flow.counts[SLIDING], size))
+    slides = np.flatnonzero(flow.bound == SLIDING)
+    for i in slides:
+        flow.m[i] = 0.0
+    evaluate(core, which, t, x, rows[0])
+    for row, i in enumerate(slides):
+        flow.m[i] = 1.0
+        evaluate(core, which, t, x, rows[1 + row])
+        rows[1 + row] -= rows[0]
+        flow.m[i] = 0.0
+    return rows
+
+
+@unit
+def held(core: int, t: float, x: Vector) -> Vector:
+    """The fractions of the slides, then the forces of the contacts; NaN where none hold them."""
+    flow = flow_of(core)
+    n, modes = len(x), len(flow.bound)
+    slides = np.flatnonzero(flow.bound == SLIDING)
+    rests = np.flatnonzero(flow.bound == RESTING)
+    some, count = len(slides), len(slides) + len(rests)
+    matrix, right = np.empty((count, count)), np.empty(count)
+    moves = patterns(core, GUARD_RATES, t, x, modes)
+    for row in range(some):
+        right[row] = -moves[0, slides[row]]
+        for column in range(some):
+            matrix[row, column] = moves[1 + column, slides[row]]
+    if len(rests):
+        fields = patterns(core, RHS, t, x, n)
+        curves, gradients = np.empty((modes, n + 1)), np.empty((modes, n))
+        evaluate(core, CURVES, t, x, curves)
+        evaluate(core, GRADIENTS, t, x, gradients)
+        for row in range(count):
+            slope = gradients[slides[row]] if row < some else curves[rests[row - some], :n]
+            for column in range(some, count):
+                matrix[row, column] = np.dot(slope, flow.push[rests[column - some]])
+            if row >= some:
+                right[row] = -np.dot(slope, fields[0]) - curves[rests[row - some], n]
+                for column in range(some):
+                    matrix[row, column] = np.dot(slope, fields[1 + column])
+    return solved(matrix, right)
+
+
+@helper
+def push(core: int, forces: Vector, out: Vector) -> None:
+    """Add what the contacts do to the rates."""
+    flow = flow_of(core)
+    for row, i in enumerate(np.flatnonzero(flow.bound == RESTING)):
+        out += forces[row] * flow.push[i]
+
+
+@unit
+def blended(core: int, which: int, t: float, x: Vector, fractions: Vector, out: Vector) -> None:
+    """A function on a slide, as the blend of its values on the sides."""
+    flow = flow_of(core)
+    rows = patterns(core, which, t, x, len(out))
+    out[:] = rows[0]
+    for row in range(flow.counts[SLIDING]):
+        out += fractions[row] * rows[1 + row]
+
+
+@unit
+def rates(core: int, t: float, x: Vector, out: Vector) -> None:
+    """dx/dt with frozen modes; on a slide or in a contact the field that stays there."""
+    flow = flow_of(core)
+    flow.counts[EVALUATIONS] += 1
+    if flow.counts[SLIDING] + flow.counts[RESTING] == 0:
+        evaluate(core, RHS, t, x, out)
+        return
+    both = held(core, t, x)
+    blended(core, RHS, t, x, both, out)
+    push(core, both[flow.counts[SLIDING] :], out)
+
+
+@unit
+def guard_rates(core: int, t: float, x: Vector, out: Vector) -> None:
+    """d(guard)/dt along the flow, for all modes."""
+    flow = flow_of(core)
+    if flow.counts[SLIDING] + flow.counts[RESTING] == 0:
+        evaluate(core, GUARD_RATES, t, x, out)
+        return
+    both = held(core, t, x)
+    blended(core, GUARD_RATES, t, x, both, out)
+    if flow.counts[RESTING]:
+        gradients, more = np.empty((len(out), len(x))), np.zeros(len(x))
+        evaluate(core, GRADIENTS, t, x, gradients)
+        push(core, both[flow.counts[SLIDING] :], more)
+        out += np.dot(gradients, more)
+
+
+@unit
+def outputs(core: int, t: float, x: Vector, out: Vector) -> None:
+    """The recorded signals."""
+    flow = flow_of(core)
+    if flow.counts[SLIDING] == 0:
+        evaluate(core, OUTPUTS, t, x, out)
+    else:
+        blended(core, OUTPUTS, t, x, held(core, t, x), out)
+
+
+@unit
+def jacobian(core: int, t: float, x: Vector, out: Matrix) -> None:
+    """d rates / dx and, last, d rates / dt (n, n + 1): from the tape, by differences on a slide."""
+    flow = flow_of(core)
+    n = len(x)
+    if flow.counts[SLIDING] + flow.counts[RESTING] == 0:
+        evaluate(core, JACOBIAN, t, x, out)
+        return
+    base, moved, at = np.empty(n), np.empty(n), x.copy()
+    rates(core, t, x, base)
+    for j in range(n):
+        at[j] = x[j] + DIFFERENCE * max(1.0, abs(x[j]))
+        rates(core, t, at, moved)
+        out[:, j] = (moved - base) / (at[j] - x[j])
+        at[j] = x[j]
+    later = t + DIFFERENCE * max(1.0, abs(t))
+    rates(core, later, x, moved)
+    out[:, n] = (moved - base) / (later - t)
+
+
+@unit
+def is_independent(core: int, t: float, x: Vector) -> bool:
+    """Whether the sliding modes move their guards independently, so that one slide fits."""
+    flow = flow_of(core)
+    some = flow.counts[SLIDING]
+    if some < 2:
+        return True
+    slides = np.flatnonzero(flow.bound == SLIDING)
+    moves = patterns(core, GUARD_RATES, t, x, len(flow.bound))
+    matrix = np.empty((some, some))
+    for row in range(some):
+        largest = 0.0
+        for column in range(some):
+            matrix[row, column] = moves[1 + column, slides[row]]
+            largest = max(largest, abs(matrix[row, column]))
+        if not largest > 0.0:
+            return False
+        matrix[row] /= largest
+    return factor(matrix, np.empty(some, dtype=np.int64)) > INDEPENDENT
+
+
+@unit
+def is_affine(core: int, t: float, x: Vector) -> bool:
+    """Whether the rates are affine in the sliding modes, so that the blend is Filippov's."""
+    flow = flow_of(core)
+    n = len(x)
+    rows = patterns(core, RHS, t, x, n)
+    slides = np.flatnonzero(flow.bound == SLIDING)
+    for i in slides:
+        flow.m[i] = 1.0
+    corner = np.empty(n)
+    evaluate(core, RHS, t, x, corner)
+    for i in slides:
+        flow.m[i] = 0.0
+    size = 0.0
+    for row in range(1, len(rows)):
+        corner -= rows[row]
+        size = max(size, np.max(np.abs(rows[row])))
+    return bool(np.all(np.abs(corner - rows[0]) <= AFFINE * size))
+
+
+@helper
+def bind(core: int, i: int, how: int) -> None:
+    """Let a guard slide or rest, or free it."""
+    flow = flow_of(core)
+    old = flow.bound[i]
+    if old != how:
+        if old != FREE:
+            flow.counts[old] -= 1
+        if how != FREE:
+            flow.counts[how] += 1
+        flow.bound[i] = how
+
+
+@unit
+def pin(core: int, t: float, x: Vector) -> None:
+    """Put the states back onto the surfaces on which they are held: what rounding has moved.
+
+    The guards of contacts along their gradients; then those of slides along theirs, and the rates
+    of contacts along their push, all together: each may change the others.
+    """
+    flow = flow_of(core)
+    n, modes = len(x), len(flow.bound)
+    values, gradients = np.empty(modes), np.empty((modes, n))
+    slides = np.flatnonzero(flow.bound == SLIDING)
+    rests = np.flatnonzero(flow.bound == RESTING)
+    some, count = len(slides), len(slides) + len(rests)
+    evaluate(core, GUARDS, t, x, values)
+    evaluate(core, GRADIENTS, t, x, gradients)
+    rows, ways, off = np.empty((count, n)), np.empty((count, n)), np.empty(count)
+    if len(rests):
+        for row, i in enumerate(rests):
+            rows[row], ways[row], off[row] = gradients[i], gradients[i], values[i]
+        _move_back(rows[: len(rests)], ways[: len(rests)], off[: len(rests)], x)
+        along, curves = np.empty(modes), np.empty((modes, n + 1))
+        guard_rates(core, t, x, along)
+        evaluate(core, CURVES, t, x, curves)
+        if some:
+            evaluate(core, GUARDS, t, x, values)
+        for row, i in enumerate(rests):
+            rows[some + row], ways[some + row] = curves[i, :n], flow.push[i]
+            off[some + row] = along[i]
+    for row, i in enumerate(slides):
+        rows[row], ways[row], off[row] = gradients[i], gradients[i], values[i]
+    _move_back(rows, ways, off, x)
+
+
+@unit
+def _move_back(rows: Matrix, ways: Matrix, off: Vector, x: Vector) -> None:
+    """Move x along `ways` until what changes with the gradients `rows` and is `off` is zero.
+
+    One after the other where they depend on each other.
+    """
+    count = len(off)
+    if not np.any(off != 0.0):
+        return
+    matrix = np.dot(rows, ways.T)
+    parts = solved(matrix.copy(), off)
+    for k in range(count):
+        part = parts[k]
+        if not np.all(np.isfinite(parts)):
+            part = off[k] / matrix[k, k] if matrix[k, k] != 0.0 else 0.0
+        for j in range(len(x)):
+            x[j] -= ways[k, j] * part

@@ -1,0 +1,378 @@
+"""The event loop: steps with frozen modes up to the next event, then the event, then again."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tracewire.solve.core import locate, methods, schedule
+from tracewire.solve.core.arrays import (
+    Vector,
+    crossings_of,
+    flow_of,
+    plan_of,
+    progress_of,
+    trial_of,
+    watch_of,
+)
+from tracewire.solve.core.codes import (
+    BUDGET,
+    CALM,
+    CURRENT,
+    END,
+    FINISHED,
+    FIXED,
+    GUARD,
+    LENGTH,
+    LOG_FULL,
+    LOGGED,
+    METHOD,
+    PASSED,
+    PAUSED,
+    RATIO,
+    REJECTED,
+    RTOL,
+    SEGMENT,
+    STAGE,
+    STEPS,
+    STIFF_ROWS,
+    STIFF_STEPS,
+    SUSPICIOUS,
+    TIME,
+    UNDEFINED,
+    UNDERFLOW,
+    H,
+    T,
+)
+from tracewire.solve.core.flow import (
+    GUARDS,
+    RESTING,
+    SLIDING,
+    evaluate,
+    guard_rates,
+    pin,
+    rates,
+)
+from tracewire.solve.core.jit import helper, unit
+from tracewire.solve.core.locate import AT_ONCE, NOTHING
+from tracewire.solve.core.methods import DORMAND_PRINCE, RK4, ROSENBROCK
+from tracewire.solve.core.record import sample_end, sample_inside
+from tracewire.solve.core.start import begin
+from tracewire.solve.core.transition import happen, no_crossings
+
+STIFF = 3.0  # h times the largest eigenvalue at the edge of stability of the explicit method
+MANY_STIFF = 8
+MANY_CALM = 6
+POLISH = 3
+TOGETHER = 1e-12
+SOON = 1e-9
+NEAR = 32.0
+LARGEST_PART = 0.1  # of the span, for one step
+
+
+@unit
+def advance(core: int) -> int:
+    """Go on with a run until it ends, its budget of steps or its log is used up, or it fails.
+
+    Returns FINISHED, PAUSED, LOG_FULL, or the status of an error.
+    """
+    plan = plan_of(core)
+    progress = progress_of(core)
+    now, ints, x = progress.now, progress.ints, progress.x
+    modes = len(plan.kind)
+    ahead = np.empty(len(plan.timed))
+    if ints[STAGE] == 0:
+        status = begin(core)
+        if status != FINISHED:
+            return status
+        ints[STAGE] = 1
+    rate = trial_of(core).rate
+    rates(core, now[T], x, rate)
+    if not np.all(np.isfinite(rate)):
+        return UNDEFINED
+    budget = ints[STEPS] + ints[BUDGET]
+    while now[T] < now[END]:
+        if ints[LOGGED] + 4 * modes + 4 > len(progress.log):
+            return LOG_FULL
+        if ints[STEPS] >= budget:
+            return PAUSED
+        status = _smooth(core, ahead, budget)
+        if status != FINISHED:
+            return status
+    sample_end(core, now[T], x)
+    return FINISHED
+
+
+@unit
+def _smooth(core: int, ahead: Vector, budget: int) -> int:
+    """Steps until something happens, and what happens. A status."""
+    flow = flow_of(core)
+    progress = progress_of(core)
+    trial = trial_of(core)
+    now, ints, x = progress.now, progress.ints, progress.x
+    rate, start, hit = trial.rate, watch_of(core).start, watch_of(core).hit
+    locate.watch(core)
+    rates(core, now[T], x, rate)
+    due = schedule.upcoming(core, now[T], x, ahead)
+    limit = min(due, now[END])
+    _choose(core)
+    if now[H] <= 0.0 and limit > now[T]:
+        now[H] = _first_step(core, rate, limit)
+    while now[T] < limit:
+        if ints[STEPS] >= budget:
+            return PAUSED
+        if locate.passed(core, hit):  # so slowly that no step has seen it
+            return _cross(core, PASSED)
+        status = _attempt(core, rate, limit)
+        if status == UNDEFINED:
+            return _undefined(core)
+        if status != FINISHED:
+            return status
+        method, ratio = ints[CURRENT], now[RATIO]
+        how = locate.find(core, method)
+        if how == AT_ONCE and trial.ends[1] > SOON * now[LENGTH]:
+            now[H] = trial.ends[1] / 16
+            continue
+        if how != NOTHING:
+            return _crossed(core)
+        end = trial.ends[0] + trial.ends[1]
+        sample_inside(core, method, end)
+        last = end >= limit
+        now[T] = limit if last else end
+        x[:] = trial.x_end
+        if flow.counts[SLIDING] + flow.counts[RESTING]:
+            pin(core, now[T], x)
+        now[H] = max(now[H], trial.ends[1] * ratio) if last else trial.ends[1] * ratio
+        if method == ROSENBROCK or flow.counts[SLIDING] + flow.counts[RESTING]:
+            rates(core, now[T], x, rate)
+        else:
+            rate[:] = trial.rate_end
+        locate.margins(core, now[T], x, start)
+        if _watch_stiffness(core):
+            _choose(core)
+    if limit == due:
+        return _scheduled(core, ahead)
+    return FINISHED
+
+
+@helper
+def _key(core: int, out: Vector) -> None:
+    """What identifies the mode combination."""
+    flow = flow_of(core)
+    out[: len(flow.m)] = flow.m
+    out[len(flow.m) :] = flow.bound
+
+
+@unit
+def _choose(core: int) -> None:
+    """The method for this mode combination."""
+    progress = progress_of(core)
+    ints = progress.ints
+    ints[CURRENT] = ints[METHOD]
+    if ints[METHOD] >= 0:
+        return
+    ints[CURRENT] = DORMAND_PRINCE
+    if ints[STIFF_ROWS] == 0:
+        return
+    key = np.empty(progress.stiff.shape[1])
+    _key(core, key)
+    for row in range(ints[STIFF_ROWS]):
+        if np.all(progress.stiff[row] == key):
+            ints[CURRENT] = ROSENBROCK
+            return
+
+
+@unit
+def _watch_stiffness(core: int) -> bool:
+    """After enough steps at the edge of stability this combination is called stiff: now."""
+    progress = progress_of(core)
+    trial = trial_of(core)
+    ints = progress.ints
+    if ints[METHOD] >= 0 or ints[CURRENT] == ROSENBROCK:
+        return False
+    if trial.ends[2] > STIFF:
+        ints[SUSPICIOUS] += 1
+        ints[CALM] = 0
+    else:
+        ints[CALM] += 1
+        if ints[CALM] == MANY_CALM:
+            ints[SUSPICIOUS] = 0
+    if ints[SUSPICIOUS] < MANY_STIFF:
+        return False
+    ints[SUSPICIOUS] = 0
+    row = min(ints[STIFF_ROWS], len(progress.stiff) - 1)  # the last row is used again when full
+    _key(core, progress.stiff[row])
+    ints[STIFF_ROWS] = row + 1
+    return True
+
+
+@helper
+def _size(values: Vector, x: Vector, rtol: float, atol: Vector) -> float:
+    total = 0.0
+    for i in range(len(x)):
+        total += (values[i] / (atol[i] + rtol * abs(x[i]))) ** 2
+    return math.sqrt(total / max(len(x), 1))
+
+
+@unit
+def _first_step(core: int, rate: Vector, limit: float) -> float:
+    """Hairer's starting step for a method of order 5 (Solving ODEs I, section II.4)."""
+    progress = progress_of(core)
+    now, x = progress.now, progress.x
+    length = now[LENGTH]
+    if progress.ints[CURRENT] == RK4:
+        return now[FIXED]
+    size = _size(x, x, now[RTOL], progress.atol)
+    speed = _size(rate, x, now[RTOL], progress.atol)
+    h = 1e-6 * length if size < 1e-5 or speed < 1e-5 else 0.01 * size / speed
+    h = min(h, limit - now[T])
+    moved = np.empty(len(x))
+    rates(core, now[T] + h, x + h * rate, moved)
+    bend = _size(moved - rate, x, now[RTOL], progress.atol) / h
+    if not math.isfinite(bend):
+        return h * 1e-3
+    largest = max(bend, speed)
+    after = max(1e-6 * length, h * 1e-3) if largest <= 1e-15 else (0.01 / largest) ** 0.2
+    return min(100 * h, after, length)
+
+
+@helper
+def smallest_step(core: int) -> float:
+    """The step below which a run cannot go on."""
+    progress = progress_of(core)
+    t = abs(progress.now[T])
+    return max(1e-15 * progress.now[LENGTH], 16 * (np.nextafter(t, np.inf) - t))
+
+
+@unit
+def _attempt(core: int, rate: Vector, limit: float) -> int:
+    """A step within the tolerances, in `trial`; the factor for the next one in now[RATIO].
+
+    UNDEFINED where the rates are undefined however small the step is; UNDERFLOW where the error
+    stays large; PAUSED never.
+    """
+    progress = progress_of(core)
+    now, ints = progress.now, progress.ints
+    method, power = ints[CURRENT], methods.exponent_of(ints[CURRENT])
+    fixed = method == RK4
+    while True:
+        ints[STEPS] += 1
+        h = min(now[H], now[FIXED]) if fixed else min(now[H], LARGEST_PART * now[LENGTH])
+        if now[T] + h * (1.0 + 1e-9 if fixed else 1.01) >= limit:
+            h = limit - now[T]
+        methods.step(core, method, now[T], progress.x, rate, h)
+        error = methods.error_of(core, method, now[RTOL], progress.atol)
+        if error <= 1.0:
+            if method == ROSENBROCK:
+                ints[STIFF_STEPS] += 1
+            now[RATIO] = min(6.0, max(0.2, 0.9 * max(error, 1e-10) ** power))
+            if fixed:
+                now[RATIO] = now[FIXED] / h
+            return FINISHED
+        ints[REJECTED] += 1
+        finite = math.isfinite(error)
+        now[H] = h * (max(0.1, 0.9 * error**power) if finite else 0.1)
+        if now[H] < smallest_step(core):
+            return UNDERFLOW if finite else UNDEFINED
+
+
+@unit
+def _undefined(core: int) -> int:
+    """Where the rates end to be defined: at a guard it is an event, elsewhere an error."""
+    progress, hit = progress_of(core), watch_of(core).hit
+    reach = NEAR * smallest_step(core)
+    if locate.reached(core, progress.now[T], progress.x, reach, hit) == 0:
+        return UNDEFINED
+    progress.now[H] = 0.0
+    return _cross(core, GUARD)
+
+
+@unit
+def _cross(core: int, how: int) -> int:
+    """Let the guards that are marked cross now. A status."""
+    progress, watched, crossings = progress_of(core), watch_of(core), crossings_of(core)
+    no_crossings(core)
+    for row in range(locate.watched_count(core)):
+        if watched.hit[row]:
+            i = watched.mode[row]
+            crossings.how[i], crossings.to[i] = how, watched.to[row]
+            crossings.up[i] = watched.sign[row] < 0
+    return happen(core, progress.now[T], progress.x)
+
+
+@unit
+def _crossed(core: int) -> int:
+    """Go to the located time and fire what happens there. A status."""
+    progress, trial = progress_of(core), trial_of(core)
+    watched, crossings = watch_of(core), crossings_of(core)
+    now, ints, x, found = progress.now, progress.ints, progress.x, watched.found
+    first = int(np.argmin(found))
+    _polish(core, found[first], first)
+    end = trial.ends[0] + trial.ends[1]
+    sample_inside(core, ints[CURRENT], end)
+    now[T] = end
+    x[:] = trial.x_end
+    hit = watched.hit
+    locate.margins(core, end, x, watched.start)
+    locate.reached(core, end, x, TOGETHER * now[LENGTH], hit)
+    no_crossings(core)
+    for row in range(len(found)):
+        if not (found[row] < np.inf or hit[row]):
+            continue
+        i, kind = watched.mode[row], watched.kind[row]
+        if crossings.how[i] >= 0 and not found[row] < np.inf:
+            continue
+        crossings.how[i], crossings.to[i] = kind, watched.to[row]
+        up = watched.sign[row] < 0 if kind == GUARD else watched.to[row] > 0.5
+        crossings.up[i] = int(up)
+    before = x.copy()
+    status = happen(core, end, x)
+    now[H] = now[H] / 4 if np.all(before == x) else 0.0
+    ints[SUSPICIOUS] = 0
+    return status
+
+
+@unit
+def _polish(core: int, theta: float, row: int) -> None:
+    """Make the trial end at the crossing: located on the polynomial, then on true steps."""
+    flow = flow_of(core)
+    progress = progress_of(core)
+    trial = trial_of(core)
+    watched = watch_of(core)
+    t, x, whole = trial.ends[0], progress.x, trial.ends[1]
+    method, i = progress.ints[CURRENT], watched.mode[row]
+    h = max(theta * whole, smallest_step(core))
+    methods.step(core, method, t, x, trial.rate, h)
+    if watched.kind[row] != GUARD or not np.all(np.isfinite(trial.x_end)):
+        return
+    guards, along = np.empty(len(flow.bound)), np.empty(len(flow.bound))
+    for _ in range(POLISH):
+        evaluate(core, GUARDS, t + h, trial.x_end, guards)
+        guard_rates(core, t + h, trial.x_end, along)
+        change = -(guards[i] - watched.level[row]) / along[i] if along[i] != 0.0 else 0.0
+        if abs(change) <= 1e-14 * progress.now[LENGTH] or not 0 < h + change <= whole:
+            return
+        if abs(change) > 0.1 * whole:
+            return
+        h += change
+        methods.step(core, method, t, x, trial.rate, h)
+
+
+@unit
+def _scheduled(core: int, ahead: Vector) -> int:
+    """Change timed modes, and settle the others in the new field. A status."""
+    flow = flow_of(core)
+    plan = plan_of(core)
+    progress, crossings = progress_of(core), crossings_of(core)
+    loud = False
+    no_crossings(core)
+    for row, i in enumerate(plan.timed):
+        if not np.isnan(ahead[row]):
+            crossings.how[i], crossings.to[i] = TIME, ahead[row]
+            crossings.up[i] = ahead[row] > flow.m[i]
+            loud = loud or plan.kind[i] != SEGMENT
+    status = happen(core, progress.now[T], progress.x)
+    if loud:
+        progress.now[H] = 0.0
+    return status

@@ -1,0 +1,199 @@
+"""How the core is compiled: by numba, once per installation; and how it calls a model's functions.
+
+The functions of the core are ordinary Python as far as a reader is concerned. `unit` makes machine
+code of one, on its own, which others call by its symbol: linked into each of its callers, as numba
+does it, the core would take ten times as long to compile. `helper` is for small functions that are
+built into their callers. The machine code is kept in the user's cache folder, under a name that
+changes with any of the core's files: numba itself looks only at the file of a function, not at
+what the function calls.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import FunctionType, ModuleType
+from typing import Any, TypeVar, cast
+
+import networkx as nx
+import numba
+import numpy as np
+import platformdirs
+from llvmlite import binding, ir
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
+from numpy.typing import NDArray
+
+Vector = NDArray[np.float64]
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def _cache() -> Path:
+    """The folder for the machine code of these sources."""
+    here = Path(__file__).parent
+    digest = hashlib.sha256(numba.__version__.encode())
+    for file in sorted(here.rglob("*.py")):
+        digest.update(file.read_bytes())
+    name = f"core-{digest.hexdigest()[:16]}"
+    for root in (platformdirs.user_cache_path("tracewire"), Path(tempfile.gettempdir())):
+        folder = root / name
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError:
+            continue
+        if os.access(folder, os.W_OK):
+            return folder
+    return here / "__pycache__"
+
+
+CACHE = _cache()
+
+
+TYPES = {
+    "int": types.int64,
+    "float": types.float64,
+    "bool": types.boolean,
+    "Vector": types.float64[::1],
+    "Matrix": types.float64[:, ::1],
+    "Ints": types.int64[::1],
+    "None": types.void,
+}
+UNITS: dict[str, Unit] = {}
+STUBS: dict[int, Unit] = {}
+KEPT: list[Any] = []
+FIRST = "tracewire: compiling the integrators, once for this installation (about a minute) ..."
+
+
+@contextmanager
+def _cached_here() -> Iterator[None]:
+    given = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = given or str(CACHE)
+    try:
+        yield
+    finally:
+        numba.config.CACHE_DIR = given
+
+
+def helper(function: Function) -> Function:
+    """The function as part of its callers: no Python objects, division by zero is infinity."""
+    with _cached_here():
+        return cast(Function, numba.njit(cache=True, nogil=True, error_model="numpy")(function))
+
+
+class Unit:
+    """A function of the core with its symbol and its types; compiled when a run first needs it."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        hints = function.__annotations__
+        self.function = function
+        self.symbol = f"{function.__module__}.{function.__name__}".replace(".", "_")
+        self.result = TYPES[hints["return"]]
+        self.given = {name: TYPES[hint] for name, hint in hints.items() if name != "return"}
+        self.code: Any = None
+
+    def compile(self) -> None:
+        """Make the machine code, or get it from the cache, and let the symbol be known."""
+        signature = self.result(*self.given.values())
+        with _cached_here():
+            self.code = numba.cfunc(signature, cache=True, error_model="numpy")(self.function)
+        binding.add_symbol(self.symbol, self.code.address)
+
+    def call(self, context: Any, builder: Any, _: Any, values: Any) -> Any:
+        """The instructions of a call."""
+        kinds = [context.get_value_type(kind) for kind in (self.result, *self.given.values())]
+        there = ir.FunctionType(kinds[0], kinds[1:])
+        outside = cgutils.get_or_insert_function(builder.module, there, self.symbol)
+        value = builder.call(outside, values)
+        return context.get_dummy_value() if self.result is types.void else value
+
+    def stub(self) -> Any:
+        """What other functions call."""
+        made: dict[str, Any] = {"unit": self}  # numba wants each argument by its name
+        names = ", ".join(self.given)
+        text = f"def {self.function.__name__}(typing, {names}):\n"
+        text += "    return unit.result(*unit.given.values()), unit.call"
+        exec(text, made)
+        return intrinsic(made[self.function.__name__])
+
+
+def unit(function: Function) -> Function:
+    """The function as machine code of its own; its annotations are its types."""
+    new = Unit(function)
+    stub = new.stub()
+    UNITS[new.symbol] = new
+    STUBS[id(stub)] = new
+    KEPT.append(stub)
+    return cast(Function, stub)
+
+
+def _called(function: Callable[..., Any]) -> set[Unit]:
+    """The units whose names stand in a function, or in the helpers that it calls."""
+    found: set[Unit] = set()
+    waiting, seen = [function], {function}
+    while waiting:
+        reader = waiting.pop()
+        names, known = reader.__code__.co_names, reader.__globals__
+        rooms = [known[name] for name in names if isinstance(known.get(name), ModuleType)]
+        rooms = [room for room in rooms if room.__name__.startswith(__package__)]
+        for name in names:
+            for thing in (known.get(name), *(getattr(room, name, None) for room in rooms)):
+                inside = getattr(thing, "py_func", None)
+                if id(thing) in STUBS:
+                    found.add(STUBS[id(thing)])
+                elif isinstance(inside, FunctionType) and inside not in seen:
+                    seen.add(inside)
+                    waiting.append(inside)
+    return found
+
+
+def ready(function: Callable[..., Any]) -> Any:
+    """The C function of a unit, with all that it calls, for Python to call."""
+    if STUBS[id(function)].code is None:
+        graph: nx.DiGraph[Unit] = nx.DiGraph()
+        graph.add_nodes_from(UNITS.values())
+        for caller in UNITS.values():
+            found = _called(caller.function) - {caller}
+            graph.add_edges_from((callee, caller) for callee in found)
+        waiting = [made for made in nx.topological_sort(graph) if made.code is None]
+        if not any(CACHE.rglob("*.nbi")):
+            print(FIRST, file=sys.stderr, flush=True)  # noqa: T201
+        for made in waiting:
+            made.compile()
+    return STUBS[id(function)].code.ctypes
+
+
+def _invoke(
+    typing: Any, address: Any, t: Any, x: Any, m: Any, c: Any, k: Any, out: Any
+) -> tuple[Any, Any]:
+    """Call the C function at an address: f(t, x, m, c, k, out) with the data of the arrays."""
+    signature = types.void(address, t, x, m, c, k, out)
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        double, pointer = ir.DoubleType(), ir.DoubleType().as_pointer()
+        kind = ir.FunctionType(ir.VoidType(), [double, *[pointer] * 5])
+        function = builder.inttoptr(arguments[0], kind.as_pointer())
+        data = [
+            builder.bitcast(context.make_array(given)(context, builder, value).data, pointer)
+            for given, value in zip(signature.args[2:], arguments[2:], strict=True)
+        ]
+        builder.call(function, [arguments[1], *data])
+        return context.get_dummy_value()
+
+    return signature, generate
+
+
+invoke: Callable[..., None] = intrinsic(_invoke)
+
+
+@helper
+def invoke_at(
+    address: int, t: float, x: Vector, m: Vector, c: Vector, k: Vector, out: Vector
+) -> None:
+    """Call the C function at an address, from Python."""
+    invoke(address, t, x, m, c, k, out)

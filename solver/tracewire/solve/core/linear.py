@@ -1,0 +1,74 @@
+"""Small dense linear systems: one factorisation, several solutions (numba has no such pair)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.solve.core.jit import unit
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@unit
+def factor(matrix: Matrix, pivots: Ints) -> float:
+    """Replace a matrix (n, n) by its factors P A = L U; the smallest over the largest |pivot|.
+
+    0 where the matrix is singular or not finite.
+    """
+    n = len(matrix)
+    smallest, largest = np.inf, 0.0
+    for j in range(n):
+        best, row = abs(matrix[j, j]), j
+        for i in range(j + 1, n):
+            if abs(matrix[i, j]) > best:
+                best, row = abs(matrix[i, j]), i
+        pivots[j] = row
+        if not 0.0 < best < np.inf:
+            return 0.0
+        smallest, largest = min(smallest, best), max(largest, best)
+        if row != j:
+            for k in range(n):
+                matrix[j, k], matrix[row, k] = matrix[row, k], matrix[j, k]
+        inverse = 1.0 / matrix[j, j]
+        for i in range(j + 1, n):
+            if matrix[i, j] != 0.0:
+                matrix[i, j] *= inverse
+                part = matrix[i, j]
+                for k in range(j + 1, n):
+                    matrix[i, k] -= part * matrix[j, k]
+    return smallest / largest if n else 1.0
+
+
+@unit
+def substitute(factors: Matrix, pivots: Ints, right: Vector) -> None:
+    """Replace the right side by the solution."""
+    n = len(factors)
+    for j in range(n):
+        row = pivots[j]
+        if row != j:
+            right[j], right[row] = right[row], right[j]
+    for i in range(n):
+        total = right[i]
+        for k in range(i):
+            total -= factors[i, k] * right[k]
+        right[i] = total
+    for i in range(n - 1, -1, -1):
+        total = right[i]
+        for k in range(i + 1, n):
+            total -= factors[i, k] * right[k]
+        right[i] = total / factors[i, i]
+
+
+@unit
+def solved(matrix: Matrix, right: Vector) -> Vector:
+    """The solution of a system; NaN where it is singular. The matrix is lost."""
+    pivots = np.empty(len(matrix), dtype=np.int64)
+    answer = right.copy()
+    if factor(matrix, pivots) > 0.0:
+        substitute(matrix, pivots, answer)
+    else:
+        answer[:] = np.nan
+    return answer

@@ -1,0 +1,271 @@
+"""Finding the guards that cross zero inside a step, and the time of the first of them.
+
+A crossing is on the half-open interval (t0, t1]: a guard that is zero where a step begins does not
+fire there. Guards are sampled inside the step, and a sampled minimum is refined by a parabola, so
+that two crossings inside one step are not missed.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracewire.solve.core import methods
+from tracewire.solve.core.arrays import (
+    Ints,
+    Vector,
+    flow_of,
+    plan_of,
+    progress_of,
+    trial_of,
+    watch_of,
+)
+from tracewire.solve.core.codes import FLOOR, FORCE, FRACTION, GUARD, MEMORY, SIGN, WATCHED, T
+from tracewire.solve.core.flow import (
+    FREE,
+    GUARDS,
+    RESTING,
+    SLIDING,
+    evaluate,
+    guard_rates,
+    held,
+)
+from tracewire.solve.core.jit import helper, unit
+from tracewire.solve.core.modes import noise, piece
+
+SAMPLES = 5  # of the margins over a step, both ends included
+HELD_NOISE = 1e-9
+ROOT = 1e-14
+CLEARLY = 4.0  # beyond its level, in units of the noise
+MOST_ROUNDS = 200
+NOTHING, INSIDE, AT_ONCE = 0, 1, 2
+
+
+@helper
+def watched_count(core: int) -> int:
+    """How many margins are watched now."""
+    return progress_of(core).ints[WATCHED]
+
+
+@unit
+def watch(core: int) -> None:
+    """Fill in what to watch with the modes as they stand, and the margins now."""
+    flow, plan, progress = flow_of(core), plan_of(core), progress_of(core)
+    watched = watch_of(core)
+    count = 0
+    for i in range(len(plan.kind)):
+        if plan.is_timed[i] or plan.kind[i] == MEMORY or flow.bound[i] != FREE:
+            continue
+        value = flow.m[i]
+        if plan.kind[i] == SIGN:
+            sign = 1.0 if value > 0.5 else -1.0
+            count = _add(core, count, i, GUARD, 1.0 - value, 0.0, sign)
+            continue
+        low, high = value, value + 1.0
+        if plan.kind[i] != FLOOR:
+            low, high = piece(core, plan.table[i], value)
+        if low > -np.inf:
+            count = _add(core, count, i, GUARD, value - 1.0, low, 1.0)
+        if high < np.inf:
+            count = _add(core, count, i, GUARD, value + 1.0, high, -1.0)
+    for i in range(len(plan.kind)):
+        if flow.bound[i] == SLIDING:
+            count = _add(core, count, i, FRACTION, 0.0, 0.0, 1.0)
+            count = _add(core, count, i, FRACTION, 1.0, 1.0, -1.0)
+    for i in range(len(plan.kind)):
+        if flow.bound[i] == RESTING:
+            count = _add(core, count, i, FORCE, flow.m[i], 0.0, 1.0)
+    watched.armed[:] = 0
+    progress.ints[WATCHED] = count
+    margins(core, progress.now[T], progress.x, watched.start)
+
+
+@helper
+def _add(core: int, row: int, mode: int, kind: int, to: float, level: float, sign: float) -> int:
+    watched = watch_of(core)
+    watched.mode[row], watched.kind[row], watched.to[row] = mode, kind, to
+    watched.level[row], watched.sign[row] = level, sign
+    return row + 1
+
+
+@unit
+def passed(core: int, out: Ints) -> int:
+    """Mark the guards that are clearly beyond their level, and move away from it; how many."""
+    watched, level, count = watch_of(core), noise(progress_of(core).x), 0
+    rates = trial_of(core).guards
+    for row in range(watched_count(core)):
+        out[row] = 0
+        if watched.kind[row] != GUARD or watched.start[row] >= -CLEARLY * level:
+            continue
+        if count == 0:
+            guard_rates(core, progress_of(core).now[T], progress_of(core).x, rates)
+        if watched.sign[row] * rates[watched.mode[row]] < 0.0:
+            out[row] = 1
+            count += 1
+    return count
+
+
+@unit
+def margins(core: int, t: float, x: Vector, out: Vector) -> None:
+    """All margins."""
+    flow = flow_of(core)
+    watched = watch_of(core)
+    guards = trial_of(core).guards
+    evaluate(core, GUARDS, t, x, guards)
+    some, total = flow.counts[SLIDING], watched_count(core)
+    count = total - 2 * some - flow.counts[RESTING]
+    for row in range(count):
+        out[row] = watched.sign[row] * (guards[watched.mode[row]] - watched.level[row])
+    if count < total:
+        both = held(core, t, x)
+        for slide in range(flow.counts[SLIDING]):
+            out[count + 2 * slide] = both[slide]
+            out[count + 2 * slide + 1] = 1.0 - both[slide]
+        for rest in range(flow.counts[RESTING]):
+            row = count + 2 * flow.counts[SLIDING] + rest
+            out[row] = both[flow.counts[SLIDING] + rest]
+
+
+@unit
+def find(core: int, method: int) -> int:
+    """The first crossings inside a step whose margins at the start are known.
+
+    Fills `found` with theta in (0, 1] for what crosses first, else with infinity. AT_ONCE: it
+    crosses right where the step begins.
+    """
+    watched, trial = watch_of(core), trial_of(core)
+    rows, start, found = watched.rows, watched.start, watched.found
+    count = watched_count(core)
+    found[:] = np.inf
+    if count == 0:
+        return NOTHING
+    level = noise(trial.x)
+    for k in range(1, SAMPLES):
+        _margins_inside(core, method, k / (SAMPLES - 1), rows[k])
+    rows[0] = start
+    first, fresh = SAMPLES - 1, False
+    for k in range(1, SAMPLES):
+        for i in range(count):
+            floor = level if watched.kind[i] == GUARD else HELD_NOISE
+            if rows[k, i] < min(start[i], 0.0) - floor:
+                first = min(first, k - 1)
+                if watched.armed[i] or np.max(rows[:k, i]) > floor:
+                    found[i] = 0.0  # to be located
+                else:
+                    fresh = True
+        if first == k - 1:
+            break
+    if fresh:
+        for i in range(count):
+            floor = level if watched.kind[i] == GUARD else HELD_NOISE
+            below = rows[first + 1, i] < min(start[i], 0.0) - floor
+            found[i] = 1.0 if below and found[i] > 0.0 else np.inf
+        return AT_ONCE
+    any_found = False
+    for i in range(count):
+        floor = level if watched.kind[i] == GUARD else HELD_NOISE
+        if found[i] == 0.0:
+            low, high = first / (SAMPLES - 1), (first + 1) / (SAMPLES - 1)
+            found[i] = _root(core, method, i, low, high)
+        dip = _dip(core, method, min(first + 2, SAMPLES), i, floor)
+        found[i] = min(found[i], dip)
+        any_found = any_found or found[i] < np.inf
+    if not any_found:
+        for i in range(count):
+            if not watched.armed[i]:
+                floor = level if watched.kind[i] == GUARD else HELD_NOISE
+                watched.armed[i] = int(np.max(rows[:, i]) > floor)
+        return NOTHING
+    earliest = np.min(found)  # beyond the count it is infinite
+    for i in range(count):
+        if found[i] - earliest > 4 * ROOT:
+            found[i] = np.inf
+    return INSIDE
+
+
+@unit
+def _margins_inside(core: int, method: int, theta: float, out: Vector) -> None:
+    trial = trial_of(core)
+    if theta == 1.0:
+        trial.at[:] = trial.x_end
+    else:
+        methods.inside(core, method, theta, trial.at)
+    margins(core, trial.ends[0] + theta * trial.ends[1], trial.at, out)
+
+
+@unit
+def _root(core: int, method: int, item: int, low: float, high: float) -> float:
+    """Where a margin falls through zero between two samples: false position."""
+    values = np.empty(len(watch_of(core).mode))
+    _margins_inside(core, method, low, values)
+    above = values[item]
+    if above <= 0.0:
+        return low
+    _margins_inside(core, method, high, values)
+    below = values[item]
+    if below >= 0.0:
+        return high
+    side = 0
+    for round_ in range(MOST_ROUNDS):
+        width = high - low
+        if width <= ROOT:
+            break
+        theta = low + width * above / (above - below)
+        if round_ % 4 == 3 or not low < theta < high:
+            theta = low + 0.5 * width
+        _margins_inside(core, method, theta, values)
+        value = values[item]
+        if value == 0.0:
+            return theta
+        if value > 0.0:  # the end that stays twice counts half: Illinois
+            low, above = theta, value
+            below *= 0.5 if side > 0 else 1.0
+            side = 1
+        else:
+            high, below = theta, value
+            above *= 0.5 if side < 0 else 1.0
+            side = -1
+    return high
+
+
+@helper
+def _dip(core: int, method: int, count: int, item: int, floor: float) -> float:
+    """Where a margin dips below zero between positive samples, foretold by a parabola; inf: not."""
+    rows = watch_of(core).rows
+    step = 1.0 / (SAMPLES - 1)
+    for k in range(1, count - 1):
+        before, here, after = rows[k - 1, item], rows[k, item], rows[k + 1, item]
+        bend, slope = after - 2 * here + before, after - before
+        if not (bend > 0 and slope * slope > 8 * bend * here and abs(slope) <= 2 * bend):
+            continue
+        if not before > floor:
+            continue
+        shift = -slope / (2 * bend)
+        theta = (k + shift) * step
+        values = np.empty(rows.shape[1])
+        _margins_inside(core, method, theta, values)
+        if values[item] < -floor:
+            low = (k - 1 if shift <= 0 else k) * step
+            return _root(core, method, item, low, theta)
+    return np.inf
+
+
+@unit
+def reached(core: int, t: float, x: Vector, reach: float, out: Ints) -> int:
+    """Mark the guards whose level is passed, or will be within the time `reach`; how many."""
+    flow = flow_of(core)
+    watched = watch_of(core)
+    total, start = watched_count(core), watched.start
+    out[:] = 0
+    if total == 0 or watched.kind[0] != GUARD:
+        return 0
+    rates = np.empty(len(flow.bound))
+    guard_rates(core, t, x, rates)
+    level, count = noise(x), 0
+    for row in range(total):
+        if watched.kind[row] != GUARD:
+            continue
+        falls = -watched.sign[row] * rates[watched.mode[row]]
+        if start[row] < -level or (falls > 0 and start[row] <= reach * falls):
+            out[row] = 1
+            count += 1
+    return count

@@ -1,0 +1,66 @@
+"""The methods: each fills a trial step and knows what lies inside it."""
+
+from __future__ import annotations
+
+from tracewire.solve.core.arrays import Vector, trial_of
+from tracewire.solve.core.jit import helper, unit
+from tracewire.solve.core.methods import dop853, dormand_prince, rosenbrock, runge_kutta
+from tracewire.solve.core.methods.trial import norm
+
+NAMES = ("dormand_prince", "rosenbrock", "dop853", "rk4")
+DORMAND_PRINCE, ROSENBROCK, DOP853, RK4 = 0, 1, 2, 3
+
+
+@unit
+def step(core: int, method: int, t: float, x: Vector, rate: Vector, h: float) -> None:
+    """A trial step with a method; entries may be NaN where the field is undefined."""
+    into = trial_of(core)
+    into.ends[0] = t
+    into.ends[1] = h
+    into.x[:] = x
+    if method == ROSENBROCK:
+        rosenbrock.step(core, t, x, rate, h)
+    elif method == DOP853:
+        dop853.step(core, t, x, rate, h)
+    elif method == RK4:
+        runge_kutta.step(core, t, x, rate, h)
+    else:
+        dormand_prince.step(core, t, x, rate, h)
+
+
+@unit
+def inside(core: int, method: int, theta: float, out: Vector) -> None:
+    """The states at t + theta*h, theta in [0, 1]."""
+    if method == ROSENBROCK:
+        rosenbrock.inside(core, theta, out)
+    elif method == DOP853:
+        dop853.inside(core, theta, out)
+    else:
+        dormand_prince.inside(core, theta, out)
+
+
+@unit
+def error_of(core: int, method: int, rtol: float, atol: Vector) -> float:
+    """The error of a trial over its tolerance; NaN where it is not finite."""
+    trial = trial_of(core)
+    size = norm(trial.error, trial.x, trial.x_end, rtol, atol)
+    return size * dop853.correction(core, rtol, atol) if method == DOP853 else size
+
+
+@helper
+def exponent_of(method: int) -> float:
+    """How the step follows from the error: h is multiplied with error to this power."""
+    return -1.0 / 8.0 if method == DOP853 else -0.2
+
+
+__all__ = [
+    "DOP853",
+    "DORMAND_PRINCE",
+    "NAMES",
+    "RK4",
+    "ROSENBROCK",
+    "error_of",
+    "exponent_of",
+    "inside",
+    "step",
+]

@@ -1,0 +1,98 @@
+"""The explicit method of Dormand and Prince of order 8(5,3), with dense output of order 7.
+
+Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, 2nd edition, sections
+II.5 and II.6. The coefficients are those of scipy.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.integrate import DOP853
+
+from tracewire.solve.core.arrays import Matrix, Vector, trial_of
+from tracewire.solve.core.flow import rates
+from tracewire.solve.core.jit import unit
+from tracewire.solve.core.methods.trial import STAGES
+
+MAIN = 12
+C = np.concatenate([DOP853.C, [1.0], DOP853.C_EXTRA])
+A = np.zeros((STAGES, STAGES))
+A[:MAIN, :MAIN] = DOP853.A
+A[MAIN, :MAIN] = DOP853.B
+A[MAIN + 1 :] = DOP853.A_EXTRA
+E3, E5, D = DOP853.E3.copy(), DOP853.E5.copy(), DOP853.D.copy()
+
+
+@unit
+def _stage(core: int, t: float, x: Vector, h: float, stage: int, at: Vector, k: Matrix) -> None:
+    for i in range(len(x)):
+        total = 0.0
+        for j in range(stage):
+            total += A[stage, j] * k[j, i]
+        at[i] = x[i] + h * total
+    rates(core, t + C[stage] * h, at, k[stage])
+
+
+@unit
+def step(core: int, t: float, x: Vector, rate: Vector, h: float) -> None:
+    """A trial step: twelve evaluations, the last is the rate at the end, and three more inside."""
+    into = trial_of(core)
+    n, k, inner = len(x), into.stages, into.inner
+    k[0] = rate
+    for stage in range(1, MAIN + 1):
+        if stage == MAIN:
+            into.error[:] = into.x_end
+        _stage(core, t, x, h, stage, into.x_end, k)
+    change = apart = 0.0
+    for i in range(n):
+        apart += (into.x_end[i] - into.error[i]) ** 2
+        change += (k[MAIN, i] - k[MAIN - 1, i]) ** 2
+    into.ends[2] = h * math.sqrt(change / apart) if apart > 0.0 else 0.0
+    for stage in range(MAIN + 1, STAGES):
+        _stage(core, t, x, h, stage, into.error, k)
+    for i in range(n):
+        into.rate_end[i] = k[MAIN, i]
+        rise = into.x_end[i] - x[i]
+        inner[0, i] = rise
+        inner[1, i] = h * k[0, i] - rise
+        inner[2, i] = 2 * rise - h * (k[MAIN, i] + k[0, i])
+        for row in range(4):
+            total = 0.0
+            for j in range(STAGES):
+                total += D[row, j] * k[j, i]
+            inner[3 + row, i] = h * total
+        into.error[i] = 0.0
+        for j in range(MAIN + 1):
+            into.error[i] += h * E5[j] * k[j, i]
+
+
+@unit
+def correction(core: int, rtol: float, atol: Vector) -> float:
+    """What the norm of the error of order 5 is multiplied with to be an error of order 8."""
+    trial = trial_of(core)
+    fifth = third = 0.0
+    for i in range(len(trial.x)):
+        scale = atol[i] + rtol * max(abs(trial.x[i]), abs(trial.x_end[i]))
+        total = 0.0
+        for j in range(MAIN + 1):
+            total += E3[j] * trial.stages[j, i]
+        third += (trial.ends[1] * total / scale) ** 2
+        fifth += (trial.error[i] / scale) ** 2
+    return math.sqrt(fifth / (fifth + 0.01 * third)) if fifth > 0.0 else 0.0
+
+
+@unit
+def inside(core: int, theta: float, out: Vector) -> None:
+    """The polynomial of degree 7."""
+    trial = trial_of(core)
+    inner, back = trial.inner, 1.0 - theta
+    for i in range(len(out)):
+        value = inner[6, i] * theta
+        value = (value + inner[5, i]) * back
+        value = (value + inner[4, i]) * theta
+        value = (value + inner[3, i]) * back
+        value = (value + inner[2, i]) * theta
+        value = (value + inner[1, i]) * back
+        out[i] = trial.x[i] + (value + inner[0, i]) * theta

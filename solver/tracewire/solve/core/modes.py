@@ -1,0 +1,76 @@
+"""The mode that belongs to the value of a guard, and how far a guard is inside its mode."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tracewire.solve.core.arrays import Vector, flow_of, plan_of
+from tracewire.solve.core.codes import FLOOR, MEMORY, SIGN
+from tracewire.solve.core.flow import FREE
+from tracewire.solve.core.jit import helper
+
+NOISE = 1e-14
+
+
+@helper
+def noise(x: Vector) -> float:
+    """How large a guard may be and still count as zero."""
+    largest = 0.0
+    for value in x:
+        largest = max(largest, abs(value))
+    return NOISE * (1.0 + largest)
+
+
+@helper
+def mode_value(core: int, i: int, guard: float) -> float:
+    """The mode that belongs to the value of a guard."""
+    flow = flow_of(core)
+    plan = plan_of(core)
+    if plan.kind[i] == SIGN:
+        return 1.0 if guard > 0 or (guard == 0 and plan.at_zero[i]) else 0.0
+    if plan.kind[i] == FLOOR:
+        return float(math.floor(guard))
+    offset = int(flow.k[plan.table[i]])
+    points = int(flow.k[offset])
+    return float(np.searchsorted(flow.k[offset + 1 : offset + 1 + points], guard, side="right"))
+
+
+@helper
+def right_limit(core: int, i: int, slope: float, guard: float) -> float:
+    """The mode of a timed guard just after now."""
+    plan = plan_of(core)
+    if plan.kind[i] == SIGN:
+        if abs(guard) <= NOISE:
+            return 1.0 if slope > 0 or (slope == 0 and plan.at_zero[i]) else 0.0
+        return 1.0 if guard > 0 else 0.0
+    near = NOISE * 100 * max(1.0, abs(guard))
+    return mode_value(core, i, guard + near if slope >= 0 else guard - near)
+
+
+@helper
+def piece(core: int, table: int, value: float) -> tuple[float, float]:
+    """The ends of a piece of a table."""
+    flow = flow_of(core)
+    offset = int(flow.k[table])
+    points, i = int(flow.k[offset]), int(value)
+    low = flow.k[offset + i] if i > 0 else -np.inf
+    high = flow.k[offset + 1 + i] if i < points else np.inf
+    return low, high
+
+
+@helper
+def margin(core: int, i: int, guard: float) -> float:
+    """How far a guard is inside the range of its mode; negative where it is outside."""
+    flow = flow_of(core)
+    plan = plan_of(core)
+    if plan.is_timed[i] or plan.kind[i] == MEMORY or flow.bound[i] != FREE:
+        return np.inf
+    value = flow.m[i]
+    if plan.kind[i] == SIGN:
+        return guard if value > 0.5 else -guard
+    if plan.kind[i] == FLOOR:
+        return min(guard - value, value + 1.0 - guard)
+    low, high = piece(core, plan.table[i], value)
+    return min(guard - low, high - guard)

@@ -1,0 +1,68 @@
+"""What a run keeps: samples of the recorded signals, and the log of events."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracewire.solve.core import methods
+from tracewire.solve.core.arrays import Vector, flow_of, plan_of, progress_of, trial_of
+from tracewire.solve.core.codes import LOG_HEAD, LOGGED, SAMPLED
+from tracewire.solve.core.flow import RESTING, SLIDING, outputs, pin
+from tracewire.solve.core.jit import unit
+
+
+@unit
+def sample_inside(core: int, method: int, end: float) -> None:
+    """Fill the samples of a step that lie before `end`."""
+    progress = progress_of(core)
+    trial = trial_of(core)
+    row = progress.ints[SAMPLED]
+    if row == len(progress.times) or not progress.times[row] < end:
+        return
+    at = np.empty(len(trial.x))
+    while row < len(progress.times) and progress.times[row] < end:
+        time = progress.times[row]
+        methods.inside(core, method, (time - trial.ends[0]) / trial.ends[1], at)
+        _fill(core, row, time, at)
+        row += 1
+    progress.ints[SAMPLED] = row
+
+
+@unit
+def sample_end(core: int, t: float, x: Vector) -> None:
+    """Fill the samples that lie at the end of the run."""
+    progress = progress_of(core)
+    for row in range(progress.ints[SAMPLED], len(progress.times)):
+        _fill(core, row, t, x)
+    progress.ints[SAMPLED] = len(progress.times)
+
+
+@unit
+def _fill(core: int, row: int, t: float, x: Vector) -> None:
+    flow = flow_of(core)
+    plan = plan_of(core)
+    progress = progress_of(core)
+    values = progress.samples[row]
+    if flow.counts[SLIDING] + flow.counts[RESTING]:
+        pin(core, t, x)
+    if np.any(plan.direct < 0):
+        outputs(core, t, x, values)
+    for column in range(len(values)):
+        if plan.direct[column] >= 0:
+            values[column] = x[plan.direct[column]]
+
+
+@unit
+def log(
+    core: int, t: float, kind: int, mode: int, direction: int, before: Vector, after: Vector
+) -> None:
+    """Add an event to the log; the caller has seen to it that there is room."""
+    progress = progress_of(core)
+    n, row = len(before), progress.ints[LOGGED]
+    if row == len(progress.log):
+        return
+    entry = progress.log[row]
+    entry[0], entry[1], entry[2], entry[3] = t, kind, mode, direction
+    entry[LOG_HEAD : LOG_HEAD + n] = before
+    entry[LOG_HEAD + n :] = after
+    progress.ints[LOGGED] = row + 1

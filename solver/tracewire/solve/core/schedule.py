@@ -1,0 +1,87 @@
+"""Known times: guards that only read t change at times that are computed, not searched."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracewire.solve.core.arrays import Vector, flow_of, plan_of
+from tracewire.solve.core.codes import FLOOR, SIGN
+from tracewire.solve.core.flow import TIMED, evaluate
+from tracewire.solve.core.jit import helper, unit
+from tracewire.solve.core.modes import right_limit
+
+TOGETHER = 1e-13
+
+
+@helper
+def _lines(core: int, t: float, x: Vector) -> Vector:
+    """Slope a and value b, one behind the other, of every timed guard a*t + b."""
+    plan = plan_of(core)
+    lines = np.empty(2 * len(plan.timed))
+    if len(lines):
+        evaluate(core, TIMED, t, x, lines)
+    return lines
+
+
+@unit
+def begin(core: int, t: float, x: Vector) -> None:
+    """Set the timed modes to their right limit at t."""
+    flow = flow_of(core)
+    plan = plan_of(core)
+    if len(plan.timed) == 0:
+        return
+    for _ in range(len(plan.timed) + 1):  # the times of one mode may depend on another
+        lines, changed = _lines(core, t, x), False
+        for row, i in enumerate(plan.timed):
+            guard = lines[2 * row] * t + lines[2 * row + 1]
+            value = right_limit(core, i, lines[2 * row], guard)
+            changed = changed or value != flow.m[i]
+            flow.m[i] = value
+        if not changed:
+            return
+
+
+@unit
+def upcoming(core: int, t: float, x: Vector, to: Vector) -> float:
+    """The next time at which timed modes change; infinity if none.
+
+    Fills `to` with the new value of each timed mode that changes then, else with NaN. A change
+    that an event has overtaken by rounding is due now.
+    """
+    plan = plan_of(core)
+    best = np.inf
+    to[:] = np.nan
+    lines = _lines(core, t, x)
+    times = np.full(len(plan.timed), np.inf)
+    for row, i in enumerate(plan.timed):
+        slope, offset = lines[2 * row], lines[2 * row + 1]
+        if slope == 0.0 or not np.isfinite(slope):
+            continue
+        level, value = _change(core, i, slope)
+        if np.isfinite(level):
+            times[row] = max(t, (level - offset) / slope)
+            to[row] = value
+            best = min(best, times[row])
+    near = best + TOGETHER * max(1.0, abs(best))
+    for row in range(len(times)):
+        if not times[row] <= near:
+            to[row] = np.nan
+    return best
+
+
+@helper
+def _change(core: int, i: int, slope: float) -> tuple[float, float]:
+    """The level that a timed guard reaches next (infinity: none), and the mode beyond it."""
+    flow = flow_of(core)
+    plan = plan_of(core)
+    value = flow.m[i]
+    if plan.kind[i] == SIGN:
+        beyond = 1.0 if slope > 0 else 0.0
+        return (np.inf if value == beyond else 0.0), beyond
+    if plan.kind[i] == FLOOR:
+        return (value + 1.0, value + 1.0) if slope > 0 else (value, value - 1.0)
+    offset = int(flow.k[plan.table[i]])
+    points, piece = int(flow.k[offset]), int(value)
+    if slope > 0:
+        return (flow.k[offset + 1 + piece] if piece < points else np.inf), value + 1.0
+    return (flow.k[offset + piece] if piece > 0 else np.inf), value - 1.0

@@ -1,0 +1,259 @@
+"""The modes at an instant: by the values of the guards, and by decision where these are zero."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracewire.solve.core import contact
+from tracewire.solve.core.arrays import Ints, Vector, flow_of, plan_of, progress_of
+from tracewire.solve.core.codes import (
+    FINISHED,
+    FLOOR,
+    MEMORY,
+    NO_MODE,
+    NO_SLIDE,
+    NOT_UNIQUE,
+    SIGN,
+    TRANSITION,
+    UNSETTLED,
+    WARNINGS,
+)
+from tracewire.solve.core.decide import (
+    MOST_TOGETHER,
+    NO_BLEND,
+    NONE,
+    NOTHING,
+    UNIQUE,
+    decide,
+    first_higher,
+)
+from tracewire.solve.core.flow import (
+    FREE,
+    GUARDS,
+    RESETS,
+    RESTING,
+    SLIDING,
+    bind,
+    evaluate,
+    guard_rates,
+    held,
+    rates,
+)
+from tracewire.solve.core.jit import helper, unit
+from tracewire.solve.core.modes import NOISE, margin, mode_value, noise
+from tracewire.solve.core.record import log
+
+JUMP = 1e-9
+MOST_ROUNDS = 200
+MOST_EDGES = 20
+KNOWN, LEFT = 1, 2  # marks: a guard known to be zero; a slide that was left, its mode stays
+
+
+@unit
+def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
+    """Set every mode that is not timed until all stand still; fire transitions; a status.
+
+    `marks`: KNOWN are guards that are known to be zero although rounding may hide it; LEFT are
+    those whose slide has just ended: their stored mode stays. `fresh`: nothing is stored yet, so
+    that two consistent modes are not unique, which is a warning. `x` is changed by the resets of
+    transitions, and by contacts that close.
+    """
+    flow = flow_of(core)
+    plan = plan_of(core)
+    progress = progress_of(core)
+    modes = len(plan.kind)
+    guards, after = np.empty(modes), np.empty(modes)
+    seen = np.empty((MOST_ROUNDS, 3 * modes))
+    rounds = 0
+    _floor_edges(core, t, x, marks)
+    while True:
+        level = noise(x)
+        evaluate(core, GUARDS, t, x, guards)
+        zero, moved = np.zeros(modes, dtype=np.int64), np.zeros(modes, dtype=np.int64)
+        for i in range(modes):
+            if plan.is_timed[i] or plan.kind[i] == MEMORY or flow.bound[i] == RESTING:
+                continue
+            if flow.bound[i] == SLIDING and abs(guards[i]) > JUMP * (1.0 + level / NOISE):
+                bind(core, i, FREE)  # a jump has carried the run off the surface
+                flow.m[modes + i] = 0.0
+                flow.m[i] = mode_value(core, i, guards[i])
+                continue
+            if marks[i] == KNOWN or flow.bound[i] == SLIDING:
+                zero[i] = 1
+            elif marks[i] == LEFT:
+                continue
+            elif plan.kind[i] == SIGN and abs(guards[i]) <= level:
+                zero[i] = 1
+            elif margin(core, i, guards[i]) < -level:
+                # modes of one algebraic loop change one at a time, the first one first: this ends
+                # where every mode moves its own guard the right way (Murty)
+                loop = plan.loop[i]
+                if loop < 0 or not moved[loop]:
+                    flow.m[i] = mode_value(core, i, guards[i])
+                if loop >= 0:
+                    moved[loop] = 1
+        _close_contacts(core, t, x, zero)
+        undecided = np.flatnonzero(zero)
+        if len(undecided):
+            how = decide(core, t, x, undecided, fresh)
+            if how in (NONE, NO_BLEND):
+                return _refuse(core, NO_MODE if how == NONE else NO_SLIDE, t, undecided)
+            if how != UNIQUE and fresh:
+                progress.ints[WARNINGS] |= NOT_UNIQUE
+            evaluate(core, GUARDS, t, x, after)
+            for i in undecided:
+                if abs(after[i] - guards[i]) > JUMP * (1.0 + abs(guards[i])):
+                    marks[i] = zero[i] = 0
+        if _open_contacts(core, t, x, marks, level):
+            continue
+        evaluate(core, GUARDS, t, x, guards)
+        wrong = np.zeros(modes, dtype=np.int64)
+        for i in range(modes):
+            fixed = zero[i] == 1 or marks[i] == LEFT
+            if not fixed and not margin(core, i, guards[i]) >= -level:
+                wrong[i] = 1
+        if not np.any(wrong):
+            if rounds < MOST_EDGES and _floor_edges(core, t, x, marks):
+                rounds += 1
+                continue
+            wrong = _fire_transitions(core, t, x)
+            if not np.any(wrong):
+                return FINISHED
+            marks[:] = 0
+        key = seen[min(rounds, MOST_ROUNDS - 1)]
+        key[: 2 * modes] = flow.m
+        key[2 * modes :] = flow.bound
+        for row in range(min(rounds, MOST_ROUNDS - 1)):
+            if np.all(seen[row] == key) and not _only_one(core, t, x, wrong, level):
+                return _refuse(core, UNSETTLED, t, np.flatnonzero(wrong))
+        rounds += 1
+        if rounds == MOST_ROUNDS:
+            return _refuse(core, UNSETTLED, t, np.flatnonzero(wrong))
+
+
+@unit
+def _floor_edges(core: int, t: float, x: Vector, marks: Ints) -> bool:
+    """Move the floors that stand on a whole number to the side that their guards go to."""
+    flow, plan, changed = flow_of(core), plan_of(core), False
+    if not np.any(plan.kind == FLOOR):
+        return False
+    modes, level = len(plan.kind), noise(x)
+    guards, along, field = np.empty(modes), np.empty(modes), np.empty(len(x))
+    evaluate(core, GUARDS, t, x, guards)
+    guard_rates(core, t, x, along)
+    rates(core, t, x, field)
+    small = NOTHING * max(np.max(np.abs(field)) if len(x) else 0.0, 1e-300)
+    for i in range(modes):
+        whole = np.rint(guards[i])
+        near = abs(guards[i] - whole) <= level and marks[i] != LEFT
+        if plan.kind[i] != FLOOR or plan.is_timed[i] or not near:
+            continue
+        rate = along[i]
+        if abs(rate) <= small:
+            rate = first_higher(core, t, x, i, small)
+        value = flow.m[i] if rate == 0.0 else (whole if rate > 0.0 else whole - 1.0)
+        changed = changed or value != flow.m[i]
+        flow.m[i] = value
+    return changed
+
+
+@helper
+def _refuse(core: int, status: int, t: float, guards: Ints) -> int:
+    progress = progress_of(core)
+    progress.which[0] = len(guards)
+    progress.which[1 : 1 + len(guards)] = guards
+    progress.info[0] = t
+    return status
+
+
+@unit
+def _close_contacts(core: int, t: float, x: Vector, zero: Ints) -> None:
+    """Let contacts rest whose guard is zero, with a rate of zero, and pressed."""
+    plan = plan_of(core)
+    if len(plan.resets) == 0 or not np.any(zero):
+        return
+    field = np.empty(len(x))
+    rates(core, t, x, field)
+    tolerance = NOTHING * max(np.max(np.abs(field)) if len(x) else 0.0, 1e-300)
+    for reset in range(len(plan.resets)):
+        i = plan.resets[reset, 0]
+        if i >= 0 and zero[i] and contact.touching(core, t, x, reset, tolerance):
+            zero[i] = 0
+
+
+@unit
+def _open_contacts(core: int, t: float, x: Vector, marks: Ints, level: float) -> bool:
+    """Let contacts go that would have to pull; whether there were any."""
+    flow = flow_of(core)
+    if flow.counts[RESTING] == 0:
+        return False
+    forces = held(core, t, x)[flow.counts[SLIDING] :]
+    opened = False
+    for row, i in enumerate(np.flatnonzero(flow.bound == RESTING)):
+        if not forces[row] >= -level:
+            contact.release(core, i)
+            marks[i], opened = LEFT, True
+    return opened
+
+
+@unit
+def _fire_transitions(core: int, t: float, x: Vector) -> Ints:
+    """Fire every transition that is due, at most one of a memory; marks the memories that moved.
+
+    All resets read x before and write together.
+    """
+    flow = flow_of(core)
+    plan = plan_of(core)
+    moved = np.zeros(len(plan.kind), dtype=np.int64)
+    if len(plan.transitions) == 0:
+        return moved
+    before, old, values = x.copy(), flow.m.copy(), np.empty(len(plan.writes))
+    evaluate(core, RESETS, t, before, values)
+    for row in range(len(plan.transitions)):
+        memory, trigger = plan.transitions[row, 0], plan.transitions[row, 2]
+        if moved[memory] or old[memory] != plan.transitions[row, 1]:
+            continue
+        if flow.bound[trigger] == FREE:
+            ready = old[trigger] == plan.transitions[row, 5]
+        else:
+            ready = plan.transitions[row, 6] == 1
+        if not ready:
+            continue
+        moved[memory] = 1
+        flow.m[memory] = plan.transitions[row, 3]
+        reset = plan.transitions[row, 4]
+        if reset >= 0:
+            first = plan.resets[reset, 2]
+            for k in range(first, first + plan.resets[reset, 3]):
+                x[plan.writes[k]] = values[k]
+    for memory in np.flatnonzero(moved):
+        log(core, t, TRANSITION, memory, int(np.sign(flow.m[memory] - old[memory])), before, x)
+    return moved
+
+
+@unit
+def _only_one(core: int, t: float, x: Vector, wrong: Ints, level: float) -> bool:
+    """Try all values of modes whose guards read what they change; whether just one fits, taken."""
+    flow = flow_of(core)
+    plan = plan_of(core)
+    some = np.flatnonzero(wrong)
+    modes = len(plan.kind)
+    if len(some) > MOST_TOGETHER:
+        return False
+    guards, found = np.empty(modes), -1
+    for number in range(2 ** len(some)):
+        for bit, i in enumerate(some):
+            if plan.kind[i] != SIGN:
+                return False
+            flow.m[i] = float((number >> bit) & 1)
+        evaluate(core, GUARDS, t, x, guards)
+        good = True
+        for i in some:
+            good = good and margin(core, i, guards[i]) >= -level
+        if good:
+            if found >= 0:
+                return False
+            found = number
+    for bit, i in enumerate(some):
+        flow.m[i] = float((found >> bit) & 1) if found >= 0 else flow.m[i]
+    return found >= 0

@@ -1,0 +1,69 @@
+"""The modes at the start of a run, and the clocks that are due there."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracewire.solve.core import schedule
+from tracewire.solve.core.arrays import Vector, crossings_of, flow_of, plan_of, progress_of
+from tracewire.solve.core.codes import DOWN, FINISHED, FLOOR, MEMORY, SIGN, TIME, UP, T
+from tracewire.solve.core.flow import FREE, GUARDS, TIMED, evaluate
+from tracewire.solve.core.jit import unit
+from tracewire.solve.core.modes import NOISE, mode_value, noise
+from tracewire.solve.core.settle import settle
+from tracewire.solve.core.transition import happen, no_crossings
+
+
+@unit
+def begin(core: int) -> int:
+    """Set all modes, let memories take their start, fire the clocks that are due. A status."""
+    flow = flow_of(core)
+    plan = plan_of(core)
+    progress, crossings = progress_of(core), crossings_of(core)
+    t, x, modes = progress.now[T], progress.x, len(plan.kind)
+    schedule.begin(core, t, x)
+    guards = np.empty(modes)
+    for _ in range(2):  # a guard may read what another mode changes
+        evaluate(core, GUARDS, t, x, guards)
+        for i in range(modes):
+            if not plan.is_timed[i] and plan.kind[i] != MEMORY:
+                flow.m[i] = mode_value(core, i, guards[i])
+    for i in range(modes):
+        if plan.kind[i] == MEMORY:
+            flow.m[i] = guards[i]
+    marks = np.zeros(modes, dtype=np.int64)
+    status = settle(core, t, x, marks, True)
+    if status != FINISHED:
+        return status
+    _overlooked(core, t, x)
+    due = False
+    no_crossings(core)
+    lines = np.empty(2 * len(plan.timed))
+    if len(plan.timed):
+        evaluate(core, TIMED, t, x, lines)
+    for row, i in enumerate(plan.timed):
+        guard = lines[2 * row] * t + lines[2 * row + 1]
+        small = NOISE * 100 * max(1.0, abs(guard))
+        if plan.kind[i] == FLOOR and abs(guard - flow.m[i]) <= small:
+            for reset in range(len(plan.resets)):
+                if plan.resets[reset, 0] == i:
+                    crossings.how[i], crossings.to[i], crossings.up[i] = TIME, flow.m[i], 1
+                    due = True
+    return happen(core, t, x) if due else FINISHED
+
+
+@unit
+def _overlooked(core: int, t: float, x: Vector) -> None:
+    """Mark the resets whose guard is zero at the start and leaves it as if they fired."""
+    flow = flow_of(core)
+    plan = plan_of(core)
+    progress = progress_of(core)
+    guards = np.empty(len(plan.kind))
+    evaluate(core, GUARDS, t, x, guards)
+    for reset in range(len(plan.resets)):
+        i = plan.resets[reset, 0]
+        if i < 0 or plan.kind[i] != SIGN or plan.is_timed[i] or flow.bound[i] != FREE:
+            continue
+        way = UP if flow.m[i] > 0.5 else DOWN
+        if abs(guards[i]) <= noise(x) and plan.resets[reset, 1] == way:
+            progress.overlooked[reset] = 1

@@ -1,0 +1,313 @@
+"""What happens at an instant: resets from x⁻ to x⁺, then the modes come to rest, then the log."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tracewire.solve.core import contact
+from tracewire.solve.core.arrays import (
+    Ints,
+    Matrix,
+    Vector,
+    crossings_of,
+    flow_of,
+    plan_of,
+    progress_of,
+)
+from tracewire.solve.core.codes import (
+    BAD_RESET,
+    CHATTER,
+    CHATTER_EVENTS,
+    CROSSING,
+    DOWN,
+    FINISHED,
+    FORCE,
+    FRACTION,
+    GUARD,
+    LENGTH,
+    MEMORY,
+    NO_END,
+    PASSED,
+    RECENT,
+    REST,
+    SCHEDULED,
+    SEGMENT,
+    SIGN,
+    SLIP,
+    STICK,
+    TIME,
+    TWO_WRITES,
+    UP,
+)
+from tracewire.solve.core.flow import (
+    FREE,
+    GUARDS,
+    RESETS,
+    RESTING,
+    SLIDING,
+    bind,
+    evaluate,
+    guard_rates,
+)
+from tracewire.solve.core.jit import helper, unit
+from tracewire.solve.core.modes import noise
+from tracewire.solve.core.record import log
+from tracewire.solve.core.settle import JUMP, KNOWN, LEFT, settle
+
+CHATTER_PART = 1e-6
+MOST_RESETS = 100
+NOTHING = 1e-12
+
+
+@helper
+def no_crossings(core: int) -> None:
+    """Nothing happens yet."""
+    crossings = crossings_of(core)
+    crossings.how[:] = -1
+
+
+@unit
+def happen(core: int, t: float, x: Vector) -> int:
+    """Fire what is due, settle the modes and log it; `x` becomes x⁺. A status."""
+    flow = flow_of(core)
+    plan = plan_of(core)
+    progress = progress_of(core)
+    crossings = crossings_of(core)
+    modes = len(plan.kind)
+    before, old, bound = x.copy(), flow.m.copy(), flow.bound.copy()
+    fired = np.full(modes, -1)  # the last reset that the guard of a mode fired
+    done = np.zeros(len(plan.resets), dtype=np.int64)
+    speed = np.zeros(modes)  # the guard's rate before it fired, along its side
+    turned = np.zeros(modes, dtype=np.int64)
+    jumps = np.zeros((modes, len(x)))
+    status = _resets(core, t, x, done, fired, speed, turned, jumps)
+    if status != FINISHED:
+        return status
+    marks = np.zeros(modes, dtype=np.int64)
+    _cross(core, t, before, x, turned, marks)
+    for i in range(modes):
+        if turned[i]:
+            marks[i] = LEFT
+            flow.m[i] = 1.0 if contact.side_of(core, fired[i]) > 0 else 0.0
+    status = settle(core, t, x, marks, False)
+    if status != FINISHED:
+        return status
+    waits = np.full(modes, contact.FLIES)
+    closed = False
+    for i in np.flatnonzero(turned):
+        if flow.bound[i] != FREE:
+            continue
+        side = contact.side_of(core, fired[i])
+        waits[i] = contact.wait(core, t, x, i, speed[i], side)
+        if waits[i] >= 0:
+            contact.close(core, t, jumps[i], x, i)
+            closed = True
+    if closed:
+        for i in range(modes):
+            marks[i] = LEFT if turned[i] else 0
+        status = settle(core, t, x, marks, False)
+        if status != FINISHED:
+            return status
+    _write_log(core, t, before, x, done, fired, waits, old, bound)
+    for i in range(modes):
+        shrinks = progress.flights[i, 0] < np.inf
+        if crossings.how[i] >= 0 and crossings.how[i] != TIME and not shrinks:
+            status = _count(core, t, i)
+            if status != FINISHED:
+                return status
+    return FINISHED
+
+
+@unit
+def _resets(
+    core: int,
+    t: float,
+    x: Vector,
+    done: Ints,
+    fired: Ints,
+    speed: Vector,
+    turned: Ints,
+    jumps: Matrix,
+) -> int:
+    """Fire the resets that are due, and those of contacts that they drive together."""
+    plan = plan_of(core)
+    progress = progress_of(core)
+    crossings = crossings_of(core)
+    count, modes = len(plan.resets), len(plan.kind)
+    due, along = np.zeros(count, dtype=np.int64), np.empty(modes)
+    for reset in range(count):
+        i, direction = plan.resets[reset, 0], plan.resets[reset, 1]
+        if i >= 0 and (crossings.how[i] in (GUARD, TIME, PASSED)):
+            due[reset] = direction == 0 or direction == (UP if crossings.up[i] else DOWN)
+    for _ in range(MOST_RESETS):
+        if not np.any(due):
+            return FINISHED
+        before = x.copy()
+        guard_rates(core, t, before, along)
+        status = _write(core, t, before, x, due)
+        if status != FINISHED:
+            return status
+        contact.struck(core, t, before, x)
+        for reset in np.flatnonzero(due):
+            i = plan.resets[reset, 0]
+            side = contact.side_of(core, reset)
+            done[reset], fired[i], speed[i] = 1, reset, side * along[i]
+            timed = crossings.how[i] == TIME
+            turned[i] = not timed and contact.turns(core, t, before, x, i, speed[i], side)
+            jumps[i] = x - before
+        _driven_together(core, t, before, x, along, due)
+    progress.info[0] = t
+    progress.which[0], progress.which[1] = 1, plan.resets[np.flatnonzero(due)[0], 0]
+    return NO_END
+
+
+@unit
+def _write(core: int, t: float, before: Vector, x: Vector, due: Ints) -> int:
+    """Write the new values of all resets that are due, each of which reads x⁻."""
+    plan = plan_of(core)
+    progress = progress_of(core)
+    values, by = np.empty(len(plan.writes)), np.full(len(x), -1)
+    evaluate(core, RESETS, t, before, values)
+    for reset in np.flatnonzero(due):
+        first = plan.resets[reset, 2]
+        for row in range(first, first + plan.resets[reset, 3]):
+            state, value = plan.writes[row], values[row]
+            other = by[state] >= 0 and x[state] != value
+            if not math.isfinite(value) or other:
+                progress.info[0], progress.info[1], progress.info[2] = t, value, x[state]
+                progress.which[0], progress.which[1] = state, reset
+                progress.which[2] = by[state]
+                return TWO_WRITES if other else BAD_RESET
+            x[state] = value
+            by[state] = reset
+    return FINISHED
+
+
+@unit
+def _driven_together(
+    core: int, t: float, before: Vector, x: Vector, old: Vector, due: Ints
+) -> None:
+    """Mark the resets whose guard is zero and was driven over it by the jump: they are due now."""
+    flow = flow_of(core)
+    plan = plan_of(core)
+    modes = len(plan.kind)
+    guards, along = np.empty(modes), np.empty(modes)
+    evaluate(core, GUARDS, t, x, guards)
+    guard_rates(core, t, x, along)
+    level = noise(x)
+    for reset in range(len(plan.resets)):
+        i, was = plan.resets[reset, 0], due[reset]
+        due[reset] = 0
+        if i < 0 or plan.kind[i] != SIGN or plan.is_timed[i] or plan.resets[reset, 1] == 0:
+            continue
+        side = contact.side_of(core, reset)
+        small = NOTHING * (1.0 + abs(old[i]))
+        closing = side * along[i] < -small and (was == 1 or side * old[i] >= -small)
+        if flow.bound[i] == FREE and abs(guards[i]) <= level and closing and was == 0:
+            due[reset] = 1
+
+
+@unit
+def _cross(core: int, t: float, before: Vector, after: Vector, turned: Ints, marks: Ints) -> None:
+    """Set the modes that are known; mark guards that are zero, and slides that were left."""
+    flow = flow_of(core)
+    crossings = crossings_of(core)
+    plan = plan_of(core)
+    modes = len(plan.kind)
+    here, there = np.empty(modes), np.empty(modes)
+    evaluate(core, GUARDS, t, before, here)
+    evaluate(core, GUARDS, t, after, there)
+    level = noise(before)
+    for i in range(modes):
+        how = crossings.how[i]
+        if how < 0 or turned[i]:
+            continue
+        if how == FRACTION:  # to the side that it reached, stored
+            bind(core, i, FREE)
+            flow.m[i], flow.m[modes + i] = crossings.to[i], 0.0
+            marks[i] = LEFT
+        elif how == FORCE:
+            contact.release(core, i)
+            marks[i] = LEFT
+        elif how in (TIME, PASSED):
+            flow.m[i] = crossings.to[i]
+        elif plan.kind[i] != SIGN:
+            flow.m[i] = crossings.to[i]
+            if abs(there[i] - here[i]) <= level:
+                marks[i] = LEFT  # though rounding may have located it too early
+        elif abs(there[i] - here[i]) <= level:
+            # it was seen beyond: this counts where the derivatives do not tell
+            flow.m[i], marks[i] = crossings.to[i], KNOWN
+    evaluate(core, GUARDS, t, after, here)
+    for i in range(modes):
+        jumps = abs(here[i] - there[i]) > JUMP * (1.0 + abs(there[i]))
+        if marks[i] == KNOWN and jumps:  # a guard that its own mode moves is decided by trial
+            flow.m[i] = 1.0 - flow.m[i]
+
+
+@unit
+def _write_log(
+    core: int,
+    t: float,
+    before: Vector,
+    after: Vector,
+    done: Ints,
+    fired: Ints,
+    waits: Vector,
+    old: Vector,
+    bound: Ints,
+) -> None:
+    """Log what crossed, and every other mode that changed with it."""
+    flow = flow_of(core)
+    plan = plan_of(core)
+    crossings = crossings_of(core)
+    for reset in np.flatnonzero(done):
+        i = plan.resets[reset, 0]
+        way = plan.resets[reset, 1]
+        if crossings.how[i] >= 0:
+            way = UP if crossings.up[i] else DOWN
+        log(core, t, plan.resets[reset, 4], i, way, before, after)
+    for i in range(len(plan.kind)):
+        how, up = crossings.how[i], UP if crossings.up[i] else DOWN
+        entered = flow.bound[i] == SLIDING and bound[i] == FREE
+        gone = flow.bound[i] == FREE and bound[i] != FREE
+        silent = plan.kind[i] == SEGMENT or plan.kind[i] == MEMORY
+        if how >= 0 and fired[i] < 0 and not (silent or gone or entered):
+            log(core, t, SCHEDULED if how == TIME else CROSSING, i, up, before, after)
+    for i in range(len(plan.kind)):
+        gone = flow.bound[i] == FREE and bound[i] != FREE
+        silent = plan.kind[i] == SEGMENT or plan.kind[i] == MEMORY
+        up = UP if flow.m[i] > (0.5 if gone else old[i]) else DOWN
+        if flow.bound[i] == SLIDING and bound[i] == FREE:
+            log(core, t, STICK, i, 0, before, after)
+        elif gone:
+            log(core, t, SLIP, i, up, before, after)
+        elif flow.bound[i] == RESTING and bound[i] != RESTING:
+            log(core, t + max(waits[i], 0.0), REST, i, 0, before, after)
+        elif flow.m[i] != old[i] and not silent and crossings.how[i] < 0 and fired[i] < 0:
+            log(core, t, CROSSING, i, up, before, after)
+
+
+@unit
+def _count(core: int, t: float, i: int) -> int:
+    """Count an event; many in next to no time are chatter."""
+    progress = progress_of(core)
+    number = progress.ints[RECENT]
+    progress.recent[number % CHATTER_EVENTS, 0] = t
+    progress.recent[number % CHATTER_EVENTS, 1] = i
+    progress.ints[RECENT] = number + 1
+    if number + 1 < CHATTER_EVENTS:
+        return FINISHED
+    first = progress.recent[(number + 1) % CHATTER_EVENTS, 0]
+    if t - first >= CHATTER_PART * progress.now[LENGTH]:
+        return FINISHED
+    often, most = 0, -1
+    for row in range(CHATTER_EVENTS):
+        same = np.sum(progress.recent[:, 1] == progress.recent[row, 1])
+        if same > most:
+            most, often = same, int(progress.recent[row, 1])
+    progress.info[0], progress.info[1] = t, t - first
+    progress.which[0], progress.which[1] = 1, often
+    return CHATTER

@@ -1,0 +1,208 @@
+"""A run on the compiled core: it is paused now and then to look at the clock and empty the log."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import Model
+from tracewire.errors import Problem, SimulationError
+from tracewire.solve.core.arrays import Arrays, Progress, table_of
+from tracewire.solve.core.codes import (
+    BUDGET,
+    END,
+    EVENTS,
+    FINISHED,
+    LENGTH,
+    LOG_FULL,
+    LOG_HEAD,
+    LOGGED,
+    NOT_UNIQUE,
+    PAUSED,
+    REJECTED,
+    STEPS,
+    STIFF_STEPS,
+    WARNINGS,
+    T,
+)
+from tracewire.solve.core.flow import EVALUATIONS
+from tracewire.solve.core.integrate import advance
+from tracewire.solve.core.jit import ready
+from tracewire.solve.failures import failure, too_long, too_many_events
+from tracewire.solve.interrupt import Halt, Interrupted, until_interrupted
+from tracewire.solve.limits import Limits
+from tracewire.solve.run import Event, EventDirection, EventKind, Statistics
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+Tell = Callable[[float, float], object]
+"""Is told how far the work is: the part that is done, 0 to 1, and the seconds that are left."""
+PAUSE = 0.1  # s between two pauses, about
+FIRST_WORK = 20_000  # signals times steps before the first pause
+GROWTH = 8
+
+
+def first_budget(model: Model) -> int:
+    """The steps before the first pause, when nothing is known of how long a step takes."""
+    return max(1, FIRST_WORK // (1 + len(model.flat.signals)))
+
+
+def next_budget(budget: int, steps: int, seconds: float) -> int:
+    """The steps before the next pause, after `steps` took `seconds`."""
+    fitting = PAUSE * max(steps, 1) / max(seconds, 1e-9)
+    return max(1, int(min(fitting, GROWTH * budget)))
+
+
+@dataclass
+class Execution:
+    """One run of a model: what the core works on, and the events that it has logged so far."""
+
+    model: Model
+    arrays: Arrays
+    limits: Limits
+    start: float
+    tell: Tell | None = None
+    halt: Halt | None = None
+    rows: list[Matrix] = field(default_factory=list)
+    logged: int = 0
+    seconds: float = 0.0
+
+    @property
+    def progress(self) -> Progress:
+        """How far the run is."""
+        return self.arrays.progress
+
+    def run(self) -> None:
+        """Integrate to the end.
+
+        Raises SimulationError where that cannot be, Interrupted where the user does not want it;
+        a `halt` that is given is the business of the caller, else Ctrl-C is heard here.
+        """
+        ready(advance)  # it may take a minute, in which Ctrl-C should end it at once
+        if self.halt is not None:
+            if not self._go_on(self.halt):
+                raise self.interrupted()
+            return
+        with until_interrupted() as halt:
+            try:
+                self._go_on(halt)
+            except SimulationError:
+                if not halt.asked:
+                    raise
+        if halt.asked:  # whatever became of the run: the user wants to stop
+            raise self.interrupted()
+
+    def interrupted(self) -> Interrupted:
+        """The error of a run that the user stopped."""
+        now = self.progress.now
+        way = f"on the way from {self.start:g} to {now[END]:g} s"
+        what = f"interrupted at t = {now[T]:.9g} s, {way}"
+        return Interrupted([Problem(what, hint="What there is of the run is in `.run`.")])
+
+    def _go_on(self, halt: Halt) -> bool:
+        """Integrate until the end, or until the user wants to stop; whether it is the end."""
+        began = time.perf_counter()
+        ints, now = self.progress.ints, self.progress.now
+        go_on, table = ready(advance), table_of(self.arrays)
+        core = table.ctypes.data
+        budget, last = first_budget(self.model), -PAUSE
+        while not halt.asked:
+            before, done = self.seconds, int(ints[STEPS])
+            ints[BUDGET] = min(budget, self.limits.steps - done)
+            status = go_on(core)
+            self.seconds = time.perf_counter() - began
+            self.empty_log()
+            self.check_events()
+            if status == FINISHED:
+                return True
+            if status not in (LOG_FULL, PAUSED):
+                raise failure(self.model, self.arrays, status)
+            self.check_limits()
+            budget = next_budget(budget, int(ints[STEPS]) - done, self.seconds - before)
+            if self.tell is not None and self.seconds - last >= PAUSE:
+                last, part = self.seconds, float((now[T] - self.start) / now[LENGTH])
+                self.tell(part, self.seconds * (1 - part) / part if part > 0 else np.inf)
+        return False
+
+    def check_limits(self) -> None:
+        """Stop a run that takes more steps or more time than it may."""
+        limits = self.limits
+        if self.progress.ints[STEPS] >= limits.steps:
+            what, hint = f"more than {limits.steps} steps", "Loosen rtol."
+            raise too_long(self.model, self.arrays, what, hint)
+        if self.seconds > limits.seconds:
+            what = f"more than {limits.seconds:g} s of wall time"
+            hint = "Shorten the span, loosen rtol or raise the limit."
+            raise too_long(self.model, self.arrays, what, hint)
+
+    def check_events(self) -> None:
+        """Stop a run with more events than it may have, at the first of them that is too many."""
+        if self.logged > self.limits.events:
+            raise too_many_events(self.model, np.concatenate(self.rows), self.limits.events)
+
+    def empty_log(self) -> None:
+        """Take the events that the core has logged."""
+        logged = int(self.progress.ints[LOGGED])
+        if logged:
+            self.rows.append(self.progress.log[:logged].copy())
+            self.progress.ints[LOGGED] = 0
+            self.logged += logged
+
+    @property
+    def log(self) -> Matrix:
+        """The log as the core writes it, in the order of time: (events, LOG_HEAD + 2n)."""
+        width = self.progress.log.shape[1]
+        rows = np.concatenate(self.rows) if self.rows else np.empty((0, width))
+        return rows[np.argsort(rows[:, 0], kind="stable")]
+
+    @property
+    def events(self) -> tuple[Event, ...]:
+        """The log, in the order of time."""
+        return tuple(_event(self.model, row) for row in self.log)
+
+    @property
+    def statistics(self) -> Statistics:
+        """What the run has cost so far."""
+        ints = self.progress.ints
+        return Statistics(
+            steps=int(ints[STEPS] - ints[REJECTED]),
+            rejected=int(ints[REJECTED]),
+            evaluations=int(self.arrays.flow.counts[EVALUATIONS]),
+            stiff_steps=int(ints[STIFF_STEPS]),
+            seconds=self.seconds,
+        )
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the user should know although the run has ended well."""
+        t = self.start
+        said = []
+        if self.progress.ints[WARNINGS] & NOT_UNIQUE:
+            said.append(f"the start at t = {t:g} s is not unique: two modes fit it")
+        for reset in np.flatnonzero(self.progress.overlooked):
+            name = self.model.lowered.resets[reset].name
+            said.append(
+                f"the start at t = {t:g} s lies on the guard of {name}, which does not fire there"
+            )
+        return tuple(said)
+
+
+def _event(model: Model, row: Vector) -> Event:
+    time_, kind, mode, direction = float(row[0]), int(row[1]), int(row[2]), int(row[3])
+    where, n = model.modes[mode], len(model.states)
+    ways: dict[int, EventDirection] = {1: "up", -1: "down", 0: ""}
+    before, after = row[LOG_HEAD : LOG_HEAD + n].tolist(), row[LOG_HEAD + n :].tolist()
+    return Event(
+        time=time_,
+        kind=cast(EventKind, EVENTS[kind]),
+        block=where.signal,
+        guard=where.text,
+        direction=ways[direction],
+        before=dict(zip(model.states, before, strict=True)),
+        after=dict(zip(model.states, after, strict=True)),
+    )

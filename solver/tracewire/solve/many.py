@@ -1,0 +1,238 @@
+"""`simulate_many`: runs of one model for rows of parameters, side by side in threads.
+
+The core is called with Python's lock released, so that threads are enough. Each row is what
+`simulate` gives for it alone, bit for bit, however many threads there are.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass
+from typing import Unpack
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tracewire.compile import Model
+from tracewire.errors import OptionError, Problem, SimulationError, TracewireError, unknown
+from tracewire.solve.execute import Tell
+from tracewire.solve.interrupt import Interrupted, until_interrupted
+from tracewire.solve.observers import Observer, Section
+from tracewire.solve.task import START, Options, Outcome, Row, Task
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+Cube = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Runs:
+    """Many runs of one model: `runs["name"]` (rows, N) in SI at `runs.t` (N,) in s.
+
+    `parameters` holds the rows, by name (rows,), NaN where a row does not have it. `final` (rows,
+    states) and `event_counts` (rows,) are always kept; `samples` (rows, N, signals), `points` (per
+    row K times 1 + states: time and states of the section) and `criterion` (rows, ...) if they are
+    observed, else they are empty. Of a row that failed all values are NaN, it has no points, and
+    `errors` holds the message by row.
+    """
+
+    t: Vector
+    signals: tuple[str, ...]
+    states: tuple[str, ...]
+    parameters: Mapping[str, Vector]
+    samples: Cube
+    final: Matrix
+    event_counts: Vector
+    points: tuple[Matrix, ...]
+    criterion: NDArray[np.float64]
+    errors: Mapping[int, str]
+
+    def __len__(self) -> int:
+        return len(self.final)
+
+    def __getitem__(self, name: str) -> Matrix:
+        if name not in self.signals:
+            hint = "Add it to `record:` of the diagram, or to `record=` of compile."
+            raise OptionError([unknown("recorded signal", name, self.signals, hint=hint)])
+        if not len(self.t):
+            what = "the samples of these runs were not kept"
+            raise OptionError([Problem(what, hint="Add 'samples' to `observe`.")])
+        return self.samples[:, :, self.signals.index(name)]
+
+
+def simulate_many(
+    model: Model,
+    rows: Sequence[Row] | Mapping[str, ArrayLike],
+    *,
+    observe: Observer | Sequence[Observer] = "samples",
+    workers: int | None = None,
+    progress: Tell | None = None,
+    **options: Unpack[Options],
+) -> Runs:
+    """Simulate a model for many rows of parameters, in parallel.
+
+    A row maps names of parameters, and `start.NAME` of start values, to values in SI; or `rows` is
+    a mapping from such names to arrays of equal lengths. `observe` says what is kept of each run:
+    "samples", a `Section`, a function of a Run that gives a number or an array, or several of
+    these. `workers` is the number of threads, the number of cores unless given; a criterion may be
+    called in any of them. `progress` is told the part of the rows that is done, and the seconds
+    that are left. All else is as in `simulate`.
+
+    A row that fails does not end the others. Raises OptionError for arguments that do not fit, the
+    error of the first row where all of them fail, and Interrupted with the rows that are done.
+    """
+    unknown_options = [
+        unknown("option", name, Options.__annotations__)
+        for name in options
+        if name not in Options.__annotations__
+    ]
+    if unknown_options:
+        raise OptionError(unknown_options)
+    table = _rows(model, rows)
+    observers = _observers(observe)
+    if workers is not None and workers < 1:
+        what = f"{workers} workers cannot work"
+        raise OptionError([Problem(what, hint="Give a whole number above 0, or None.")])
+    outcomes: dict[int, Outcome] = {}
+    errors: dict[int, TracewireError] = {}
+    task = Task(model, table, observers, options)
+    with until_interrupted() as halt:
+        task.halt = halt
+        threads = min(workers or _cores(), max(1, len(table)))
+        began, told = time.perf_counter(), -1.0
+        for number, outcome in _each(task, threads):
+            if isinstance(outcome, Outcome):
+                outcomes[number] = outcome
+            else:
+                errors[number] = outcome
+            done, seconds = len(outcomes) + len(errors), time.perf_counter() - began
+            if progress is not None and (seconds - told >= 0.1 or done == len(table)):
+                told = seconds
+                progress(done / len(table), seconds * (len(table) - done) / done)
+    if halt.asked:
+        for number in range(len(table)):
+            if number not in outcomes:
+                errors.setdefault(number, Interrupted([Problem("interrupted before it began")]))
+    elif not outcomes:
+        raise errors[0]
+    runs = _gathered(model, table, outcomes, errors)
+    if halt.asked:
+        what = f"interrupted when {len(outcomes)} of {len(table)} runs were done"
+        hint = "They are in `.runs` of this error."
+        raise Interrupted([Problem(what, hint=hint)], runs=runs)
+    return runs
+
+
+def _each(task: Task, threads: int) -> Iterator[tuple[int, Outcome | TracewireError]]:
+    """The rows with what became of them, as they are done."""
+
+    def attempt(number: int) -> tuple[int, Outcome | TracewireError]:
+        try:
+            return number, task.run(number)
+        except TracewireError as error:
+            return number, error
+
+    if threads == 1:
+        for number in range(len(task.rows)):
+            if task.halt.asked:
+                return
+            yield attempt(number)
+        return
+    with ThreadPoolExecutor(threads, thread_name_prefix="tracewire") as pool:
+        futures = [pool.submit(attempt, number) for number in range(len(task.rows))]
+        try:
+            for future in as_completed(futures):
+                yield future.result()
+                if task.halt.asked:
+                    pool.shutdown(wait=True, cancel_futures=True)
+                    yield from (f.result() for f in futures if f.done() and not f.cancelled())
+                    return
+        except BaseException:  # a callback of the user has failed, or a second Ctrl-C
+            task.halt.asked = True
+            pool.shutdown(wait=True, cancel_futures=True)
+            raise
+
+
+def _rows(model: Model, rows: Sequence[Row] | Mapping[str, ArrayLike]) -> list[Row]:
+    """The rows one by one. Raises OptionError for names that are unknown, lengths that differ."""
+    if isinstance(rows, Mapping):
+        columns = {name: np.asarray(values, dtype=float) for name, values in rows.items()}
+        lengths = {name: values.shape for name, values in columns.items()}
+        if len(set(lengths.values())) > 1 or any(len(shape) != 1 for shape in lengths.values()):
+            shown = ", ".join(f"{name} {shape}" for name, shape in lengths.items())
+            what = f"the columns of the rows do not have one length: {shown}"
+            raise OptionError([Problem(what, hint="Give arrays of one dimension.")])
+        turned = zip(*(values.tolist() for values in columns.values()), strict=True)
+        table: list[Row] = [dict(zip(columns, values, strict=True)) for values in turned]
+    else:
+        table = list(rows)
+    if not table:
+        raise OptionError([Problem("there are no rows to simulate", hint="Give one at least.")])
+    known = [*model.flat.parameters, *(START + name for name in model.states)]
+    names = dict.fromkeys(name for row in table for name in row)
+    problems = [unknown("parameter or start", n, known) for n in names if n not in set(known)]
+    if problems:
+        raise OptionError(problems)
+    return table
+
+
+def _observers(observe: Observer | Sequence[Observer]) -> list[Observer]:
+    one = isinstance(observe, str | Section) or callable(observe)
+    several = [observe] if one else list(observe)  # type: ignore[arg-type]
+    for kind in several:
+        if isinstance(kind, str) and kind != "samples":
+            raise OptionError([unknown("observer", kind, ["samples"])])
+    for what, number in (
+        ("section", sum(isinstance(kind, Section) for kind in several)),
+        ("criterion", sum(callable(kind) for kind in several)),
+    ):
+        if number > 1:
+            text = f"{number} observers are a {what}"
+            raise OptionError([Problem(text, hint=f"Give one {what}.")])
+    return several  # type: ignore[return-value]
+
+
+def _cores() -> int:
+    """The cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _gathered(
+    model: Model,
+    rows: Sequence[Row],
+    outcomes: Mapping[int, Outcome],
+    errors: dict[int, TracewireError],
+) -> Runs:
+    """All rows in arrays."""
+    count, columns, n = len(rows), len(model.recorded), len(model.states)
+    first = outcomes[min(outcomes)] if outcomes else None
+    t = first.t if first else np.empty(0)
+    shape = first.criterion.shape if first else (0,)
+    samples = np.full((count, len(t), columns), np.nan)
+    final, events = np.full((count, n), np.nan), np.full(count, np.nan)
+    points = [np.empty((0, 1 + n))] * count
+    criterion = np.full((count, *shape), np.nan)
+    for number, outcome in outcomes.items():
+        if outcome.criterion.shape != shape:
+            what = f"the criterion has the shape {outcome.criterion.shape} here, before {shape}"
+            errors[number] = SimulationError([Problem(what)])
+            continue
+        samples[number], final[number] = outcome.samples, outcome.final
+        events[number], points[number] = outcome.events, outcome.points
+        criterion[number] = outcome.criterion
+    names = dict.fromkeys(name for row in rows for name in row)
+    return Runs(
+        t=t,
+        signals=model.recorded,
+        states=model.states,
+        parameters={name: np.array([r.get(name, np.nan) for r in rows], float) for name in names},
+        samples=samples,
+        final=final,
+        event_counts=events,
+        points=tuple(points),
+        criterion=criterion,
+        errors={number: str(errors[number]) for number in sorted(errors)},
+    )

@@ -1,0 +1,200 @@
+"""What the compiled core is given: a model, values and tables as plain arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import Model
+from tracewire.solve.core.arrays import (
+    Arrays,
+    Crossings,
+    Flow,
+    Plan,
+    Progress,
+    Trial,
+    Watch,
+)
+from tracewire.solve.core.codes import (
+    BUDGET,
+    CHATTER_EVENTS,
+    DIRECTIONS,
+    END,
+    EVENTS,
+    FIXED,
+    KINDS,
+    LENGTH,
+    LOG_HEAD,
+    METHOD,
+    RTOL,
+    H,
+    T,
+)
+from tracewire.solve.core.flow import FREE, FUNCTIONS
+from tracewire.solve.core.jit import invoke_at
+from tracewire.solve.core.locate import SAMPLES
+from tracewire.solve.core.methods import NAMES
+from tracewire.solve.core.methods.trial import DENSE, STAGES
+
+Vector = NDArray[np.float64]
+MOST_STIFF = 64  # mode combinations of a run that are remembered as stiff
+LOG_VALUES = 1_000_000  # numbers that the log of the core may hold before it is emptied
+STEPS_AT_ONCE = 20_000
+NOTHING: Vector = np.zeros(1)
+Table = tuple[Vector, Vector]
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """How exact a run is: relative, absolute per state (n,), and the step of a fixed method."""
+
+    rtol: float
+    atol: Vector
+    step: float = np.inf
+
+
+def new_plan(model: Model) -> Plan:
+    """The modes, resets and transitions of a model as arrays."""
+    modes, low = model.modes, model.lowered
+    first, resets = 0, []
+    for reset in low.resets:
+        count = len(reset.values)
+        kind = EVENTS.index(reset.kind)
+        resets.append((reset.trigger, DIRECTIONS[reset.direction], first, count, kind))
+        first += count
+    position = {name: i for i, name in enumerate(model.states)}
+    moves = [
+        (m.memory, m.source, m.trigger, m.target, m.reset, m.level, int(m.at_zero))
+        for m in low.transitions
+    ]
+
+    loop = np.full(len(modes), -1, dtype=np.int64)
+    for number, members in enumerate(low.loops):
+        loop[list(members)] = number
+
+    def ints(values: Sequence[int]) -> NDArray[np.int64]:
+        return np.array(values, dtype=np.int64)
+
+    return Plan(
+        kind=ints([KINDS.index(mode.kind) for mode in modes]),
+        at_zero=ints([mode.at_zero for mode in modes]),
+        can_hold=ints([int(mode.holds) for mode in modes]),
+        table=ints([mode.table for mode in modes]),
+        is_timed=ints([int(mode.timed is not None) for mode in modes]),
+        timed=ints([i for i, mode in enumerate(modes) if mode.timed is not None]),
+        resets=np.array(resets, dtype=np.int64).reshape(-1, 5),
+        writes=ints([state for reset in low.resets for state in reset.values]),
+        transitions=np.array(moves, dtype=np.int64).reshape(-1, 7),
+        direct=ints([position.get(name, -1) for name in model.recorded]),
+        loop=loop,
+    )
+
+
+def new_flow(model: Model, parameters: Vector, tables: Sequence[Table]) -> Flow:
+    """The field of a model for one set of parameters, with its modes as they are by default."""
+    sizes, count = model.sizes, len(model.modes)
+    constants = np.zeros(max(1, sizes.constants))
+    invoke_at(model.address("prepare"), 0.0, parameters, NOTHING, NOTHING, NOTHING, constants)
+    return Flow(
+        address=np.array([model.address(name) for name in FUNCTIONS], dtype=np.int64),
+        m=np.array([*(mode.at_zero for mode in model.modes), *[0.0] * count], dtype=float),
+        c=constants,
+        k=packed(tables),
+        bound=np.full(count, FREE, dtype=np.int64),
+        push=np.zeros((count, sizes.states)),
+        counts=np.zeros(4, dtype=np.int64),
+    )
+
+
+def starts(model: Model, flow: Flow) -> Vector:
+    """The start values of the states, as the diagram says."""
+    out = np.zeros(model.sizes.states)
+    address = model.address("starts")
+    invoke_at(address, 0.0, NOTHING, flow.m, flow.c, flow.k, out)
+    return out
+
+
+def packed(tables: Sequence[Table]) -> Vector:
+    """All tables in one array: their offsets, then of each its length, points, values, slopes."""
+    parts: list[Vector] = [np.zeros(len(tables))]
+    offset = len(tables)
+    for number, (x, y) in enumerate(tables):
+        parts[0][number] = offset
+        parts.append(np.concatenate(([len(x)], x, y, np.diff(y) / np.diff(x))))
+        offset += len(parts[-1])
+    return np.concatenate([*parts, [0.0]])
+
+
+def new_progress(
+    model: Model,
+    x: Vector,
+    span: tuple[float, float],
+    times: Vector,
+    method: str,
+    tolerance: Tolerance,
+) -> Progress:
+    """A run that has not begun."""
+    n, count = len(x), len(model.modes)
+    now, ints = np.zeros(7), np.zeros(15, dtype=np.int64)
+    now[T], now[H], now[END], now[LENGTH] = span[0], 0.0, span[1], span[1] - span[0]
+    now[RTOL], now[FIXED] = tolerance.rtol, tolerance.step
+    ints[METHOD] = -1 if method == "auto" else NAMES.index(method)
+    ints[BUDGET] = STEPS_AT_ONCE
+    width = LOG_HEAD + 2 * n
+    return Progress(
+        now=now,
+        x=x.copy(),
+        atol=tolerance.atol,
+        ints=ints,
+        times=times,
+        samples=np.full((len(times), len(model.recorded)), np.nan),
+        log=np.empty((max(4 * count + 16, LOG_VALUES // width), width)),
+        stiff=np.empty((MOST_STIFF, 3 * count)),
+        recent=np.zeros((CHATTER_EVENTS, 2)),
+        flights=np.tile([np.inf, 0.0], (count, 1)),
+        info=np.zeros(4),
+        which=np.zeros(count + 8, dtype=np.int64),
+        overlooked=np.zeros(len(model.lowered.resets), dtype=np.int64),
+    )
+
+
+def new_arrays(flow: Flow, plan: Plan, progress: Progress) -> Arrays:
+    """All arrays of a run, with the work space."""
+    n, modes = len(progress.x), len(plan.kind)
+    most = 3 * modes  # a guard has two levels at most, and held it has a force or two fractions
+
+    def ints(size: int) -> NDArray[np.int64]:
+        return np.zeros(size, dtype=np.int64)
+
+    trial = Trial(
+        ends=np.zeros(3),
+        x=np.zeros(n),
+        x_end=np.zeros(n),
+        rate_end=np.zeros(n),
+        error=np.zeros(n),
+        inner=np.zeros((DENSE, n)),
+        stages=np.zeros((STAGES, n)),
+        matrix=np.zeros((n, n + 1)),
+        factors=np.zeros((n, n)),
+        pivots=ints(n),
+        rate=np.zeros(n),
+        at=np.zeros(n),
+        guards=np.zeros(modes),
+    )
+    watch = Watch(
+        mode=ints(most),
+        kind=ints(most),
+        to=np.zeros(most),
+        level=np.zeros(most),
+        sign=np.zeros(most),
+        armed=ints(most),
+        rows=np.zeros((SAMPLES, most)),
+        start=np.zeros(most),
+        found=np.full(most, np.inf),
+        hit=ints(most),
+    )
+    crossings = Crossings(how=np.full(modes, -1), to=np.zeros(modes), up=ints(modes))
+    return Arrays(flow, plan, progress, trial, watch, crossings)

@@ -1,0 +1,77 @@
+"""What a run says that cannot go on: block, guard, time and remedy.
+
+Undefined rates, steps that are too small and limits are in test_limits.py, resets that write what
+they must not in test_events.py, loops without a solution in test_loops.py.
+"""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from solve.models import LIMITS, one
+from tracewire.compile import compile
+from tracewire.diagram import read_text
+from tracewire.errors import SimulationError
+from tracewire.solve import simulate
+
+
+def said(text: str) -> str:
+    """The message of a run that is refused, with the name of its file and the place in it."""
+    with pytest.raises(SimulationError) as caught:
+        simulate(compile(read_text(text)), limits=LIMITS)
+    return str(caught.value)
+
+
+def test_a_reset_that_fires_again_and_again_is_chatter() -> None:
+    """x rises by 1e-9 to 1, and is put back, for ever."""
+    text = one("1", 0.5) + "events:\n  - {when: x - 1, crosses: up, set: {x: 1 - 1e-9}}\n"
+    message = said(text)
+    found = re.search(r"the run stopped at t = (\S+) s: the guard 'x - 1' changed", message)
+    assert found is not None
+    assert float(found[1]) == pytest.approx(0.5 + 49e-9, abs=2e-9)
+    assert "its mode again and again: 50 events within 4.9e-08 s; x = 1." in message
+    assert "Give the block hysteresis or a stick level" in message
+
+
+def test_a_body_without_room_between_two_walls_never_stops_bouncing() -> None:
+    text = """
+span: [0, 2]
+blocks:
+  x: {type: integrator, of: v, start: 1}
+  v: {type: integrator, of: none, start: -1}
+  none: {type: constant, value: 0}
+events:
+  - {when: x, crosses: down, set: {v: -v}}
+  - {when: 2*x, crosses: up, set: {v: -v}}
+"""
+    message = said(text)
+    assert re.search(r"block 'events\[.\]': the run stopped at t = 1 s: the impacts of '", message)
+    assert "and its neighbours do not come to an end; x = " in message
+    assert "Give one of them a restitution below 1." in message
+
+
+def test_where_too_many_surfaces_meet_the_run_is_refused_with_all_of_them() -> None:
+    """Five surfaces through the origin of two states, none of which can be left."""
+    message = said("""
+blocks:
+  x: {type: integrator, of: xd}
+  y: {type: integrator, of: yd}
+  xd: {type: expression, formula: -sign(x + y) - sign(x - y) - sign(2*x - y)}
+  yd: {type: expression, formula: -sign(y + 2*x) - 2*sign(x)}
+""")
+    assert "block 'xd': no consistent mode at t = 0 s for the guards 'x + y' in xd, " in message
+    assert "'x - y' in xd, '2*x - y' in xd, 'y + 2*x' in yd, 'x' in yd." in message
+    assert "use hysteresis or a block with memory" in message
+
+
+def test_a_memory_that_is_led_in_a_circle_is_named() -> None:
+    message = said("""
+span: [0, 7]
+blocks:
+  x: {type: integrator, of: rate, start: 0.5}
+  relay: {type: relay, of: x, on_at: 1, off_at: 2}
+  rate: {type: expression, formula: 1 - 2*relay}
+""")
+    assert "<text>:5:3: block 'relay': the transitions of 'relay' at t = 0.5 s lead back" in message
+    assert "Let the condition that leaves a mode be false where the mode is entered." in message
