@@ -68,6 +68,7 @@ POLISH = 3
 TOGETHER = 1e-12
 SOON = 1e-9
 NEAR = 32.0
+PAUSED_INSIDE = 2  # in ints[STAGE]: between two steps of a smooth part
 LARGEST_PART = 0.1  # of the span, for one step
 
 
@@ -87,10 +88,10 @@ def advance(core: int) -> int:
         if status != FINISHED:
             return status
         ints[STAGE] = 1
-    rate = trial_of(core).rate
-    rates(core, now[T], x, rate)
-    if not np.all(np.isfinite(rate)):
-        return UNDEFINED
+        rate = trial_of(core).rate
+        rates(core, now[T], x, rate)
+        if not np.all(np.isfinite(rate)):
+            return UNDEFINED
     budget = ints[STEPS] + ints[BUDGET]
     while now[T] < now[END]:
         if ints[LOGGED] + 4 * modes + 4 > len(progress.log):
@@ -112,8 +113,11 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
     trial = trial_of(core)
     now, ints, x = progress.now, progress.ints, progress.x
     rate, start, hit = trial.rate, watch_of(core).start, watch_of(core).hit
-    locate.watch(core)
-    rates(core, now[T], x, rate)
+    if ints[STAGE] == PAUSED_INSIDE:  # nothing has changed: what was armed is still so
+        ints[STAGE] = 1
+    else:
+        locate.watch(core)
+        rates(core, now[T], x, rate)
     due = schedule.upcoming(core, now[T], x, ahead)
     limit = min(due, now[END])
     _choose(core)
@@ -121,6 +125,7 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
         now[H] = _first_step(core, rate, limit)
     while now[T] < limit:
         if ints[STEPS] >= budget:
+            ints[STAGE] = PAUSED_INSIDE
             return PAUSED
         if locate.passed(core, hit):  # so slowly that no step has seen it
             return _cross(core, PASSED)
