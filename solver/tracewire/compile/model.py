@@ -66,6 +66,16 @@ class Model:
     def _parameter_formulas(self) -> dict[str, dict[str, Expression]]:
         return {}
 
+    @cached_property
+    def read_parameters(self) -> frozenset[str]:
+        """The parameters that the model's functions read, and not only formulas of others."""
+        low = self.lowered
+        roots = [*low.rates, *low.starts, *(mode.guard for mode in low.modes)]
+        roots += [entry for reset in low.resets for entry in reset.values.values()]
+        roots += [low.entries[name] for name in self.recorded]
+        read = set(low.tape.needed(roots))
+        return frozenset(name for name in self.parameters if low.entries[name] in read)
+
     @property
     def modes(self) -> Sequence[Mode]:
         """The modes of the model and their guards."""

@@ -55,6 +55,12 @@ not fire there, and a warning says so.
 **Known times.** Guards that are a line in t (square, step, ramp, clocks, breakpoints of tables in
 t) change at computed times that steps end on; breakpoints of tables are not logged.
 
+**Sensitivities.** S = dx/dp follows S' = f_x S + f_p between events. At an event the instant moves
+by dτ = -(g_x S + g_p)/g', and S⁺ = R_x (S⁻ + f⁻ dτ) + R_p + R_t dτ - f⁺ dτ, with R the reset and f⁺
+the field that holds after it, a slide included. Where it is not defined (the end of a Zeno
+sequence, a guard that is only grazed, several things at one instant) it stays finite, and a
+warning says so.
+
 **Never hang.** Chatter, underflow of the step, values that are not finite, the limits of steps,
 events and wall time stop a run with block, time, values and what to try. A run is paused about ten
 times a second; there Ctrl-C is heard, and raises `Interrupted`, which carries the run up to there.

@@ -37,6 +37,7 @@ from tracewire.solve.failures import failure, too_long, too_many_events
 from tracewire.solve.interrupt import Halt, Interrupted, until_interrupted
 from tracewire.solve.limits import Limits
 from tracewire.solve.run import Event, EventDirection, EventKind, Statistics
+from tracewire.solve.sensitivities import undefined
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -68,6 +69,7 @@ class Execution:
     start: float
     tell: Tell | None = None
     halt: Halt | None = None
+    asked: tuple[str, ...] = ()
     rows: list[Matrix] = field(default_factory=list)
     logged: int = 0
     seconds: float = 0.0
@@ -149,21 +151,22 @@ class Execution:
         """Take the events that the core has logged."""
         logged = int(self.progress.ints[LOGGED])
         if logged:
-            self.rows.append(self.progress.log[:logged].copy())
+            moved = self.arrays.sensitivity.times[:logged]
+            self.rows.append(np.hstack([self.progress.log[:logged], moved]))
             self.progress.ints[LOGGED] = 0
             self.logged += logged
 
     @property
     def log(self) -> Matrix:
-        """The log as the core writes it, in the order of time: (events, LOG_HEAD + 2n)."""
-        width = self.progress.log.shape[1]
+        """The log as the core writes it, in the order of time: (events, LOG_HEAD + 2n + q)."""
+        width = self.progress.log.shape[1] + len(self.asked)
         rows = np.concatenate(self.rows) if self.rows else np.empty((0, width))
         return rows[np.argsort(rows[:, 0], kind="stable")]
 
     @property
     def events(self) -> tuple[Event, ...]:
         """The log, in the order of time."""
-        return tuple(_event(self.model, row) for row in self.log)
+        return tuple(_event(self.model, row, self.asked) for row in self.log)
 
     @property
     def statistics(self) -> Statistics:
@@ -189,20 +192,23 @@ class Execution:
             said.append(
                 f"the start at t = {t:g} s lies on the guard of {name}, which does not fire there"
             )
+        said.extend(undefined(self.model, self.arrays.sensitivity))
         return tuple(said)
 
 
-def _event(model: Model, row: Vector) -> Event:
+def _event(model: Model, row: Vector, asked: tuple[str, ...]) -> Event:
     time_, kind, mode, direction = float(row[0]), int(row[1]), int(row[2]), int(row[3])
     where, n = model.modes[mode], len(model.states)
     ways: dict[int, EventDirection] = {1: "up", -1: "down", 0: ""}
-    before, after = row[LOG_HEAD : LOG_HEAD + n].tolist(), row[LOG_HEAD + n :].tolist()
+    sides = row[LOG_HEAD : LOG_HEAD + 2 * n].tolist()
+    moved = row[LOG_HEAD + 2 * n :].tolist()
     return Event(
         time=time_,
         kind=cast(EventKind, EVENTS[kind]),
         block=where.signal,
         guard=where.text,
         direction=ways[direction],
-        before=dict(zip(model.states, before, strict=True)),
-        after=dict(zip(model.states, after, strict=True)),
+        before=dict(zip(model.states, sides[:n], strict=True)),
+        after=dict(zip(model.states, sides[n:], strict=True)),
+        sensitivity=dict(zip(asked, moved, strict=True)),
     )

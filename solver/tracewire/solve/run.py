@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
@@ -25,7 +25,8 @@ class Event:
     """Something that happened at an instant.
 
     `time` in s; `block` the signal whose formula holds the guard; `guard` the text that crossed
-    zero, `direction` the way it went; `before` and `after` the states x⁻ and x⁺ by name.
+    zero, `direction` the way it went; `before` and `after` the states x⁻ and x⁺ by name;
+    `sensitivity` d time/d name of what sensitivities were asked for, in s by SI.
     """
 
     time: float
@@ -35,6 +36,7 @@ class Event:
     direction: EventDirection
     before: Mapping[str, float]
     after: Mapping[str, float]
+    sensitivity: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -53,7 +55,8 @@ class Run:
     """A simulated solution: `run.t` (N,) in s, `run["name"]` (N,) in SI, and `run.events`.
 
     A sample at the time of an event is the right limit. `parameters` and `start` are the values
-    that were used; `final` holds the states at the end.
+    that were used; `final` holds the states at the end. `sensitivities` holds, by parameter or
+    `start.state`, by recorded signal, d signal/d that (N,) in SI, at a fixed time.
     """
 
     title: str
@@ -66,6 +69,7 @@ class Run:
     final: Mapping[str, float]
     statistics: Statistics
     warnings: tuple[str, ...] = ()
+    sensitivities: Mapping[str, Mapping[str, Vector]] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> Vector:
         if name not in self.signals:

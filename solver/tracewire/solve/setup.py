@@ -15,6 +15,7 @@ from tracewire.solve.core.arrays import (
     Flow,
     Plan,
     Progress,
+    Sensitivity,
     Trial,
     Watch,
 )
@@ -161,7 +162,7 @@ def new_progress(
     )
 
 
-def new_arrays(flow: Flow, plan: Plan, progress: Progress) -> Arrays:
+def new_arrays(flow: Flow, plan: Plan, progress: Progress, sensitivity: Sensitivity) -> Arrays:
     """All arrays of a run, with the work space."""
     n, modes = len(progress.x), len(plan.kind)
     most = 3 * modes  # a guard has two levels at most, and held it has a force or two fractions
@@ -197,4 +198,4 @@ def new_arrays(flow: Flow, plan: Plan, progress: Progress) -> Arrays:
         hit=ints(most),
     )
     crossings = Crossings(how=np.full(modes, -1), to=np.zeros(modes), up=ints(modes))
-    return Arrays(flow, plan, progress, trial, watch, crossings)
+    return Arrays(flow, plan, progress, trial, watch, crossings, sensitivity)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,6 +19,7 @@ from tracewire.solve.failures import place_of
 from tracewire.solve.interrupt import Interrupted
 from tracewire.solve.limits import Limits
 from tracewire.solve.run import Run
+from tracewire.solve.sensitivities import by_name, checked, follow, new_sensitivity
 from tracewire.solve.setup import (
     Table,
     Tolerance,
@@ -50,6 +51,7 @@ def simulate(
     inputs: Mapping[str, tuple[ArrayLike, ArrayLike]] | None = None,
     limits: Limits | None = None,
     progress: Tell | None = None,
+    sensitivities: Sequence[str] = (),
 ) -> Run:
     """Simulate a model: integrate x' = f(x, t) with frozen modes between located events.
 
@@ -61,12 +63,15 @@ def simulate(
     combination turns out to be stiff. `atol` is rtol/1000 unless given, as a number or by state.
     `inputs` gives measured inputs as (times, values), joined by straight lines. `progress` is told
     about ten times a second the part of the span that is done, and the seconds that are left.
+    `sensitivities` names parameters and start values (`start.theta`) whose forward sensitivities
+    are wanted.
 
     Raises OptionError for arguments that do not fit, SimulationError for a run that cannot be
     finished: it names block, signal and time; of that kind Interrupted, where Ctrl-C stopped it:
     it carries the run up to there.
     """
     values = parameter_values(model, parameters or {}, preset)
+    asked = checked(model, sensitivities)
     given = None if times is None else ascending(times)
     begin, end = span_of(model, values, span, given)
     samples = samples_of(model, values, begin, end, given)
@@ -77,8 +82,10 @@ def simulate(
     flow = new_flow(model, vector, tables_of(model, values, inputs or {}))
     x = start_of(model, flow, start or {})
     state = new_progress(model, x, (begin, end), samples, method, tolerance)
-    arrays = new_arrays(flow, new_plan(model), state)
-    execution = Execution(model, arrays, limits or Limits(), begin, progress)
+    chain = follow(model.parameter_formulas(preset), values, asked, parameters or {})
+    sensitivity = new_sensitivity(model, flow, state, asked, chain, start or {})
+    arrays = new_arrays(flow, new_plan(model), state, sensitivity)
+    execution = Execution(model, arrays, limits or Limits(), begin, progress, asked=asked)
     try:
         execution.run()
     except Interrupted as error:
@@ -103,6 +110,7 @@ def run_of(execution: Execution, values: Mapping[str, float], x: Vector, t: Vect
         final=dict(zip(names, state.x.tolist(), strict=True)),
         statistics=execution.statistics,
         warnings=execution.warnings,
+        sensitivities=by_name(model, execution.arrays.sensitivity, execution.asked, len(t)),
     )
 
 

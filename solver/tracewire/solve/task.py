@@ -28,6 +28,7 @@ from tracewire.solve.observers import (
     crossings,
     instants,
 )
+from tracewire.solve.sensitivities import new_sensitivity
 from tracewire.solve.setup import NOTHING, new_arrays, new_flow, new_plan, new_progress
 from tracewire.solve.simulate import (
     ascending,
@@ -199,7 +200,8 @@ class Task:
         columns, width = len(model.recorded), len(self.plan.direct)
         if width > columns:
             state = state._replace(samples=np.full((len(every), width), np.nan))
-        arrays = new_arrays(flow, self.plan, state)
+        nothing = new_sensitivity(model, flow, state, (), {}, {})
+        arrays = new_arrays(flow, self.plan, state, nothing)
         execution = Execution(model, arrays, self.limits, begin, halt=self.halt)
         execution.run()
         points = np.empty((0, 1 + len(x)))

@@ -145,6 +145,44 @@ class Crossings(NamedTuple):
     up: Ints
 
 
+class Sensitivity(NamedTuple):
+    """How the states change with q numbers; q = 0: nobody asks.
+
+    `address`: of the derivatives of the model's functions in the states, t and a parameters, w in
+    all, in the order of DERIVATIVES. `chain` (a, q): of these parameters in the numbers. `s`
+    (n, q): of the states at the time in `now`, but inside of an event the change of the states at
+    the event, which moves by `moved` (q,) with it. `peak` (n, q): the largest values so far.
+    `nodes` (4n, w): derivatives of the rates where the interval begins and at its nodes.
+    `samples` (N, R*q), `times` (rows of the log, q). `push` (M, n*a): of the push of a contact in
+    the parameters. `flags` and `flag_times`: per kind of FLAGS how often, the mode and the time of
+    the first. `now` holds that time, the next interval, whether the first nodes are
+    known, how many intervals need no estimate, and how long these may be.
+    `instants` (M, q): how the instant moves at which each mode changes, of those that do so now.
+    `bound` (M,): what was held after the last event. `change` (3n, q), `slopes` (3n, q),
+    `real` (n, n), `real_pivots` and `order` (n + 1,) are work space.
+    """
+
+    address: Ints
+    chain: Matrix
+    s: Matrix
+    moved: Vector
+    peak: Matrix
+    nodes: Matrix
+    samples: Matrix
+    times: Matrix
+    push: Matrix
+    flags: IntMatrix
+    flag_times: Vector
+    now: Vector
+    instants: Matrix
+    bound: Ints
+    change: Matrix
+    slopes: Matrix
+    real: Matrix
+    real_pivots: Ints
+    order: Ints
+
+
 class Arrays(NamedTuple):
     """All arrays of a run."""
 
@@ -154,6 +192,7 @@ class Arrays(NamedTuple):
     trial: Trial
     watch: Watch
     crossings: Crossings
+    sensitivity: Sensitivity
 
 
 def table_of(arrays: Arrays) -> Ints:
@@ -312,3 +351,38 @@ def crossings_of(core: int) -> Crossings:
         vector(core, 55),
         ints(core, 56),
     )
+
+
+BEHIND = sum(len(group._fields) for group in (Flow, Plan, Progress, Trial, Watch, Crossings))
+
+
+@helper
+def sensitivity_of(core: int) -> Sensitivity:
+    """How the states change with what was asked for."""
+    return Sensitivity(
+        ints(core, BEHIND),
+        matrix(core, BEHIND + 1),
+        matrix(core, BEHIND + 2),
+        vector(core, BEHIND + 3),
+        matrix(core, BEHIND + 4),
+        matrix(core, BEHIND + 5),
+        matrix(core, BEHIND + 6),
+        matrix(core, BEHIND + 7),
+        matrix(core, BEHIND + 8),
+        int_matrix(core, BEHIND + 9),
+        vector(core, BEHIND + 10),
+        vector(core, BEHIND + 11),
+        matrix(core, BEHIND + 12),
+        ints(core, BEHIND + 13),
+        matrix(core, BEHIND + 14),
+        matrix(core, BEHIND + 15),
+        matrix(core, BEHIND + 16),
+        ints(core, BEHIND + 17),
+        ints(core, BEHIND + 18),
+    )
+
+
+@helper
+def is_sensitive(core: int) -> bool:
+    """Whether sensitivities are asked for."""
+    return len(vector(core, BEHIND + 3)) > 0

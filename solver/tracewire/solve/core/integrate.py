@@ -58,6 +58,7 @@ from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.locate import AT_ONCE, NOTHING
 from tracewire.solve.core.methods import DORMAND_PRINCE, RK4, ROSENBROCK
 from tracewire.solve.core.record import sample_end, sample_inside
+from tracewire.solve.core.saltation import begin_sensitivities
 from tracewire.solve.core.start import begin
 from tracewire.solve.core.transition import happen, no_crossings
 
@@ -87,6 +88,7 @@ def advance(core: int) -> int:
         status = begin(core)
         if status != FINISHED:
             return status
+        begin_sensitivities(core)
         ints[STAGE] = 1
         rate = trial_of(core).rate
         rates(core, now[T], x, rate)

@@ -72,3 +72,29 @@ def solved(matrix: Matrix, right: Vector) -> Vector:
     else:
         answer[:] = np.nan
     return answer
+
+
+@unit
+def substitute_all(factors: Matrix, pivots: Ints, right: Matrix) -> None:
+    """Replace right sides (n, q), one in each column, by the solutions."""
+    n, q = right.shape
+    for i in range(n):
+        row = pivots[i]
+        if row != i:
+            for j in range(q):
+                right[i, j], right[row, j] = right[row, j], right[i, j]
+    for i in range(n):
+        for k in range(i):
+            part = factors[i, k]
+            if part != 0.0:
+                for j in range(q):
+                    right[i, j] -= part * right[k, j]
+    for i in range(n - 1, -1, -1):
+        for k in range(i + 1, n):
+            part = factors[i, k]
+            if part != 0.0:
+                for j in range(q):
+                    right[i, j] -= part * right[k, j]
+        inverse = 1.0 / factors[i, i]
+        for j in range(q):
+            right[i, j] *= inverse

@@ -5,10 +5,20 @@ from __future__ import annotations
 import numpy as np
 
 from tracewire.solve.core import methods
-from tracewire.solve.core.arrays import Vector, flow_of, plan_of, progress_of, trial_of
+from tracewire.solve.core.arrays import (
+    Vector,
+    crossings_of,
+    flow_of,
+    is_sensitive,
+    plan_of,
+    progress_of,
+    sensitivity_of,
+    trial_of,
+)
 from tracewire.solve.core.codes import LOG_HEAD, LOGGED, SAMPLED
 from tracewire.solve.core.flow import RESTING, SLIDING, outputs, pin
 from tracewire.solve.core.jit import unit
+from tracewire.solve.core.sensitivity import follow, sample
 
 
 @unit
@@ -18,14 +28,21 @@ def sample_inside(core: int, method: int, end: float) -> None:
     trial = trial_of(core)
     row = progress.ints[SAMPLED]
     if row == len(progress.times) or not progress.times[row] < end:
+        if is_sensitive(core):
+            follow(core, method, end)
         return
     at = np.empty(len(trial.x))
     while row < len(progress.times) and progress.times[row] < end:
         time = progress.times[row]
         methods.inside(core, method, (time - trial.ends[0]) / trial.ends[1], at)
         _fill(core, row, time, at)
+        if is_sensitive(core):
+            follow(core, method, time)
+            sample(core, row, time, at)
         row += 1
     progress.ints[SAMPLED] = row
+    if is_sensitive(core):
+        follow(core, method, end)
 
 
 @unit
@@ -34,6 +51,8 @@ def sample_end(core: int, t: float, x: Vector) -> None:
     progress = progress_of(core)
     for row in range(progress.ints[SAMPLED], len(progress.times)):
         _fill(core, row, t, x)
+        if is_sensitive(core):
+            sample(core, row, t, x)
     progress.ints[SAMPLED] = len(progress.times)
 
 
@@ -66,3 +85,8 @@ def log(
     entry[LOG_HEAD : LOG_HEAD + n] = before
     entry[LOG_HEAD + n :] = after
     progress.ints[LOGGED] = row + 1
+    if is_sensitive(core):
+        sensitivity = sensitivity_of(core)
+        crossed = crossings_of(core).how[mode] >= 0
+        moved = sensitivity.instants[mode] if crossed else sensitivity.moved
+        sensitivity.times[row] = moved

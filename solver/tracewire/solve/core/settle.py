@@ -42,6 +42,7 @@ from tracewire.solve.core.flow import (
 from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.modes import NOISE, margin, mode_value, noise
 from tracewire.solve.core.record import log
+from tracewire.solve.core.saltation import reset_sensitivities
 
 JUMP = 1e-9
 MOST_ROUNDS = 200
@@ -208,6 +209,7 @@ def _fire_transitions(core: int, t: float, x: Vector) -> Ints:
     if len(plan.transitions) == 0:
         return moved
     before, old, values = x.copy(), flow.m.copy(), np.empty(len(plan.writes))
+    fired = np.zeros(len(plan.resets), dtype=np.int64)
     evaluate(core, RESETS, t, before, values)
     for row in range(len(plan.transitions)):
         memory, trigger = plan.transitions[row, 0], plan.transitions[row, 2]
@@ -223,9 +225,12 @@ def _fire_transitions(core: int, t: float, x: Vector) -> Ints:
         flow.m[memory] = plan.transitions[row, 3]
         reset = plan.transitions[row, 4]
         if reset >= 0:
+            fired[reset] = 1
             first = plan.resets[reset, 2]
             for k in range(first, first + plan.resets[reset, 3]):
                 x[plan.writes[k]] = values[k]
+    if np.any(fired):
+        reset_sensitivities(core, t, before, fired, old)
     for memory in np.flatnonzero(moved):
         log(core, t, TRANSITION, memory, int(np.sign(flow.m[memory] - old[memory])), before, x)
     return moved

@@ -54,6 +54,7 @@ from tracewire.solve.core.flow import (
 from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.modes import noise
 from tracewire.solve.core.record import log
+from tracewire.solve.core.saltation import enter, leave, reset_sensitivities
 from tracewire.solve.core.settle import JUMP, KNOWN, LEFT, settle
 
 CHATTER_PART = 1e-6
@@ -76,6 +77,7 @@ def happen(core: int, t: float, x: Vector) -> int:
     progress = progress_of(core)
     crossings = crossings_of(core)
     modes = len(plan.kind)
+    enter(core, t, x)
     before, old, bound = x.copy(), flow.m.copy(), flow.bound.copy()
     fired = np.full(modes, -1)  # the last reset that the guard of a mode fired
     done = np.zeros(len(plan.resets), dtype=np.int64)
@@ -111,6 +113,7 @@ def happen(core: int, t: float, x: Vector) -> int:
         if status != FINISHED:
             return status
     _write_log(core, t, before, x, done, fired, waits, old, bound)
+    leave(core, t, x, waits)
     for i in range(modes):
         shrinks = progress.flights[i, 0] < np.inf
         if crossings.how[i] >= 0 and crossings.how[i] != TIME and not shrinks:
@@ -149,6 +152,7 @@ def _resets(
         status = _write(core, t, before, x, due)
         if status != FINISHED:
             return status
+        reset_sensitivities(core, t, before, due, flow_of(core).m)
         contact.struck(core, t, before, x)
         for reset in np.flatnonzero(due):
             i = plan.resets[reset, 0]

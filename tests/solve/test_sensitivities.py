@@ -1,0 +1,330 @@
+"""Forward sensitivities: closed solutions, and central differences of exact runs.
+
+The differences are taken over a small part of the parameter at rtol 1e-11, where they are good to
+about 1e-8. A sample near an event lies before it in one of the two runs and behind it in the other,
+so that samples as near as that are left out, and the event's own time is compared instead.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import tracewire as tw
+from numpy.typing import NDArray
+from solve.models import BALL, made
+from tracewire.compile import Model
+from tracewire.errors import OptionError
+from tracewire.solve import Run, simulate
+
+PENDULUM = Path(__file__).parents[2] / "diagrams/papers/a_torsion/pendulum.yaml"
+TIGHT = {"rtol": 1e-11}
+PART = 1e-5
+Vector = NDArray[np.float64]
+
+SPRING = """
+span: [0, 10]
+parameters: {k: 2, c: 0.1, force: 0}
+blocks:
+  x: {type: integrator, of: v, start: 1}
+  v: {type: integrator, of: a}
+  a: {type: expression, formula: force - k*x - c*v}
+"""
+RUBBED = """
+span: [0, 20]
+parameters: {level: 0.1, k: 1, begin: 1.05}
+blocks:
+  x: {type: integrator, of: v, start: begin}
+  v: {type: integrator, of: a}
+  spring: {type: linear_stiffness, of: x, k: k}
+  friction: {type: coulomb, rate: v, level: level}
+  a: {type: sum, of: [spring, friction]}
+"""
+BREAKAWAY = """
+span: [0, 12]
+parameters: {slip: 0.3, stick: 0.5, omega: 0.7, force: 1}
+blocks:
+  x: {type: integrator, of: v, start: 0.2}
+  v: {type: integrator, of: a}
+  friction: {type: dry_friction, rate: v, slip: slip, stick: stick}
+  a: {type: expression, formula: force*sin(omega*t) - x + friction}
+"""
+SQUARE = """
+span: [0, 3]
+parameters: {f: 1.3, height: 2, shift: 0.3}
+blocks:
+  x: {type: integrator, of: rate, start: 0.2}
+  wave: {type: square, amplitude: height, frequency: f, phase: shift}
+  rate: {type: expression, formula: wave - x*x}
+"""
+RESETS = """
+span: [0, 6]
+parameters: {p: 0.9, q: 0.3}
+blocks:
+  x: {type: integrator, of: v, start: 0.05}
+  v: {type: integrator, of: a, start: 1}
+  a: {type: expression, formula: -x + p*cos(t)}
+events:
+  - {when: x - q*t, crosses: down, set: {x: x + p*q + 0.1*t, v: 0.5*v + q*x}}
+"""
+LIMITED = """
+span: [0, 3]
+parameters: {m: 1.3, k: 4*m**2, omega: sqrt(k/m)}
+blocks:
+  x: {type: integrator, of: v, start: k/10}
+  v: {type: integrator, of: a}
+  a: {type: expression, formula: -omega*omega*x + k}
+  y: {type: saturation, of: x, low: -m, high: m}
+"""
+PRESSED = """
+span: [0, 7]
+parameters: {g: 9.81, push: 14, mass: 2}
+blocks:
+  x: {type: integrator, of: v}
+  v: {type: integrator, of: a}
+  w: {type: integrator, of: b}
+  a: {type: expression, formula: "push*sin(0.5*t) - g"}
+  b: {type: expression, formula: -w}
+events:
+  - {when: x, crosses: down, set: {v: -0.5*v, w: w - mass*v}}
+"""
+STIFF = """
+span: [0, 3]
+parameters: {mu: 4, b: 0.5}
+blocks:
+  x: {type: integrator, of: v, start: 2}
+  v: {type: integrator, of: a}
+  a: {type: expression, formula: mu*(1 - x*x)*v - b*x}
+"""
+
+
+def moved(model: Model, run: Run, name: str, by: float, **options: Any) -> Run:
+    """The run with another value of what a sensitivity is asked for."""
+    state = name.removeprefix("start.")
+    if state != name:
+        options["start"] = {**options.get("start", {}), state: run.start[state] + by}
+    else:
+        given = options.get("parameters", {})
+        options["parameters"] = {**given, name: run.parameters[name] + by}
+    return simulate(model, **options)
+
+
+def base(run: Run, name: str) -> float:
+    """The value of what a sensitivity is asked for."""
+    state = name.removeprefix("start.")
+    return run.start[state] if state != name else run.parameters[name]
+
+
+def agree(
+    model: Model, names: list[str], tolerance: float = 1e-6, part: float = PART, **options: Any
+) -> Run:
+    """Compare samples and event times with central differences; the run with sensitivities."""
+    options = {**TIGHT, **options}
+    run = simulate(model, sensitivities=names, **options)
+    for name in names:
+        step = part * (abs(base(run, name)) + 1.0)
+        up, down = (moved(model, run, name, by, **options) for by in (step, -step))
+        assert len(up.events) == len(down.events) == len(run.events)
+        times = np.array([[event.time for event in some.events] for some in (up, down)])
+        clear = np.ones(len(run.t), dtype=bool)
+        for later, sooner in times.T:
+            low, high = min(later, sooner), max(later, sooner)
+            clear &= (run.t < low - 1e-9) | (run.t > high + 1e-9)
+        for signal in run.signals:
+            differences = (up[signal] - down[signal])[clear] / (2 * step)
+            found = run.sensitivities[name][signal]
+            assert np.isfinite(found).all()
+            size = np.max(np.abs(found[clear])) + 1e-3
+            assert found[clear] == pytest.approx(differences, abs=tolerance * size), (name, signal)
+        if run.events:
+            wanted = (times[0] - times[1]) / (2 * step)
+            given = np.array([event.sensitivity[name] for event in run.events])
+            size = np.max(np.abs(given)) + 1e-2
+            assert given == pytest.approx(wanted, abs=tolerance * size), name
+    return run
+
+
+@pytest.mark.parametrize("method", ["auto", "dormand_prince", "dop853", "rosenbrock"])
+def test_an_oscillator_has_its_closed_sensitivities(method: str) -> None:
+    """x = cos(w t): dx/dk = -t sin(w t)/(2 w), dx/d force = (1 - cos(w t))/k."""
+    names = ["k", "force", "start.x", "start.v"]
+    run = simulate(made(SPRING), parameters={"c": 0.0}, method=method, sensitivities=names, **TIGHT)
+    w, t, found = math.sqrt(2.0), run.t, run.sensitivities
+    assert found["k"]["x"] == pytest.approx(-t * np.sin(w * t) / (2 * w), abs=1e-7)
+    assert found["force"]["x"] == pytest.approx((1 - np.cos(w * t)) / 2, abs=1e-7)
+    assert found["start.x"]["v"] == pytest.approx(-w * np.sin(w * t), abs=1e-7)
+    assert found["start.v"]["x"] == pytest.approx(np.sin(w * t) / w, abs=1e-7)
+
+
+def test_what_rests_still_has_sensitivities_that_swing() -> None:
+    """The steps of the states are as long as they may be; those of S follow S."""
+    run = simulate(
+        made(SPRING),
+        parameters={"c": 0.0, "k": 9.0},
+        start={"x": 0.0},
+        span=(0, 100),
+        sensitivities=["force", "k"],
+        **TIGHT,
+    )
+    assert run.statistics.steps < 50
+    expected = (1 - np.cos(3 * run.t)) / 9
+    assert run.sensitivities["force"]["x"] == pytest.approx(expected, abs=1e-6)
+    assert np.all(run.sensitivities["k"]["x"] == 0.0)
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        (SPRING, ["k", "c", "force", "start.x", "start.v"]),
+        (RUBBED, ["level", "k", "begin", "start.x"]),
+        (BREAKAWAY, ["slip", "stick", "omega", "force", "start.x"]),
+        (SQUARE, ["f", "height", "shift", "start.x"]),
+        (RESETS, ["p", "q", "start.x", "start.v"]),
+        (LIMITED, ["m", "k", "omega"]),
+        (BALL.replace("12]", "6]"), ["restitution", "start.x"]),
+        (STIFF, ["mu", "b", "start.v"]),
+    ],
+    ids=["spring", "stick", "breakaway", "square", "reset", "limit", "ball", "stiff"],
+)
+@pytest.mark.parametrize("method", ["auto", "dop853", "rosenbrock"])
+def test_sensitivities_are_those_of_differences(text: str, names: list[str], method: str) -> None:
+    record = {RUBBED: ("friction",), LIMITED: ("y",)}.get(text, ())
+    run = agree(made(text, record), names, method=method)
+    assert run.warnings == ()
+
+
+def test_stick_loses_the_rank_that_it_takes() -> None:
+    """On the slide v = 0, so that nothing moves v any more, and x does not move either."""
+    run = simulate(made(RUBBED), sensitivities=["level", "begin"], **TIGHT)
+    rest = run.events[-1].time
+    assert rest == pytest.approx(5 * math.pi, abs=1e-8)
+    held = run.t > rest
+    for name, value in (("level", 10.0), ("begin", -1.0)):
+        assert run.sensitivities[name]["v"][held] == pytest.approx(0.0, abs=1e-9)
+        assert run.sensitivities[name]["x"][held] == pytest.approx(value, abs=1e-6)
+
+
+def test_the_edges_of_a_square_wave_move_with_its_frequency() -> None:
+    run = simulate(made(SQUARE), parameters={"shift": 0.0}, sensitivities=["f"], **TIGHT)
+    assert len(run.events) > 5
+    for event in run.events:
+        assert event.sensitivity["f"] == pytest.approx(-event.time / 1.3, rel=1e-12)
+
+
+def test_two_scheduled_changes_at_one_instant_each_move_on_their_own() -> None:
+    """Both waves fall at t = 0.5; only the frequency of one moves."""
+    text = """
+span: [0, 0.9]
+parameters: {f: 1, h: 1}
+blocks:
+  x: {type: integrator, of: rate}
+  one: {type: square, amplitude: 1, frequency: f, phase: 0}
+  two: {type: square, amplitude: 3, frequency: h, phase: 0}
+  rate: {type: sum, of: [one, two]}
+"""
+    run = simulate(made(text), sensitivities=["f", "h"], **TIGHT)
+    after = run.t > 0.5
+    # x grows by 2 A per second of delay of the edge, which moves by -t/f
+    assert run.sensitivities["f"]["x"][after] == pytest.approx(-1.0, abs=1e-12)
+    assert run.sensitivities["h"]["x"][after] == pytest.approx(-3.0, abs=1e-12)
+
+
+def test_a_ball_that_comes_to_rest_is_flagged_and_then_moves_with_nothing() -> None:
+    """The rest comes at t0 (1 + e)/(1 - e), t0 = sqrt(2 h/g)."""
+    run = simulate(made(BALL), span=(0, 14), sensitivities=["restitution", "start.x"], **TIGHT)
+    last = run.events[-1]
+    assert last.kind == "rest"
+    fall = math.sqrt(20 / 9.81)
+    assert last.sensitivity["start.x"] == pytest.approx(fall * 9 / 20, rel=1e-6)
+    # the impacts that are not seen any more bring the last 2e-6
+    assert last.sensitivity["restitution"] == pytest.approx(fall * 2 / 0.2**2, rel=1e-5)
+    assert any("'x'" in warning and "rest" in warning for warning in run.warnings)
+    for found in run.sensitivities.values():
+        assert np.isfinite(found["x"]).all()
+        assert np.all(found["x"][run.t > last.time] == 0.0)
+        assert np.all(found["v"][run.t > last.time] == 0.0)
+
+
+def test_a_contact_that_is_pressed_lets_go_when_its_force_ends() -> None:
+    run = agree(made(PRESSED), ["g", "push"], span=(0, 3))
+    (start, *_) = run.t
+    release = 2 * math.asin(9.81 / 14)
+    lying = (run.t > start) & (run.t < release - 1e-3)
+    assert np.all(run.sensitivities["g"]["x"][lying] == 0.0)
+    assert run.sensitivities["g"]["v"][-1] < 0
+
+
+def test_a_graze_is_flagged_and_finite() -> None:
+    text = """
+span: [0, 2]
+parameters: {p: 0}
+blocks:
+  x: {type: integrator, of: rate, start: 1}
+  rate: {type: expression, formula: 2*(t - 1)}
+  y: {type: integrator, of: jump}
+  jump: {type: expression, formula: "1 if x + p > 0 else 2"}
+"""
+    run = simulate(made(text), sensitivities=["p", "start.x"])
+    assert all(np.isfinite(found["y"]).all() for found in run.sensitivities.values())
+    if run.events:  # the double zero may be seen or not
+        assert any("graze" in warning for warning in run.warnings)
+
+
+def test_start_values_follow_the_parameters_they_read() -> None:
+    model = made(LIMITED)
+    run = simulate(model, sensitivities=["m"], **TIGHT)
+    assert run.sensitivities["m"]["x"][0] == pytest.approx(0.8 * 1.3, rel=1e-10)
+    given = simulate(model, start={"x": 0.5}, sensitivities=["m"], **TIGHT)
+    assert given.sensitivities["m"]["x"][0] == 0.0
+
+
+def test_a_parameter_that_is_set_follows_no_other() -> None:
+    run = simulate(made(LIMITED), parameters={"k": 5.0}, sensitivities=["m"], **TIGHT)
+    assert run.sensitivities["m"]["x"][0] == 0.0
+    agree(made(LIMITED), ["m"], parameters={"k": 5.0})
+
+
+@pytest.mark.parametrize("preset", ["consistent", "teaching"])
+def test_sensitivities_of_paper_a(preset: str) -> None:
+    """Stiff contact, stick on the pin, Stribeck friction.
+
+    Differences of two runs are noisy while the column lies on its pin and near impacts, by some
+    1e-4; there a run of other tolerances tells how exact the sensitivities are.
+    """
+    model = tw.compile(tw.read(PENDULUM))
+    names = ["T_s2_l", "beta", "k2", "c1", "B1", "phi1_s"]
+    options: dict[str, Any] = {"preset": preset, "span": (0, 1.6), "rtol": 1e-12}
+    options["limits"] = tw.Limits(steps=1_000_000, seconds=60)
+    run = simulate(model, sensitivities=names, **options)
+    loose = simulate(model, sensitivities=names, **(options | {"rtol": 1e-8}))
+    assert run.warnings == ()
+    for name in names:
+        step = PART * run.parameters[name]
+        up, down = (moved(model, run, name, by, **options) for by in (step, -step))
+        for signal in ("phi1", "phi2"):
+            differences = (up[signal] - down[signal]) / (2 * step)
+            found = run.sensitivities[name][signal]
+            error = np.abs(found - differences) / np.max(np.abs(differences))
+            assert np.median(error) < 1e-6, (name, signal)
+            assert np.quantile(error, 0.9) < 1e-3, (name, signal)
+            error = np.abs(loose.sensitivities[name][signal] - found) / np.max(np.abs(found))
+            assert np.max(error) < 1e-5, (name, signal)
+
+
+def test_the_run_itself_is_the_same_with_sensitivities() -> None:
+    for text in (RUBBED, SQUARE, RESETS, PRESSED):
+        model = made(text)
+        plain, run = simulate(model), simulate(model, sensitivities=["start.x"])
+        assert [event.time for event in run.events] == [event.time for event in plain.events]
+        for name in plain.signals:
+            assert np.array_equal(plain[name], run[name])
+        assert plain.sensitivities == {}
+        assert all(event.sensitivity == {} for event in plain.events)
+
+
+def test_unknown_names_say_what_exists() -> None:
+    with pytest.raises(OptionError, match=r"unknown sensitivity 'kk'; there are: .*start\.x"):
+        simulate(made(SPRING), sensitivities=["kk"])
