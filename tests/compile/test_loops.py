@@ -418,14 +418,21 @@ blocks:
     assert len(model.modes) == 1
 
 
-def test_a_loop_may_make_a_guard_that_is_a_known_time() -> None:
-    """z = t - 3 - abs(z)/2 is (t - 3)/1.5 above zero and 2*(t - 3) below it."""
-    model = made("blocks: {z: {type: expression, formula: 't - 3 - 0.5*abs(z)'}}")
-    (mode,) = model.modes
-    assert mode.timed is not None
-    for value, line in ((1.0, [1 / 1.5, -2.0]), (0.0, [2.0, -6.0])):
-        found = values(model, "timed", Point(0.0, [], [value, 0.0], [], []))
-        assert found == pytest.approx(line, rel=1e-15)
+def test_a_guard_that_its_own_loop_moves_is_no_known_time() -> None:
+    """z = t - 3 - abs(z)/2 is (t - 3)/1.5 above zero and 2*(t - 3) below it: it is located."""
+    text = """
+span: [0, 6]
+record: [z]
+blocks:
+  z: {type: expression, formula: "t - 3 - 0.5*abs(z)"}
+  x: {type: integrator, of: z}
+"""
+    (mode,) = made(text).modes
+    assert mode.timed is None
+    result = run(text)
+    past = result.t - 3
+    assert result["z"] == pytest.approx(np.where(past > 0, past / 1.5, 2 * past), abs=1e-12)
+    assert [event.time for event in result.events] == pytest.approx([3.0], abs=1e-12)
 
 
 @pytest.mark.parametrize("low", [-2.0, -0.5])

@@ -111,6 +111,20 @@ blocks:
         run(text)
 
 
+def test_a_loop_that_loses_its_solution_at_a_known_time_is_refused_too() -> None:
+    """The guard y is a line in t, but its own mode moves it: it is no known time."""
+    text = """
+span: [0, 4]
+blocks:
+  y: {type: expression, formula: t - 3 - 2*sign(y)}
+  z: {type: integrator, of: y}
+"""
+    with pytest.raises(SimulationError, match=r"block 'y': no consistent mode at t = 1 s"):
+        run(text)
+    with pytest.raises(SimulationError, match=r"block 'y': no consistent mode at t = 0 s"):
+        run(text.replace("t - 3", "t - 0.5"))
+
+
 def test_a_loop_without_a_solution_at_the_start_is_refused() -> None:
     text = """
 blocks:

@@ -53,7 +53,9 @@ def lower_loop(lowering: Lowering, loop: Loop) -> None:
     for key in [key for key, index in lowering.by_guard.items() if index >= old]:
         del lowering.by_guard[key]
     for index, (mode, guard) in enumerate(zip(opened, guards, strict=True), old):
-        timed = linear_in_t(tape, guard, lowering.t) if "t" in tape.leaves([guard]) else None
+        needed = tape.needed([guard])
+        known = lowering.t in needed and mode.leaf not in needed  # its own mode moves no known time
+        timed = linear_in_t(tape, guard, lowering.t) if known else None
         out.modes[index] = replace(mode, guard=guard, timed=timed)
         kind = mode.kind if mode.table < 0 else f"{mode.kind}{mode.table}"
         lowering.by_guard.setdefault((kind, guard), index)
