@@ -20,7 +20,6 @@ from tracewire.solve.core.arrays import (
     Watch,
 )
 from tracewire.solve.core.codes import (
-    BUDGET,
     CHATTER_EVENTS,
     DIRECTIONS,
     END,
@@ -43,7 +42,6 @@ from tracewire.solve.core.methods.trial import DENSE, STAGES
 Vector = NDArray[np.float64]
 MOST_STIFF = 64  # mode combinations of a run that are remembered as stiff
 LOG_VALUES = 1_000_000  # numbers that the log of the core may hold before it is emptied
-STEPS_AT_ONCE = 20_000
 NOTHING: Vector = np.zeros(1)
 Table = tuple[Vector, Vector]
 
@@ -143,7 +141,6 @@ def new_progress(
     now[T], now[H], now[END], now[LENGTH] = span[0], 0.0, span[1], span[1] - span[0]
     now[RTOL], now[FIXED] = tolerance.rtol, tolerance.step
     ints[METHOD] = -1 if method == "auto" else NAMES.index(method)
-    ints[BUDGET] = STEPS_AT_ONCE
     width = LOG_HEAD + 2 * n
     return Progress(
         now=now,
