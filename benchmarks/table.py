@@ -78,8 +78,10 @@ def show_promises(results: Sequence[Result], console: Console) -> None:
     for promise in (promise for result in results for promise in result.promises):
         if promise.unit == "s":
             measured, bound = seconds(promise.measured), seconds(promise.bound)
-        else:
+        elif promise.unit == "x":
             measured, bound = ratio(promise.measured), ratio(promise.bound)
+        else:
+            measured, bound = (f"{x:.3g} {promise.unit}" for x in (promise.measured, promise.bound))
         bound = ("at most " if promise.most else "at least ") + bound
         table.add_row(promise.what, measured, bound, "kept" if promise.holds else "NOT kept")
     if table.row_count:

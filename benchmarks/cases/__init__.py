@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
-from benchmarks.cases import bifurcation, many, networks, paper_a, sensitivities, triple
+from benchmarks.cases import (
+    appendix,
+    bifurcation,
+    coverage,
+    many,
+    networks,
+    paper_a,
+    paper_b,
+    sensitivities,
+    triple,
+)
 from benchmarks.options import Options
 from benchmarks.table import Result
 
@@ -17,4 +27,7 @@ CASES: Mapping[str, Case] = {
     "networks": networks.measure,
     "sensitivities": sensitivities.measure,
     "many": many.measure,
+    "appendix": appendix.measure,
+    "coverage": coverage.measure,
+    "paper_b": paper_b.measure,
 }

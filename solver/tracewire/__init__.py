@@ -15,9 +15,19 @@ if TYPE_CHECKING:
     from tracewire.compile import Model, compile
     from tracewire.diagram import Diagram, read, read_text
     from tracewire.errors import TracewireError
-    from tracewire.fit import Fit, fit, fminsearch, load_measured, optimset
+    from tracewire.fit import (
+        Fit,
+        Measured,
+        Sensor,
+        diagnose,
+        fit,
+        fminsearch,
+        load_measured,
+        optimset,
+        profile,
+    )
     from tracewire.library import Block, Effect, Input, Output, Parameter, State, load_library
-    from tracewire.show import report
+    from tracewire.show import optimplotfit, optimplotfval, optimplotx, report
     from tracewire.solve import Interrupted, Limits, Run, Runs, Section, simulate, simulate_many
     from tracewire.trace import Found, trace
 
@@ -32,20 +42,27 @@ __all__ = [
     "Input",
     "Interrupted",
     "Limits",
+    "Measured",
     "Model",
     "Output",
     "Parameter",
     "Run",
     "Runs",
     "Section",
+    "Sensor",
     "State",
     "TracewireError",
     "compile",
+    "diagnose",
     "fit",
     "fminsearch",
     "load_library",
     "load_measured",
+    "optimplotfit",
+    "optimplotfval",
+    "optimplotx",
     "optimset",
+    "profile",
     "read",
     "read_text",
     "report",
@@ -58,9 +75,9 @@ ROOM_OF = {
     "compile": "compile Model",
     "diagram": "Diagram read read_text",
     "errors": "TracewireError",
-    "fit": "Fit fit fminsearch load_measured optimset",
+    "fit": "Fit Measured Sensor diagnose fit fminsearch load_measured optimset profile",
     "library": "Block Effect Input Output Parameter State load_library",
-    "show": "report",
+    "show": "optimplotfit optimplotfval optimplotx report",
     "solve": "Interrupted Limits Run Runs Section simulate simulate_many",
     "trace": "Found trace",
 }

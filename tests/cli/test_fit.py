@@ -53,10 +53,14 @@ def test_fit_prints_values_and_errors(call: Any, decay: Path) -> None:
     assert (told.code, told.err) == (0, "")
     assert told.out.startswith("least_squares: the criterion fell from ")
     assert "converged.\n" in told.out
-    rows = {line.split()[0]: line.split() for line in told.out.splitlines() if line.split()}
-    assert rows["rate"][1:3] == ["1", "1.7"]
-    assert rows["x0"][1:3] == ["0.1", "0.15"]
-    assert rows["run"][1:4] == ["train", "x", "m"]
+    rows: dict[str, list[str]] = {}
+    for words in map(str.split, told.out.splitlines()):
+        rows.setdefault(words[0] if words else "", words)
+    assert rows["rate"][1] == "1"
+    assert float(rows["rate"][2]) == pytest.approx(1.7, rel=1e-6)
+    assert rows["x0"][1] == "0.1"
+    assert float(rows["x0"][2]) == pytest.approx(0.15, rel=1e-6)
+    assert rows["run"][1:5] == ["train", "x", "41", "m"]
     assert float(rows["check"][-1]) == pytest.approx(
         np.sqrt(np.mean((0.03 * np.exp(-1.7 * T)) ** 2)), rel=1e-3
     )
@@ -68,8 +72,10 @@ def test_fit_as_json(call: Any, decay: Path) -> None:
     assert (told.code, told.err) == (0, "")
     data = told.data
     assert list(data) == [
-        *("method", "values", "before", "errors", "starts", "criterion_before", "criterion"),
-        *("evaluations", "iterations", "exitflag", "message", "seconds", "comparisons", "written"),
+        *("method", "values", "before", "errors", "intervals", "correlation", "not_determined"),
+        *("at_bounds", "unmoved", "words", "remarks", "starts", "criterion_before", "criterion"),
+        *("evaluations", "iterations", "exitflag", "message", "seconds", "seed", "profiles"),
+        *("comparisons", "written"),
     ]
     assert data["method"] == "fminsearch"
     assert data["before"] == {"rate": 1.0, "x0": 0.1}
@@ -149,9 +155,13 @@ def test_report_is_written_with_its_figure(call: Any, decay: Path, ending: str) 
     told = call("fit", decay, *QUICK, "--report", report)
     assert told.out.endswith(f"written: {report}\n")
     text = report.read_text(encoding="utf-8")
-    for words in ("Fit of Decay", "fitted parameters", "standard error", "rmse after", "fit.png"):
+    for words in ("Fit of Decay", "fitted parameters", "standard error", "rmse after"):
         assert words in text
-    assert report.with_name("fit.png").read_bytes().startswith(b"\x89PNG")
+    if ending == ".md":
+        assert "(fit.png)" in text
+        assert report.with_name("fit.png").read_bytes().startswith(b"\x89PNG")
+    else:
+        assert 'src="data:image/png;base64,' in text
 
 
 @pytest.mark.parametrize(
@@ -210,7 +220,11 @@ def test_a_diagram_without_measured_series_is_told(call: Any, decay: Path) -> No
         (["--set", "rate=20"], "'rate' begins at 20, outside its bounds 0 to 10 (SI)."),
         (["--MaxIter", "0"], "MaxIter is 0. Give a number of at least 1"),
         (["--TolX", "-1"], "TolX is -1.0. Give a tolerance of at least 0."),
-        ([*QUICK, "--MaxIter", "9"], "options of optimset have no meaning for least_squares."),
+        (["--fix", "rat"], "unknown parameter 'rat'; there are: rate, x0. Did you mean 'rate'?"),
+        (["--loss", "hubert"], "unknown loss 'hubert'; there are: cauchy, huber, linear."),
+        (["--loss", "huber"], "a robust loss needs the noise, and no sigma is known of x in run."),
+        (["--resume", "none.json"], "the saved fit cannot be read: No such file or directory."),
+        ([*QUICK, "--profile", "x1"], "'x1'"),
         (["--report", "a.txt"], "unknown file ending '.txt'. End the name of the report in .md or"),
         (
             ["--output", "a.txt"],
@@ -245,6 +259,41 @@ def test_a_diagram_that_does_not_run_exits_with_1(call: Any, decay: Path) -> Non
     assert problem["block"] == "x"
     assert problem["what"].startswith("the model does not run at the start: ")
     assert "t = 0.2" in problem["what"]
+
+
+def test_a_fixed_parameter_stays(call: Any, decay: Path) -> None:
+    data = call("fit", decay, *QUICK, "--fix", "x0", "--json").data
+    assert list(data["values"]) == ["rate"]
+
+
+def test_a_profile_is_told(call: Any, decay: Path) -> None:
+    noisy = COLUMN["run"] + 0.002 * np.random.default_rng(1).standard_normal(T.size)
+    rows = [f"{t},{value}" for t, value in zip(T.tolist(), noisy.tolist(), strict=True)]
+    decay.with_name("run.csv").write_text("\n".join(["t,position", *rows]), encoding="utf-8")
+    told = call("fit", decay, *QUICK, "--profile", "rate", "--json")
+    low, high = told.data["profiles"][0]["interval"]
+    assert told.data["intervals"]["rate"] == pytest.approx([low, high], rel=0.02)
+    assert low < 1.7 < high
+    told = call("fit", decay, *QUICK, "--profile", "rate")
+    assert "rate lies between " in told.out
+
+
+def test_a_saved_search_goes_on(call: Any, decay: Path) -> None:
+    saved = decay.with_name("fit.json")
+    first = call("fit", decay, "--MaxIter", "10", "--save", saved, "--json").data
+    second = call("fit", decay, "--resume", saved, "--json").data
+    assert first["iterations"] == 10 < second["iterations"]
+    assert second["criterion"] < first["criterion"]
+
+
+def test_plots_are_saved_where_there_is_no_display(
+    call: Any, decay: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(decay.parent)
+    told = call("fit", decay, *QUICK, "--plot")
+    assert told.code == 0
+    for name in ("optimplotfval", "optimplotfit"):
+        assert (decay.parent / "fit_frames" / f"{name}.png").read_bytes().startswith(b"\x89PNG")
 
 
 @pytest.mark.slow

@@ -72,6 +72,25 @@ def test_check_reads_the_measured_files(call: Any, swing: Path) -> None:
     assert "run_1.csv:3" in told.err
 
 
+def test_check_tells_what_is_done_to_the_data_and_what_is_odd(call: Any, swing: Path) -> None:
+    (swing.parent / "run_1.csv").write_text("t [ms],angle\n0,1\n500,1\n900,1\n1900,1\n")
+    told = call("check", swing).out
+    assert "- time: from ms to s, as the header says" in told
+    assert "! theta is constant: 1 in every sample" in told
+    (series,) = call("check", swing, "--json").data["measured"]
+    assert series["steps"] == ["time: from ms to s, as the header says"]
+    assert series["remarks"][0].startswith("the time step is not regular: 0.4 to 1 s, median 0.5 s")
+
+
+def test_check_tells_the_windows_of_a_series(call: Any, swing: Path) -> None:
+    replaced(swing, "time: t, ", "time: t, use: {train: [1, 1.6], gate: [1.6, 2]}, ")
+    replaced(swing, "start: {theta: 0.5}", "start: {theta: free}")
+    (swing.parent / "run_1.csv").write_text("t,angle\n1,1\n1.5,2\n1.7,3\n2,2\n")
+    told = call("check", swing).out
+    assert "run_1 (train): 2 samples from 1 to 1.5 s of theta" in told
+    assert "run_1 (gate): 2 samples from 1.7 to 2 s of theta" in told
+
+
 def test_check_names_a_measured_file_that_is_missing(call: Any, swing: Path) -> None:
     swing.with_name("run_1.csv").unlink()
     told = call("check", swing)

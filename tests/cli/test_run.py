@@ -108,6 +108,14 @@ def test_a_run_as_a_measured_series(call: Any, swing: Path) -> None:
     assert "unknown measured series 'run_2'; there are: run_1. Did you mean 'run_1'?" in told.err
 
 
+def test_a_run_as_a_series_with_windows_is_that_of_the_first(call: Any, swing: Path) -> None:
+    text = swing.read_text(encoding="utf-8").replace("{theta: 0.5}", "{theta: free}")
+    windows = "time: t, use: {train: [1, 1.6], gate: [1.6, 2]}, "
+    swing.write_text(text.replace("time: t, ", windows), encoding="utf-8")
+    (swing.parent / "run_1.csv").write_text("t,angle\n1,1\n1.5,2\n1.7,3\n2,2\n", encoding="utf-8")
+    assert call("run", swing, "--series", "run_1", "--json").data["span"] == [1.0, 1.5]
+
+
 def test_output_as_csv_and_npz(call: Any, swing: Path, tmp_path: Path) -> None:
     table, arrays = tmp_path / "swing.csv", tmp_path / "swing.npz"
     assert f"written: {table}" in call("run", swing, "--every", "1", "--output", table).out

@@ -8,12 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
-from tracewire.data import Columns, read_columns, table
+from tracewire.data import Columns, read_columns
 from tracewire.errors import DataError, Place
 
+patient = settings(deadline=None)  # the first run may load scipy
 Write = Callable[[str | bytes], Path]
 TWO = "t,x\n0,1\n1,2\n"
 
@@ -154,7 +155,7 @@ def test_a_path_that_no_file_can_have() -> None:
 
 
 def test_too_large(write: Write, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(table, "MOST_BYTES", 10)
+    monkeypatch.setattr("tracewire.data.content.MOST_BYTES", 10)
     said = "the file is too large: 0 MB, and the limit is 0 MB. Split it, or keep every n-th row."
     assert problems(write(TWO), {"x": "x"}) == [(0, said)]
 
@@ -173,8 +174,8 @@ def test_nothing_but_comments(write: Write) -> None:
 def test_what_is_no_text(write: Write) -> None:
     said = "the file is not text: it holds a zero byte. Save it as text, in UTF-8."
     assert problems(write(b"t,x\n0,\0\n"), {}) == [(2, said)]
-    said = "the byte 0xb0 is not UTF-8 text. Save it as text, in UTF-8."
-    assert problems(write("t,x [°]\n0,1\n".encode("latin-1")), {}) == [(1, said)]
+    said = "the byte 0x81 is not UTF-8 text. Save it as text, in UTF-8."
+    assert problems(write(b"t,x\n0,\x81\n"), {}) == [(2, said)]
 
 
 def test_problems_of_the_whole_file_stand_where_the_diagram_names_it(tmp_path: Path) -> None:
@@ -229,7 +230,7 @@ def test_decimal_commas(write: Write) -> None:
     assert problems(write("t,x\n0,0,1,5\n"), {"x": "x"}) == [
         (2, f"4 cells, and 2 in the first row. {hint}")
     ]
-    assert problems(write("t;x\n0;1,5\n"), {"x": "x"}) == [
+    assert problems(write("t;x\n0;1,5\n"), {"x": "x"}, decimal=".") == [
         (2, f"column 'x' is '1,5', which is not a number. {hint}")
     ]
 
@@ -263,11 +264,12 @@ def test_numbers_that_are_not_finite(write: Write) -> None:
 
 def test_time_that_does_not_increase(write: Write) -> None:
     path = write("t,x\n0,1\n0.1,1\n0.1,1\n0.05,1\n1,1\nnan,1\n0.5,1\n")
+    hint = "Sort the rows, split the file here, or choose rows with `where`."
     assert problems(path, {"x": "x"}, time="t") == [
         (4, "time 0.1 stands twice, also in line 3. Keep one row for each time."),
-        (5, "time goes back to 0.05, from 0.1 in line 4. Sort the rows, or split the series here."),
+        (5, f"time goes back to 0.05, from 0.1 in line 4. {hint}"),
         (7, "column 't' is not finite in this row. Leave out the rows without a value."),
-        (8, "time goes back to 0.5, from 1.0 in line 6. Sort the rows, or split the series here."),
+        (8, f"time goes back to 0.5, from 1.0 in line 6. {hint}"),
     ]
 
 
@@ -295,6 +297,7 @@ def test_ten_problems_are_told_and_the_others_counted(write: Write) -> None:
 finite = st.floats(allow_nan=False, allow_infinity=False)
 
 
+@patient
 @given(
     times=st.lists(finite, min_size=2, max_size=20, unique=True).map(sorted),
     data=st.data(),
@@ -319,6 +322,7 @@ texts = st.one_of(
 )
 
 
+@patient
 @given(
     content=texts,
     want=st.sampled_from(["t", "1", "2", ""]),

@@ -12,7 +12,7 @@ from tracewire.compile import Model, compile
 from tracewire.diagram import read_text
 from tracewire.fit import Criterion, Measured
 from tracewire.fit.starts import whole_segment
-from tracewire.fit.unknowns import free_unknowns, offset_unknowns
+from tracewire.fit.unknowns import free_unknowns, sensor_unknowns
 from tracewire.solve import parameter_values
 
 Vector = NDArray[np.float64]
@@ -82,7 +82,7 @@ def series(values: ArrayLike, name: str = "run", t: Vector = T, **more: Any) -> 
 def criterion_of(model: Model, *measured: Measured, rtol: float = 1e-9) -> Criterion:
     """The criterion of whole series and the diagram's free parameters."""
     unknowns = free_unknowns(model, None, parameter_values(model, {}))
-    unknowns += offset_unknowns(measured)
+    unknowns += sensor_unknowns(measured)
     return Criterion(model, [whole_segment(model, m) for m in measured], unknowns, {}, rtol)
 
 

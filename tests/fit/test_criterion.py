@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from fit.models import LINE, OSCILLATOR, C, K, T, criterion_of, made, oscillation, series
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tracewire.errors import DataError
-from tracewire.fit import Criterion, Measured, Segment, Unknown
+from tracewire.errors import DataError, OptionError, SimulationError
+from tracewire.fit import Criterion, Measured, Segment, Sensor, Unknown
+from tracewire.fit import criterion as criterion_module
 
 LINE_MODEL = made(LINE)
 
@@ -78,14 +81,14 @@ def test_sigma_of_some_signals_only_is_told() -> None:
 
 
 def test_a_declared_offset_is_added_to_the_model() -> None:
-    criterion = criterion_of(LINE_MODEL, series(T + 0.25, offset={"x": 0.25}))
+    criterion = criterion_of(LINE_MODEL, series(T + 0.25, sensors={"x": Sensor(offset=0.25)}))
     assert criterion.value(at(criterion, a=1, b=0)) == pytest.approx(0, abs=1e-15)
 
 
 def test_a_free_offset_is_an_unknown_of_all_series() -> None:
-    bounds = {"x": (-1.0, 1.0)}
+    bounds = {"x": Sensor(free={"offset": (-1.0, 1.0)})}
     criterion = criterion_of(
-        LINE_MODEL, series(T, free_offsets=bounds), series(T, "other", free_offsets=bounds)
+        LINE_MODEL, series(T, sensors=bounds), series(T, "other", sensors=bounds)
     )
     assert [u.name for u in criterion.unknowns] == ["a", "b", "offset.x"]
     z = at(criterion, a=1, b=0, **{"offset.x": 0.5})
@@ -127,29 +130,106 @@ def test_derivatives_are_those_of_the_exact_solution() -> None:
         ],
         axis=1,
     )
-    residuals = criterion.residuals(z)
-    (one_sided,) = criterion.derivatives(z, residuals)
-    (central,) = criterion.derivatives(z, residuals, central=True)
-    assert one_sided / criterion.scales == pytest.approx(exact, abs=1e-3)
-    assert central / criterion.scales == pytest.approx(exact, abs=1e-6)
+    (matrix,) = criterion.derivatives(z)
+    assert matrix / criterion.scales == pytest.approx(exact, abs=1e-7)
 
 
-@pytest.mark.parametrize("central", [False, True])
 @pytest.mark.parametrize("value", [0.0, 1.0])
-def test_derivatives_at_a_bound_stay_inside(central: bool, value: float) -> None:
+def test_differences_stand_in_where_sensitivities_fail(
+    value: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
     tried: list[float] = []
+    plain = criterion_module.simulate
 
-    class Watched(Criterion):
-        def outputs(self, segment, named, start):  # type: ignore[no-untyped-def]
-            tried.append(named["a"])
-            return super().outputs(segment, named, start)
+    def failing(*arguments: Any, **options: Any) -> Any:
+        if options["sensitivities"]:
+            raise SimulationError.one("no sensitivities today")
+        tried.append(options["parameters"]["a"])
+        return plain(*arguments, **options)
 
+    monkeypatch.setattr(criterion_module, "simulate", failing)
     whole = criterion_of(LINE_MODEL, series(T))
-    criterion = Watched(LINE_MODEL, whole.segments, [Unknown("a", value, 0.0, 1.0)], {"b": 0.0})
-    z = criterion.begin()
-    (matrix,) = criterion.derivatives(z, criterion.residuals(z), central=central)
+    criterion = Criterion(LINE_MODEL, whole.segments, [Unknown("a", value, 0.0, 1.0)], {"b": 0.0})
+    (matrix,) = criterion.derivatives(criterion.begin())
     assert matrix[:, 0] == pytest.approx(T, abs=1e-6)
-    assert all(0 <= a <= 1 for a in tried)
+    assert all(0 <= a <= 1 for a in tried)  # they stay inside the bounds
+
+
+def test_gain_delay_and_offset_of_a_sensor_and_their_derivatives() -> None:
+    """A sensor of x = a t + b shows gain*(a (t - delay) + b) + offset, b before the begin."""
+    bounds = {"gain": (0.5, 2.0), "delay": (-1.0, 1.0), "offset": (-1.0, 1.0)}
+    sensor = Sensor(offset=0.3, gain=1.5, delay=0.2, free=bounds)
+    shown = 1.5 * (np.maximum(T - 0.2, 0)) + 0.3
+    criterion = criterion_of(LINE_MODEL, series(shown, sensors={"x": sensor}))
+    z = at(criterion, a=1, b=0)
+    assert criterion.residuals(z)[0] == pytest.approx(np.zeros((121, 1)), abs=1e-9)
+    (matrix,) = criterion.derivatives(z)
+    names = [u.name for u in criterion.unknowns]
+    columns = dict(zip(names, (matrix / criterion.scales).T, strict=True))
+    late = T > 0.25
+    assert columns["a"][late] == pytest.approx(1.5 * (T - 0.2)[late])
+    assert columns["b"] == pytest.approx(1.5)
+    assert columns["offset.x"] == pytest.approx(1.0)
+    assert columns["gain.x"][late] == pytest.approx((T - 0.2)[late])
+    assert columns["delay.x"][late] == pytest.approx(-1.5)
+    assert columns["delay.x"][T < 0.15] == pytest.approx(0.0)
+
+
+def test_a_signal_with_a_period_is_compared_the_shortest_way_around() -> None:
+    turned = T + 2 * np.pi * np.round(T)
+    criterion = criterion_of(LINE_MODEL, series(turned, periods={"x": 2 * np.pi}))
+    assert criterion.value(at(criterion, a=1, b=0)) == pytest.approx(0, abs=1e-18)
+    assert criterion.residuals(at(criterion, a=1, b=3.5))[0] == pytest.approx(3.5 - 2 * np.pi)
+
+
+def test_weights_count_series_and_signals() -> None:
+    both = {"x": 0 * T, "slope": 0 * T}
+    measured = Measured("run", "train", T, both, weight=3.0, weights={"slope": 0.5})
+    criterion = criterion_of(made(LINE, ("x", "slope")), measured)
+    assert criterion.value(at(criterion, a=0, b=1)) == pytest.approx(3 * 1 / 2)
+    assert criterion.value(at(criterion, a=1, b=0)) == pytest.approx(
+        3 * np.mean(T**2) / 2 + 3 * 0.5 * 1 / 2
+    )
+
+
+def test_samples_of_the_burn_in_do_not_count() -> None:
+    burnt = series(np.where(T < 2, 99.0, T), counts_from=2.0)
+    criterion = criterion_of(LINE_MODEL, burnt)
+    assert len(criterion.segments[0].rows) == np.sum(T >= 2)
+    assert criterion.value(at(criterion, a=1, b=0)) == pytest.approx(0, abs=1e-18)
+
+
+@pytest.mark.parametrize(
+    ("loss", "value"), [("linear", 12.5), ("huber", 5.820487), ("cauchy", 4.798)]
+)
+def test_a_robust_loss_counts_outliers_less(loss: str, value: float) -> None:
+    """By hand at r = 5: huber 1.345*5 - 1.345^2/2, cauchy 2.385^2/2 log(1 + (5/2.385)^2)."""
+    segments = criterion_of(LINE_MODEL, series(0 * T - 0.5, sigma={"x": 0.1})).segments
+    criterion = Criterion(LINE_MODEL, segments, [], {"a": 0.0, "b": 0.0}, loss=loss)
+    assert criterion.value(np.empty(0)) == pytest.approx(value, rel=1e-3)
+
+
+@pytest.mark.parametrize("loss", ["linear", "huber", "cauchy"])
+def test_the_derivatives_of_the_vector_are_its_own(loss: str) -> None:
+    measured = series(np.sin(3 * T) + T, sigma={"x": 0.3})
+    whole = criterion_of(LINE_MODEL, measured)
+    criterion = Criterion(LINE_MODEL, whole.segments, whole.unknowns, {}, 1e-10, loss=loss)
+    z = at(criterion, a=1.1, b=0.2)
+    vector, matrix = criterion.both(z)
+    assert vector == pytest.approx(criterion.vector(z), abs=1e-9)
+    for j in range(2):
+        h = np.zeros(2)
+        h[j] = 1e-6
+        by_hand = (criterion.vector(z + h) - criterion.vector(z - h)) / 2e-6
+        assert matrix[:, j] == pytest.approx(by_hand, abs=1e-5)
+
+
+def test_a_robust_loss_needs_the_noise() -> None:
+    whole = criterion_of(LINE_MODEL, series(T))
+    with pytest.raises(DataError, match="a robust loss needs the noise, and no sigma is known of"):
+        Criterion(LINE_MODEL, whole.segments, whole.unknowns, {}, loss="huber")
+    with pytest.raises(OptionError, match=r"unknown loss 'hubert'.*Did you mean 'huber'"):
+        Criterion(LINE_MODEL, whole.segments, whole.unknowns, {}, loss="hubert")
 
 
 def test_a_free_start_touches_its_own_segment_only() -> None:
@@ -159,7 +239,7 @@ def test_a_free_start_touches_its_own_segment_only() -> None:
     criterion = criterion_of(model, *measured)
     z = criterion.begin()
     assert len(z) == 2 + 2
-    matrices = criterion.derivatives(z, criterion.residuals(z))
+    matrices = criterion.derivatives(z)
     # the solution is linear in its start: d x / d x0 is the free oscillation itself
     named, _ = criterion.split(z)
     own = oscillation(T, k=named["k"], c=named["c"])
@@ -201,4 +281,4 @@ blocks: {x: {type: integrator, of: r, start: 1}, r: {type: expression, formula: 
     assert "x" in str(criterion.failure)
     assert failed > criterion.value(at(criterion, a=0.1)) > 0
     z = at(criterion, a=1)
-    assert np.isfinite(criterion.derivatives(z, criterion.residuals(z))[0]).all()
+    assert np.isfinite(criterion.derivatives(z)[0]).all()

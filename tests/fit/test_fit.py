@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from fit.models import LINE, OSCILLATOR, PENDULUM, C, K, T, made, oscillation, series, swing
 from tracewire.errors import DataError, FitError, OptionError
-from tracewire.fit import Fit, Measured, Progress, fit, optimset
+from tracewire.fit import Fit, Measured, Progress, Sensor, fit, optimset
 
 METHODS = ("fminsearch", "least_squares")
 FINE = optimset(TolX=1e-7, TolFun=1e-16, Display="off")
@@ -80,7 +80,9 @@ def test_a_declared_start_is_kept() -> None:
 
 @pytest.mark.parametrize("method", METHODS)
 def test_a_free_offset_is_found(method: str) -> None:
-    measured = series(oscillation(T, 0.9) + 0.07, free_offsets={"x": (-0.5, 0.5)})
+    measured = series(
+        oscillation(T, 0.9) + 0.07, sensors={"x": Sensor(free={"offset": (-0.5, 0.5)})}
+    )
     found = fitted(OSCILLATOR, measured, method=method)
     assert found.values == pytest.approx({"k": K, "c": C, "offset.x": 0.07}, rel=1e-3)
 
@@ -122,10 +124,10 @@ def test_other_uses_are_compared_and_do_not_pull() -> None:
 
 
 def test_a_validation_series_gets_its_own_start_and_the_fitted_offset() -> None:
-    free, offset = {"x": None, "v": None}, {"x": (-0.5, 0.5)}
-    train = series(oscillation(T, 1.0) + 0.07, start=free, free_offsets=offset)
+    free, offset = {"x": None, "v": None}, {"x": Sensor(free={"offset": (-0.5, 0.5)})}
+    train = series(oscillation(T, 1.0) + 0.07, start=free, sensors=offset)
     check = series(oscillation(T, 0.5, 1.0) + 0.07, "check", use="validate", start=free,
-                   free_offsets=offset)  # fmt: skip
+                   sensors=offset)  # fmt: skip
     found = fitted(OSCILLATOR, train, check)
     assert list(found.starts) == ["run"]
     assert found.comparisons[1].rmse_after < 1e-4
@@ -215,14 +217,14 @@ def test_options_reach_the_simplex_and_progress_tells() -> None:
     assert "MaxIter" in found.message
     assert [now.evaluations for now in told] == sorted(now.evaluations for now in told)
     assert told[-1].best == pytest.approx(found.criterion)
-    assert told[-1].remaining == 0  # six of six iterations, however many evaluations are left
+    assert told[-1].remaining == 0
 
 
 def test_least_squares_tells_its_progress() -> None:
     told: list[Progress] = []
     found = fitted(OSCILLATOR, series(oscillation(T, 0.9)), progress=told.append)
     assert told[-1].best == pytest.approx(found.criterion)
-    assert found.iterations == len(told)
+    assert told[-1].remaining == 0
     evaluations = [now.evaluations for now in told]
     assert evaluations == sorted(evaluations)
     assert evaluations[-1] <= found.evaluations
@@ -237,8 +239,8 @@ def refused(kind: type[Exception], text: str = OSCILLATOR, **more: Any) -> str:
 def test_an_unknown_method_is_told_with_the_nearest() -> None:
     told = refused(OptionError, method="fminserch")
     assert told == (
-        "unknown method 'fminserch'; there are: fminsearch, least_squares. "
-        "Did you mean 'fminsearch'?"
+        "unknown method 'fminserch'; there are: fminsearch, growing_windows, least_squares, "
+        "multiple_shooting, multistart, shooting. Did you mean 'fminsearch'?"
     )
 
 
@@ -268,12 +270,50 @@ def test_no_series_is_told() -> None:
     assert refused(DataError, measured=[]) == "there is no measured series to fit to."
 
 
-def test_options_for_another_method_are_told() -> None:
-    told = refused(OptionError, method="least_squares", options=FINE)
-    assert told == (
-        "options of optimset have no meaning for least_squares. "
-        "Leave them out, or take the method fminsearch."
-    )
+@pytest.mark.parametrize(
+    ("limit", "message"),
+    [
+        ({"MaxIter": 2}, "stopped at the limit of iterations: MaxIter is 2"),
+        ({"MaxFunEvals": 5}, "stopped at the limit of evaluations: MaxFunEvals is 5"),
+    ],
+)
+def test_limits_of_optimset_hold_for_every_method(limit: dict[str, int], message: str) -> None:
+    found = fitted(OSCILLATOR, series(oscillation(T, 0.9)), options=optimset(**limit))
+    assert (found.exitflag, found.message) == (0, message)
+    assert found.criterion <= found.criterion_before
+
+
+def test_an_output_function_stops_every_method() -> None:
+    states = []
+
+    def stop(x: Any, values: Any, state: str) -> bool:
+        states.append(state)
+        comparisons = values.comparisons()
+        assert [c.signal for c in comparisons] == ["x"]
+        return bool(values.iteration == 2)
+
+    found = fitted(OSCILLATOR, series(oscillation(T, 0.9)), options=optimset(OutputFcn=stop))
+    assert (found.exitflag, found.message) == (-1, "stopped by an output function")
+    assert found.iterations == 2
+    assert states == ["init", "iter", "iter", "done"]
+    assert found.criterion < found.criterion_before
+
+
+def test_ctrl_c_ends_at_the_best_so_far() -> None:
+    told: list[Progress] = []
+
+    def interrupt(now: Progress) -> None:
+        told.append(now)
+        if len(told) == 2:
+            raise KeyboardInterrupt
+
+    endless = optimset(TolX=0, TolFun=0, MaxIter=1e6, MaxFunEvals=1e6, Display="off")
+    measured = series(oscillation(T, 0.9))
+    found = fitted(OSCILLATOR, measured, method="fminsearch", progress=interrupt, options=endless)
+    assert found.interrupted
+    assert found.exitflag == -1
+    assert found.message == "stopped by Ctrl-C: this is the best so far"
+    assert found.criterion < found.criterion_before
 
 
 def test_a_model_that_does_not_run_is_told_with_time_and_block() -> None:

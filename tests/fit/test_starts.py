@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from fit.models import OSCILLATOR, T, made, oscillation, series
 from tracewire.errors import OptionError
-from tracewire.fit import Measured
+from tracewire.fit import Measured, Sensor
 from tracewire.fit.starts import start_from_data, whole_segment
 
 
@@ -20,7 +20,9 @@ def test_a_quartic_is_read_off_exactly(row: int) -> None:
 
 
 def test_a_known_offset_is_taken_off() -> None:
-    found = start_from_data(made(OSCILLATOR), series(0 * T + 1.2, offset={"x": 0.2}), 0)
+    found = start_from_data(
+        made(OSCILLATOR), series(0 * T + 1.2, sensors={"x": Sensor(offset=0.2)}), 0
+    )
     assert found == pytest.approx({"x": 1.0, "v": 0.0}, abs=1e-9)
 
 

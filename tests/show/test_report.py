@@ -2,63 +2,25 @@
 
 from __future__ import annotations
 
+import base64
 import html.parser
-import math
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
-from tracewire.compile import compile
+from show.fits import MODEL, TEXT, compared
 from tracewire.diagram import read_text
 from tracewire.errors import OptionError
-from tracewire.fit import Comparison, Fit
 from tracewire.show import Report, report
 from tracewire.show.document import Figure, Section
-from tracewire.show.report import (
-    comparison_table,
-    fit_table,
-    fit_tables,
-    fit_text,
-    trace_text,
-)
+from tracewire.show.report import trace_text
 from tracewire.show.summary import Table
 from tracewire.solve import simulate
 from tracewire.trace import Found, FoundEffect
 from tracewire.trace.found import HeldOut, Ranked
 
-TEXT = """\
-title: Swing & rest
-span: [0, 2]
-parameters: {k: {value: 4, unit: N m/rad, fit: [0, 10]}, J: {value: 1, unit: kg m^2, fit: free}}
-blocks:
-  x: {type: integrator, of: v, start: 1, unit: rad}
-  v: {type: integrator, of: a}
-  a: {type: expression, formula: -k/J*x}
-"""
-MODEL = compile(read_text(TEXT))
-T = np.linspace(0, 2, 21)
-X = np.cos(2 * T)
-FIT = Fit(
-    model=MODEL,
-    method="fminsearch",
-    measured=(),
-    began={"k": 4.0, "J": 1.0, "offset.x": 0.0},
-    values={"k": 10.0, "J": 2.0, "offset.x": 0.1},
-    errors={"k": 0.25, "J": math.nan, "offset.x": 0.01},
-    bounds={"k": (0.0, 10.0), "J": (-math.inf, math.inf), "offset.x": (-1.0, 1.0)},
-    starts={},
-    criterion_before=0.5,
-    criterion=0.005,
-    evaluations=42,
-    iterations=21,
-    exitflag=1,
-    message="It\nconverged.\n",
-    seconds=1.25,
-    comparisons=(Comparison("run", "train", "x", "rad", T, X, X + 0.2, X + 0.1),),
-)
+RUN = compared()
 FOUND = Found(
     verdict="effect",
     effects=(FoundEffect("coulomb", "a", {"level": 0.25}, ("bias @ a",)),),
@@ -73,7 +35,7 @@ FOUND = Found(
     fitted_before=0.2,
     fitted_after=0.1,
     ranking=(Ranked("coulomb @ a", -120.0, 4.0, "gate: accepted"),),
-    held_out=(HeldOut("run", "x", "rad", T, X, X + 0.2, X + 0.1),),
+    held_out=(HeldOut("run", "x", "rad", RUN.t, RUN.measured, RUN.before, RUN.after),),
     words=("the last sixth of 'run' is held back",),
     original=MODEL.diagram,
     diagram=read_text(TEXT.replace("value: 4,", "value: 4.5,")),
@@ -124,7 +86,7 @@ def test_a_report_is_markdown(tmp_path: Path) -> None:
     path = DOCUMENT.write(tmp_path / "report.md")
     assert path.read_text(encoding="utf-8").splitlines() == [
         "# A < B", "", "## First", "", "One & one.", "", "**sizes**", "",
-        "| name | size |", "| --- | ---: |", "| a\\|b | 1 |", "| <i> | 2 |", "",
+        "| name | size |", "| --- | ---: |", "| a\\|b | 1 |", "| \\<i> | 2 |", "",
         "```", "x < y", "```", "", "![A figure](f.png)", "", "## Second",
     ]  # fmt: skip
     assert (tmp_path / "f.png").read_bytes() == b"drawn"
@@ -140,7 +102,47 @@ def test_a_report_is_html_with_escaped_text(tmp_path: Path) -> None:
     assert outline.texts["td"] == ["a|b", "1", "<i>", "2"]
     assert outline.texts["pre"] == ["x < y\n"]
     assert outline.texts["figcaption"] == ["A figure"]
-    assert outline.images == ["f.png"]
+    (image,) = outline.images
+    head, data = image.split(",")
+    assert head == "data:image/png;base64"
+    assert base64.b64decode(data) == b"drawn"
+    assert list(tmp_path.iterdir()) == [tmp_path / "report.html"]  # one file, to be mailed
+
+
+def test_points_are_a_list() -> None:
+    listed = Report("A", (Section("First", points=("one", "two")),))
+    assert "- one\n- two\n" in listed.markdown()
+    assert Outline(listed.html().removeprefix("<!doctype html>")).texts["li"] == ["one", "two"]
+
+
+@pytest.mark.parametrize(
+    ("text", "written"),
+    [
+        ("a*b*c", r"a\*b\*c"),
+        ("T_s2_l stays", "T_s2_l stays"),
+        ("`trace a_*` looks", "`trace a_*` looks"),
+        ("a single ` stays", r"a single \` stays"),
+        ("_x_", r"\_x\_"),
+        (r"data\*.csv", r"data\\\*.csv"),
+        ("a <b> < c", r"a \<b> < c"),
+    ],
+)
+def test_markdown_shows_names_as_they_are(text: str, written: str) -> None:
+    assert written in Report("A", (Section("First", (text,)),)).markdown().splitlines()
+
+
+def test_what_is_typed_is_code_in_html() -> None:
+    page = Report("A", (Section("First", ("`trace <a>` looks",), points=("`b`",)),)).html()
+    assert "<p><code>trace &lt;a&gt;</code> looks</p>" in page
+    assert "<li><code>b</code></li>" in page
+
+
+def test_a_report_that_cannot_be_written_is_told_before_it_is_drawn(tmp_path: Path) -> None:
+    drawn: list[Path] = []
+    figure = Figure("f.png", "A figure", drawn.append)
+    with pytest.raises(OptionError, match="cannot be written"):
+        Report("A", (Section("First", figures=(figure,)),)).write(tmp_path / "no" / "report.html")
+    assert drawn == []
 
 
 def test_another_ending_is_told(tmp_path: Path) -> None:
@@ -161,58 +163,6 @@ def test_a_run_as_a_report(tmp_path: Path) -> None:
     assert (tmp_path / "run.png").is_file()
 
 
-def test_the_text_of_a_fit_is_one_sentence() -> None:
-    assert fit_text(FIT) == (
-        "fminsearch: the criterion fell from 0.5 to 0.005, 100-fold, in 42 evaluations and 1.2 s: "
-        "It converged."
-    )
-    assert "inf-fold" in fit_text(replace(FIT, criterion=0.0))
-
-
-def test_the_table_of_a_fit_has_units_errors_and_bounds() -> None:
-    assert fit_table(FIT).rows == (
-        ("k", "4", "10", "0.25", "N m/rad", "at its bound"),
-        ("J", "1", "2", "not determined", "kg m^2", ""),
-        ("offset.x", "0", "0.1", "0.01", "rad", ""),
-    )
-
-
-@pytest.mark.parametrize(
-    ("k", "remark"), [(9.9999999, "at its bound"), (9.99, ""), (0.0, "at its bound")]
-)
-def test_a_value_at_its_bound_is_marked(k: float, remark: str) -> None:
-    assert fit_table(replace(FIT, values={"k": k})).rows[0][-1] == remark
-
-
-def test_start_values_are_shown_where_they_were_fitted() -> None:
-    assert [table.title for table in fit_tables(FIT)] == [
-        "fitted parameters",
-        "measured against simulated",
-    ]
-    started = replace(FIT, starts={"run": {"x": 1.25}, "fixed": {}})
-    assert fit_tables(started)[1].rows == (("run", "x", "1.25", "rad"),)
-
-
-def test_the_comparison_has_errors_by_series_and_signal() -> None:
-    assert comparison_table(FIT).rows == (("run", "train", "x", "rad", "0.2", "0.1"),)
-
-
-def test_a_fit_as_a_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    text = report(FIT).write(tmp_path / "fit.md").read_text(encoding="utf-8")
-    assert text.startswith("# Fit of Swing & rest\n")
-    for words in ("mean(residual²)/2", "**fitted parameters**", "Fix one of them", "(fit.png)"):
-        assert words in text
-    assert (tmp_path / "fit.png").is_file()
-    seen: list[str] = []
-    module = sys.modules["tracewire.show.report"]  # the attribute is the function
-    monkeypatch.setattr(module, "plot_fit", lambda _, rows, *more: seen.extend(r[0] for r in rows))
-    other = replace(FIT.comparisons[0], series="other", use="validate")
-    report(replace(FIT, comparisons=(*FIT.comparisons, other))).write(tmp_path / "both.md")
-    assert seen == ["run: x", "other (validate): x"]
-    known = replace(FIT, errors=dict.fromkeys(FIT.errors, 0.1))
-    assert "Fix one of them" not in report(known).markdown()
-
-
 def test_a_trace_as_a_report(tmp_path: Path) -> None:
     text = report(FOUND).write(tmp_path / "trace.md").read_text(encoding="utf-8")
     assert text.startswith("# Trace of Swing & rest\n")
@@ -225,7 +175,7 @@ def test_a_trace_as_a_report(tmp_path: Path) -> None:
         "| k | 4 | 4.5 |",
         "BIC is relative to the diagram before them",
         "| coulomb @ a | -120 | 4 | gate: accepted |",
-        "+parameters: {k: {value: 4.5,",
+        "+  k: {value: 4.5,",
         "(held_out.png)",
         "(residual.png)",
     ):

@@ -13,7 +13,7 @@ from solve.models import LIMITS, one
 from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.errors import SimulationError
-from tracewire.solve import simulate
+from tracewire.solve import simulate, simulate_many
 
 
 def said(text: str) -> str:
@@ -75,3 +75,29 @@ blocks:
 """)
     assert "<text>:5:3: block 'relay': the transitions of 'relay' at t = 0.5 s lead back" in message
     assert "Let the condition that leaves a mode be false where the mode is entered." in message
+
+
+REQUIRED = """
+parameters: {m: 1, k: 4, scale: 2*m}
+require: [m > 0, k/scale >= 1]
+blocks:
+  x: {type: integrator, of: v, start: 1}
+  v: {type: integrator, of: a}
+  a: {type: gain, of: x, k: -k/m}
+"""
+
+
+def test_a_run_whose_parameters_do_not_meet_what_is_required_is_refused() -> None:
+    model = compile(read_text(REQUIRED))
+    simulate(model, parameters={"m": 2.0})
+    with pytest.raises(SimulationError) as caught:
+        simulate(model, parameters={"m": 3.0})
+    told = str(caught.value)
+    assert "3:18: the parameters do not meet 'k/scale >= 1': k = 4, scale = 6" in told
+    assert "see its section 'require'" in told
+
+
+def test_of_many_rows_only_those_fail_that_do_not_meet_what_is_required() -> None:
+    runs = simulate_many(compile(read_text(REQUIRED)), {"m": [1.0, 3.0, -1.0, 2.0]})
+    assert sorted(runs.errors) == [1, 2]
+    assert "'m > 0': m = -1" in runs.errors[2]

@@ -1,37 +1,12 @@
-"""Noise levels, effective sample sizes and scores on made-up numbers."""
+"""Effective sample sizes and scores on made-up numbers."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from tracewire.fit.measured import Measured
-from tracewire.trace.statistics import Screen, bic, channel_noise, effective_part, noise_level
+from tracewire.trace.statistics import Screen, bic, effective_part
 
 RANDOM = np.random.default_rng(7)
-
-
-def test_the_noise_on_a_smooth_signal_is_found() -> None:
-    t = np.linspace(0, 10, 2000)
-    values = np.sin(3 * t) + RANDOM.normal(0, 0.01, len(t))
-    assert noise_level(values) == pytest.approx(0.01, rel=0.08)
-
-
-def test_a_few_outliers_do_not_change_the_noise() -> None:
-    values = RANDOM.normal(0, 0.01, 2000)
-    values[::200] += 5.0
-    assert noise_level(values) == pytest.approx(0.01, rel=0.15)
-
-
-def test_readings_on_steps_have_at_least_the_noise_of_a_step() -> None:
-    t = np.linspace(0, 10, 400)
-    values = np.round(np.sin(0.2 * t) / 0.05) * 0.05
-    measured = Measured("run", "train", t, {"x": values}, {"x": None})
-    assert channel_noise([measured])["x"] == pytest.approx(0.05 / 12**0.5, rel=0.01)
-
-
-def test_a_declared_sigma_is_taken_as_it_is() -> None:
-    measured = Measured("run", "train", np.arange(9.0), {"x": np.arange(9.0)}, {"x": 0.25})
-    assert channel_noise([measured]) == {"x": 0.25}
 
 
 def test_white_residuals_count_fully_and_slow_ones_by_their_half_waves() -> None:

@@ -15,13 +15,12 @@ from tracewire.cli.blocks import blocks
 from tracewire.cli.check import check
 from tracewire.cli.demo import demo
 from tracewire.cli.fit import fit
-from tracewire.cli.output import print_problems
+from tracewire.cli.output import INTERRUPTED, print_problems
 from tracewire.cli.run import run
 from tracewire.cli.show import show
 from tracewire.cli.trace import trace
 from tracewire.errors import Problem, TracewireError
 
-INTERRUPTED = 130
 STOPPED = Problem("interrupted; nothing was finished")
 USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
 """The base of every usage error; typer has its own copy of click or uses the installed one."""

@@ -14,7 +14,8 @@ def check(
 ) -> None:
     """Check a diagram, its formulas and its measured files, and say what is in it.
 
-    Everything that is wrong in the diagram is told at once, with file, line and column.
+    Everything that is wrong in the diagram is told at once, with file, line and column. Of each
+    measured series it tells what is done to the data (-), and what is odd about them (!).
 
     \b
     Example:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries, load_model
-from tracewire.cli.output import note, print_json, print_table, print_text, working
+from tracewire.cli.output import INTERRUPTED, note, print_json, print_table, print_text, working
 from tracewire.cli.reporting import (
     Apply,
     Output,
@@ -21,27 +21,41 @@ from tracewire.cli.reporting import (
 from tracewire.cli.values import parameter_values_of
 
 if TYPE_CHECKING:
-    from tracewire.fit import Fit, Progress
+    from collections.abc import Callable
+
+    from tracewire.fit import Fit, Options, Profile, Progress
 
 TELL_EVERY = 10.0
+PLOTS = "fit_frames"
 
 
 def fit(
     diagram: DiagramPath,
-    method: Annotated[str, typer.Option(help="fminsearch or least_squares.")] = "fminsearch",
+    method: Annotated[
+        str,
+        typer.Option(
+            help="fminsearch, least_squares, growing_windows, shooting, multistart or "
+            "multiple_shooting."
+        ),
+    ] = "fminsearch",
     free: Annotated[
         list[str] | None,
         typer.Option(metavar="NAME", help="A parameter to fit, instead of those with `fit:`."),
+    ] = None,
+    fix: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="A parameter with `fit:` that stays. Repeatable."),
     ] = None,
     values: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="NAME=VALUE", help="A value to begin with. Repeatable."),
     ] = None,
-    max_iter: Annotated[
-        int | None, typer.Option("--MaxIter", help="fminsearch: the most iterations.")
-    ] = None,
+    loss: Annotated[
+        str, typer.Option(help="linear, or huber or cauchy for data with outliers.")
+    ] = "linear",
+    max_iter: Annotated[int | None, typer.Option("--MaxIter", help="The most iterations.")] = None,
     max_fun_evals: Annotated[
-        int | None, typer.Option("--MaxFunEvals", help="fminsearch: the most evaluations.")
+        int | None, typer.Option("--MaxFunEvals", help="The most evaluations of the criterion.")
     ] = None,
     tol_x: Annotated[
         float | None, typer.Option("--TolX", help="fminsearch: size of the simplex.")
@@ -49,6 +63,25 @@ def fit(
     tol_fun: Annotated[
         float | None, typer.Option("--TolFun", help="fminsearch: spread of the criterion.")
     ] = None,
+    seed: Annotated[int, typer.Option(help="What the random methods begin from.")] = 0,
+    save: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Store the search here while it runs.")
+    ] = None,
+    resume: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Go on from a stored search.")
+    ] = None,
+    profile: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME", help="Tell how far a parameter may go, the others refitted. Repeatable."
+        ),
+    ] = None,
+    plot: Annotated[
+        bool,
+        typer.Option(
+            "--plot", help=f"Draw the fit while it runs; without a display into {PLOTS}/."
+        ),
+    ] = False,
     report: ReportFile = None,
     apply: Apply = False,
     output: Output = None,
@@ -58,71 +91,115 @@ def fit(
 ) -> None:
     """Fit the free parameters of a diagram to its measured series.
 
+    Ctrl-C ends a fit at its best so far, which is told as ever, with exit code 130.
+
     \b
     Examples:
       tracewire fit pendulum.yaml
       tracewire fit pendulum.yaml --method least_squares --report fit.html
-      tracewire fit pendulum.yaml --MaxIter 150 --apply
+      tracewire fit pendulum.yaml --fix c --profile w0_squared
+      tracewire fit pendulum.yaml --MaxIter 150 --save fit.json --apply
     """
     from tracewire.diagram import set_values
     from tracewire.fit import fit as fit_model
-    from tracewire.fit import optimset
+    from tracewire.fit import profile as profile_of
 
     check_targets(report, output)
     model = load_model(diagram, library)
     check_home(model.diagram, output)
-    given = {
+    limits = {
         "MaxIter": max_iter,
         "MaxFunEvals": max_fun_evals,
         "TolX": tol_x,
         "TolFun": tol_fun,
     }
-    limits = {name: value for name, value in given.items() if value is not None}
-    options = optimset(Display="off", **limits) if limits else None
+    options = _options({name: value for name, value in limits.items() if value is not None}, plot)
     parameters = parameter_values_of(model, values or [])
     with working("fitting") as tell:
-        last = time.perf_counter()
-
-        def progress(now: Progress) -> None:
-            nonlocal last
-            text = (
-                f"fitting: {now.evaluations} evaluations, best criterion {now.best:.6g}, "
-                f"at most {now.remaining:.0f} s to go"
-            )
-            tell(text)
-            if time.perf_counter() - last > TELL_EVERY:
-                last = time.perf_counter()
-                note(text)
-
         found = fit_model(
             model,
             method=method,
             free=free or None,
+            fixed=fix or (),
             parameters=parameters,
             options=options,
-            progress=progress,
+            loss=loss,
+            seed=seed,
+            save=save,
+            resume=resume,
+            progress=_told(tell),
         )
-    written = write_report(found, report)
+        profiles: list[Profile] = []
+        for name in profile or []:
+            tell(f"profile of {name}")
+            profiles.append(profile_of(found, name))
+    written = write_report(found, report, profiles)
     own = {n: v for n, v in found.values.items() if n in model.flat.parameters}
     written += store(model.diagram, lambda: set_values(model.diagram, own), apply, output)
     if as_json:
-        print_json(_json(found) | {"written": written})
-        return
-    from tracewire.show.report import fit_tables, fit_text
+        print_json(_json(found, profiles) | {"written": written})
+    else:
+        _print(found, profiles, written)
+    if found.interrupted:
+        raise typer.Exit(INTERRUPTED)
+
+
+def _options(limits: dict[str, float], plot: bool) -> Options | None:
+    """The options of optimset, or None where nothing is said."""
+    from tracewire.fit import optimset
+
+    if not plot:
+        return optimset(Display="off", **limits) if limits else None
+    from tracewire.show.live import FitPlot, ValuePlot
+
+    functions = [kind(folder=PLOTS) for kind in (ValuePlot, FitPlot)]
+    return optimset(Display="off", PlotFcns=functions, **limits)
+
+
+def _told(tell: Callable[[str], None]) -> Callable[[Progress], None]:
+    """Tell progress: always on a terminal, every ten seconds elsewhere."""
+    last = time.perf_counter()
+
+    def progress(now: Progress) -> None:
+        nonlocal last
+        stage = f", {now.stage}" if now.stage else ""
+        text = (
+            f"fitting: {now.evaluations} evaluations{stage}, best criterion {now.best:.6g}, "
+            f"at most {now.remaining:.0f} s to go"
+        )
+        tell(text)
+        if time.perf_counter() - last > TELL_EVERY:
+            last = time.perf_counter()
+            note(text)
+
+    return progress
+
+
+def _print(found: Fit, profiles: list[Profile], written: list[str]) -> None:
+    from tracewire.show.report import fit_tables, fit_text, fit_words
 
     print_text(fit_text(found))
     for table in fit_tables(found):
         print_table(table)
+    for text in (*fit_words(found), *(p.words for p in profiles)):
+        print_text(text)
     for path in written:
         print_text(f"written: {path}")
 
 
-def _json(found: Fit) -> dict[str, object]:
+def _json(found: Fit, profiles: list[Profile]) -> dict[str, object]:
     return {
         "method": found.method,
         "values": found.values,
         "before": found.began,
         "errors": found.errors,
+        "intervals": found.intervals,
+        "correlation": found.uncertainty.correlation,
+        "not_determined": found.uncertainty.directions,
+        "at_bounds": found.uncertainty.at_bounds,
+        "unmoved": found.uncertainty.unmoved,
+        "words": found.uncertainty.words,
+        "remarks": found.remarks,
         "starts": found.starts,
         "criterion_before": found.criterion_before,
         "criterion": found.criterion,
@@ -131,6 +208,8 @@ def _json(found: Fit) -> dict[str, object]:
         "exitflag": found.exitflag,
         "message": found.message,
         "seconds": found.seconds,
+        "seed": found.seed,
+        "profiles": profiles,
         "comparisons": [
             {
                 "series": c.series,

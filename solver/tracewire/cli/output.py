@@ -19,6 +19,7 @@ from tracewire.errors import OptionError, Problem, unknown
 if TYPE_CHECKING:
     from tracewire.show.summary import Table
 
+INTERRUPTED = 130
 WIDTH_OF_A_PIPE = 200
 SOON = 1.0  # s: what takes no longer needs no progress
 

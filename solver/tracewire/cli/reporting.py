@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,12 +12,14 @@ from tracewire.cli.output import check_target, working, writing
 
 if TYPE_CHECKING:
     from tracewire.diagram import Diagram
-    from tracewire.fit import Fit
+    from tracewire.fit import Fit, Profile
     from tracewire.trace import Found
 
 ReportFile = Annotated[
     str | None,
-    typer.Option(metavar="FILE", help="Write a report to .md or .html, its figures beside it."),
+    typer.Option(
+        metavar="FILE", help="Write a report to .html (one file) or .md (its figures beside it)."
+    ),
 ]
 Apply = Annotated[bool, typer.Option("--apply", help="Edit the diagram's file; comments are kept.")]
 Output = Annotated[
@@ -42,14 +44,16 @@ def check_home(diagram: Diagram, output: str | None) -> None:
         read_text(diagram.text, Path(output), library=diagram.library)
 
 
-def write_report(subject: Fit | Found, path: str | None) -> list[str]:
+def write_report(
+    subject: Fit | Found, path: str | None, profiles: Sequence[Profile] = ()
+) -> list[str]:
     """Write a report where one is asked for; the paths that were written."""
     if path is None:
         return []
     with working("drawing"):
         from tracewire.show import report
 
-        report(subject).write(path)
+        report(subject, profiles).write(path)
     return [path]
 
 

@@ -178,7 +178,8 @@ def _series(model: Model, name: str) -> _Series:
         raise OptionError([unknown("measured series", name, model.diagram.measured)])
     from tracewire.fit import load_measured
 
-    measured = next(found for found in load_measured(model) if found.name == name)
+    # of a series with several windows the first
+    measured = next(found for found in load_measured(model) if found.series == name)
     start = {state: value for state, value in measured.start.items() if value is not None}
     # a series with start values begins at its first sample, one without at the diagram's start
     span = (float(measured.t[0]), float(measured.t[-1])) if measured.start else None

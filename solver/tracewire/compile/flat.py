@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from tracewire.diagram import Crosses, Points
+from tracewire.diagram import Condition, Crosses, Points
 from tracewire.errors import Place
 from tracewire.formula import Expression
 
@@ -117,7 +117,8 @@ class Flat:
     signals, ordered so that a signal stands after those it reads; the signals of an algebraic loop
     stand together, as `loops` tells. `guesses` are values where the search of a loop begins.
     `shapes` holds the vectors, `(n,)`, and matrices, `(n, m)`, by name. `outputs` maps the names of
-    subsystem ports and of blocks to the signal or state that they are.
+    subsystem ports and of blocks to the signal or state that they are. `require` holds what the
+    parameters must meet.
     """
 
     title: str
@@ -137,3 +138,4 @@ class Flat:
     guesses: Mapping[str, Expression] = field(default_factory=dict)
     shapes: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     memories: tuple[FlatMemory, ...] = ()
+    require: tuple[Condition, ...] = ()

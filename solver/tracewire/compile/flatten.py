@@ -115,6 +115,10 @@ class _Flattener:
             blocks=self.blocks,
             units=self.units,
             memories=tuple(self.memories),
+            require=tuple(
+                replace(known, formula=rename(known.formula, scope.resolve))
+                for known in top.require
+            ),
         )
 
     def value(self, value: Value, scope: _Scope) -> Expression:

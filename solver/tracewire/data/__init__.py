@@ -1,5 +1,18 @@
-"""Measured data: series in text files."""
+"""Measured data: columns of files, records and the steps that clean them, what is odd in them."""
 
-from tracewire.data.read import Columns, read_columns
+from tracewire.data.checks import signal_remarks, time_remarks
+from tracewire.data.read import Columns, column_unit, read_columns, read_record
+from tracewire.data.record import Record
+from tracewire.data.steps import STEPS, Option
 
-__all__ = ["Columns", "read_columns"]
+__all__ = [
+    "STEPS",
+    "Columns",
+    "Option",
+    "Record",
+    "column_unit",
+    "read_columns",
+    "read_record",
+    "signal_remarks",
+    "time_remarks",
+]

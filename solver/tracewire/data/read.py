@@ -1,40 +1,22 @@
-"""Measured series from a text file with columns of numbers (CSV)."""
+"""Columns of a file, whatever its format: text (CSV and its relatives), or MATLAB's .mat."""
 
 from __future__ import annotations
 
-import itertools
-import re
-from array import array
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+import math
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.data.table import (
-    Row,
-    commented_header,
-    header_of,
-    matches,
-    number,
-    read_lines,
-    rows_of,
-    sniff,
-)
-from tracewire.errors import DataError, Place, Problem, unknown
-
-MOST_PROBLEMS = 10
-DECIMAL_COMMA = "Is it a decimal comma? Write 1.5, and not 1,5."
-NO_ROWS = "A series needs at least two rows of numbers."
-REPAIR = "Repair or remove this line."
-HINTS = (
-    ("", "Leave out the rows without a value."),
-    (r"[+-]?\d+,\d+(e[+-]?\d+)?", DECIMAL_COMMA),
-    (r"[+-]?\d*\.?\d*[dD][+-]?\d+", "Write exponents with e, as in 1e-3."),
-)
-Number = TypeVar("Number", np.float64, np.int64)
+from tracewire.data.content import content_of, kind_of
+from tracewire.data.matlab import columns_of_matlab
+from tracewire.data.record import Record
+from tracewire.data.request import Request, Vector
+from tracewire.data.text import columns_of_text
+from tracewire.errors import DataError, FormulaError, OptionError, Place, Problem
+from tracewire.formula import Unit, read_unit, same_quantity
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,13 +24,18 @@ class Columns:
     """Series of one file, N rows each, as they stand there: no unit is converted.
 
     time (N,), strictly increasing; values: name -> (N,); lines (N,), the line of each row in the
-    file, from 1; file: the path as it was given. The arrays are read-only.
+    file, from 1 (0 in a file without lines); file: the path as it was given. `units` has the text
+    of the unit that the header gives to a series, `time_unit` that of time; `remarks` tell what is
+    odd about the file. The arrays are read-only.
     """
 
-    time: NDArray[np.float64]
-    values: dict[str, NDArray[np.float64]]
+    time: Vector
+    values: dict[str, Vector]
     lines: NDArray[np.int64]
     file: str
+    units: Mapping[str, str] = field(default_factory=dict)
+    time_unit: str = ""
+    remarks: tuple[str, ...] = ()
 
 
 def read_columns(
@@ -58,179 +45,192 @@ def read_columns(
     delimiter: str | None = None,
     comment: str = "#",
     place: Place = Place(),
+    *,
+    decimal: str | None = None,
+    every: float | None = None,
+    where: Mapping[str, str | float] | None = None,
 ) -> Columns:
-    """Read the named columns of a text file.
+    """Read the named columns of a file.
 
-    columns: name of the series -> the column's header, or its number from 1.
-    time: header or number of the column of time; the first column where None.
-    delimiter: one character, " " for any blanks; found from the first rows where None.
+    columns: name of the series -> the column's header, or its number from 1; in a .mat file the
+        name of a vector: `theta`, `data.theta`, `x_F[2]` (the second column of a matrix).
+    time: header or number of the column of time; the first column where None (of text).
+    delimiter, decimal: one character, " " for any blanks, and "." or ","; found from the first rows
+        where None.
     comment: what a line to be left out starts with; "" for none. A comment right above the first
         row that has as many names as there are columns is the header where there is no other.
     place: where the file is named, for the problems of the file as a whole.
+    every: the interval between rows, of a file without a column of time; the first row is at 0.
+    where: column -> the text or number that a row must have there; other rows are left out.
 
-    A header is found exactly, or without a unit in brackets: "t" finds "t [s]" and "t (s)". Every
-    number in the columns that are used must be finite, the time must increase from row to row.
+    A header is found exactly, or without a unit in brackets: "t" finds "t [s]" and "t (s)". Lines
+    before the header that are no part of the table are left out, with a remark. Every number in the
+    columns that are used must be finite, the time must increase from row to row.
 
-    Raises DataError with up to ten problems, each with its line.
+    Raises DataError with up to ten problems, each with its line; OptionError on a wrong argument.
     """
     path = Path(path)
     file = str(path)
     place = place if str(place) else Place(file)
-    lines = read_lines(path, place)
+    _check_arguments(delimiter, decimal, every, place)
+    content = content_of(path, place)
+    is_text = kind_of(content, path, place) == "text"
+    if every is None and time is None and not is_text:
+        what = f"'{file}' has no first column that could be the time"
+        raise DataError.one(what, place, hint="Name the column of time, or the interval of rows.")
+    names = list(columns.values())
+    if every is None:
+        names.append("1" if time is None else time)
+    conditions = {
+        name: wanted if isinstance(wanted, str) else float(wanted)
+        for name, wanted in (where or {}).items()
+    }
+    clock = len(names) - 1 if every is None else None
+    request = Request(tuple(names), clock, conditions, (delimiter, decimal), comment)
+    found = (columns_of_text if is_text else columns_of_matlab)(content, path, request, place)
+    series = dict(zip(columns, found.series, strict=False))  # the time may stand behind them
+    return Columns(
+        _fixed(np.arange(len(found.lines)) * every if every else found.series[-1]),
+        {name: _fixed(values) for name, values in series.items()},
+        _fixed_lines(found.lines),
+        file,
+        dict(zip(columns, found.units, strict=False)),
+        "" if every else found.units[-1],
+        found.remarks,
+    )
+
+
+def column_unit(path: str | Path, column: str, delimiter: str | None = None) -> str:
+    """The unit that the header gives to a column; '' where it gives none or cannot be read."""
+    try:
+        found = read_columns(path, {"it": column}, delimiter=delimiter, every=1.0)
+    except (DataError, OptionError):
+        return ""
+    return found.units["it"]
+
+
+def _check_arguments(
+    delimiter: str | None, decimal: str | None, every: float | None, place: Place
+) -> None:
     if delimiter is not None and not _is_delimiter(delimiter):
         hint = "Give one character, such as ',' or ';' or a tab; ' ' stands for any blanks."
         raise DataError.one(f"the delimiter {delimiter!r} cannot be used", place, hint=hint)
-    cut = sniff(lines, comment) if delimiter is None else delimiter
-
-    rows = rows_of(lines, cut, comment)
-    first = next(rows, None)
-    if first is None:
-        raise DataError.one(f"'{file}' holds nothing but comments", place, hint=NO_ROWS)
-    if first.broken:
-        raise DataError.one(first.broken, Place(file, first.line), hint=REPAIR)
-    wanted = [*columns.values(), *([] if time is None else [time])]
-    names = header_of(first, wanted)
-    if not names:
-        rows = itertools.chain([first], rows)
-        names = commented_header(lines, cut, comment, first)
-    found = _find_all(wanted, names, len(first.cells), place, file)
-    clock = 0 if time is None else found.pop()
-
-    reading = _Reading(file, cut, len(first.cells), names, sorted({clock, *found}))
-    reading.take(rows)
-    reading.check(clock)
-    reading.finish()
-    series = {column: _fixed(kept, np.float64) for column, kept in reading.series.items()}
-    values = {name: series[column] for name, column in zip(columns, found, strict=True)}
-    return Columns(series[clock], values, _fixed(reading.lines, np.int64), file)
+    if decimal not in (None, ".", ","):
+        hint = "It is '.' or ','."
+        raise DataError.one(f"the decimal sign {decimal!r} cannot be used", place, hint=hint)
+    if every is not None and not (math.isfinite(every) and every > 0):
+        hint = "It is the time in s from one row to the next."
+        raise DataError.one(
+            f"the interval of rows must be above zero, not {every:g}", place, hint=hint
+        )
 
 
 def _is_delimiter(text: str) -> bool:
     return len(text) == 1 and not text.isalnum() and text not in '"\r\n.+-\0'
 
 
-def _find_all(
-    wanted: Sequence[str], names: Sequence[str], width: int, place: Place, file: str
-) -> list[int]:
-    """The column (from 0) of each wanted header or number."""
-    found, problems = [], []
-    for want in wanted:
-        answer = _find(want, names, width, place, file)
-        if isinstance(answer, Problem):
-            problems.append(answer)
-        else:
-            found.append(answer)
-    if problems:
-        raise DataError(list(dict.fromkeys(problems))[:MOST_PROBLEMS])
-    return found
-
-
-def _find(want: str, names: Sequence[str], width: int, place: Place, file: str) -> int | Problem:
-    columns = matches(want, names)
-    if len(columns) == 1:
-        return columns[0]
-    if columns:
-        numbers = [str(column + 1) for column in columns]
-        what = f"'{want}' is the name of {len(columns)} columns of '{file}'"
-        return Problem(what, place, tuple(f"column {n}" for n in numbers), "Give the number.")
-    if re.fullmatch("[0-9]{1,9}", want):
-        if 1 <= int(want) <= width:
-            return int(want) - 1
-        return Problem(f"there is no column {want} in '{file}', only {width}", place)
-    if not names:
-        what = f"'{file}' has no header, so there is no column '{want}'"
-        return Problem(what, place, hint=f"Give a number from 1 to {width}.")
-    problem = unknown("column", want, names, place)
-    return Problem(f"{problem.what} in '{file}'", place, problem.exists, problem.hint)
-
-
-class _Reading:
-    """The rows as they are read, and what is wrong with them."""
-
-    def __init__(
-        self, file: str, delimiter: str, width: int, names: Sequence[str], used: Sequence[int]
-    ) -> None:
-        self.file, self.delimiter, self.width, self.names = file, delimiter, width, names
-        self.lines = array("q")
-        self.series = {column: array("d") for column in used}
-        self.problems: list[Problem] = []
-        self.count, self.room = 0, MOST_PROBLEMS
-
-    def take(self, rows: Iterable[Row]) -> None:
-        """Keep the rows that are whole; note what is wrong with the others."""
-        for row in rows:
-            if row.broken:
-                self._note(row.line, row.broken, REPAIR)
-            elif len(row.cells) != self.width:
-                self._note_width(row)
-            else:
-                numbers = [number(row.cells[column]) for column in self.series]
-                if None in numbers:
-                    self._note_cells(row, numbers)
-                    continue
-                self.lines.append(row.line)
-                for kept, value in zip(self.series.values(), numbers, strict=True):
-                    kept.append(cast(float, value))
-
-    def check(self, clock: int) -> None:
-        """Note series that are not finite, and a time that does not increase."""
-        self.room = MOST_PROBLEMS  # for these beside those of the rows: the first of all are told
-        lines = np.array(self.lines)
-        for column, kept in self.series.items():
-            bad = lines[~np.isfinite(np.array(kept))]
-            if bad.size:
-                rows = f"{bad.size} rows, first here" if bad.size > 1 else "this row"
-                what = f"{self._name(column)} is not finite in {rows}"
-                self._note(int(bad[0]), what, "Leave out the rows without a value.")
-        time = np.array(self.series[clock])
-        lines, time = lines[np.isfinite(time)], time[np.isfinite(time)]
-        for i in np.nonzero(time[1:] <= time[:-1])[0]:
-            before, now, line = float(time[i]), float(time[i + 1]), int(lines[i])
-            if now == before:
-                what = f"time {now} stands twice, also in line {line}"
-                self._note(int(lines[i + 1]), what, "Keep one row for each time.")
-            else:
-                what = f"time goes back to {now}, from {before} in line {line}"
-                self._note(int(lines[i + 1]), what, "Sort the rows, or split the series here.")
-
-    def finish(self) -> None:
-        """Raise what was noted, in the order of the lines."""
-        if not self.problems and len(self.lines) < 2:
-            rows = "only one row" if len(self.lines) else "no row"
-            self._note(0, f"the file has {rows} of numbers", NO_ROWS)
-        if self.problems:
-            told = sorted(self.problems, key=lambda problem: problem.place)[:MOST_PROBLEMS]
-            if more := self.count - len(told):
-                told.append(Problem(f"and {more} more such problems", Place(self.file)))
-            raise DataError(told)
-
-    def _note(self, line: int, what: str, hint: str) -> None:
-        self.count += 1
-        if self.room:
-            self.room -= 1
-            self.problems.append(Problem(what, Place(self.file, line), hint=hint))
-
-    def _note_width(self, row: Row) -> None:
-        count = len(row.cells)
-        what = f"{count} cell{'s' if count > 1 else ''}, and {self.width} in the first row"
-        commas = self.delimiter == "," and count == 2 * self.width
-        self._note(row.line, what, DECIMAL_COMMA if commas else REPAIR)
-
-    def _note_cells(self, row: Row, numbers: Sequence[float | None]) -> None:
-        for column, value in zip(self.series, numbers, strict=True):
-            if value is None:
-                cell = row.cells[column]
-                shown = cell if len(cell) <= 40 else f"{cell[:37]}..."
-                hint = next((hint for pattern, hint in HINTS if re.fullmatch(pattern, cell)), "")
-                what = f"{self._name(column)} is {shown!r}, which is not a number"
-                self._note(row.line, what, hint)
-
-    def _name(self, column: int) -> str:
-        return f"column '{self.names[column]}'" if self.names else f"column {column + 1}"
-
-
-def _fixed(numbers: array[float] | array[int], kind: type[Number]) -> NDArray[Number]:
-    """A read-only array of the numbers."""
-    fixed = np.array(numbers, dtype=kind)
+def _fixed(numbers: NDArray[np.floating]) -> Vector:
+    """A read-only copy of the numbers."""
+    fixed = np.array(numbers, dtype=np.float64)
     fixed.setflags(write=False)
     return fixed
+
+
+def _fixed_lines(numbers: NDArray[np.int64]) -> NDArray[np.int64]:
+    fixed = np.array(numbers, dtype=np.int64)
+    fixed.setflags(write=False)
+    return fixed
+
+
+def read_record(
+    path: str | Path,
+    columns: Mapping[str, str],
+    time: str | None = None,
+    *,
+    units: Mapping[str, str] | None = None,
+    time_unit: str | None = None,
+    raw: Collection[str] = (),
+    delimiter: str | None = None,
+    decimal: str | None = None,
+    comment: str = "#",
+    every: float | None = None,
+    where: Mapping[str, str | float] | None = None,
+    place: Place = Place(),
+) -> Record:
+    """Read the named columns of a file as a record in SI.
+
+    units: the unit of a column, by the name of its series. For the others, a unit that the header
+        has in brackets counts, and this is told as a step; brackets that hold no unit are told as
+        a remark.
+    time_unit: the unit of time; without it that of the header, else s.
+    raw: series whose numbers are taken as they are, without a unit: to be calibrated.
+    For the other arguments see `read_columns`; `every` is in s.
+
+    Raises DataError as `read_columns` does, and where a header says another unit than `units`;
+    FormulaError where what is given is no unit.
+    """
+    read = read_columns(
+        path, columns, time, delimiter, comment, place, decimal=decimal, every=every, where=where
+    )
+    place = place if str(place) else Place(read.file)
+    said = _Said(read.file, place)
+    clock = Unit("s", 1.0)
+    if every is None:
+        clock = said.unit("the time", time_unit, read.time_unit, "s")
+    used = {
+        name: said.unit(f"'{name}'", (units or {}).get(name), read.units[name])
+        for name in columns
+        if name not in raw
+    }
+    if said.problems:
+        raise DataError(said.problems)
+    values = {
+        name: series * used[name].factor if name in used else series
+        for name, series in read.values.items()
+    }
+    remarks = (*read.remarks, *said.remarks)
+    return Record(
+        read.time * clock.factor, values, used, clock, tuple(said.steps), remarks, read.file
+    )
+
+
+class _Said:
+    """What headers say of units, against what is declared."""
+
+    def __init__(self, file: str, place: Place) -> None:
+        self.file, self.place = file, place
+        self.steps: list[str] = []
+        self.remarks: list[str] = []
+        self.problems: list[Problem] = []
+
+    def unit(self, what: str, declared: str | None, header: str, default: str = "") -> Unit:
+        """The unit of a column: as declared, else as its header says, else the default."""
+        by_header = _unit_or_none(header) if header else None
+        if by_header is None:
+            if header and declared is None:
+                self.remarks.append(f"{what}: the header has '{header}', which is no unit")
+            text = default if declared is None else declared
+        else:
+            text = header if declared is None else declared
+            if declared is None and by_header.factor != 1.0:
+                name = what.strip("'").removeprefix("the ")
+                shown = by_header.text or "a plain number"
+                self.steps.append(f"{name}: from {header} to {shown}, as the header says")
+        unit = read_unit(text, self.place)
+        if by_header is not None and (
+            by_header.factor != unit.factor or not same_quantity(header, text)
+        ):
+            problem = f"{what} is in '{text}' by the diagram, and in '{header}' by its header"
+            hint = "Correct the one that is wrong."
+            self.problems.append(Problem(f"{problem} in '{self.file}'", self.place, hint=hint))
+        elif default and not same_quantity(text, default):
+            problem = f"{what} of '{self.file}' is in '{text}', which is no unit of time"
+            self.problems.append(Problem(problem, self.place, hint="Name the column of time."))
+        return unit
+
+
+def _unit_or_none(text: str) -> Unit | None:
+    try:
+        return read_unit(text)
+    except FormulaError:
+        return None

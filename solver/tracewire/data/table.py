@@ -1,21 +1,32 @@
-"""A text file of numbers as rows of cells: bytes to text, delimiter, header."""
+"""A text file of numbers as rows of cells: delimiter and decimal sign, header, first row."""
 
 from __future__ import annotations
 
-import collections
 import csv
 import itertools
-import os
-import stat
-from collections.abc import Iterator, Sequence
-from pathlib import Path
+import re
+from collections import Counter
+from collections.abc import Iterator, Sequence, Set
 from typing import NamedTuple
 
-from tracewire.errors import DataError, Place, Problem, unknown
+from tracewire.errors import FormulaError
+from tracewire.formula import read_unit
 
-MOST_BYTES = 200_000_000
-SAMPLE = 50
+SAMPLE = 200
 DELIMITERS = ("\t", ";", ",", " ")  # the semicolon first: where it stands, a comma may be decimal
+COMMA_NUMBER = re.compile(r"[+-]?(?:\d+,?\d*|,\d+)(?:[eE][+-]?\d+)?")
+MARK = re.compile(r"%+|//+|!|\*+")  # of a comment, as other programs write it
+NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE)
+NAME_AND_UNIT = re.compile(
+    r'"[^"]*"|(?:[^\s\[(]+|\[[^]]*\]|\([^)]*\))(?:\s*(?:\[[^]]*\]|\([^)]*\)))?'
+)
+
+
+class Dialect(NamedTuple):
+    """How numbers are written down: one character between them (" ": any blanks), and . or , in."""
+
+    delimiter: str
+    decimal: str = "."
 
 
 class Row(NamedTuple):
@@ -26,57 +37,35 @@ class Row(NamedTuple):
     broken: str = ""  # what is wrong, where the line cannot be cut into cells
 
 
-def number(cell: str) -> float | None:
+class Layout(NamedTuple):
+    """Where the numbers begin: names and units of the columns ((): none), the line of the first
+    row, the cells of a row, and how many lines before the header are no part of the table."""
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    first: int
+    width: int
+    left_out: int = 0
+
+
+def number(cell: str, decimal: str = ".") -> float | None:
     """The number that a cell holds (NaN and inf too), or None."""
+    if decimal == ",":
+        if COMMA_NUMBER.fullmatch(cell):
+            return float(cell.replace(",", "."))
+        return float(cell) if NOT_FINITE.fullmatch(cell) else None
     try:
         return None if "_" in cell else float(cell)  # Python alone reads 1_000
     except ValueError:
         return None
 
 
-def read_lines(path: Path, place: Place) -> list[str]:
-    """The lines of a UTF-8 file, or DataError where there is no such file or text."""
-    content = _content(path, place)
-    hint = "Save it as text, in UTF-8."
-    if not content.strip(b"\xef\xbb\xbf \t\r\n"):
-        raise _refused(place, path, "is empty", "Its rows must hold numbers.")
-    if (zero := content.find(b"\0")) >= 0:
-        spot = Place(str(path), content.count(b"\n", 0, zero) + 1)
-        raise DataError.one("the file is not text: it holds a zero byte", spot, hint=hint)
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        spot = Place(str(path), content.count(b"\n", 0, error.start) + 1)
-        byte = f"0x{content[error.start]:02x}"
-        raise DataError.one(f"the byte {byte} is not UTF-8 text", spot, hint=hint) from error
-    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
-
-
-def _content(path: Path, place: Place) -> bytes:
-    try:
-        status = path.stat()
-        if stat.S_ISDIR(status.st_mode):
-            raise _refused(place, path, "is a folder", "Name a file in it.", _names(path))
-        if not stat.S_ISREG(status.st_mode):
-            raise _refused(place, path, "is not a regular file", "Copy its content into a file.")
-        if status.st_size > MOST_BYTES:
-            size, limit = (f"{count / 1e6:.0f} MB" for count in (status.st_size, MOST_BYTES))
-            what = f"is too large: {size}, and the limit is {limit}"
-            raise _refused(place, path, what, "Split it, or keep every n-th row.")
-        return path.read_bytes()
-    except (FileNotFoundError, NotADirectoryError) as error:
-        raise DataError([_missing(path, place)]) from error
-    except (OSError, ValueError) as error:  # ValueError: a path that no file can have
-        what = f"cannot be read: {getattr(error, 'strerror', None) or error}"
-        raise _refused(place, path, what, "Check its name and permissions.") from error
-
-
-def rows_of(lines: Sequence[str], delimiter: str, comment: str) -> Iterator[Row]:
-    """The rows in the lines, without empty lines and without those that start with `comment`.
+def rows_of(lines: Sequence[str], delimiter: str, comment: str, first: int = 1) -> Iterator[Row]:
+    """The rows from line `first` on, without empty lines and those that start with `comment`.
 
     delimiter: one character; a blank means any run of blanks and tabs.
     """
-    for count, line in enumerate(lines, 1):
+    for count, line in enumerate(itertools.islice(lines, first - 1, None), first):
         text = line.strip()
         if not text or (comment and text.startswith(comment)):
             continue
@@ -96,83 +85,156 @@ def _cells(line: str, delimiter: str) -> tuple[str, ...]:
     return tuple(map(str.strip, cells))
 
 
-def sniff(lines: Sequence[str], comment: str) -> str:
-    """The delimiter under which the first rows look most like a table of numbers."""
+def sniff(
+    lines: Sequence[str], comment: str, delimiter: str | None = None, decimal: str | None = None
+) -> Dialect:
+    """The dialect under which the first rows look most like a table of numbers."""
 
-    def likeness(delimiter: str) -> tuple[int, int]:
-        rows = [row.cells for row in itertools.islice(rows_of(lines, delimiter, comment), SAMPLE)]
-        widths = collections.Counter(len(cells) for cells in rows if len(cells) > 1)
-        if not widths:
-            return 0, 0
-        width, alike = widths.most_common(1)[0]
-        numbers = [cells for cells in rows if len(cells) == width and _are_numbers(cells)]
-        return len(numbers), alike
+    def likeness(dialect: Dialect) -> tuple[int, int, int]:
+        sample = itertools.islice(rows_of(lines, dialect.delimiter, comment), SAMPLE)
+        shapes: dict[int, list[int]] = {}
+        for row in sample:
+            count = sum(number(cell, dialect.decimal) is not None for cell in row.cells)
+            if len(row.cells) > 1:
+                shapes.setdefault(len(row.cells), []).append(count)
+        return max(
+            ((counts.count(width), sum(counts), len(counts)) for width, counts in shapes.items()),
+            default=(0, 0, 0),
+        )
 
-    return max(DELIMITERS, key=likeness)  # the first of equal ones
+    choices = itertools.product(
+        DELIMITERS if delimiter is None else (delimiter,),
+        (".", ",") if decimal is None else (decimal,),
+    )
+    return max(itertools.starmap(Dialect, choices), key=likeness)  # the first of equal ones
 
 
-def header_of(first: Row, wanted: Sequence[str]) -> tuple[str, ...]:
-    """The names in the first row, or none where it is a row of data.
+def layout_of(
+    lines: Sequence[str], dialect: Dialect, comment: str, wanted: Sequence[str]
+) -> Layout | Row:
+    """Header and first row of a table; the row that is broken where one is in the way.
 
-    It is a header where no cell is a number, or where it names a wanted column although some are
-    ("t, 1, 2"). So a first row of data with a faulty cell is not taken for names.
+    The header is the row that names most of the `wanted` columns; else the last row before the
+    numbers that has as many cells, none of them a number. So a first row of data with a faulty cell
+    is not taken for names. A row of units may follow it.
     """
-    names = [cell for cell in first.cells if cell and number(cell) is None]
-    if len(names) == len([cell for cell in first.cells if cell]):
-        return first.cells
-    return first.cells if any(matches(want, names) for want in wanted) else ()
+    head = list(itertools.islice(rows_of(lines, dialect.delimiter, comment), SAMPLE))
+    numeric = [[number(cell, dialect.decimal) is not None for cell in row.cells] for row in head]
+    full = [
+        any(found) and all(found[i] or not cell for i, cell in enumerate(row.cells))
+        for row, found in zip(head, numeric, strict=True)
+    ]
+    # a number alone in a line above the table is no row of it: the usual width counts
+    shapes = Counter(len(row.cells) for row, whole in zip(head, full, strict=True) if whole)
+    usual = shapes.most_common(1)[0][0] if shapes else 0
+    rows = (i for i, row in enumerate(head) if full[i] and len(row.cells) == usual)
+    start = next(rows, len(head))
+    width = len(head[start].cells) if start < len(head) else len(head[0].cells)
+    widths = {width, len(_without_blank_end(head[start].cells))} if start < len(head) else {width}
+    above = head[:start] if start < len(head) else head[:1]
+    cells = [_header_cells(row.cells, dialect.delimiter, width) for row in above]
+    at = _header_row(cells, numeric, widths, wanted)
+    units: tuple[str, ...] = ()
+    if at is None and (broken := next((row for row in above if row.broken), None)):
+        return broken
+    if at is None:
+        odd = (
+            i
+            for i, row in enumerate(above)
+            if full[i] or (any(numeric[i]) and len(row.cells) == width)
+        )
+        first = next(odd, start)
+        names = commented_header(lines, dialect.delimiter, comment, head[first], width)
+    else:
+        names, first = cells[at], at + 1
+        while len(names) > width and not names[-1]:
+            names = names[:-1]
+        if first < start < len(head) and _are_units(cells[first], widths | {len(names)}):
+            units, first = cells[first], first + 1
+    line = head[first].line if first < len(head) else len(lines) + 1
+    return Layout(names, units, line, len(names) or width, first if at is None else at)
+
+
+def _header_row(
+    cells: Sequence[tuple[str, ...]],
+    numeric: Sequence[Sequence[bool]],
+    widths: Set[int],
+    wanted: Sequence[str],
+) -> int | None:
+    """The index of the header among the rows above the numbers, or None."""
+
+    def named(i: int) -> tuple[int, bool]:
+        names = [cell for cell in cells[i] if cell and number(cell) is None]
+        return sum(bool(matches(want, names)) for want in wanted), len(cells[i]) in widths
+
+    best = max(range(len(cells)), key=named, default=None)
+    if best is not None and named(best)[0]:
+        return best
+    fitting = [i for i, row in enumerate(cells) if len(row) in widths and not any(numeric[i])]
+    if not fitting:
+        return None
+    *others, last = fitting
+    return last - 1 if last - 1 in others and _are_units(cells[last], widths) else last
+
+
+def _without_blank_end(cells: tuple[str, ...]) -> tuple[str, ...]:
+    """The cells but for empty ones at the end."""
+    while cells and not cells[-1]:
+        cells = cells[:-1]
+    return cells
+
+
+def _are_units(cells: Sequence[str], widths: Set[int]) -> bool:
+    """Whether a row below the names holds units: each cell one, in brackets or not, or nothing."""
+    if len(cells) not in widths or not any(cells):
+        return False
+    return all(not cell or _is_unit(cell.strip("[]()")) for cell in cells)
+
+
+def _is_unit(text: str) -> bool:
+    try:
+        read_unit(text)
+    except FormulaError:
+        return False
+    return True
+
+
+def _header_cells(cells: tuple[str, ...], delimiter: str, width: int) -> tuple[str, ...]:
+    """The names of a row; between blanks `Time [s]` is one where that makes as many as columns."""
+    if cells and (mark := MARK.match(cells[0])):
+        rest = cells[0][mark.end() :].strip()
+        cells = (rest, *cells[1:]) if rest else cells[1:]
+    if delimiter != " " or len(cells) == width:
+        return cells
+    merged = tuple(part.strip('"') for part in NAME_AND_UNIT.findall(" ".join(cells)))
+    return merged if len(merged) == width else cells
 
 
 def commented_header(
-    lines: Sequence[str], delimiter: str, comment: str, first: Row
+    lines: Sequence[str], delimiter: str, comment: str, first: Row, width: int
 ) -> tuple[str, ...]:
     """The names in the comment right above the first row, where there are as many as cells."""
     above = next((line.strip() for line in reversed(lines[: first.line - 1]) if line.strip()), "")
     if not comment or not above.startswith(comment):
         return ()
-    row = next(rows_of([above.removeprefix(comment)], delimiter, ""), first)
-    return row.cells if row is not first and len(row.cells) == len(first.cells) else ()
+    row = next(rows_of([above.removeprefix(comment)], delimiter, ""), None)
+    if row is None or row.broken:
+        return ()
+    names = _header_cells(row.cells, delimiter, width)
+    return names if len(names) == width else ()
 
 
 def matches(name: str, header: Sequence[str]) -> list[int]:
     """The columns (from 0) of this name: exactly, or else without a unit in brackets."""
     exact = [i for i, cell in enumerate(header) if cell == name]
-    return exact or [i for i, cell in enumerate(header) if without_unit(cell) == name]
+    return exact or [i for i, cell in enumerate(header) if split_unit(cell)[0] == name]
 
 
-def without_unit(name: str) -> str:
-    """`theta [rad]` and `theta (rad)` are `theta`; every other name stays as it is."""
+def split_unit(name: str) -> tuple[str, str]:
+    """Name and unit: of `theta [rad]` and `theta (rad)` 'theta' and 'rad'; else the name and ''."""
     for opening, closing in ("[]", "()"):
         if name.endswith(closing) and opening in name:
-            return name[: name.rindex(opening)].strip() or name
-    return name
-
-
-def _are_numbers(cells: Sequence[str]) -> bool:
-    return all(number(cell) is not None for cell in cells)
-
-
-def _names(folder: Path) -> list[str]:
-    try:
-        return sorted(entry.name for entry in os.scandir(folder) if entry.is_file())
-    except OSError:
-        return []
-
-
-def _missing(path: Path, place: Place) -> Problem:
-    folder = path.parent
-    if not folder.is_dir():
-        return Problem(
-            f"there is no file '{path}', and no folder '{folder}'", place, hint="Check the path."
-        )
-    names = _names(folder)
-    alike = [name for name in names if Path(name).suffix == path.suffix]
-    problem = unknown("file", path.name, alike or names, place)
-    return Problem(f"{problem.what} in '{folder}'", place, problem.exists, problem.hint)
-
-
-def _refused(
-    place: Place, path: Path, what: str, hint: str, exists: Sequence[str] = ()
-) -> DataError:
-    named = f"'{path}'" if place.file != str(path) else "the file"
-    return DataError([Problem(f"{named} {what}", place, tuple(exists), hint)])
+            at = name.rindex(opening)
+            if bare := name[:at].strip():
+                return bare, name[at + 1 : -1].strip()
+    return name, ""

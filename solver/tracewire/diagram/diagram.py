@@ -108,7 +108,14 @@ class Event:
 
 @dataclass(frozen=True)
 class Channel:
-    """A measured signal: the column of the file, the factor to SI, its noise and its offset."""
+    """A measured signal: the column of the file, its unit, its noise, and what its sensor does.
+
+    `declared` is the unit as the diagram writes it; None: it names none, and the header of the file
+    may. `factor` puts numbers of the column into SI, `unit` is the text of that. sigma and modulo,
+    and the numbers of offset, are in SI where a unit is declared, else in the unit of the column.
+    A column has gain*signal(t - delay) + offset. `weight` counts the signal in a criterion, and it
+    is compared modulo `modulo`. A channel without a column is made by a step of `clean`.
+    """
 
     signal: str
     column: str
@@ -117,6 +124,46 @@ class Channel:
     sigma: float | None = None
     offset: Value | None = None
     place: Place = Place()
+    declared: str | None = None
+    gain: Value | None = None
+    delay: Value | None = None
+    weight: float = 1.0
+    modulo: float | None = None
+
+
+@dataclass(frozen=True)
+class Clock:
+    """The time of a record: a column and its unit (None: that of the header, else s), or `every`.
+
+    `zero`: the time in the file, in the unit of the column, that is t = 0 of the diagram. `every`:
+    the interval in s between the rows of a file without a column of time; the first is at 0.
+    """
+
+    column: str
+    unit: str | None = None
+    zero: float = 0.0
+    every: float | None = None
+
+
+@dataclass(frozen=True)
+class Cleaning:
+    """A step of `clean`: its name, and its options as they are given to the record's method.
+
+    Signals go by their full names, an input by `input NAME`. A size is in the unit of its column.
+    """
+
+    step: str
+    options: Mapping[str, float | int | str | tuple[str, ...]]
+    place: Place = Place()
+
+
+@dataclass(frozen=True)
+class Format:
+    """How the file of a record is written: what is None is found from its first rows."""
+
+    delimiter: str | None = None
+    decimal: str | None = None
+    comment: str = "#"
 
 
 @dataclass(frozen=True)
@@ -124,19 +171,35 @@ class Series:
     """A measured record: file, use, columns of time, signals and inputs, start, and the window.
 
     `start` gives start values of this record by state; None there is a free start value. `begin`
-    and `end` cut the record, in the file's time in s.
+    and `end` cut the record, and so do `windows`, one for each use that the record has; all are in
+    the file's own time in s. `where` names the rows by the values in other columns. `burn_in` is
+    the time in s after the begin in which samples do not count. `clean` is done in its order.
     """
 
     name: str
     file: Path
     use: Use
-    time: str
+    time: Clock
     channels: Mapping[str, Channel]
     inputs: Mapping[str, Channel] = field(default_factory=dict)
     start: Mapping[str, Value | None] = field(default_factory=dict)
     preset: str = ""
     begin: float | None = None
     end: float | None = None
+    place: Place = Place()
+    windows: Mapping[Use, tuple[float, float]] = field(default_factory=dict)
+    where: Mapping[str, str | float] = field(default_factory=dict)
+    burn_in: float = 0.0
+    weight: float = 1.0
+    clean: tuple[Cleaning, ...] = ()
+    format: Format = Format()
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A comparison of parameters that must hold, or the diagram has no meaning."""
+
+    formula: Expression
     place: Place = Place()
 
 
@@ -159,6 +222,7 @@ class Diagram:
     inputs: Mapping[str, InputPort] = field(default_factory=dict)
     outputs: Mapping[str, Wire] = field(default_factory=dict)
     parameters: Mapping[str, Value] = field(default_factory=dict)
+    require: tuple[Condition, ...] = ()
     blocks: Mapping[str, BlockUse] = field(default_factory=dict)
     subsystems: Mapping[str, Diagram] = field(default_factory=dict)
     events: tuple[Event, ...] = ()

@@ -11,6 +11,7 @@ import difflib
 import math
 from collections.abc import Mapping
 
+from tracewire.data import column_unit
 from tracewire.diagram.diagram import BlockUse, Diagram, Series
 from tracewire.diagram.names import find_recorded
 from tracewire.diagram.outline import Outline
@@ -27,7 +28,8 @@ from tracewire.diagram.splice import (
     without_items,
 )
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
-from tracewire.errors import DiagramError, OptionError, unknown
+from tracewire.errors import DiagramError, FormulaError, OptionError, unknown
+from tracewire.formula import read_unit
 from tracewire.formula.text import number_text
 
 
@@ -115,7 +117,11 @@ def add_offset(
     value, fit: the offset and its bounds in SI; the text gets them in the unit of the column.
     """
     full = find_recorded(diagram, signal)
-    having = {n: s for n, s in diagram.measured.items() if full in s.channels}
+    having = {
+        name: series
+        for name, series in diagram.measured.items()
+        if full in series.channels and series.channels[str(full)].column
+    }
     if not having:
         measured = {name for series in diagram.measured.values() for name in series.channels}
         raise OptionError([unknown("measured signal", signal, measured)])
@@ -147,7 +153,7 @@ def _offset(
         node = node.values[key]
     assert isinstance(node, Entries)
     given = next(n for name, _, n in node if find_recorded(diagram, name) == signal)
-    factor = series.channels[signal].factor
+    factor = _factor(series, signal)
     ends = fit or (-math.inf, math.inf)
     low, high = (end / factor for end in ends)
     text = f"{{value: {_digits(value / factor, low, high)}"
@@ -163,6 +169,18 @@ def _offset(
     if "offset" in given.values:
         return replaced(given.values["offset"], text)
     return entry_last(diagram.text, given, "offset", text)
+
+
+def _factor(series: Series, signal: str) -> float:
+    """The factor to SI of a channel's offset: by its unit, else by that of the file's header."""
+    channel = series.channels[signal]
+    calibrated = {step.options.get("signal") for step in series.clean if step.step == "calibrate"}
+    if channel.declared is not None or signal in calibrated:
+        return channel.factor
+    try:
+        return read_unit(column_unit(series.file, channel.column, series.format.delimiter)).factor
+    except FormulaError:  # brackets in the header that hold no unit
+        return 1.0
 
 
 def difference(old: Diagram, new: Diagram) -> str:

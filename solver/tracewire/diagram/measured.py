@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import get_args
 
 from tracewire.diagram.body import Body
-from tracewire.diagram.diagram import Channel, Diagram, Series, Use, Value
+from tracewire.diagram.channels import read_measured_inputs, read_signals
+from tracewire.diagram.cleaning import read_clean
+from tracewire.diagram.diagram import Cleaning, Clock, Diagram, Format, Series, Use, Value
 from tracewire.diagram.files import problem_of
-from tracewire.diagram.names import find_recorded, find_state, recordable, states
+from tracewire.diagram.names import find_state, states
 from tracewire.diagram.problems import clip
-from tracewire.diagram.strict import Entries, Node, Scalar
-from tracewire.diagram.values import read_bounds, read_value
-from tracewire.formula import Number, Unit
+from tracewire.diagram.quantities import read_above_zero, read_time, read_unit_like
+from tracewire.diagram.strict import Entries, Items, Node, Scalar
+from tracewire.diagram.values import read_value
 
 EXAMPLE = "{file: run.csv, time: t, signals: {theta: angle}}"
-KEYS = ("file", "use", "time", "signals", "inputs", "start", "preset", "from", "to")
+KEYS = (
+    *("file", "format", "where", "use", "time", "from", "to", "burn_in", "weight"),
+    *("signals", "inputs", "clean", "start", "preset"),
+)
 USES: dict[str, Use] = {word: word for word in get_args(Use)}
 
 
@@ -41,22 +45,50 @@ class _Series:
         self.body, self.diagram = body, diagram
 
     def read(self, key: Scalar) -> Series | None:
-        body, entries = self.body, self.entries
-        body.check_keys(entries, KEYS, "key of a series")
+        body, given = self.body, self.entries.values
+        body.check_keys(self.entries, KEYS, "key of a series")
         file = self.file()
-        time_node = body.required(entries, "time", self.what)
-        time = None if time_node is None else body.text(time_node, "'time'")
-        channels = self.channels()
-        begin, end = self.number("from"), self.number("to")
+        clock_node = body.required(self.entries, "time", self.what)
+        clock = None if clock_node is None else self.clock(clock_node)
+        signals = body.required(self.entries, "signals", self.what)
+        channels = {} if signals is None else read_signals(signals, body, self.diagram, self.what)
+        inputs = (
+            read_measured_inputs(given["inputs"], body, self.diagram, self.what)
+            if "inputs" in given
+            else {}
+        )
+        begin, end = self.time("from"), self.time("to")
         if begin is not None and end is not None and not begin < end:
             what = f"{self.what} ends at {end:g}, not after its begin at {begin:g}"
-            body.problems.add(what, body.place(entries.values["to"]))
-        use, inputs, start, preset = self.use(), self.inputs(), self.start(), self.preset()
-        if file is None or time is None:
+            body.problems.add(what, body.place(given["to"]))
+        use, windows = self.use()
+        start = self.start()
+        self.check_windows(windows, start)
+        clean: tuple[Cleaning, ...] = ()
+        if "clean" in given:
+            clean = read_clean(given["clean"], body, self.diagram, channels, inputs)
+        weight, where, form = self.weight(), self.where(), self.format()
+        burn_in, preset = self.burn_in(), self.preset()
+        if file is None or clock is None:
             return None
-        place = body.place(key)
         return Series(
-            self.name, file, use, time, channels, inputs, start, preset, begin, end, place
+            self.name,
+            file,
+            use,
+            clock,
+            channels,
+            inputs,
+            start,
+            preset,
+            begin,
+            end,
+            body.place(key),
+            windows=windows,
+            where=where,
+            burn_in=burn_in,
+            weight=weight,
+            clean=clean,
+            format=form,
         )
 
     def file(self) -> Path | None:
@@ -71,17 +103,145 @@ class _Series:
             self.body.problems.add(problem.what, problem.place, problem.exists, hint)
         return path
 
-    def use(self) -> Use:
+    def clock(self, node: Node) -> Clock | None:
+        """`time`: a column, {column, unit, zero}, or {every} where the file has no such column."""
+        body = self.body
+        if not isinstance(node, Entries):
+            column = body.text(node, "'time'")
+            return None if column is None else Clock(column)
+        given = node.values
+        body.check_keys(node, ("column", "unit", "zero", "every"), "key of a time")
+        if "every" in given:
+            for key in ("column", "unit"):
+                if key in given:
+                    what = f"the time has 'every' or '{key}', and not both"
+                    body.problems.add(what, body.place(given[key]), (), "Take one away.")
+        column_node = None if "every" in given else body.required(node, "column", "'time'")
+        column = None if column_node is None else body.text(column_node, "'column'")
+        unit = None
+        if "unit" in given:
+            read_unit_like(given["unit"], body, "s")
+            unit = body.text(given["unit"], "a unit")
+        zero = body.number(given["zero"], "'zero'") if "zero" in given else 0.0
+        every = None
+        if "every" in given:
+            every = read_time(given["every"], body, "'every'")
+            if every is not None and every <= 0:
+                what = f"'every' must be above zero, not {every:g}"
+                hint = "It is the time from one row to the next."
+                body.problems.add(what, body.place(given["every"]), (), hint)
+        if column is None and every is None:
+            return None
+        return Clock(column or "", unit, zero or 0.0, every)
+
+    def use(self) -> tuple[Use, dict[Use, tuple[float, float]]]:
+        """`use`: a word, or {word: [from, to]} for windows of one record."""
         node = self.entries.values.get("use")
+        if isinstance(node, Entries):
+            windows = self.windows(node)
+            return next(iter(windows), "train"), windows
         word = "train" if node is None else self.body.text(node, "'use'")
         if node is None or word is None or word in USES:
-            return USES[word or "train"]
+            return USES[word or "train"], {}
         self.body.problems.unknown("use", word, USES, self.body.place(node))
-        return "train"
+        return "train", {}
 
-    def number(self, key: str) -> float | None:
+    def windows(self, node: Entries) -> dict[Use, tuple[float, float]]:
+        body = self.body
+        found: dict[Use, tuple[float, float]] = {}
+        for word, key, given in node:
+            if word not in USES:
+                body.problems.unknown("use", word, USES, body.place(key))
+            if not isinstance(given, Items) or len(given.items) != 2:
+                hint = "Write it like use: {train: [0, 30], validate: [30, 40]}."
+                body.problems.add("a window is a pair of times", body.place(given), (), hint)
+                continue
+            begin, end = (read_time(item, body, "an end of a window") for item in given.items)
+            if begin is None or end is None:
+                continue
+            if not begin < end:
+                what = f"the window ends at {end:g}, not after its begin at {begin:g}"
+                body.problems.add(what, body.place(given))
+            for other, (low, high) in found.items():
+                if begin < high and low < end:
+                    what = f"the windows '{other}' and '{word}' overlap"
+                    hint = "No sample may be used for both."
+                    body.problems.add(what, body.place(given), (), hint)
+            if word in USES:
+                found[USES[word]] = (begin, end)
+        for key_name in ("from", "to"):
+            if key_name in self.entries.values:
+                what = f"{self.what} has windows under 'use', and '{key_name}' beside them"
+                place = body.place(self.entries.values[key_name])
+                body.problems.add(what, place, (), "Give the times in the windows alone.")
+        return found
+
+    def check_windows(
+        self, windows: dict[Use, tuple[float, float]], start: dict[str, Value | None]
+    ) -> None:
+        fixed = [name for name, value in start.items() if value is not None]
+        if len(windows) > 1 and fixed:
+            what = (
+                f"the start value of '{fixed[0]}' holds at one time, and there are several windows"
+            )
+            hint = f"Write start: {{{fixed[0]}: free}}."
+            place = self.body.place(self.entries.values["start"])
+            self.body.problems.add(what, place, (), hint)
+
+    def time(self, key: str) -> float | None:
         node = self.entries.values.get(key)
-        return None if node is None else self.body.number(node, f"'{key}' of {self.what}")
+        return None if node is None else read_time(node, self.body, f"'{key}' of {self.what}")
+
+    def burn_in(self) -> float:
+        value = self.time("burn_in")
+        if value is not None and value < 0:
+            what = f"'burn_in' of {self.what} must not be negative, and is {value:g}"
+            self.body.problems.add(what, self.body.place(self.entries.values["burn_in"]))
+        return value or 0.0
+
+    def weight(self) -> float:
+        node = self.entries.values.get("weight")
+        what = f"'weight' of {self.what}"
+        return 1.0 if node is None else read_above_zero(node, self.body, what) or 1.0
+
+    def where(self) -> dict[str, str | float]:
+        """`where`: the texts or numbers that a row must have in other columns."""
+        node = self.entries.values.get("where")
+        if node is None:
+            return {}
+        found: dict[str, str | float] = {}
+        entries = self.body.entries(node, f"'where' of {self.what}", "{ball: Golf Ball, drop: 1}")
+        for name, _, given in entries or ():
+            if isinstance(given, Scalar) and given.number is not None:
+                found[name] = given.number
+            elif (text := self.body.text(given, f"'{clip(name)}' of 'where'")) is not None:
+                found[name] = text
+        return found
+
+    def format(self) -> Format:
+        """`format`: delimiter, decimal sign and comment, where they are not found by themselves."""
+        node = self.entries.values.get("format")
+        if node is None:
+            return Format()
+        body = self.body
+        entries = body.entries(node, f"'format' of {self.what}", "{delimiter: ';', decimal: ','}")
+        if entries is None:
+            return Format()
+        body.check_keys(entries, ("delimiter", "decimal", "comment"), "key of a format")
+        texts = {
+            name: given.text if isinstance(given, Scalar) else body.text(given, f"'{name}'")
+            for name, _, given in entries
+        }
+        if texts.get("decimal") not in (None, ".", ","):
+            what, place = "'decimal' is '.' or ','", body.place(entries.values["decimal"])
+            body.problems.add(what, place, (), "Put it into quotes.")
+        delimiter = {"tab": "\t", "blank": " "}.get(
+            texts.get("delimiter") or "", texts.get("delimiter")
+        )
+        if delimiter is not None and (len(delimiter) != 1 or delimiter.isalnum()):
+            what, place = "'delimiter' is one character", body.place(entries.values["delimiter"])
+            body.problems.add(what, place, (), "Write ';', ',', tab or blank.")
+        return Format(delimiter, texts.get("decimal"), texts.get("comment") or "#")
 
     def preset(self) -> str:
         node = self.entries.values.get("preset")
@@ -90,92 +250,6 @@ class _Series:
             presets = self.diagram.presets
             self.body.problems.unknown("preset", name, presets, self.body.place(node))
         return name
-
-    def channels(self) -> dict[str, Channel]:
-        node = self.body.required(self.entries, "signals", self.what)
-        if node is None:
-            return {}
-        found: dict[str, Channel] = {}
-        example = "{theta: {column: angle, unit: deg, sigma: 0.1}}"
-        signals = self.body.entries(node, f"'signals' of {self.what}", example)
-        for name, key, given in signals or ():
-            signal = find_recorded(self.diagram, name)
-            if signal is None:
-                place = self.body.place(key)
-                self.body.problems.unknown("signal", name, recordable(self.diagram), place)
-            elif signal in found:
-                what = f"two definitions of the signal '{clip(name)}' in {self.what}"
-                self.body.problems.add(what, self.body.place(key), (), "Remove one.")
-            channel = self.channel(signal or name, key, given, ("sigma", "offset"))
-            if channel is not None:
-                found[channel.signal] = channel
-        if signals is not None and not signals.keys:
-            self.body.problems.add(f"{self.what} has no signals", self.body.place(node))
-        return found
-
-    def inputs(self) -> dict[str, Channel]:
-        node = self.entries.values.get("inputs")
-        if node is None:
-            return {}
-        found: dict[str, Channel] = {}
-        example = "{drive: {column: u, unit: N m}}"
-        inputs = self.body.entries(node, f"'inputs' of {self.what}", example)
-        for name, key, given in inputs or ():
-            if name not in self.diagram.inputs:
-                hint = "An input of the diagram is named under 'inputs' at its top."
-                place = self.body.place(key)
-                self.body.problems.unknown("input", name, self.diagram.inputs, place, hint)
-            channel = self.channel(name, key, given, ())
-            if channel is not None:
-                found[name] = channel
-        return found
-
-    def channel(
-        self, signal: str, key: Scalar, node: Node, more: tuple[str, ...]
-    ) -> Channel | None:
-        body, place = self.body, self.body.place(key)
-        if isinstance(node, Scalar):
-            return Channel(signal, node.text.strip(), place=place)
-        what = f"'{clip(signal)}' of {self.what}"
-        entries = body.entries(node, what, "{column: angle, unit: deg}")
-        if entries is None:
-            return None
-        body.check_keys(entries, ("column", "unit", *more), f"key of a measured {_kind(more)}")
-        column_node = body.required(entries, "column", what)
-        column = None if column_node is None else body.text(column_node, "'column'")
-        unit_node = entries.values.get("unit")
-        unit = Unit("", 1.0) if unit_node is None else body.unit(unit_node)
-        sigma, offset = None, None
-        if "sigma" in more and "sigma" in entries.values:
-            sigma = self.sigma(entries.values["sigma"], unit)
-        if "offset" in more and "offset" in entries.values:
-            offset = self.offset(entries.values["offset"], unit)
-        if column is None:
-            return None
-        return Channel(signal, column, unit.factor, unit.text, sigma, offset, place)
-
-    def sigma(self, node: Node, unit: Unit) -> float | None:
-        sigma = self.body.number(node, "'sigma'")
-        if sigma is not None and sigma <= 0:
-            hint = "It is the standard deviation of the noise, in the unit of the column."
-            what = f"'sigma' must be above zero, not {sigma:g}"
-            self.body.problems.add(what, self.body.place(node), (), hint)
-            return None
-        return None if sigma is None else sigma * unit.factor
-
-    def offset(self, node: Node, unit: Unit) -> Value | None:
-        """An offset in the unit of the column; where only bounds are given it is 0 at first."""
-        if isinstance(node, Entries) and "value" not in node.keys and "fit" in node.keys:
-            self.body.check_keys(node, ("value", "unit", "fit"), "key of a value")
-            own = self.body.unit(node.values["unit"]) if "unit" in node.values else unit
-            bounds = read_bounds(node.values["fit"], self.body)
-            if bounds is None:
-                return None
-            scaled = (bounds[0] * own.factor, bounds[1] * own.factor)
-            place = self.body.place(node)
-            return Value(Number(0.0), own.text, own.factor, scaled, named=True, place=place)
-        value = read_value(node, self.body, unit=unit)
-        return None if value is None else replace(value, named=True)
 
     def start(self) -> dict[str, Value | None]:
         node = self.entries.values.get("start")
@@ -193,7 +267,3 @@ class _Series:
             elif (start := read_value(value, self.body, fit=False)) is not None:
                 found[state] = start
         return found
-
-
-def _kind(more: tuple[str, ...]) -> str:
-    return "signal" if more else "input"

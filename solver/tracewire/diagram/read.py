@@ -20,7 +20,13 @@ from tracewire.diagram.sections import (
     read_parameters,
     read_title,
 )
-from tracewire.diagram.settings import read_every, read_presets, read_record, read_span
+from tracewire.diagram.settings import (
+    read_every,
+    read_presets,
+    read_record,
+    read_require,
+    read_span,
+)
 from tracewire.diagram.strict import Entries, Node, Scalar, compose
 from tracewire.diagram.uses import read_blocks
 from tracewire.errors import DiagramError, Place
@@ -32,7 +38,7 @@ MOST_BLOCKS = 100_000
 INSIDE = ("title", "inputs", "outputs", "parameters", "blocks", "subsystems", "events")
 TOP = (
     *("title", "span", "every", "record", "inputs", "parameters", "blocks", "subsystems"),
-    *("include", "events", "presets", "measured"),
+    *("include", "events", "require", "presets", "measured"),
 )
 INCLUDED = ("title", "include", "subsystems")
 
@@ -138,6 +144,8 @@ class _Reader:
             diagram = replace(diagram, every=read_every(given["every"], body))
         if "record" in given:
             diagram = replace(diagram, record=read_record(given["record"], body, diagram))
+        if "require" in given:
+            diagram = replace(diagram, require=read_require(given["require"], body))
         if "presets" in given:
             diagram = replace(diagram, presets=read_presets(given["presets"], body, diagram))
         if "measured" in given:

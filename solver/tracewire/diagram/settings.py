@@ -1,14 +1,14 @@
-"""The sections that only the top of a diagram file has: span, every, record, presets."""
+"""The sections that only the top of a diagram file has: span, every, record, require, presets."""
 
 from __future__ import annotations
 
 from tracewire.diagram.body import Body
-from tracewire.diagram.diagram import Diagram, Value
+from tracewire.diagram.diagram import Condition, Diagram, Value
 from tracewire.diagram.names import find_parameter, find_recorded, parameters, recordable
 from tracewire.diagram.problems import clip
 from tracewire.diagram.strict import Items, Node
 from tracewire.diagram.uses import in_unit_of
-from tracewire.diagram.values import read_value
+from tracewire.diagram.values import read_formula, read_value
 from tracewire.errors import Place
 from tracewire.formula import Number
 
@@ -60,6 +60,17 @@ def read_record(node: Node, body: Body, diagram: Diagram) -> dict[str, Place]:
         else:
             body.problems.unknown("signal", text, recordable(diagram), place)
     return found
+
+
+def read_require(node: Node, body: Body) -> tuple[Condition, ...]:
+    """`require`: comparisons of parameters."""
+    if not isinstance(node, Items):
+        hint = "Write it like [B1*B2 - N12**2 > 0]."
+        what = "'require' must be a list of comparisons"
+        body.problems.add(what, body.place(node), (), hint)
+        return ()
+    read = ((item, read_formula(item, body, "parameter", condition=True)) for item in node.items)
+    return tuple(Condition(found, body.place(item)) for item, found in read if found is not None)
 
 
 def read_presets(node: Node, body: Body, diagram: Diagram) -> dict[str, dict[str, Value]]:

@@ -10,7 +10,16 @@ from tracewire.diagram.diagram import Points, Value
 from tracewire.diagram.problems import clip
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.errors import DataError, FormulaError, Place
-from tracewire.formula import CONSTANTS, Call, Expression, Number, Unit, names_of, parse
+from tracewire.formula import (
+    CONSTANTS,
+    Call,
+    Expression,
+    Number,
+    Unit,
+    names_of,
+    parse,
+    parse_condition,
+)
 
 FREE = (-math.inf, math.inf)
 UNBOUNDED = {"inf": math.inf, "+inf": math.inf, "-inf": -math.inf}
@@ -24,8 +33,13 @@ OF_BLOCKS = {
 NO_UNIT = Unit("", 1.0)
 
 
-def read_formula(node: Node, body: Body, sees: Sees, block: str = "") -> Expression | None:
-    """A formula over the names that `sees` allows, or None with a problem noted."""
+def read_formula(
+    node: Node, body: Body, sees: Sees, block: str = "", condition: bool = False
+) -> Expression | None:
+    """A formula over the names that `sees` allows, or None with a problem noted.
+
+    condition: whether it is a comparison, and not a number.
+    """
     place = body.place(node, block)
     if not isinstance(node, Scalar):
         body.problems.add("a formula must be a text, such as 2*k", place)
@@ -33,7 +47,7 @@ def read_formula(node: Node, body: Body, sees: Sees, block: str = "") -> Express
     if node.style in ("'", '"'):
         place = Place(place.file, place.line, place.column + 1, place.block)
     try:
-        formula = parse(node.text, place)
+        formula = (parse_condition if condition else parse)(node.text, place)
     except FormulaError as error:
         body.problems.take(error)
         return None

@@ -2,69 +2,49 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
-from tracewire.errors import DataError, Problem, SimulationError
-from tracewire.fit.measured import Measured
-from tracewire.solve import Interrupted, Limits, simulate
+from tracewire.errors import DataError, OptionError, Problem, SimulationError, unknown
+from tracewire.fit.loss import LOSSES
+from tracewire.fit.measured import LARGEST
+from tracewire.fit.segment import SENSED, Segment, Unknown, of_diagram
+from tracewire.fit.sensing import Sensing
+from tracewire.solve import Interrupted, Limits, Run, simulate
 
 Vector = NDArray[np.float64]
-DIFFERENCE, CENTRAL = 1e-4, 1e-5
+Matrix = NDArray[np.float64]
+Weighting = Literal["mean", "sum"]
+STEP = 1e-4
 PENALTY = 100.0
-
-
-@dataclass(frozen=True, eq=False)
-class Segment:
-    """A stretch of a measured series that one run is compared with.
-
-    The run begins at `begin` with the states of `start` (those not named: the diagram's); the
-    states in `free` are unknowns. `rows` are the samples of the series that count.
-    """
-
-    measured: Measured
-    begin: float
-    rows: NDArray[np.intp]
-    start: Mapping[str, float] = field(default_factory=dict)
-    free: tuple[str, ...] = ()
-
-    @property
-    def t(self) -> Vector:
-        """The sample times, shape (N,) in s."""
-        return self.measured.t[self.rows]
-
-    @property
-    def signals(self) -> tuple[str, ...]:
-        """The measured signals."""
-        return tuple(self.measured.values)
-
-
-@dataclass(frozen=True)
-class Unknown:
-    """A number to be found: its name, value, bounds, and the size by which it is scaled.
-
-    The name is that of a parameter, or `offset.SIGNAL` for the offset of a sensor.
-    """
-
-    name: str
-    value: float
-    low: float = -np.inf
-    high: float = np.inf
-    scale: float = 1.0
+LIMITS = Limits(steps=500_000, seconds=120.0)
 
 
 class Criterion:
     """Residuals of a model on segments, as a function of unknowns and of the segments' free starts.
 
     The vector of unknowns is scaled: parameters first, then the free starts of each segment. The
-    residual of a sample is (model + offset - measured)/sigma. `parameters` holds what is fixed, by
-    the names that unknowns have; `sigma` the noise of each signal instead of the declared one.
+    residual of a sample is (shown - measured)/sigma, where the sensor shows gain*y(t - delay) +
+    offset; of a signal with a period it is the shortest way around. The criterion is
 
-    Raises DataError where only some signals have a declared sigma.
+        value = 1/2 sum over segments, signals and samples of w^2 rho(residual^2)
+
+    with w^2 = weight of the series * weight of the signal, divided by the number of samples where
+    `weighting` is "mean", and rho the loss. So for one series and one signal it is
+    mean(residual^2)/2, the objective of paper A's appendix; for several, Eq 5 of paper B.
+    `parameters` holds what is fixed, by the names that unknowns have; `sigma` the noise of each
+    signal instead of the declared one.
+
+    A segment whose run fails counts as 100 times the spread of its data, and is told in `failures`.
+
+    Raises DataError where only some signals have a declared sigma, or none has and a robust loss
+    needs it; OptionError for a loss that does not exist.
     """
 
     def __init__(
@@ -75,24 +55,40 @@ class Criterion:
         parameters: Mapping[str, float],
         rtol: float = 1e-7,
         sigma: Mapping[str, float] | None = None,
+        *,
+        weighting: Weighting = "mean",
+        loss: str = "linear",
     ) -> None:
+        if loss not in LOSSES:
+            raise OptionError([unknown("loss", loss, LOSSES)])
         self.model, self.unknowns = model, tuple(unknowns)
         self.segments = tuple(segments)
         self.parameters = dict(parameters)
         self.rtol = rtol
-        self.sigma = _sigma_of(self.segments, sigma)
+        self.weighting, self.loss = weighting, loss
+        self.sigma = _sigma_of(self.segments, sigma, needed=loss != "linear")
         self.evaluations = 0
         self.failure: SimulationError | None = None
+        self.failures: Counter[str] = Counter()
+        self.warnings: set[tuple[str, str]] = set()
         self.scales = np.array(
             [u.scale for u in self.unknowns]
-            + [_start_scale(s, name) for s in self.segments for name in s.free]
+            + [s.start_scale(name) for s in self.segments for name in s.free]
         )
+        self._samples = [segment.samples() for segment in self.segments]
+        self._rates = any(u.name.startswith("delay.") for u in self.unknowns)
 
     def on(self, segments: Sequence[Segment]) -> Criterion:
-        """The same criterion on other segments."""
-        fresh = Criterion(self.model, segments, self.unknowns, self.parameters, self.rtol)
+        """The same criterion on other segments, of the same series."""
+        fresh = Criterion(
+            self.model, segments, self.unknowns, self.parameters, self.rtol,
+            weighting=self.weighting,
+        )  # fmt: skip
+        fresh.loss = self.loss
         fresh.sigma = {s.measured.name: self.sigma[s.measured.name] for s in segments}
         return fresh
+
+    # --- unknowns -----------------------------------------------------------------------------
 
     def begin(self) -> Vector:
         """The scaled unknowns to begin with."""
@@ -128,104 +124,201 @@ class Criterion:
         ]
         return unknowns, segments
 
-    def outputs(
-        self, segment: Segment, named: Mapping[str, float], start: Mapping[str, float]
-    ) -> Vector:
-        """The simulated signals of a segment, shape (N, signals); offsets are added."""
-        values = {**self.parameters, **named}
-        t = segment.t
-        run = simulate(
-            self.model,
-            parameters=without_offsets(values),
-            start={**segment.start, **start},
-            span=(min(segment.begin, float(t[0])), float(t[-1])),
-            times=t,
-            rtol=self.rtol,
-            preset=segment.measured.preset,
-            inputs=segment.measured.inputs,
-            limits=Limits(steps=500_000, seconds=120.0),
+    # --- the criterion --------------------------------------------------------------------------
+
+    def value(self, z: Vector) -> float:
+        """The criterion."""
+        return half_square(self.vector(z))
+
+    def vector(self, z: Vector) -> Vector:
+        """What the criterion squares, shape (M,): value = 1/2 sum of squares."""
+        return self.weigh(self.residuals(z))
+
+    def both(self, z: Vector) -> tuple[Vector, Matrix]:
+        """`vector` (M,) and its derivatives (M, n), from one run with sensitivities."""
+        residuals, derivatives = self.residuals_and_derivatives(z)
+        rows = []
+        for n, (r, matrix) in enumerate(zip(residuals, derivatives, strict=True)):
+            slopes = LOSSES[self.loss](r).slope * self.weights(n)
+            rows.append(slopes.reshape(-1, 1) * matrix)
+        return self.weigh(residuals), np.concatenate(rows)
+
+    def weigh(self, residuals: Sequence[Vector]) -> Vector:
+        """The residuals of all segments as `vector` has them."""
+        loss = LOSSES[self.loss]
+        return np.concatenate(
+            [(loss(r).residual * self.weights(n)).ravel() for n, r in enumerate(residuals)]
         )
-        offsets = [
-            values.get(f"offset.{name}", segment.measured.offset.get(name, 0.0))
-            for name in segment.signals
-        ]
-        simulated = np.stack([run[name] for name in segment.signals], axis=1)
-        return np.asarray(simulated + np.array(offsets))
+
+    def weights(self, n: int) -> Vector:
+        """The weights w (N, signals) of the residuals of segment n."""
+        measured, samples = self.segments[n].measured, self._samples[n]
+        counts = [measured.weights.get(name, 1.0) for name in measured.values]
+        shares = measured.weight * np.array(counts)
+        if self.weighting == "mean":
+            shares = shares / len(samples)
+        return np.broadcast_to(np.sqrt(shares), samples.shape)
+
+    # --- residuals ------------------------------------------------------------------------------
 
     def residuals(self, z: Vector) -> list[Vector]:
         """The residuals of each segment, shape (N, signals); a failed run counts as far away."""
+        self.evaluations += 1
         named, starts = self.split(z)
-        pairs = zip(self.segments, starts, strict=True)
-        return [self.residual(segment, named, start) for segment, start in pairs]
+        return [self._residual(n, named, start) for n, start in enumerate(starts)]
 
-    def residual(
+    def residuals_and_derivatives(self, z: Vector) -> tuple[list[Vector], list[Matrix]]:
+        """`residuals`, and d residuals/d scaled unknowns, for each segment (N*signals, n).
+
+        By forward sensitivities of one run for each segment, which counts as one evaluation and
+        one more for each unknown; by differences where such a run fails.
+        """
+        named, starts = self.split(z)
+        self.evaluations += 1 + len(self.unknowns) + max((len(s) for s in starts), default=0)
+        residuals, matrices = [], []
+        self.warnings = set()
+        at = len(self.unknowns)
+        for n, start in enumerate(starts):
+            columns = [*range(len(self.unknowns)), *range(at, at + len(start))]
+            at += len(start)
+            residual, moving = self._sensed(n, z, named, start, columns)
+            matrix = np.zeros((residual.size, len(z)))
+            matrix[:, columns] = moving * self.scales[columns]
+            residuals.append(residual)
+            matrices.append(matrix)
+        return residuals, matrices
+
+    def derivatives(self, z: Vector) -> list[Matrix]:
+        """d residuals/d scaled unknowns, for each segment (N*signals, n)."""
+        return self.residuals_and_derivatives(z)[1]
+
+    def outputs(
         self, segment: Segment, named: Mapping[str, float], start: Mapping[str, float]
     ) -> Vector:
-        """The residuals of one segment, shape (N, signals)."""
-        self.evaluations += 1
-        measured = np.stack([v[segment.rows] for v in segment.measured.values.values()], axis=1)
-        sigma = self.sigma[segment.measured.name]
+        """What the sensors of a segment show in a run, shape (N, signals)."""
+        values = {**self.parameters, **named}
+        sensing = Sensing(segment, values)
+        return sensing.shown(self._run(sensing, values, start))
+
+    def _run(
+        self,
+        sensing: Sensing,
+        values: Mapping[str, float],
+        start: Mapping[str, float],
+        sensitivities: Sequence[str] = (),
+    ) -> Run:
+        segment = sensing.segment
         try:
-            outputs = self.outputs(segment, named, start)
+            return simulate(
+                self.model,
+                parameters=of_diagram(values),
+                start={**segment.start, **start},
+                span=(sensing.begin, float(sensing.times[-1])),
+                times=sensing.times,
+                rtol=self.rtol,
+                preset=segment.measured.preset,
+                inputs=segment.measured.inputs,
+                limits=LIMITS,
+                sensitivities=sensitivities,
+            )
         except Interrupted as error:  # no failed run: the whole search shall stop
             raise KeyboardInterrupt from error
+
+    def difference(self, n: int, shown: Vector) -> Vector:
+        """Residuals of what is shown: shown - measured in sigma, the shortest way around."""
+        segment = self.segments[n]
+        difference = shown - self._samples[n]
+        for column, signal in enumerate(segment.signals):
+            period = segment.measured.periods.get(signal, 0.0)
+            if period > 0:
+                turns = np.round(difference[:, column] / period)
+                difference[:, column] -= period * turns
+        return np.asarray(difference / self.sigma[segment.measured.name])
+
+    def _residual(self, n: int, named: Mapping[str, float], start: Mapping[str, float]) -> Vector:
+        try:
+            shown = self.outputs(self.segments[n], named, start)
+            _refuse_huge(self.segments[n], shown)
         except SimulationError as error:
-            self.failure = error
-            spread = PENALTY * np.maximum(np.std(measured, axis=0), sigma)
-            return np.asarray(np.broadcast_to(spread / sigma, measured.shape))
-        return np.asarray((outputs - measured) / sigma)
+            return self._penalty(n, error)
+        return self.difference(n, shown)
 
-    def value(self, z: Vector) -> float:
-        """The criterion: the sum over segments and signals of mean(residual^2)/2.
+    def _penalty(self, n: int, error: SimulationError) -> Vector:
+        """The residuals of a run that failed."""
+        self.failure = error
+        self.failures[self.segments[n].measured.name] += 1
+        sigma = self.sigma[self.segments[n].measured.name]
+        spread = PENALTY * np.maximum(np.std(self._samples[n], axis=0), sigma)
+        return np.asarray(np.broadcast_to(spread / sigma, self._samples[n].shape))
 
-        For one series and one signal without sigma this is the criterion of paper A's appendix.
-        """
-        return float(sum(np.mean(r**2, axis=0).sum() / 2 for r in self.residuals(z)))
+    def _sensed(
+        self,
+        n: int,
+        z: Vector,
+        named: Mapping[str, float],
+        start: Mapping[str, float],
+        columns: Sequence[int],
+    ) -> tuple[Vector, Matrix]:
+        """Residuals of a segment and their derivatives in the unknowns of `columns`, in SI."""
+        segment = self.segments[n]
+        values = {**self.parameters, **named}
+        sensing = Sensing(segment, values, rates=self._rates)
+        asked = [name for name in named if not name.startswith(SENSED)]
+        asked += [f"start.{state}" for state in start]
+        try:
+            run = self._run(sensing, values, start, asked)
+            shown = sensing.shown(run)
+            _refuse_huge(segment, shown)
+            self.warnings |= {(segment.measured.name, warning) for warning in run.warnings}
+        except SimulationError:
+            return self._differences(n, z, named, start, columns)
+        sigma = self.sigma[segment.measured.name]
+        names = [*named, *(f"start.{state}" for state in start)]
+        parts = [
+            (sensing.derivative(run, name, name if name in asked else "") / sigma).ravel()
+            for name in names
+        ]
+        matrix = np.stack(parts, axis=1) if parts else np.zeros((shown.size, 0))
+        return self.difference(n, shown), matrix
 
-    def derivatives(
-        self, z: Vector, residuals: Sequence[Vector], central: bool = False
-    ) -> list[Vector]:
-        """d residuals / d scaled unknowns, for each segment shape (N*signals, unknowns).
-
-        By differences to one side, with `central` to both sides where the bounds leave room. A free
-        start of one segment moves that segment only.
-        """
-        matrices = [np.zeros((r.size, len(z))) for r in residuals]
-        everywhere = range(len(self.segments))
-        moving = [(j, everywhere) for j in range(len(self.unknowns))]
-        free = [n for n, segment in enumerate(self.segments) for _ in segment.free]
-        moving += [(j, range(n, n + 1)) for j, n in enumerate(free, len(self.unknowns))]
-        for j, segments in moving:
-            ends = self._ends(z, j, central)
-            for n in segments:
-                low, high = (
-                    residuals[n] if end is z else self._moved_residual(n, end) for end in ends
-                )
-                matrices[n][:, j] = ((high - low) / (ends[1][j] - ends[0][j])).ravel()
-        return matrices
-
-    def _moved_residual(self, n: int, z: Vector) -> Vector:
-        named, starts = self.split(z)
-        return self.residual(self.segments[n], named, starts[n])
-
-    def _ends(self, z: Vector, j: int, central: bool) -> tuple[Vector, Vector]:
-        """The unknowns with one of them moved to each side, or z itself at one side."""
-        low, high = self.bounds()
-        h = (CENTRAL if central else DIFFERENCE) * max(1.0, abs(z[j]))
-        down, up = z.copy(), z.copy()
-        down[j] -= h
-        up[j] += h
-        if up[j] > high[j]:
-            return down, z
-        return (down if central and down[j] >= low[j] else z), up
+    def _differences(
+        self,
+        n: int,
+        z: Vector,
+        named: Mapping[str, float],
+        start: Mapping[str, float],
+        columns: Sequence[int],
+    ) -> tuple[Vector, Matrix]:
+        """The same by differences to one side, away from a bound."""
+        at = self._residual(n, named, start)
+        _, high = self.bounds()
+        parts = []
+        for j in columns:
+            h = STEP * max(1.0, abs(z[j]))
+            moved = z.copy()
+            moved[j] += -h if z[j] + h > high[j] else h
+            values, starts = self.split(moved)
+            there = self._residual(n, values, starts[n])
+            parts.append(((there - at) / ((moved[j] - z[j]) * self.scales[j])).ravel())
+        return at, np.stack(parts, axis=1) if parts else np.zeros((at.size, 0))
 
 
-def without_offsets(values: Mapping[str, float]) -> dict[str, float]:
-    """The parameters of the diagram among named unknowns: all but the offsets of sensors."""
-    return {name: value for name, value in values.items() if not name.startswith("offset.")}
+def half_square(vector: Vector) -> float:
+    """Half the sum of squares: the criterion of its vector."""
+    return 0.5 * float(vector @ vector)
 
 
-def _sigma_of(segments: Sequence[Segment], given: Mapping[str, float] | None) -> dict[str, Vector]:
+def _refuse_huge(segment: Segment, shown: Vector) -> None:
+    """Raises SimulationError where squares of what is shown would be no numbers any more."""
+    largest = float(np.max(np.abs(shown), initial=0.0))
+    if not largest < LARGEST:
+        what = f"the series '{segment.measured.name}' is simulated as large as {largest:.3g}"
+        raise SimulationError([Problem(what, hint="Begin elsewhere, or narrow `fit:` bounds.")])
+
+
+def _sigma_of(
+    segments: Sequence[Segment], given: Mapping[str, float] | None, needed: bool
+) -> dict[str, Vector]:
     """The noise of the signals of each series: as given, else as declared, 1 where none is."""
     known = {
         (s.measured.name, signal): (s.measured.sigma if given is None else given).get(signal)
@@ -236,19 +329,10 @@ def _sigma_of(segments: Sequence[Segment], given: Mapping[str, float] | None) ->
     if missing and (given is not None or len(missing) < len(known)):
         what = f"no sigma is known of {', '.join(missing)}, but of others"
         raise DataError([Problem(what, hint="Give every measured signal a sigma, or none.")])
+    if missing and needed:
+        what = f"a robust loss needs the noise, and no sigma is known of {', '.join(missing)}"
+        raise DataError([Problem(what, hint="Give every measured signal a `sigma:`.")])
     return {
         s.measured.name: np.array([known[s.measured.name, signal] or 1.0 for signal in s.signals])
         for s in segments
     }
-
-
-def _start_scale(segment: Segment, state: str) -> float:
-    values = segment.measured.values.get(state)
-    if values is not None:
-        spread = float(np.std(values))
-    else:
-        spread = max(
-            float(np.std(np.gradient(v, segment.measured.t)))
-            for v in segment.measured.values.values()
-        )
-    return max(spread, abs(segment.start[state]), 1e-12)

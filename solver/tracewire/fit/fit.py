@@ -4,26 +4,32 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model, compile
 from tracewire.errors import DataError, FitError, OptionError, Problem, unknown
-from tracewire.fit.criterion import Criterion, Segment
-from tracewire.fit.descent import descend
+from tracewire.fit.checkpoint import Store, earlier, resume_from
+from tracewire.fit.compare import compared, shown_by_series
+from tracewire.fit.criterion import Criterion, half_square
 from tracewire.fit.measured import Measured, load_measured, measured_signals
-from tracewire.fit.optimset import Options
+from tracewire.fit.methods import METHODS
+from tracewire.fit.optimset import Options, optimset
 from tracewire.fit.result import Comparison, Fit
-from tracewire.fit.search import Progress, by_least_squares, by_simplex
+from tracewire.fit.search import Ended, Progress, Search, Stopped
 from tracewire.fit.starts import whole_segment
-from tracewire.fit.uncertainty import standard_errors
-from tracewire.fit.unknowns import free_unknowns, offset_unknowns
+from tracewire.fit.uncertainty import uncertainty_of
+from tracewire.fit.unknowns import chosen_unknowns
 from tracewire.solve import parameter_values
 
 Vector = NDArray[np.float64]
-METHODS = ("fminsearch", "least_squares")
+AMPLE = "10000*numberofvariables"
+"""The limits of a method that is not Scilab's, where no options are given."""
 
 
 def fit(
@@ -32,25 +38,46 @@ def fit(
     *,
     method: str = "fminsearch",
     free: Sequence[str] | None = None,
+    fixed: Sequence[str] = (),
     parameters: Mapping[str, float] | None = None,
     options: Options | None = None,
+    loss: str = "linear",
+    scale: Mapping[str, float] | None = None,
+    correlated: bool | None = None,
+    seed: int = 0,
     rtol: float = 1e-6,
+    save: str | Path | None = None,
+    resume: str | Path | None = None,
     progress: Callable[[Progress], None] | None = None,
 ) -> Fit:
     """Fit the free parameters of a model to the train series of its diagram.
 
-    `method` is `fminsearch` (Scilab's simplex; `options` from optimset, as in paper A's appendix)
-    or `least_squares`. `free` names the free parameters instead of the diagram's, `parameters` the
-    values to begin with, in SI. `measured` gives series instead of the diagram's. Series for other
-    uses are compared with the fitted model; only their free start values are adapted to them.
+    `method` is one of
+      `fminsearch`         Scilab's simplex, as in paper A's appendix;
+      `least_squares`      scipy's trust region on forward sensitivities: from nearby;
+      `growing_windows`    least squares on growing parts of each series: long, unstable records;
+      `multiple_shooting`  least squares on segments with free start states that grow together:
+                           chaotic records;
+      `shooting`           random shots round the best and the simplex from there, as paper B:
+                           criteria that jump;
+      `multistart`         points all over the bounds, the best ones polished: many minima.
+    `free` names the free parameters (and `offset.SIGNAL`, `gain.SIGNAL`, `delay.SIGNAL`) instead of
+    the diagram's, `fixed` those that are not; a parameter whose value is a formula of others
+    follows them. `parameters` gives values to begin with, in SI. `measured` gives series instead of
+    the diagram's. Series for other uses are compared with the fitted model; only their free start
+    values are adapted to them.
+
+    `options` are those of optimset: limits of iterations and evaluations and output functions for
+    every method, tolerances for the simplex. `loss` is `linear`, `huber` or `cauchy`, the last two
+    for data with outliers. `scale` gives sizes by name, by which unknowns are divided in a search.
+    `correlated` says whether errors follow from the actual autocorrelation of the residuals; unless
+    given they do where the model has states. `seed` makes random methods repeatable. The search is
+    stored in the file `save`, and goes on from the file `resume`; Ctrl-C ends it at its best.
 
     Raises DataError, OptionError; FitError where the model cannot be simulated at the start.
     """
     if method not in METHODS:
         raise OptionError([unknown("method", method, METHODS)])
-    if options is not None and method != "fminsearch":
-        hint = "Leave them out, or take the method fminsearch."
-        raise OptionError([Problem(f"options of optimset have no meaning for {method}", hint=hint)])
     began = time.perf_counter()
     series = tuple(load_measured(model) if measured is None else measured)
     if not series:
@@ -58,11 +85,16 @@ def fit(
     model = with_measured_signals(model, series)
     train = [m for m in series if m.use == "train"] or list(series)
     values = parameter_values(model, parameters or {}, _common_preset(train))
-    unknowns = [*free_unknowns(model, free, values), *offset_unknowns(train)]
+    unknowns = chosen_unknowns(model, train, values, free, fixed)
+    unknowns = [replace(u, scale=_size(scale or {}, u.name, u.scale)) for u in unknowns]
     segments = [whole_segment(model, m) for m in train]
     others = [whole_segment(model, m) for m in series if m not in train]
-    criterion = Criterion(model, segments, unknowns, parameters or {}, rtol)
+    criterion = Criterion(model, segments, unknowns, parameters or {}, rtol, loss=loss)
+    _refuse_few_samples(criterion)
+
     first = criterion.begin()
+    units = np.ones(len(first))
+    units[: len(unknowns)] = [_size(scale or {}, u.name, 1.0) for u in unknowns]
     criterion_before = criterion.value(first)
     if criterion.failure is not None:
         raise FitError(
@@ -71,30 +103,61 @@ def fit(
                 for problem in criterion.failure.problems
             ]
         )
-    before = _outputs(criterion, first, others)
-    if method == "fminsearch":
-        ended = by_simplex(criterion, options, progress)
-    else:
-        ended = by_least_squares(criterion, progress)
-    named, starts = criterion.split(ended.z)
-    errors = standard_errors(criterion, ended.z)[: len(named)]
+    before = shown_by_series(criterion, first, others)
+    criterion.evaluations = 0
+
+    def comparisons(z: Vector) -> tuple[Comparison, ...]:
+        return compared(model, series, before, shown_by_series(criterion, z, others))
+
+    if options is None:
+        limits = {} if method == "fminsearch" else {"MaxIter": AMPLE, "MaxFunEvals": AMPLE}
+        options = optimset(Display="off", **limits)
+    search = Search(
+        criterion,
+        options,
+        seed=seed,
+        units=units,
+        progress=progress,
+        kept=None if save is None else Store(save, method),
+        comparisons=comparisons,
+    )
+    if resume is not None:
+        _go_on(search, resume_from(resume, method, criterion))
+    ended = _searched(search, method)
+    search.finish()
+    evaluations = criterion.evaluations
+    last, z = ended.criterion or criterion, ended.z
+    failures = criterion.failures if last is criterion else criterion.failures + last.failures
+    residuals, derivatives = last.residuals_and_derivatives(z)
+    named, starts = last.split(z)
+    found_starts: dict[str, Mapping[str, float]] = {}
+    for segment, start in zip(last.segments, starts, strict=True):
+        found_starts.setdefault(segment.measured.name, start)
+    follows = bool(model.states) if correlated is None else correlated
     return Fit(
         model=model,
         method=method,
         measured=series,
         began={u.name: u.value for u in unknowns},
         values=named,
-        errors=dict(zip(named, errors.tolist(), strict=True)),
         bounds={u.name: (u.low, u.high) for u in unknowns},
-        starts={s.measured.name: start for s, start in zip(segments, starts, strict=True)},
+        starts=found_starts,
         criterion_before=criterion_before,
-        criterion=criterion.value(ended.z),
-        evaluations=criterion.evaluations,
+        criterion=half_square(last.weigh(residuals)),
+        evaluations=evaluations,
         iterations=ended.iterations,
         exitflag=ended.exitflag,
         message=ended.message,
         seconds=time.perf_counter() - began,
-        comparisons=_compared(model, series, before, _outputs(criterion, ended.z, others)),
+        comparisons=compared(model, series, before, shown_by_series(last, z, others)),
+        uncertainty=uncertainty_of(last, z, residuals, derivatives, follows),
+        history=tuple(search.history),
+        seed=seed,
+        loss=loss,
+        parameters=dict(parameters or {}),
+        rtol=rtol,
+        interrupted=ended.interrupted,
+        remarks=tuple(_remarks(series, failures, last)),
     )
 
 
@@ -112,46 +175,70 @@ def with_measured_signals(model: Model, series: Sequence[Measured] | None = None
     return compile(model.diagram, record=[*model.recorded, *signals])
 
 
+def _searched(search: Search, method: str) -> Ended:
+    """Where a method ended, or was stopped."""
+    tells_itself = method == "fminsearch"  # as Scilab's does
+    try:
+        if not tells_itself:
+            search.announce("init")
+        ended = METHODS[method](search)
+    except Stopped as stopped:
+        ended = Ended(search.best, search.iterations, stopped.exitflag, stopped.message)
+    except KeyboardInterrupt:
+        message = "stopped by Ctrl-C: this is the best so far"
+        ended = Ended(search.best, search.iterations, -1, message, interrupted=True)
+        tells_itself = False
+    if not tells_itself:
+        with suppress(Stopped):  # there is nothing left to stop
+            search.announce("done")
+    return ended
+
+
+def _go_on(search: Search, saved: Mapping[str, Any]) -> None:
+    """Let a search begin where a saved one was."""
+    search.begin = search.best = np.array(saved["best"]) / search.criterion.scales
+    search.best_value = search.criterion.value(search.best)
+    search.criterion.evaluations = saved["evaluations"]
+    search.history = earlier(saved)
+    if saved["state"]:
+        search.iterations = saved["iterations"]
+        search.resumed = search.state = saved["state"]
+
+
 def _common_preset(series: Sequence[Measured]) -> str:
     """The preset to begin a fit with: that of the series, where they agree."""
     presets = {m.preset for m in series}
     return presets.pop() if len(presets) == 1 else ""
 
 
-def _outputs(criterion: Criterion, z: Vector, others: Sequence[Segment]) -> dict[str, Vector]:
-    """The simulated signals (N, signals) by series; `others` get start values of their own."""
-    named, starts = criterion.split(z)
-    found = {
-        segment.measured.name: criterion.outputs(segment, named, start)
-        for segment, start in zip(criterion.segments, starts, strict=True)
-    }
-    for segment in others:
-        start: Mapping[str, float] = {}
-        if segment.free:
-            fixed = {**criterion.parameters, **named}
-            alone = Criterion(criterion.model, [segment], [], fixed, criterion.rtol)
-            (start,) = alone.split(descend(alone).z)[1]
-        found[segment.measured.name] = criterion.outputs(segment, named, start)
-    return found
+def _size(scale: Mapping[str, float], name: str, usual: float) -> float:
+    size = scale.get(name, usual)
+    if not (np.isfinite(size) and size > 0):
+        what = f"the scale of '{name}' is {size:g}"
+        raise OptionError.one(what, hint="Give a number above zero, of the size of its changes.")
+    return size
 
 
-def _compared(
-    model: Model,
-    series: Sequence[Measured],
-    before: Mapping[str, Vector],
-    after: Mapping[str, Vector],
-) -> tuple[Comparison, ...]:
-    return tuple(
-        Comparison(
-            series=m.name,
-            use=m.use,
-            signal=signal,
-            unit=model.flat.units.get(signal, ""),
-            t=m.t,
-            measured=values,
-            before=before[m.name][:, n],
-            after=after[m.name][:, n],
+def _refuse_few_samples(criterion: Criterion) -> None:
+    samples = sum(len(s.rows) * len(s.signals) for s in criterion.segments)
+    unknowns = len(criterion.scales)
+    if samples <= unknowns:
+        what = f"{samples} measured values cannot determine {unknowns} unknowns"
+        hint = "Fix some parameters or start values, or measure more."
+        raise DataError([Problem(what, hint=hint)])
+
+
+def _remarks(
+    series: Sequence[Measured], failures: Mapping[str, int], criterion: Criterion
+) -> list[str]:
+    """What a reader of the result must know."""
+    remarks = [f"{m.name}: {remark}" for m in series for remark in m.remarks]
+    for name, count in failures.items():
+        times = "once" if count == 1 else f"{count} times"
+        remarks.append(
+            f"{name}: its run failed {times} during the search, and counted as far from the data"
         )
-        for m in series
-        for n, (signal, values) in enumerate(m.values.items())
-    )
+    if failures and criterion.failure is not None:
+        remarks.append(f"the last failure: {criterion.failure.problems[0].what}")
+    remarks += [f"{name}: {warning}" for name, warning in sorted(criterion.warnings)]
+    return remarks

@@ -22,9 +22,9 @@ order of the tests and of the counts: Scilab 6.1.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -67,7 +67,12 @@ class Minimum(NamedTuple):
 
 
 def fminsearch(
-    fun: Callable[[Vector], float], x0: ArrayLike, options: Options | None = None
+    fun: Callable[[Vector], float],
+    x0: ArrayLike,
+    options: Options | None = None,
+    *,
+    resumed: Mapping[str, Any] | None = None,
+    keep: Callable[[dict[str, Any]], None] | None = None,
 ) -> Minimum:
     """Minimise fun(x) from x0 without derivatives, as Scilab's `fminsearch` does.
 
@@ -75,6 +80,8 @@ def fminsearch(
         same moves. A trial with a coordinate beyond the range of numbers is counted and refused
         without a call.
     x0: a number, or a one-dimensional array (n,).
+    keep: is given the simplex after each iteration, in plain numbers; with that as `resumed` a
+        search goes on as if it had not been stopped.
 
     Evaluations, moves and stops are those of Scilab 6.1; vertices of equal value stay in their
     order. What differs: of several output functions any one may stop the search (in Scilab only the
@@ -91,12 +98,17 @@ def fminsearch(
     start = _start(x0)
     evaluate = _Evaluate(fun)
     monitor = _Monitor(options, evaluate)
-    vertices = _pfeffer(start)
-    values = [evaluate.first(start), *(evaluate(vertex) for vertex in vertices[1:])]
+    iteration, procedure = 0, "initial simplex"
+    if resumed:
+        vertices, values = np.array(resumed["vertices"], float), list(resumed["values"])
+        iteration, procedure = resumed["iteration"], resumed["procedure"]
+        start, evaluate.count = vertices[0], resumed["evaluations"]
+    else:
+        vertices = _pfeffer(start)
+        values = [evaluate.first(start), *(evaluate(vertex) for vertex in vertices[1:])]
 
     if monitor.stops("init", start, values[0], 0, ""):
         return monitor.result(start, values[0], 0, STOPPED, _USER_STOP)
-    iteration, procedure = 0, "initial simplex"
     while True:
         # The sort is stable: it decides which of two equal vertices is replaced first.
         order = sorted(range(len(values)), key=values.__getitem__)
@@ -110,6 +122,16 @@ def fminsearch(
             flag, message = end
             break
         procedure = _move(vertices, values, evaluate)
+        if keep is not None:
+            keep(
+                {
+                    "vertices": vertices.tolist(),
+                    "values": values.copy(),
+                    "iteration": iteration,
+                    "procedure": procedure,
+                    "evaluations": evaluate.count,
+                }
+            )
     if monitor.stops("done", vertices[0], values[0], iteration, ""):
         flag, message = STOPPED, _USER_STOP
     return monitor.result(vertices[0], values[0], iteration, flag, message)

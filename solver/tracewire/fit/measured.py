@@ -2,32 +2,51 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
-from pathlib import Path
+import math
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
-from tracewire.data import Columns, read_columns
-from tracewire.diagram import Diagram, Series
-from tracewire.errors import DataError, Place, Problem, TracewireError
-from tracewire.formula import evaluate
+from tracewire.data import STEPS, Record, read_record
+from tracewire.diagram import Channel, Diagram, Series, Value
+from tracewire.errors import DataError, OptionError, Place, Problem, TracewireError
+from tracewire.fit.remarks import check_quantities, remarks_on
+from tracewire.formula import CONSTANTS, evaluate, names_of
 from tracewire.solve import parameter_values
 
 Vector = NDArray[np.float64]
 LARGEST = 1e100  # its square, and sums of such squares, are numbers still
 
 
+@dataclass(frozen=True)
+class Sensor:
+    """What a channel shows of a signal y(t): gain*y(t - delay) + offset; offset in SI, delay in s.
+
+    `free` holds the bounds of those of `offset`, `gain` and `delay` that a fit may change.
+    """
+
+    offset: float = 0.0
+    gain: float = 1.0
+    delay: float = 0.0
+    free: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+
+
 @dataclass(frozen=True, eq=False)
 class Measured:
     """One measured series in SI: times `t` (N,) in s, and `values` (N,) of each measured signal.
 
-    `sigma` is the standard deviation of the noise by signal (None: not known), `offset` the
-    declared offset of the sensor, `free_offsets` the bounds of those that a fit may change.
-    `inputs` maps a named input to its times and values. `start` holds start values of this series
-    by state, None where free; without any, a run begins at the start of the diagram's span.
+    `sigma` is the standard deviation of the noise by signal (None: not known), `sensors` what
+    channels with an offset, a gain or a delay have of these, `periods` the period of signals that
+    are compared modulo it (2 pi for an angle). `weight` counts the whole series in the criterion,
+    `weights` single signals. Samples before `counts_from` (s) do not count. `inputs` maps a named
+    input to its times and values. `start` holds start values of this series by state, None where
+    free; without any, a run begins at the start of the diagram's span. `series` is its name in
+    the diagram, which is not `name` where it has several windows. `steps` tells what was done to
+    the data since they were read, `remarks` what is odd about them.
     """
 
     name: str
@@ -35,16 +54,29 @@ class Measured:
     t: Vector
     values: Mapping[str, Vector]
     sigma: Mapping[str, float | None] = field(default_factory=dict)
-    offset: Mapping[str, float] = field(default_factory=dict)
-    free_offsets: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    sensors: Mapping[str, Sensor] = field(default_factory=dict)
+    periods: Mapping[str, float] = field(default_factory=dict)
+    weight: float = 1.0
+    weights: Mapping[str, float] = field(default_factory=dict)
+    counts_from: float = -math.inf
     inputs: Mapping[str, tuple[Vector, Vector]] = field(default_factory=dict)
     start: Mapping[str, float | None] = field(default_factory=dict)
     preset: str = ""
     file: str = ""
+    series: str = ""
+    steps: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
+
+    def sensor(self, signal: str) -> Sensor:
+        """The sensor of a signal; without offset, gain and delay where nothing is said of it."""
+        return self.sensors.get(signal, PLAIN)
 
     def part(self, rows: slice | NDArray[np.intp]) -> dict[str, Vector]:
         """The measured values of some rows, by signal."""
         return {name: values[rows] for name, values in self.values.items()}
+
+
+PLAIN = Sensor()
 
 
 def measured_signals(diagram: Diagram) -> tuple[str, ...]:
@@ -56,20 +88,28 @@ def measured_signals(diagram: Diagram) -> tuple[str, ...]:
 def load_measured(model: Model, uses: Iterable[str] = ()) -> tuple[Measured, ...]:
     """The measured series of a model's diagram, read from their files; all, or those of some uses.
 
-    Raises DataError: no series, a file or column that is missing or cannot be used, a window
-    without samples.
+    A series with several windows gives one for each, as `swing (train)`. What `clean` says is done
+    in its order; then the windows cut the record, in the file's own time, and that time is put to
+    the diagram's.
+
+    Raises DataError: no series, a file or column that is missing or cannot be used, a column of
+    another quantity than its signal, a step that cannot be done, a window without samples.
     """
     wanted = set(uses)
-    chosen = [s for s in model.diagram.measured.values() if not wanted or s.use in wanted]
+    chosen = [
+        series
+        for series in model.diagram.measured.values()
+        if not wanted or wanted & {series.use, *series.windows}
+    ]
     if not chosen:
         what = "the diagram names no measured series" + (f" for {sorted(wanted)}" if wanted else "")
         hint = "Add one under `measured:` with file, time and signals."
         raise DataError([Problem(what, Place(str(model.diagram.file)), (), hint)])
     problems: list[Problem] = []
-    loaded = []
+    loaded: list[Measured] = []
     for series in chosen:
         try:
-            loaded.append(_load(model, series))
+            loaded += _load(model, series, wanted)
         except TracewireError as error:
             problems += error.problems
     if problems:
@@ -77,67 +117,185 @@ def load_measured(model: Model, uses: Iterable[str] = ()) -> tuple[Measured, ...
     return tuple(loaded)
 
 
-def _load(model: Model, series: Series) -> Measured:
-    channels = {f"signal {name}": channel for name, channel in series.channels.items()}
-    channels |= {f"input {name}": channel for name, channel in series.inputs.items()}
-    columns = {name: channel.column for name, channel in channels.items()}
-    read = read_columns(Path(series.file), columns, series.time, place=series.place)
+def _load(model: Model, series: Series, uses: Collection[str]) -> list[Measured]:
+    read = _read(series)
+    record = _cleaned(series, read)
+    check_quantities(model, series, record)
+    _check_size(series, record)
+    if not series.windows:
+        ends = (_or(series.begin, -math.inf), _or(series.end, math.inf))
+        return [_measured(model, series, read, record, series.use, ends)]
+    return [
+        _measured(model, series, read, record, use, ends)
+        for use, ends in series.windows.items()
+        if not uses or use in uses
+    ]
+
+
+def _measured(
+    model: Model,
+    series: Series,
+    read: Record,
+    record: Record,
+    use: str,
+    ends: tuple[float, float],
+) -> Measured:
+    """The part of a record in a window, in the time of the diagram."""
+    channels = series.channels
     values = parameter_values(model, {}, series.preset)
-    rows = _window(series, read)
-    signals = {
-        name: read.values[f"signal {name}"][rows] * channel.factor
-        for name, channel in series.channels.items()
+    rows = _window(series, record, ends)
+    zero = series.time.zero * record.time_unit.factor
+    if len(rows) < len(record.t):
+        some = f"{len(rows)} of {len(record.t)} samples"
+        used_up = f"window {record.t[rows[0]]:g} ... {record.t[rows[-1]]:g} s of the file: {some}"
+        record = replace(record, steps=(*record.steps, used_up))
+    steps = record.shift(zero).steps
+    t = record.t - zero
+    counts_from = t[rows[0]] + series.burn_in if series.burn_in else -math.inf
+    if t[rows[-1]] < counts_from:
+        what = f"the series '{series.name}' ends within its burn_in of {series.burn_in:g} s"
+        raise DataError([Problem(what, series.place, (), "Make burn_in shorter.")])
+    factors = {
+        name: record.unit(name).factor if channel.declared is None else 1.0
+        for name, channel in channels.items()
     }
-    _check_size(series, signals)
+    used = record.t[rows]
+    few = np.sum((read.t >= used[0]) & (read.t <= used[-1])) < 3
+    seen = read if few else read.trim(used[0], used[-1])
     return Measured(
-        name=series.name,
-        use=series.use,
-        t=read.time[rows],
-        values=signals,
-        sigma={name: channel.sigma for name, channel in series.channels.items()},
-        offset={
-            name: evaluate(channel.offset.formula, values) * channel.offset.factor
-            for name, channel in series.channels.items()
-            if channel.offset is not None
+        name=f"{series.name} ({use})" if series.windows else series.name,
+        series=series.name,
+        use=use,
+        t=t[rows],
+        values={name: record.columns[name][rows] for name in channels},
+        sigma={
+            name: None if channel.sigma is None else channel.sigma * factors[name]
+            for name, channel in channels.items()
         },
-        free_offsets={
-            name: channel.offset.fit
-            for name, channel in series.channels.items()
-            if channel.offset is not None and channel.offset.fit is not None
+        sensors={
+            name: _sensor(channel, values, factors[name])
+            for name, channel in channels.items()
+            if not channel.offset is channel.gain is channel.delay is None
         },
-        inputs={
-            name: (read.time, read.values[f"input {name}"] * channel.factor)
-            for name, channel in series.inputs.items()
+        periods={
+            name: channel.modulo * factors[name]
+            for name, channel in channels.items()
+            if channel.modulo is not None
         },
+        weight=series.weight,
+        weights={name: c.weight for name, c in channels.items() if c.weight != 1.0},
+        counts_from=counts_from,
+        inputs={name: (t, record.columns[f"input {name}"]) for name in series.inputs},
         start={
             name: None if value is None else evaluate(value.formula, values) * value.factor
             for name, value in series.start.items()
         },
         preset=series.preset,
         file=str(series.file),
+        steps=steps,
+        remarks=remarks_on(model, series, replace(seen, remarks=read.remarks), values, zero),
     )
 
 
-def _check_size(series: Series, signals: Mapping[str, Vector]) -> None:
+def _read(series: Series) -> Record:
+    """The columns of a series in SI; those to be calibrated as they stand in the file."""
+    channels = _columns(series)
+    clock, form = series.time, series.format
+    return read_record(
+        series.file,
+        {name: channel.column for name, channel in channels.items()},
+        clock.column or None,
+        units={n: c.declared for n, c in channels.items() if c.declared is not None},
+        time_unit=clock.unit,
+        raw=[str(s.options.get("signal")) for s in series.clean if s.step == "calibrate"],
+        delimiter=form.delimiter,
+        decimal=form.decimal,
+        comment=form.comment,
+        every=clock.every,
+        where=series.where,
+        place=series.place,
+    )
+
+
+def _columns(series: Series) -> dict[str, Channel]:
+    """The channels that are columns of the file, by their names in the record."""
+    inputs = {f"input {name}": channel for name, channel in series.inputs.items()}
+    return {n: c for n, c in {**series.channels, **inputs}.items() if c.column}
+
+
+def _cleaned(series: Series, record: Record) -> Record:
+    """The record after the steps of `clean`."""
+    channels = _columns(series)
+    for step in series.clean:
+        options: dict[str, object] = dict(step.options)
+        try:
+            if step.step == "calibrate":
+                signal = str(options["signal"])
+                gain, offset = (
+                    cast(float, options.get(name, default))
+                    for name, default in (("gain", 1.0), ("offset", 0.0))
+                )
+                unit = channels[signal].declared or ""
+                record = record.calibrate(signal, gain, offset, unit)
+                continue
+            for name, option in STEPS[step.step].items():
+                if option.kind == "size" and name in options:
+                    factor = record.unit(str(options["signal"])).factor
+                    options[name] = cast(float, options[name]) * factor
+            record = record.clean(step.step, options)
+        except OptionError as error:
+            where = f"'{step.step}' of series '{series.name}'"
+            problems = [
+                replace(p, what=f"{where}: {p.what}", place=step.place) for p in error.problems
+            ]
+            raise DataError(problems) from None
+    return record
+
+
+def _sensor(channel: Channel, values: Mapping[str, float], factor: float) -> Sensor:
+    """What a channel's sensor does; `factor` puts an offset in the unit of the header into SI."""
+    free, numbers = {}, {}
+    for name in ("offset", "gain", "delay"):
+        given: Value | None = getattr(channel, name)
+        if given is None:
+            continue
+        own = factor if name == "offset" and not given.unit else 1.0
+        plain = all(symbol in CONSTANTS for symbol in names_of(given.formula))
+        value = evaluate(given.formula, values) * given.factor
+        numbers[name] = value * own if plain else value
+        if given.fit is not None:
+            free[name] = (given.fit[0] * own, given.fit[1] * own)
+    return Sensor(**numbers, free=free)
+
+
+def _check_size(series: Series, record: Record) -> None:
     problems = []
-    for name, values in signals.items():
-        largest = float(np.abs(values).max())
+    for name, channel in series.channels.items():
+        largest = float(np.abs(record.columns[name]).max())
         if largest > LARGEST:
             what = f"'{name}' of the series '{series.name}' reaches {largest:.3g}, too large to fit"
-            hint = f"Correct the column '{series.channels[name].column}', or its unit."
+            hint = f"Correct the column '{channel.column}', or its unit."
             problems.append(Problem(what, series.place, (), hint))
     if problems:
         raise DataError(problems)
 
 
-def _window(series: Series, read: Columns) -> NDArray[np.intp]:
-    low = -np.inf if series.begin is None else series.begin
-    high = np.inf if series.end is None else series.end
-    rows = np.flatnonzero((read.time >= low) & (read.time <= high))
+def _window(series: Series, record: Record, ends: tuple[float, float]) -> NDArray[np.intp]:
+    """The rows in a window; a sample at the common end of two windows belongs to the later."""
+    low, high = ends
+    inside = (record.t >= low) & (record.t <= high)
+    if any(begin == high for begin, _ in series.windows.values()):
+        inside &= record.t < high
+    rows = np.flatnonzero(inside)
     if len(rows) < 2:
         what = (
             f"the series '{series.name}' has {len(rows)} samples between {low:g} and {high:g} s; "
-            f"the file covers {read.time[0]:g} to {read.time[-1]:g} s"
+            f"the file covers {record.t[0]:g} to {record.t[-1]:g} s"
         )
-        raise DataError([Problem(what, series.place, (), "Correct `from` and `to`.")])
+        hint = "Correct the windows of `use`." if series.windows else "Correct `from` and `to`."
+        raise DataError([Problem(what, series.place, (), hint)])
     return rows
+
+
+def _or(value: float | None, default: float) -> float:
+    return default if value is None else value

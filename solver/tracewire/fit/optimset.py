@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.errors import OptionError, Problem, unknown
+from tracewire.fit.result import Comparison
 
 DISPLAYS = ("off", "notify", "final", "iter")
 PER_VARIABLE = re.compile(r"\s*(\d+)\s*\*\s*numberofvariables\s*", re.IGNORECASE)
@@ -21,12 +22,16 @@ PER_VARIABLE = re.compile(r"\s*(\d+)\s*\*\s*numberofvariables\s*", re.IGNORECASE
 
 @dataclass(frozen=True)
 class OptimValues:
-    """What an output function is told: evaluations and iterations so far, best value, last move."""
+    """What an output function is told: evaluations and iterations so far, best value, last move.
+
+    In a fit, `comparisons` simulates every series with the best values so far.
+    """
 
     funccount: int
     iteration: int
     fval: float
     procedure: str
+    comparisons: Callable[[], tuple[Comparison, ...]] | None = None
 
 
 OutputFunction: TypeAlias = Callable[[NDArray[np.float64], OptimValues, str], object]

@@ -1,15 +1,16 @@
-"""The result of a fit: values, standard errors, and every series beside the model."""
+"""The result of a fit: values, what the data say of them, and every series beside the model."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.fit.measured import Measured
+from tracewire.fit.uncertainty import Uncertainty
 
 Vector = NDArray[np.float64]
 
@@ -18,7 +19,8 @@ Vector = NDArray[np.float64]
 class Comparison:
     """One measured signal of one series beside the model before and after the fit.
 
-    `t` (N,) in s; `measured`, `before` and `after` (N,) in SI.
+    `t` (N,) in s; `measured`, `before` and `after` (N,) in SI; `counts` (N,) marks the samples that
+    the criterion counts. `period` is that of a signal compared modulo it, else 0.
     """
 
     series: str
@@ -29,28 +31,61 @@ class Comparison:
     measured: Vector
     before: Vector
     after: Vector
+    counts: NDArray[np.bool_]
+    period: float = 0.0
+    sigma: float | None = None
+
+    def residual(self, simulated: Vector) -> Vector:
+        """Measured - simulated (N,) in SI, of a periodic signal between - and + half a period."""
+        difference = self.measured - simulated
+        if self.period > 0:
+            difference = difference - self.period * np.round(difference / self.period)
+        return np.asarray(difference)
+
+    @property
+    def residual_before(self) -> Vector:
+        """Measured - simulated (N,) before the fit, in SI."""
+        return self.residual(self.before)
+
+    @property
+    def residual_after(self) -> Vector:
+        """Measured - simulated (N,) after the fit, in SI."""
+        return self.residual(self.after)
 
     @property
     def rmse_before(self) -> float:
-        """Root mean square error before the fit, in SI."""
-        return float(np.sqrt(np.mean((self.before - self.measured) ** 2)))
+        """Root mean square error before the fit, in SI, of the samples that count."""
+        return float(np.sqrt(np.mean(self.residual_before[self.counts] ** 2)))
 
     @property
     def rmse_after(self) -> float:
-        """Root mean square error after the fit, in SI."""
-        return float(np.sqrt(np.mean((self.after - self.measured) ** 2)))
+        """Root mean square error after the fit, in SI, of the samples that count."""
+        return float(np.sqrt(np.mean(self.residual_after[self.counts] ** 2)))
+
+
+@dataclass(frozen=True)
+class Improvement:
+    """A new best of a search: evaluations so far, its criterion, and the values by name in SI."""
+
+    evaluations: int
+    criterion: float
+    values: Mapping[str, float]
 
 
 @dataclass(frozen=True, eq=False)
 class Fit:
     """A fitted diagram.
 
-    `values` are the free parameters by name in SI (the offset of a sensor is `offset.SIGNAL`),
-    `began` what they were before, `errors` their standard errors (NaN where the data do not
-    determine them). `starts` holds the fitted start values by series and state. `criterion` is the
-    sum over series and signals of mean(residual^2)/2 of the train series, in SI, or in sigma where
-    these are declared. `exitflag` is 1 where the search converged, 0 where a limit ended it, -1
-    where an output function did.
+    `values` are the free parameters by name in SI (those of a sensor are `offset.SIGNAL`,
+    `gain.SIGNAL`, `delay.SIGNAL`), `began` what they were before. `starts` holds the fitted start
+    values by series and state. `criterion` is the sum over series and signals of
+    mean(residual^2)/2 of the train series, in SI, or in sigma where these are declared; with
+    weights and another loss where these are given. `evaluations` counts evaluations of the
+    criterion; one with sensitivities counts as one plus the number of free parameters. `history`
+    holds each new best of the search. `parameters` were given for the fit, `rtol` is that of its
+    runs. `exitflag` is 1 where the search converged, 0 where a limit ended it, -1 where an output
+    function or Ctrl-C did (`interrupted`). `uncertainty` is what the data say of the values,
+    `remarks` what a reader must know: runs that failed, series whose data are odd.
     """
 
     model: Model
@@ -58,7 +93,6 @@ class Fit:
     measured: tuple[Measured, ...]
     began: Mapping[str, float]
     values: Mapping[str, float]
-    errors: Mapping[str, float]
     bounds: Mapping[str, tuple[float, float]]
     starts: Mapping[str, Mapping[str, float]]
     criterion_before: float
@@ -69,3 +103,21 @@ class Fit:
     message: str
     seconds: float
     comparisons: tuple[Comparison, ...]
+    uncertainty: Uncertainty
+    history: tuple[Improvement, ...] = ()
+    seed: int = 0
+    loss: str = "linear"
+    parameters: Mapping[str, float] = field(default_factory=dict)
+    rtol: float = 1e-6
+    interrupted: bool = False
+    remarks: tuple[str, ...] = field(default_factory=tuple)
+
+    @property
+    def errors(self) -> Mapping[str, float]:
+        """Standard errors by name in SI; NaN where the data do not determine a value."""
+        return self.uncertainty.errors
+
+    @property
+    def intervals(self) -> Mapping[str, tuple[float, float]]:
+        """95 % intervals by name in SI; NaN where the data do not determine a value."""
+        return self.uncertainty.intervals

@@ -1,127 +1,238 @@
-"""The two ways to the minimum of a criterion: Scilab's simplex, and least squares."""
+"""What every method of a fit is given: the criterion, counted and watched, and its limits."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.fit.criterion import Criterion
-from tracewire.fit.descent import Descent, descend
-from tracewire.fit.fminsearch import fminsearch
-from tracewire.fit.optimset import OptimValues, Options, optimset
+from tracewire.errors import SimulationError
+from tracewire.fit.criterion import Criterion, half_square
+from tracewire.fit.optimset import OptimValues, Options
+from tracewire.fit.result import Comparison, Improvement
 
 Vector = NDArray[np.float64]
-GROWING = ((0.2, 6), (0.5, 6), (1.0, 20))
-"""Parts of each series and the most steps on them, for least squares."""
-LEAST_SAMPLES = 10
+Matrix = NDArray[np.float64]
+TOLD_EVERY = 0.1
 
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a fit is: evaluations of the model, best criterion, seconds spent and still to go.
+    """How far a fit is: evaluations of the criterion, best criterion and its values by name in SI,
+    seconds spent and still to go.
 
-    `remaining` is what the limits still allow; a search that converges is done before.
+    `remaining` is what the limits still allow; a search that converges is done before. `stage`
+    says in words what the method is at.
     """
 
     evaluations: int
     best: float
     seconds: float
     remaining: float
+    values: Mapping[str, float]
+    stage: str = ""
 
 
 @dataclass(frozen=True, eq=False)
 class Ended:
-    """Where a search ended, in scaled unknowns, and why."""
+    """Where a search ended, in scaled unknowns, and why.
+
+    A method that has cut the series into segments of its own gives their `criterion`, to which `z`
+    belongs then.
+    """
 
     z: Vector
     iterations: int
     exitflag: int
     message: str
+    criterion: Criterion | None = None
+    interrupted: bool = False
 
 
-def by_simplex(
-    criterion: Criterion, options: Options | None, progress: Callable[[Progress], None] | None
-) -> Ended:
-    """The minimum by `fminsearch`, on the values as the user knows them; infinite out of bounds."""
-    chosen = options or optimset(Display="off")
-    low, high = criterion.bounds()
-    first = criterion.begin() * criterion.scales
-    began = time.perf_counter()
+class Stopped(Exception):
+    """A search is over: a limit is reached (exit flag 0), or an output function says so (-1)."""
 
-    def fun(x: Vector) -> float:
-        z = x / criterion.scales
-        return criterion.value(z) if np.all((z >= low) & (z <= high)) else np.inf
-
-    def report(x: Vector, values: OptimValues, state: str) -> bool:
-        if progress is not None and state == "iter":
-            share = max(
-                values.funccount / chosen.evaluations(len(first)),
-                values.iteration / chosen.iterations(len(first)),
-            )
-            progress(_progress(criterion, values.fval, share, began))
-        return False
-
-    watched = replace(chosen, OutputFcn=[*chosen.output_functions(), report])
-    found = fminsearch(fun, first, watched)
-    z = np.clip(np.asarray(found.x) / criterion.scales, low, high)
-    return Ended(z, found.output.iterations, found.exitflag, found.output.message)
+    def __init__(self, exitflag: int, message: str) -> None:
+        super().__init__(message)
+        self.exitflag, self.message = exitflag, message
 
 
-def by_least_squares(criterion: Criterion, progress: Callable[[Progress], None] | None) -> Ended:
-    """Least squares over a growing part of each series, so that long records do not lead astray.
+class Search:
+    """A criterion as a method sees it: every evaluation is counted, the best is remembered,
+    progress is told, limits end it.
 
-    Where they did, the whole series are tried from the start.
+    `begin` are the scaled unknowns to begin with, `units` the sizes in which tolerances of the
+    simplex are meant (1 is SI), `seed` what random numbers are made from,
+    `options` those of optimset (limits hold for every method, tolerances for the simplex),
+    `resumed` what the same method has kept in a saved file. A method calls `vector`, `both` or
+    `value`, `iterated` after each of its iterations, and `keep` with what it needs to go on.
     """
-    began = time.perf_counter()
-    allowed = sum(most for _, most in GROWING)
-    first = z = criterion.begin()
-    before = criterion.value(first)
-    taken = 0
 
-    def descended(stage: Criterion, begin: Vector, steps: int, tolerance: float) -> Descent:
-        best, earlier = np.inf, criterion.evaluations if stage is not criterion else 0
+    def __init__(
+        self,
+        criterion: Criterion,
+        options: Options,
+        seed: int = 0,
+        begin: Vector | None = None,
+        units: Vector | None = None,
+        resumed: Mapping[str, Any] | None = None,
+        progress: Callable[[Progress], None] | None = None,
+        kept: Callable[[Search, bool], None] | None = None,
+        comparisons: Callable[[Vector], tuple[Comparison, ...]] | None = None,
+    ) -> None:
+        self.criterion, self.options, self.seed = criterion, options, seed
+        self.begin = criterion.begin() if begin is None else begin
+        self.units = np.ones(len(self.begin)) if units is None else units
+        self.low, self.high = criterion.bounds()
+        self.resumed: Mapping[str, Any] = resumed or {}
+        self.state: Mapping[str, Any] = self.resumed
+        self.best, self.best_value = self.begin, np.inf
+        self.iterations = 0
+        self.stage = ""
+        self.history: list[Improvement] = []
+        self._progress, self._kept, self._comparisons = progress, kept, comparisons
+        self._began, self._told, self._share = time.perf_counter(), -np.inf, 0.0
 
-        def told(value: float) -> None:
-            nonlocal best, taken
-            best, taken = min(best, value), taken + 1
-            if progress is not None:
-                now = _progress(stage, best, min(taken / allowed, 1.0), began)
-                progress(replace(now, evaluations=earlier + stage.evaluations))
+    # --- what a method calls ----------------------------------------------------------------------
 
-        return descend(stage, _mean_square, steps, tolerance, begin, told)
+    @property
+    def size(self) -> int:
+        """The number of unknowns, free starts among them."""
+        return len(self.begin)
 
-    for part, steps in GROWING[:-1]:
-        stage = _shortened(criterion, part)
-        z = descended(stage, z, steps, 1e-2).z
-        criterion.evaluations += stage.evaluations
-    steps = GROWING[-1][1]
-    ended = descended(criterion, z, steps, 1e-5)
-    if ended.after > 0.5 * before:
-        again = descended(criterion, first, steps, 1e-5)
-        ended = again if again.after < ended.after else ended
-    message = "converged" if ended.converged else f"stopped at the limit of {steps} steps"
-    return Ended(ended.z, taken, int(ended.converged), message)
+    def rng(self, *path: int) -> np.random.Generator:
+        """Random numbers of a part of the search, the same whenever it is done."""
+        return np.random.default_rng([self.seed, *path])
+
+    def bounds(self) -> tuple[Vector, Vector]:
+        """The scaled bounds."""
+        return self.low, self.high
+
+    def folded(self, z: Vector) -> Vector:
+        """Unknowns reflected at their bounds until they are inside.
+
+        The identity inside, so that a search that keeps away from bounds does not notice them.
+        """
+        inside = np.where(z < self.low, 2 * self.low - z, z)
+        inside = np.where(inside > self.high, 2 * self.high - inside, inside)
+        return np.asarray(np.clip(inside, self.low, self.high))
+
+    def value(self, z: Vector) -> float:
+        """The criterion, and where it is the best so far remembered."""
+        return half_square(self.vector(z))
+
+    def vector(self, z: Vector) -> Vector:
+        """What the criterion squares (M,)."""
+        self.refuse_more()
+        found = self.criterion.vector(z)
+        self.notice(z, half_square(found))
+        return found
+
+    def both(self, z: Vector) -> tuple[Vector, Matrix]:
+        """`vector` (M,) and its derivatives (M, n), by forward sensitivities."""
+        self.refuse_more()
+        found, matrix = self.criterion.both(z)
+        self.notice(z, half_square(found))
+        return found, matrix
+
+    def notice(self, z: Vector, value: float) -> None:
+        """Remember a point where it is the best so far, and tell progress."""
+        if value < self.best_value:
+            self.best, self.best_value = z.copy(), value
+            named, _ = self.criterion.split(z)
+            self.history.append(Improvement(self.criterion.evaluations, value, named))
+        now = time.perf_counter()
+        if now - self._told > TOLD_EVERY:
+            self._told = now
+            self._save(last=False)
+            if self._progress is not None:
+                self._progress(self.progress())
+
+    def refuse_more(self) -> None:
+        """Raises Stopped where no evaluation is left; for those that a method makes elsewhere."""
+        limit = self.options.evaluations(self.size)
+        if self.criterion.evaluations >= limit:
+            raise Stopped(0, f"stopped at the limit of evaluations: MaxFunEvals is {limit:g}")
+
+    def tell(self, share: float, stage: str = "") -> None:
+        """How much of what the limits allow is done, 0 to 1, and what the method is at."""
+        self._share, self.stage = float(np.clip(share, 0.0, 1.0)), stage
+
+    def keep(self, state: Mapping[str, Any]) -> None:
+        """What is needed to go on from here: numbers, texts, lists and mappings of these."""
+        self.state = state
+
+    def iterated(self, z: Vector, value: float, procedure: str = "") -> None:
+        """Count an iteration of the method, and ask the output functions of the options.
+
+        Raises Stopped where the limit of iterations is reached, or one of them wants to stop.
+        """
+        self.iterations += 1
+        self._announce(z, value, "iter", procedure)
+        if self.iterations >= self.options.iterations(self.size):
+            limit = self.options.iterations(self.size)
+            raise Stopped(0, f"stopped at the limit of iterations: MaxIter is {limit:g}")
+
+    def with_comparisons(self, values: OptimValues) -> OptimValues:
+        """What an output function is told, with every series beside the best model so far."""
+        make = self._comparisons
+        return values if make is None else replace(values, comparisons=lambda: make(self.best))
+
+    # --- what `fit` calls -------------------------------------------------------------------------
+
+    def announce(self, state: str) -> None:
+        """Tell the output functions of the options that the search begins or ends.
+
+        Raises Stopped where one of them wants to stop.
+        """
+        self._announce(self.best, self.best_value, state)
+
+    def progress(self) -> Progress:
+        """How far the search is."""
+        spent = time.perf_counter() - self._began
+        used = self.criterion.evaluations / self.options.evaluations(self.size)
+        share = min(max(self._share, used), 1.0)
+        remaining = spent * (1 / share - 1) if share > 0 else np.inf
+        named, _ = self.criterion.split(self.best)
+        return Progress(
+            self.criterion.evaluations, self.best_value, spent, remaining, named, self.stage
+        )
+
+    def finish(self) -> None:
+        """Store the last state, and tell that it is done."""
+        self._save(last=True)
+        self.tell(1.0, self.stage)
+        if self._progress is not None:
+            self._progress(self.progress())
+
+    def _announce(self, z: Vector, value: float, state: str, procedure: str = "") -> None:
+        values = OptimValues(self.criterion.evaluations, self.iterations, value, procedure)
+        values = self.with_comparisons(values)
+        x = z * self.criterion.scales
+        answers = [function(x, values, state) for function in self._functions()]  # all are asked
+        if any(map(bool, answers)):
+            raise Stopped(-1, "stopped by an output function")
+
+    def _functions(self) -> list[Callable[..., object]]:
+        plots = [_without_answer(f) for f in self.options.plot_functions()]
+        return [*self.options.output_functions(), *plots]
+
+    def _save(self, last: bool) -> None:
+        if self._kept is not None:
+            self._kept(self, last)
+
+    @property
+    def failure(self) -> SimulationError | None:
+        """The last run that failed."""
+        return self.criterion.failure
 
 
-def _shortened(criterion: Criterion, part: float) -> Criterion:
-    """The criterion on the first part of each of its segments."""
-    segments = [
-        replace(s, rows=s.rows[: max(int(len(s.rows) * part), LEAST_SAMPLES)])
-        for s in criterion.segments
-    ]
-    return criterion.on(segments)
+def _without_answer(function: Callable[..., object]) -> Callable[..., object]:
+    def called(*arguments: object) -> None:
+        function(*arguments)
 
-
-def _mean_square(count: int) -> float:
-    """The weight of a residual by which half the sum of squares is the criterion."""
-    return float(1 / np.sqrt(count))
-
-
-def _progress(criterion: Criterion, best: float, share: float, began: float) -> Progress:
-    spent = time.perf_counter() - began
-    remaining = spent * (1 / share - 1) if share > 0 else np.inf
-    return Progress(criterion.evaluations, best, spent, max(remaining, 0.0))
+    return called

@@ -6,8 +6,8 @@ import numpy as np
 
 from tracewire.compile import Model
 from tracewire.errors import OptionError, unknown
-from tracewire.fit.criterion import Segment
 from tracewire.fit.measured import Measured
+from tracewire.fit.segment import Segment
 from tracewire.formula import Name, evaluate
 from tracewire.solve import parameter_values
 
@@ -31,8 +31,9 @@ def start_from_data(model: Model, measured: Measured, row: int) -> dict[str, flo
     for name, values in measured.values.items():
         if name not in states:
             continue
-        offset = measured.offset.get(name, 0.0)
-        quartic = np.polynomial.Polynomial.fit(t / width, values[rows] - offset, degree)
+        sensor = measured.sensor(name)
+        signal = (values[rows] - sensor.offset) / (sensor.gain or 1.0)
+        quartic = np.polynomial.Polynomial.fit((t - sensor.delay) / width, signal, degree)
         found[name] = float(quartic(0.0))
         rate = states[name].rate
         if isinstance(rate, Name) and rate.name in states and rate.name not in measured.values:
@@ -49,7 +50,7 @@ def whole_segment(model: Model, measured: Measured) -> Segment:
     problems = [unknown("state", n, model.states) for n in measured.start if n not in model.states]
     if problems:
         raise OptionError(problems)
-    rows = np.arange(len(measured.t))
+    rows = np.flatnonzero(measured.t >= measured.counts_from)
     values = parameter_values(model, {}, measured.preset)
     if not measured.start:
         begin = float(evaluate(model.flat.span[0], values))

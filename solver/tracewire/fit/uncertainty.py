@@ -2,39 +2,280 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import stdtrit
 
+from tracewire.fit.combinations import Direction, Point, described, followers
 from tracewire.fit.criterion import Criterion
+from tracewire.fit.identify import Known, flat_directions
+from tracewire.fit.loss import LOSSES
+from tracewire.fit.noise import degrees_of, noise_in, noises_of
 
 Vector = NDArray[np.float64]
-WEAK = 1e-7
-"""Directions that weigh less than this part of the strongest are within the differences' error."""
+Matrix = NDArray[np.float64]
+
+AT_BOUND = 1e-6
+"""Part of the width between bounds within which a value sits on one."""
+UNMOVED = 10.0
+"""Relative standard error of a parameter, all others known, from which the data do not move it."""
 
 
-def standard_errors(criterion: Criterion, z: Vector) -> Vector:
-    """Standard errors of the scaled unknowns z (n,), in SI; NaN where the data determine none.
+@dataclass(frozen=True, eq=False)
+class Uncertainty:
+    """What the data say of the fitted values `names` (n,), in SI.
 
-    The minimum of the criterion moves by P w e when the data move by e: w = 1/sqrt(N of the
-    segment), P the pseudo-inverse of w J, J = d residual / d z by central differences. The noise e
-    is taken as independent, with the mean square per degree of freedom of each signal and segment;
-    where residuals are correlated the errors are too small. For one series and one signal this is
-    the textbook's s^2 (J'J)^-1.
+    `covariance` (n, n) is NaN where the data do not determine a value or it sits on a bound.
+    `degrees` are those of freedom of the residual, `quantile` Student's for 95 %. `orders` tells
+    of each (series, signal) the order of the autoregression of its residual, 0 where white.
+    `at_bounds` are values on a bound, `unmoved` parameters that the data do not depend on,
+    `directions` combinations that these do not determine; `words` say all this in sentences.
     """
-    residuals = criterion.residuals(z)
-    matrices = criterion.derivatives(z, residuals, central=True)
-    weights = [1 / np.sqrt(len(r)) for r in residuals]
-    jacobian = np.concatenate([w * m for w, m in zip(weights, matrices, strict=True)])
+
+    names: tuple[str, ...]
+    values: Vector
+    covariance: Matrix
+    degrees: int = 0
+    quantile: float = 1.96
+    orders: Mapping[tuple[str, str], int] = field(default_factory=dict)
+    at_bounds: tuple[str, ...] = ()
+    unmoved: tuple[str, ...] = ()
+    directions: tuple[Direction, ...] = ()
+    words: tuple[str, ...] = ()
+
+    @property
+    def errors(self) -> dict[str, float]:
+        """Standard errors by name; NaN where the data do not determine a value."""
+        return dict(zip(self.names, np.sqrt(np.diag(self.covariance)).tolist(), strict=True))
+
+    @property
+    def intervals(self) -> dict[str, tuple[float, float]]:
+        """95 % intervals by name; NaN where the data do not determine a value."""
+        half = self.quantile * np.sqrt(np.diag(self.covariance))
+        ends = zip((self.values - half).tolist(), (self.values + half).tolist(), strict=True)
+        return dict(zip(self.names, ends, strict=True))
+
+    @property
+    def correlation(self) -> Matrix:
+        """The correlation of the values (n, n); NaN where the data do not determine one."""
+        errors = np.sqrt(np.diag(self.covariance))
+        sizes = np.where(errors > 0, errors, np.nan)
+        return np.asarray(self.covariance / np.outer(sizes, sizes))
+
+
+@dataclass(frozen=True, eq=False)
+class Columns:
+    """The unknowns of a fit (n,), in SI: parameters and sensors first, then free start values.
+
+    `count` are the parameters and sensors. `sizes` are those by which unknowns were scaled.
+    """
+
+    names: tuple[str, ...]
+    count: int
+    values: Vector
+    sizes: Vector
+    low: Vector
+    high: Vector
+
+
+def uncertainty_of(
+    criterion: Criterion,
+    z: Vector,
+    residuals: Sequence[Matrix],
+    derivatives: Sequence[Matrix],
+    correlated: bool = True,
+) -> Uncertainty:
+    """What the data say of scaled unknowns z (n,) at the minimum of a criterion.
+
+    See `uncertainty_from`. With a robust loss rho the residual is replaced by psi/mean(psi'), psi =
+    rho'/2; then the covariance is that of an M-estimator (Huber, Annals of Statistics 1, 1973).
+    """
+    unknowns, segments = criterion.unknowns, criterion.segments
+    low, high = criterion.bounds()
+    series = {segment.measured.name for segment in segments}
+    names = [unknown.name for unknown in unknowns]
+    for segment in segments:
+        where = f" of {segment.measured.name}" if len(series) > 1 else ""
+        names += [f"start.{state}{where}" for state in segment.free]
+    columns = Columns(
+        tuple(names),
+        len(unknowns),
+        z * criterion.scales,
+        criterion.scales,
+        low * criterion.scales,
+        high * criterion.scales,
+    )
+    return uncertainty_from(
+        [_pseudo(r, criterion.loss) for r in residuals],
+        derivatives,
+        [criterion.weights(n) for n in range(len(segments))],
+        [(segment.measured.name, segment.signals) for segment in segments],
+        columns,
+        correlated=correlated,
+        accuracy=max(1e-6, criterion.rtol),
+        value=lambda values: criterion.value(values / criterion.scales),
+    )
+
+
+def _pseudo(residual: Matrix, loss: str) -> Matrix:
+    if loss == "linear":
+        return residual
+    step = 1e-4
+
+    def psi(r: Matrix) -> Matrix:
+        seen = LOSSES[loss](r)
+        return seen.residual * seen.slope
+
+    slope = (psi(residual + step) - psi(residual - step)) / (2 * step)
+    return np.asarray(psi(residual) / np.maximum(np.mean(slope, axis=0), 1e-3))
+
+
+def uncertainty_from(
+    residuals: Sequence[Matrix],
+    derivatives: Sequence[Matrix],
+    weights: Sequence[Matrix],
+    channels: Sequence[tuple[str, Sequence[str]]],
+    columns: Columns,
+    *,
+    correlated: bool = True,
+    accuracy: float = 1e-6,
+    value: Callable[[Vector], float] | None = None,
+) -> Uncertainty:
+    """What the data say of fitted values, from residuals and derivatives of each segment.
+
+    residuals (N, signals); derivatives (N*signals, n): d residual/d (unknown/size); weights that
+    broadcast to (N, signals): the criterion is the sum of (weight*residual)^2/2. channels: series
+    and signals of each segment.
+
+    To first order the minimum moves by -P w e when the data move by e, P the pseudo-inverse of
+    w J. So the covariance is P w S w P' (White, Econometrica 48, 1980; with autocorrelation
+    Newey and West, Econometrica 55, 1987), S the covariance of the noise: for each series and
+    signal sum(r^2)/N * M/(M - n), M all samples, times its autocorrelation. This is white or,
+    where BIC asks for one, that of an autoregression (see `noise_of`); never one with
+    `correlated=False`. For one series and one signal of white noise it is the textbook's
+    s^2 (J'J)^-1 with N - n degrees of freedom. Correlation divides these by sum rho_k^2. Samples
+    count by index: uneven sampling spoils the autoregression, no more.
+
+    A value on a bound is held: it has no error, and those of the others suppose that it stays.
+    Parameters that the data leave open (see `flat_directions`) have none either, nor have those
+    that move with them by more than a tenth of what they do; the errors of the others suppose them
+    known to 100 % of their values (one standard deviation). `accuracy` is the relative
+    error of the derivatives. `value` is the criterion at values (n,) in SI; it is asked only where
+    a sum and a product of parameters look alike.
+    """
+    names, values, sizes = columns.names, columns.values, columns.sizes
+    sizes = np.maximum(np.abs(values), sizes)
+    weighted = [np.broadcast_to(w, r.shape) for w, r in zip(weights, residuals, strict=True)]
+    matrix = np.concatenate(
+        [w.reshape(-1, 1) * m for w, m in zip(weighted, derivatives, strict=True)]
+    ) * (sizes / columns.sizes)
+    at_bound = _on_bounds(columns)
+    lengths = np.linalg.norm(matrix, axis=0)
+    moving = lengths > 1e-12 * lengths.max(initial=0.0)
+    free = np.flatnonzero(moving & ~at_bound).tolist()
     samples = sum(r.size for r in residuals)
-    levels = [
-        np.broadcast_to(w * np.sqrt(np.mean(r**2, axis=0)), r.shape).ravel()
-        for w, r in zip(weights, residuals, strict=True)
-    ]
-    spread = np.concatenate(levels) * np.sqrt(samples / max(samples - len(z), 1))
-    left, singular, directions = np.linalg.svd(jacobian, full_matrices=False)
-    weak = singular <= WEAK * singular.max(initial=0.0)
-    inverse = np.divide(1.0, singular, out=np.zeros_like(singular), where=~weak)
-    response = (directions.T * inverse) @ (left.T * spread)
-    errors = np.sqrt(np.sum(response**2, axis=1)) * criterion.scales
-    errors[(np.abs(directions[weak]) > 0.1).any(axis=0)] = np.nan
-    return np.asarray(errors)
+    noises = noises_of(residuals, correlated, samples / max(samples - len(free), 1))
+    basis, response = np.linalg.qr(matrix)
+    noise = noise_in(basis, weighted, noises)
+    alone = np.array([_error_alone(response[:, j], noise) for j in range(len(names))])
+    unmoved = ~moving | (alone > UNMOVED)
+    active = [j for j in free if not unmoved[j]]
+    known = Known(response, noise, accuracy)
+    relative = np.where(values, np.abs(values) / sizes, 1.0)
+    flats, missing = flat_directions(known, active, columns.count, relative)
+    point = Point(names, values, sizes, value)
+    directions, words = described(flats, missing, point)
+    covariance = np.full((len(names), len(names)), np.nan)
+    kept = [j for j in active if j not in missing | followers(flats, missing)]
+    if kept:
+        found = _covariance(known, active, missing) * np.outer(sizes[active], sizes[active])
+        rows = [active.index(j) for j in kept]
+        covariance[np.ix_(kept, kept)] = found[np.ix_(rows, rows)]
+    degrees = degrees_of(residuals, noises, len(free))
+    first = slice(0, columns.count)
+    bounds = tuple(n for n, on in zip(names[first], at_bound[first], strict=True) if on)
+    still = tuple(n for n, un in zip(names[first], (unmoved & ~at_bound)[first], strict=True) if un)
+    return Uncertainty(
+        names[first],
+        values[first],
+        covariance[first, first],
+        degrees,
+        float(stdtrit(degrees, 0.975)),
+        {
+            (series, signal): noise.order
+            for (series, signals), row in zip(channels, noises, strict=True)
+            for signal, noise in zip(signals, row, strict=True)
+        },
+        bounds,
+        still,
+        directions,
+        (*words, *(_on_bound_words(n, columns) for n in bounds), *map(_still_words, still)),
+    )
+
+
+def criterion_unit(
+    criterion: Criterion,
+    residuals: Sequence[Matrix],
+    derivatives: Sequence[Matrix],
+    one: int,
+    correlated: bool,
+) -> tuple[float, float]:
+    """By how much a criterion rises where -2 log likelihood does by 1, as one unknown moves.
+
+    Also the standard error of that scaled unknown. To first order the unknown moves by -a e when
+    the weighted data move by e, so half a'a over a' S a of a rise of 1.
+    """
+    weights = [criterion.weights(n) for n in range(len(residuals))]
+    matrix = np.concatenate(
+        [w.reshape(-1, 1) * m for w, m in zip(weights, derivatives, strict=True)]
+    )
+    samples = sum(r.size for r in residuals)
+    seen = [_pseudo(r, criterion.loss) for r in residuals]
+    noises = noises_of(seen, correlated, samples / max(samples - matrix.shape[1], 1))
+    basis, response = np.linalg.qr(matrix)
+    noise = noise_in(basis, weights, noises)
+    answer = np.linalg.pinv(response, rcond=1e-6)[one]
+    variance = float(answer @ noise @ answer)
+    return 0.5 * variance / float(answer @ answer), variance**0.5
+
+
+def _on_bounds(columns: Columns) -> NDArray[np.bool_]:
+    width = columns.high - columns.low
+    size = np.maximum(np.abs(columns.values), columns.sizes)
+    near = AT_BOUND * np.where(np.isfinite(width), width, size)
+    inside = (columns.values - columns.low > near) & (columns.high - columns.values > near)
+    return np.asarray(~inside)
+
+
+def _error_alone(response: Vector, noise: Matrix) -> float:
+    """The relative standard error of a parameter if all others were known."""
+    square = float(response @ response)
+    return float(np.sqrt(response @ noise @ response)) / square if square > 0 else np.inf
+
+
+def _covariance(known: Known, active: Sequence[int], missing: set[int]) -> Matrix:
+    """Of relative changes; those that are missing are supposed to be known to 100 %."""
+    if not missing:
+        return known.covariance(active)
+    supposed = np.diag([1.0 if j in missing else 0.0 for j in active])
+    return np.asarray(np.linalg.inv(known.information(active) + supposed))
+
+
+def _on_bound_words(name: str, columns: Columns) -> str:
+    j = columns.names.index(name)
+    value, low, high = columns.values[j], columns.low[j], columns.high[j]
+    side, bound = ("lower", low) if abs(value - low) <= abs(high - value) else ("upper", high)
+    return (
+        f"{name} sits on its {side} bound {bound:g} (SI): it has no error, and the errors of the "
+        "others suppose that it stays there"
+    )
+
+
+def _still_words(name: str) -> str:
+    return (
+        f"{name}: the data do not depend on it, or so little that a change by its whole size "
+        f"counts less than a tenth of its error; fix {name}, or measure something that it moves"
+    )

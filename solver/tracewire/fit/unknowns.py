@@ -1,4 +1,4 @@
-"""What a fit may change: parameters with bounds, and offsets of sensors."""
+"""What a fit may change: parameters with bounds, and offsets, gains and delays of sensors."""
 
 from __future__ import annotations
 
@@ -8,8 +8,11 @@ import numpy as np
 
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, unknown
-from tracewire.fit.criterion import Unknown
 from tracewire.fit.measured import Measured
+from tracewire.fit.segment import Unknown
+
+TINY = 1e-6
+"""Of the width between its bounds: a value closer to zero says nothing of its size."""
 
 
 def free_unknowns(
@@ -18,14 +21,11 @@ def free_unknowns(
     """The parameters that a fit may change, begun at `values`: those with `fit:` bounds, or those
     that `free` names.
 
-    Raises OptionError: none is free, a name does not exist, a start outside the bounds.
+    Raises OptionError: a name does not exist, a start outside the bounds.
     """
     flat = model.flat
     names = [n for n, p in flat.parameters.items() if p.fit is not None] if free is None else free
     problems = [unknown("parameter", n, flat.parameters) for n in names if n not in flat.parameters]
-    if not names:
-        hint = "Give a parameter bounds, as in k: {value: 1, fit: [0, 10]}, or name it as free."
-        problems.append(Problem("no parameter of the diagram is free", hint=hint))
     if problems:
         raise OptionError(problems)
     unknowns = []
@@ -36,20 +36,65 @@ def free_unknowns(
             what = f"'{name}' begins at {value:g}, outside its bounds {low:g} to {high:g} (SI)"
             hint = "Begin inside them, or widen `fit:`."
             problems.append(Problem(what, parameter.place, hint=hint))
-        width = high - low if np.isfinite(high - low) else 1.0
-        unknowns.append(Unknown(name, value, low, high, abs(value) or 0.1 * width))
+        width = high - low if np.isfinite(high - low) else 0.0
+        size = max(abs(value), TINY * width) if value else 0.1 * (width or 1.0)
+        unknowns.append(Unknown(name, value, low, high, size))
     if problems:
         raise OptionError(problems)
     return unknowns
 
 
-def offset_unknowns(measured: Sequence[Measured]) -> list[Unknown]:
-    """The free offsets of sensors, one for each signal, begun at the first series' offset."""
+def sensor_unknowns(measured: Sequence[Measured]) -> list[Unknown]:
+    """The free offsets, gains and delays of sensors, one for each signal, named `offset.SIGNAL`.
+
+    They begin at those of the first series that has them.
+    """
     found: dict[str, Unknown] = {}
     for series in measured:
-        for signal, (low, high) in series.free_offsets.items():
-            scale = max(float(np.std(series.values[signal])) * 0.1, 1e-12)
-            name = f"offset.{signal}"
-            value = series.offset.get(signal, 0.0)
-            found.setdefault(name, Unknown(name, value, low, high, scale))
+        for signal, sensor in series.sensors.items():
+            sizes = {
+                "offset": max(float(np.std(series.values[signal])) * 0.1, 1e-12),
+                "gain": max(abs(sensor.gain), 1e-3),
+                "delay": float(np.median(np.diff(series.t))),
+            }
+            for kind, (low, high) in sensor.free.items():
+                name = f"{kind}.{signal}"
+                value = float(getattr(sensor, kind))
+                found.setdefault(name, Unknown(name, value, low, high, sizes[kind]))
     return list(found.values())
+
+
+def chosen_unknowns(
+    model: Model,
+    measured: Sequence[Measured],
+    values: Mapping[str, float],
+    free: Sequence[str] | None,
+    fixed: Sequence[str],
+) -> list[Unknown]:
+    """What a fit of some series may change: all that is free in the diagram, or what `free` names,
+    without what `fixed` names.
+
+    Raises OptionError: nothing is free, a name does not exist, a start outside the bounds.
+    """
+    sensors = {u.name: u for u in sensor_unknowns(measured)}
+    known = [*model.flat.parameters, *sensors]
+    problems = [
+        unknown("parameter", name, known)
+        for name in dict.fromkeys([*(free or ()), *fixed])
+        if name not in known
+    ]
+    if problems:
+        raise OptionError(problems)
+    own = None if free is None else [name for name in free if name not in sensors]
+    if own is None:
+        own = [n for n, p in model.flat.parameters.items() if p.fit is not None]
+    found = free_unknowns(model, [name for name in own if name not in fixed], values)
+    found += [
+        sensor
+        for name, sensor in sensors.items()
+        if name not in fixed and (free is None or name in free)
+    ]
+    if not found:
+        hint = "Give a parameter bounds, as in k: {value: 1, fit: [0, 10]}, or name it as free."
+        raise OptionError([Problem("no parameter of the diagram is free", hint=hint)])
+    return found

@@ -19,6 +19,8 @@ SYMBOL = r"(?:kg|mol|cd|rad|sr|Hz|Pa|Wb|Ohm|m|s|A|K|N|J|W|C|V|F|S|T|H)"
 POWER = r"(?:\s*(?:\^|\*\*)\s*[+-]?\d{1,2}(?:\.\d{1,2})?)"
 COHERENT = re.compile(rf"(?:1|{SYMBOL}{POWER}?)(?:(?:\s*[*/]\s*|\s+){SYMBOL}{POWER}?)*")
 """Products and quotients of coherent SI units: their factor is 1, and they need no unit library."""
+TORQUE = re.compile(r"\b([kmuµμn]?N)m\b")
+"""`Nm` and `mNm`, as headers of files have it; the unit library takes it for a number of metres."""
 WELL_FORMED = re.compile(rf"(?:1(?!\d)|[^\W\d]++{POWER}?|[°%]|[()\s]|\){POWER}|[*/](?!\*))+")
 """Units and whole powers only: the unit library works out any number, such as 9**9**9, for ever."""
 
@@ -69,6 +71,7 @@ def read_unit(text: str, place: Place = Place()) -> Unit:
     try:
         if len(text) > MOST_CHARACTERS:
             raise ValueError("length")
+        text = TORQUE.sub(r"\1 m", text)
         if COHERENT.fullmatch(text.strip()):
             return Unit(text.strip(), 1.0)
         if not WELL_FORMED.fullmatch(text):
@@ -86,5 +89,6 @@ def same_quantity(one: str, other: str) -> bool:
     """
     for text in (one, other):
         read_unit(text)
-    first, second = (_registry().parse_units(text.strip() or "1") for text in (one, other))
+    both = (TORQUE.sub(r"\1 m", text).strip() or "1" for text in (one, other))
+    first, second = (_registry().parse_units(text) for text in both)
     return bool(first.is_compatible_with(second))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,12 +13,14 @@ from tracewire.errors import OptionError, Problem
 from tracewire.show.style import (
     AFTER,
     BEFORE,
-    MEASURED,
     QUIET,
     USES,
+    align_ylabels,
+    dots,
     fit_time,
     panels,
     save,
+    shortened,
     styled,
     with_unit,
 )
@@ -50,14 +52,14 @@ def plot_fit(
         raise OptionError(
             [Problem(what, hint="Give at least one series, and one unit or one each.")]
         )
-    title = _shortened(title, len(table))
+    title = shortened(title, len(table), MOST_SERIES, "series")
     table = table[:MOST_SERIES]
     with styled():
         figure, axes = panels([2.3, 1.0] * len(table), title, sharex=False)
         for n, ((name, columns), shown) in enumerate(zip(table, units, strict=False)):
             t, measured, before, after = columns
             upper, lower = axes[2 * n], axes[2 * n + 1]
-            points = _points(len(t))
+            points = dots(len(t))
             upper.plot(t, measured, label="measured", **points)
             # the dashes above the line: both are seen where they agree
             upper.plot(t, before, "--", color=BEFORE, linewidth=1.1, zorder=3, label="before")
@@ -83,7 +85,7 @@ def plot_fit(
             fit_time(upper, t)
             fit_time(lower, t)
         axes[-1].set_xlabel("t [s]")
-        figure.align_ylabels(axes)
+        align_ylabels(axes)
         return save(figure, path)
 
 
@@ -106,7 +108,7 @@ def plot_residual(
     if not table:
         what = "a figure of no series cannot be drawn"
         raise OptionError([Problem(what, hint="Give at least one series.")])
-    title = _shortened(title, len(table))
+    title = shortened(title, len(table), MOST_SERIES, "series")
     table = table[:MOST_SERIES]
     found = windows or {}
     with styled():
@@ -128,7 +130,7 @@ def plot_residual(
             used = list(dict.fromkeys(use for _, _, use in found.get(name, ())))
             _legend(panel, used)
         axes[-1].set_xlabel("t [s]")
-        figure.align_ylabels(axes)
+        align_ylabels(axes)
         return save(figure, path)
 
 
@@ -158,21 +160,5 @@ def _columns(name: str, arrays: Sequence[ArrayLike]) -> list[Vector]:
     return columns
 
 
-def _points(count: int) -> dict[str, Any]:
-    """Dots that are seen where there are few, and do not hide the lines where there are many."""
-    return {
-        "color": MEASURED,
-        "linestyle": "",
-        "marker": ".",
-        "markersize": float(np.clip(60 / np.sqrt(count), 1.5, 5)),
-        "alpha": 0.6,
-    }
-
-
 def _rms(values: Vector) -> float:
     return float(np.sqrt(np.mean(values**2)))
-
-
-def _shortened(title: str, count: int) -> str:
-    more = f"(the first {MOST_SERIES} of {count} series)" if count > MOST_SERIES else ""
-    return " ".join(part for part in (title, more) if part)

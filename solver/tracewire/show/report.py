@@ -2,18 +2,34 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
-from tracewire.fit import Comparison, Fit
+from tracewire.fit import Fit
+from tracewire.fit.profile import Profile
 from tracewire.show.document import Figure, Report, Section
 from tracewire.show.figures import plot_run
 from tracewire.show.fit_figures import plot_fit, plot_residual
+from tracewire.show.fit_report import fit_report
+from tracewire.show.fit_tables import fit_tables, fit_text, fit_words
 from tracewire.show.summary import Table, shown
 from tracewire.solve import Run
 from tracewire.trace import Found
+
+__all__ = [
+    "effects_table",
+    "fit_tables",
+    "fit_text",
+    "fit_words",
+    "moved_table",
+    "plot_held_out",
+    "plot_left",
+    "ranking_table",
+    "report",
+    "trace_text",
+]
 
 VERDICTS = {
     "effect": "The diagram lacks something, and the data name it.",
@@ -29,11 +45,14 @@ RANKING = (
 )
 
 
-def report(subject: Run | Fit | Found) -> Report:
-    """The report of a run, a fit or a trace; `report(...).write("report.html")` writes it."""
+def report(subject: Run | Fit | Found, profiles: Sequence[Profile] = ()) -> Report:
+    """The report of a run, a fit or a trace; `report(...).write("report.html")` writes it.
+
+    `profiles` are profile likelihoods of the fit, where they were computed.
+    """
     if isinstance(subject, Run):
         return _of_run(subject)
-    return _of_fit(subject) if isinstance(subject, Fit) else _of_trace(subject)
+    return fit_report(subject, profiles) if isinstance(subject, Fit) else _of_trace(subject)
 
 
 def _of_run(run: Run) -> Report:
@@ -42,99 +61,6 @@ def _of_run(run: Run) -> Report:
     text = f"From {run.t[0]:g} to {run.t[-1]:g} s, {len(run.t)} samples. Events: {events}."
     figure = Figure("run.png", run.title, lambda path: plot_run(run, path))
     return Report(run.title, (Section("Run", (text, *run.warnings), figures=(figure,)),))
-
-
-def fit_table(fit: Fit) -> Table:
-    """Fitted parameters and offsets with standard errors, in SI."""
-    flat = fit.model.flat
-    rows = []
-    for name, value in fit.values.items():
-        error = fit.errors[name]
-        known = "not determined" if math.isnan(error) else shown(error)
-        if name in flat.parameters:
-            unit = flat.parameters[name].unit
-        else:
-            unit = flat.units.get(name.removeprefix("offset."), "")
-        remark = "at its bound" if _at_bound(value, fit.bounds[name]) else ""
-        rows.append((name, shown(fit.began[name]), shown(value), known, unit, remark))
-    header = ("parameter", "before", "after", "standard error", "unit", "")
-    return Table("fitted parameters", header, tuple(rows), frozenset({1, 2, 3}))
-
-
-def _at_bound(value: float, bounds: tuple[float, float]) -> bool:
-    low, high = bounds
-    near = 1e-6 * (high - low) if math.isfinite(high - low) else 1e-9 * abs(value)
-    return value - low <= near or high - value <= near
-
-
-def comparison_table(fit: Fit) -> Table:
-    """Root mean square errors before and after, by series and signal, in SI."""
-    rows = tuple(
-        (c.series, c.use, c.signal, c.unit, shown(c.rmse_before), shown(c.rmse_after))
-        for c in fit.comparisons
-    )
-    header = ("series", "use", "signal", "unit", "rmse before", "rmse after")
-    return Table("measured against simulated", header, rows, frozenset({4, 5}))
-
-
-def starts_table(fit: Fit) -> Table:
-    """Fitted start values by series and state, in SI."""
-    units = {state.name: state.unit for state in fit.model.flat.states}
-    rows = tuple(
-        (series, state, shown(value), units[state])
-        for series, starts in fit.starts.items()
-        for state, value in starts.items()
-    )
-    return Table("fitted start values", ("series", "state", "start", "unit"), rows, frozenset({2}))
-
-
-def fit_tables(fit: Fit) -> tuple[Table, ...]:
-    """The tables of a fit, without those that are empty."""
-    tables = (fit_table(fit), starts_table(fit), comparison_table(fit))
-    return tuple(table for table in tables if table.rows)
-
-
-def fit_text(fit: Fit) -> str:
-    """What the fit did, in one paragraph."""
-    ratio = fit.criterion_before / fit.criterion if fit.criterion > 0 else math.inf
-    message = " ".join(fit.message.split()).rstrip(".")
-    return (
-        f"{fit.method}: the criterion fell from {fit.criterion_before:.4g} to {fit.criterion:.4g}, "
-        f"{ratio:.4g}-fold, in {fit.evaluations} evaluations and {fit.seconds:.1f} s: {message}."
-    )
-
-
-def plot_fitted(fit: Fit, path: Path) -> Path:
-    """Measured against simulated before and after, a panel for each signal and series."""
-    series = [(_titled(c), c.t, c.measured, c.before, c.after) for c in fit.comparisons]
-    return plot_fit(path, series, [c.unit for c in fit.comparisons], fit.model.flat.title)
-
-
-def _titled(compared: Comparison) -> str:
-    use = "" if compared.use == "train" else f" ({compared.use})"
-    return f"{compared.series}{use}: {compared.signal}"
-
-
-def _of_fit(fit: Fit) -> Report:
-    figure = Figure("fit.png", "Measured against simulated", partial(plot_fitted, fit))
-    tables = fit_tables(fit)
-    section = Section("Fit", (fit_text(fit), *_fit_words(fit)), tables, figures=(figure,))
-    return Report(f"Fit of {fit.model.flat.title}", (section,))
-
-
-def _fit_words(fit: Fit) -> tuple[str, ...]:
-    """What a reader of the tables of a fit must know."""
-    words = [
-        "The criterion is the sum of mean(residual²)/2 over the signals of the series for "
-        "training; other series are compared only. Values are in SI; a standard error takes the "
-        "residuals for independent."
-    ]
-    if any(math.isnan(error) for error in fit.errors.values()):
-        words.append(
-            "Not determined: the data look the same when such parameters change together. Fix one "
-            "of them, or measure another signal."
-        )
-    return tuple(words)
 
 
 def effects_table(found: Found) -> Table:

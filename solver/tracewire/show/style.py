@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +15,7 @@ from tracewire.errors import OptionError, unknown
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
 ENDINGS = (".png", ".svg", ".pdf")
@@ -25,6 +26,7 @@ LINES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
 MEASURED, BEFORE, AFTER = "#4D4D4D", "#E69F00", "#0072B2"
 MARK, QUIET = "#B22222", "#8C8C8C"
 STICK = "#D9D4C7"
+BAND, UNCOUNTED = "#E3EEF6", "#F1F1F1"
 USES = {"train": "#CFE3F2", "gate": "#E4DAF0", "validate": "#D5EBDD"}
 
 STYLE: dict[Any, Any] = {
@@ -93,6 +95,44 @@ def fit_time(panel: Axes, t: NDArray[np.float64]) -> None:
     """Let the time axis end where the samples do."""
     if t[-1] > t[0]:
         panel.set_xlim(float(t[0]), float(t[-1]))
+
+
+def dots(count: int) -> dict[str, Any]:
+    """Dots that are seen where there are few, and do not hide the lines where there are many."""
+    return {
+        "color": MEASURED,
+        "linestyle": "",
+        "marker": ".",
+        "markersize": float(np.clip(60 / np.sqrt(max(count, 1)), 1.5, 5)),
+        "alpha": 0.6,
+    }
+
+
+def shortened(title: str, count: int, most: int, kind: str) -> str:
+    """A title that says so where only the first `most` of `count` things are drawn."""
+    more = f"(the first {most} of {count} {kind})" if count > most else ""
+    return " ".join(part for part in (title, more) if part)
+
+
+def cut(name: str, most: int = 24) -> str:
+    """A name that is too long for a figure, without its middle."""
+    half = (most - 1) // 2
+    return name if len(name) <= most else f"{name[:half]}…{name[-half:]}"
+
+
+def align_ylabels(axes: Iterable[Axes]) -> None:
+    """Put the labels of y below each other, left of any tick.
+
+    matplotlib's own way looks at every panel for every other one: seconds for a dozen.
+    """
+    for panel in axes:
+        panel.yaxis.set_label_coords(-0.083, 0.5)
+
+
+def plain_numbers(*axes: Axis) -> None:
+    """Write the numbers of axes without a common factor, whose place is above the panel."""
+    for axis in axes:
+        axis.set_major_formatter(lambda x, _: f"{x:.10g}".replace("-", "−"))
 
 
 def with_unit(name: str, unit: str) -> str:

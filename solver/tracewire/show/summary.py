@@ -122,6 +122,7 @@ def series_contents(series: Measured) -> dict[str, object]:
     """What is in a measured series."""
     return {
         "name": series.name,
+        "series": series.series,
         "use": series.use,
         "file": series.file,
         "samples": len(series.t),
@@ -129,6 +130,8 @@ def series_contents(series: Measured) -> dict[str, object]:
         "to": float(series.t[-1]),
         "signals": list(series.values),
         "inputs": list(series.inputs),
+        "steps": list(series.steps),
+        "remarks": list(series.remarks),
     }
 
 
@@ -141,11 +144,20 @@ def contents_text(found: Mapping[str, object], measured: Sequence[Mapping[str, o
     lines.append(f"  parameters  {found['parameters']}; free in a fit: {_listed(found['free'])}")
     if found["events"]:
         lines.append(f"  events      {found['events']}")
+    told: set[tuple[object, str]] = set()  # the windows of a series have most steps in common
     for series in measured:
+        use = f" ({series['use']})"
+        name = str(series["name"])
         lines.append(
-            f"  measured    {series['name']} ({series['use']}): {series['samples']} samples from "
-            f"{series['from']:g} to {series['to']:g} s of {_listed(series['signals'])}"
+            f"  measured    {name}{'' if name.endswith(use) else use}: {series['samples']} samples "
+            f"from {series['from']:g} to {series['to']:g} s of {_listed(series['signals'])}"
         )
+        for key, sign in (("steps", "-"), ("remarks", "!")):
+            texts = series[key]
+            assert isinstance(texts, Sequence)
+            fresh = [text for text in texts if (series["series"], text) not in told]
+            told |= {(series["series"], text) for text in fresh}
+            lines += [f"              {sign} {text}" for text in fresh]
     return "\n".join(lines)
 
 

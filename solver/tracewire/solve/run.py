@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
-from typing import Literal
+from typing import Literal, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +40,33 @@ class Event:
     sensitivity: Mapping[str, float] = field(default_factory=dict)
 
 
+class EventLog(Sequence[Event]):
+    """Events in the order of time, made when first asked for: many runs are never asked."""
+
+    def __init__(self, make: Callable[[], tuple[Event, ...]]) -> None:
+        self._make = make
+
+    @cached_property
+    def _events(self) -> tuple[Event, ...]:
+        return self._make()
+
+    @overload
+    def __getitem__(self, index: int) -> Event: ...
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Event, ...]: ...
+    def __getitem__(self, index: int | slice) -> Event | tuple[Event, ...]:
+        return self._events[index]
+
+    def __len__(self) -> int:
+        return len(self._events)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Sequence) and self._events == tuple(other)
+
+    def __repr__(self) -> str:
+        return repr(self._events)
+
+
 @dataclass(frozen=True)
 class Statistics:
     """What a run cost: accepted and rejected steps, evaluations of the rates, method by mode."""
@@ -63,7 +91,7 @@ class Run:
     t: Vector
     signals: Mapping[str, Vector]
     units: Mapping[str, str]
-    events: tuple[Event, ...]
+    events: Sequence[Event]
     parameters: Mapping[str, float]
     start: Mapping[str, float]
     final: Mapping[str, float]

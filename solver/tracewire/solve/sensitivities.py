@@ -51,6 +51,8 @@ def follow(
     `formulas` of the parameters over each other, `values` of all of them; those that are `given`
     follow no other.
     """
+    if not asked:
+        return {}
     reads = {name: formulas.keys() & names_of(formula) for name, formula in formulas.items()}
     columns = [_followers(formulas, reads, values, name, given) for name in asked]
     moving = [name for name in formulas if any(column.get(name) for column in columns)]

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, SimulationError, unknown
-from tracewire.formula import evaluate
+from tracewire.formula import evaluate, names_of, to_text
 from tracewire.solve.core.arrays import Flow
 from tracewire.solve.core.codes import SAMPLED
 from tracewire.solve.core.methods import NAMES
@@ -18,7 +18,7 @@ from tracewire.solve.execute import Execution, Tell
 from tracewire.solve.failures import place_of
 from tracewire.solve.interrupt import Interrupted
 from tracewire.solve.limits import Limits
-from tracewire.solve.run import Run
+from tracewire.solve.run import EventLog, Run
 from tracewire.solve.sensitivities import by_name, checked, follow, new_sensitivity
 from tracewire.solve.setup import (
     Table,
@@ -104,7 +104,7 @@ def run_of(execution: Execution, values: Mapping[str, float], x: Vector, t: Vect
         t=t,
         signals={name: state.samples[: len(t), n].copy() for n, name in enumerate(model.recorded)},
         units={name: model.flat.units.get(name, "") for name in model.recorded},
-        events=execution.events,
+        events=EventLog(lambda: execution.events),
         parameters=values,
         start=dict(zip(names, x.tolist(), strict=True)),
         final=dict(zip(names, state.x.tolist(), strict=True)),
@@ -149,7 +149,8 @@ def parameter_values(
     """The value of every parameter in SI: the diagram's, changed by a preset and by `given`.
 
     A parameter that is a formula of others follows them. Raises OptionError for names that do not
-    exist and values that are not finite.
+    exist and values that are not finite, SimulationError for values that do not meet what the
+    diagram requires.
     """
     flat = model.flat
     if preset and preset not in flat.presets:
@@ -166,7 +167,22 @@ def parameter_values(
     for name, formula in model.parameter_formulas(preset).items():
         if name not in values:
             values[name] = evaluate(formula, values, flat.parameters[name].place)
+    refuse_unmet(model, values)
     return {name: values[name] for name in flat.parameters}
+
+
+def refuse_unmet(model: Model, values: Mapping[str, float]) -> None:
+    """Raises SimulationError: the values of the parameters do not meet a condition of `require`."""
+    problems = []
+    for known in model.flat.require:
+        if not evaluate(known.formula, values, known.place):
+            read = [name for name in names_of(known.formula) if name in values]
+            shown = ", ".join(f"{name} = {values[name]:.6g}" for name in read)
+            what = f"the parameters do not meet '{to_text(known.formula)}': {shown}"
+            hint = "The diagram requires it: see its section 'require'."
+            problems.append(Problem(what, known.place, (), hint))
+    if problems:
+        raise SimulationError(problems)
 
 
 def ascending(times: ArrayLike) -> Vector:

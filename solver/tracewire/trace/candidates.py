@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from tracewire.compile import Model
 from tracewire.diagram import Diagram, add_addend, add_offset
-from tracewire.fit.criterion import Unknown
+from tracewire.fit.segment import Unknown
 from tracewire.formula import evaluate
 from tracewire.library import Block
 from tracewire.trace.places import Place
@@ -71,7 +71,7 @@ def find_candidates(
         for signal, channel in series.channels.items():
             place_name = f"sensor.{signal}"
             free = channel.offset is not None and channel.offset.fit is not None
-            if not free and (SENSOR_OFFSET, place_name) not in have:
+            if channel.column and not free and (SENSOR_OFFSET, place_name) not in have:
                 have.add((SENSOR_OFFSET, place_name))
                 found.append(Candidate(SENSOR_OFFSET, place_name, f"offset.{signal}", 0))
     return found

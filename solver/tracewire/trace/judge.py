@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from tracewire.fit.criterion import Segment
+from tracewire.fit.segment import Segment
 from tracewire.trace.statistics import bic
 from tracewire.trace.trial import Bench, Trial
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from tracewire.compile import compile
 from tracewire.fit.criterion import Criterion
+from tracewire.fit.segment import of_diagram
 from tracewire.solve import simulate
 from tracewire.trace.candidates import Candidate, coefficient_scale, extend
 from tracewire.trace.places import Place
@@ -46,9 +47,8 @@ def screen_candidates(
     extra = [replace(c.as_unknown(0.0, 0.1 * scales[c.unknown]), low=-np.inf) for c in candidates]
     fixed = now.criterion.parameters
     criterion = Criterion(model, now.segments, [*unknowns, *extra], fixed, bench.rtol, bench.sigma)
-    z = criterion.begin()
-    residuals = criterion.residuals(z)
-    jacobian = np.concatenate(criterion.derivatives(z, residuals))
+    residuals, derivatives = criterion.residuals_and_derivatives(criterion.begin())
+    jacobian = np.concatenate(derivatives)
     first, last = len(unknowns), len(unknowns) + len(extra)
     columns = {
         c.unknown: jacobian[:, first + n] / criterion.scales[first + n]
@@ -98,10 +98,9 @@ def _levels(bench: Bench, now: Trial, places: Sequence[Place]) -> dict[str, floa
     names |= {signal for m in bench.measured for signal in m.values}
     model = compile(now.model.diagram, record=sorted(names))
     segment = now.segments[0]
-    given = {n: v for n, v in now.values.items() if not n.startswith("offset.")}
     run = simulate(
         model,
-        parameters={**now.criterion.parameters, **given},
+        parameters={**now.criterion.parameters, **of_diagram(now.values)},
         start=segment.start,
         span=(min(segment.begin, float(segment.t[0])), float(segment.t[-1])),
         times=segment.t,

@@ -1,47 +1,14 @@
-"""The numbers by which effects are judged: noise, effective sample size, BIC, scores."""
+"""The numbers by which effects are judged: effective sample size, BIC, scores."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.fit.measured import Measured
-
 Vector = NDArray[np.float64]
-ORDER = 6
-
-
-def noise_level(values: Vector) -> float:
-    """The standard deviation of white noise on a smooth signal, shape (N,).
-
-    1.4826 times the median absolute sixth difference over the norm of the binomial weights.
-    """
-    weights = np.array([comb(ORDER, k) for k in range(ORDER + 1)], dtype=float)
-    if len(values) <= ORDER + 1:
-        return 0.0
-    return float(1.4826 * np.median(np.abs(np.diff(values, ORDER))) / np.linalg.norm(weights))
-
-
-def channel_noise(measured: Sequence[Measured]) -> dict[str, float]:
-    """The noise of each measured signal: as declared, else estimated from the series.
-
-    At least the step of the sensor over the root of 12, where the readings stand on steps, and a
-    millionth of the signal's spread.
-    """
-    found: dict[str, list[float]] = {}
-    for series in measured:
-        for name, values in series.values.items():
-            declared = series.sigma.get(name)
-            if declared is None:
-                steps = np.diff(np.unique(values))
-                quantum = float(np.median(steps)) / 12**0.5 if len(steps) < len(values) / 4 else 0.0
-                declared = max(noise_level(values), quantum, 1e-6 * float(np.std(values)), 1e-300)
-            found.setdefault(name, []).append(declared)
-    return {name: float(np.median(levels)) for name, levels in found.items()}
 
 
 def effective_part(residuals: Sequence[Vector]) -> float:

@@ -15,8 +15,8 @@ import numpy as np
 
 from tracewire.compile import Model
 from tracewire.errors import DataError, Problem
-from tracewire.fit.criterion import Segment
 from tracewire.fit.measured import Measured
+from tracewire.fit.segment import Segment
 from tracewire.fit.starts import start_from_data, whole_segment
 
 WINDOWS = 9

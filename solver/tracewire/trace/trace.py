@@ -13,13 +13,14 @@ from tracewire.diagram import Diagram, set_values
 from tracewire.errors import FitError
 from tracewire.fit.fit import with_measured_signals
 from tracewire.fit.measured import Measured, load_measured
+from tracewire.fit.noise import channel_noise
 from tracewire.fit.result import Fit
 from tracewire.trace.candidates import Candidate, extend, find_candidates
 from tracewire.trace.found import Found, FoundEffect, HeldOut, Ranked, Verdict
 from tracewire.trace.judge import AT_NOISE, gate, prune
 from tracewire.trace.places import find_places
 from tracewire.trace.screening import Proposal, screen_candidates, shortlist
-from tracewire.trace.statistics import Screen, bic, channel_noise
+from tracewire.trace.statistics import Screen, bic
 from tracewire.trace.stretches import can_be_cut, share_out
 from tracewire.trace.trial import Bench, Trial
 

@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from tracewire.compile import Model, compile
 from tracewire.diagram import Diagram
 from tracewire.errors import FitError
-from tracewire.fit.criterion import Criterion, Segment, Unknown
+from tracewire.fit.criterion import Criterion
 from tracewire.fit.descent import Descent, descend
 from tracewire.fit.measured import Measured, measured_signals
-from tracewire.fit.unknowns import free_unknowns, offset_unknowns
+from tracewire.fit.segment import Segment, Unknown, of_diagram
+from tracewire.fit.unknowns import free_unknowns, sensor_unknowns
 from tracewire.solve import parameter_values
 from tracewire.trace.candidates import Candidate
 from tracewire.trace.statistics import effective_part
@@ -100,7 +101,7 @@ class Bench:
         Raises FitError where the model cannot be simulated.
         """
         unknowns = self._unknowns(model, effects, values, scales or {})
-        criterion = Criterion(model, segments, unknowns, {}, self.rtol, self.sigma)
+        criterion = self._criterion(model, segments, unknowns, {})
         return self._descended(model, effects, criterion, steps)
 
     def grown(
@@ -133,26 +134,27 @@ class Bench:
         fixed = dict(trial.criterion.parameters)
         if not name.startswith("offset."):
             fixed[name] = 0.0
-        criterion = Criterion(trial.model, segments, kept, fixed, self.rtol, self.sigma)
+        criterion = self._criterion(trial.model, segments, kept, fixed)
         effects = [e for e in trial.effects if e.unknown != name]
         return self._descended(trial.model, effects, criterion, 12)
 
     def elsewhere(self, trial: Trial, segments: Sequence[Segment]) -> list[Vector]:
         """Residuals in sigma on other segments, where only their free starts are fitted."""
         fixed = dict(trial.criterion.parameters)
-        fixed |= {n: v for n, v in trial.values.items() if not n.startswith("offset.")}
+        fixed |= of_diagram(trial.values)
         offsets = {
             n.removeprefix("offset."): v for n, v in trial.values.items() if n.startswith("offset.")
         }
         found = []
         for segment in segments:
             measured = segment.measured
-            shifted = replace(measured, offset={**measured.offset, **offsets})
+            sensors = {n: replace(measured.sensor(n), offset=v) for n, v in offsets.items()}
+            shifted = replace(measured, sensors={**measured.sensors, **sensors})
             alone = [replace(segment, measured=shifted)]
-            criterion = Criterion(trial.model, alone, [], fixed, self.rtol, self.sigma)
+            criterion = self._criterion(trial.model, alone, [], fixed)
             z = criterion.begin()
             if segment.free:
-                z = descend(criterion, steps=12, tolerance=TOLERANCE).z
+                z = descend(criterion, z, steps=12, tolerance=TOLERANCE).z
             found.append(criterion.residuals(z)[0])
         return found
 
@@ -161,10 +163,20 @@ class Bench:
         pairs = zip(segments, residuals, strict=True)
         return [r * np.array([self.sigma[n] for n in s.signals]) for s, r in pairs]
 
+    def _criterion(
+        self,
+        model: Model,
+        segments: Sequence[Segment],
+        unknowns: Sequence[Unknown],
+        fixed: Mapping[str, float],
+    ) -> Criterion:
+        """The sum of squares in sigma, which is what a likelihood needs."""
+        return Criterion(model, segments, unknowns, fixed, self.rtol, self.sigma, weighting="sum")
+
     def _descended(
         self, model: Model, effects: Sequence[Candidate], criterion: Criterion, steps: int
     ) -> Trial:
-        descent = descend(criterion, steps=steps, tolerance=TOLERANCE)
+        descent = descend(criterion, criterion.begin(), steps=steps, tolerance=TOLERANCE)
         criterion.failure = None  # a trial step may fail; where the descent ends it must run
         part = effective_part(criterion.residuals(descent.z))
         if criterion.failure is not None:
@@ -181,7 +193,7 @@ class Bench:
         given = parameter_values(model, {})
         names = [n for n, p in self.declared.flat.parameters.items() if p.fit is not None]
         free = free_unknowns(model, names, given) if names else []
-        free += offset_unknowns([m for m in self.measured if m.use == "train"])
+        free += sensor_unknowns([m for m in self.measured if m.use == "train"])
         known = {u.name for u in free}
         free += [
             e.as_unknown(values.get(e.unknown, 0.0), scales.get(e.unknown, 1.0))

@@ -67,7 +67,7 @@ TYPES = {
 UNITS: dict[str, Unit] = {}
 STUBS: dict[int, Unit] = {}
 KEPT: list[Any] = []
-FIRST = "tracewire: compiling the integrators, once for this installation (about a minute) ..."
+FIRST = "tracewire: compiling the integrators, once for this installation (one to two minutes) ..."
 
 
 @contextmanager

@@ -39,6 +39,7 @@ from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.variation import OF_OUTPUTS, derive, derive_blended, held_parts
 
 SMALLEST = 1e-7  # of a step of the states
+ROUNDING = 1e-14  # of the time: what a step must be to end later than it began
 FAR_WITHIN = 0.05  # then an interval may be longer by a half, and its error not looked at
 SURE = 3.0  # so often
 
@@ -62,9 +63,11 @@ def follow(core: int, method: int, end: float) -> None:
     tolerance = progress_of(core).now[RTOL] ** (2.0 / 3.0)
     while now[TIME] < end:
         left = end - now[TIME]
+        least = max(SMALLEST * whole, ROUNDING * abs(now[TIME]))
         h = now[INTERVAL]
         if not 0.0 < h < 0.99 * left:
             h = left
+        h = min(max(h, least), left)
         sure = now[UNCHECKED] > 0.0 and h <= now[LONGEST]
         error = collocate(core, method, h, not sure) / tolerance
         if not math.isfinite(error):
@@ -72,7 +75,7 @@ def follow(core: int, method: int, end: float) -> None:
             sensitivity.change[:] = 0.0
             error = 1.0
         longer = h * min(5.0, max(0.2, 0.9 * max(error, 1e-9) ** -0.25))
-        if error > 1.0 and h > SMALLEST * whole:
+        if error > 1.0 and h > least:
             now[INTERVAL] = longer
             continue
         _accept(core)

@@ -1,0 +1,155 @@
+"""What is odd about a record: remarks in words, and nothing is changed."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+Vector = NDArray[np.float64]
+Marks = NDArray[np.bool_]
+
+JITTER = 0.01
+GAP = 3.0  # steps of this many medians are gaps
+MOST_TOLD = 3
+FEWEST = 20  # less samples say nothing about how they were taken
+
+RUN = 4  # samples at the extreme value in a row, and how many such runs are a clipped signal
+FEWEST_RUNS = 2
+CLIPPED_SHARE = 0.005
+ABRUPT = 3.0
+
+LONGEST_PATTERN = 50
+FEWEST_KINKS = 20
+REGULAR = 0.9
+
+MOST_LEVELS = 500
+FEWEST_LEVELS = 5
+
+
+def time_remarks(t: Vector) -> list[str]:
+    """What is odd about times (N,) in s: steps that differ by more than 1 %, gaps of 3 steps."""
+    if len(t) < 3:
+        return []
+    steps = np.diff(t)
+    median = float(np.median(steps))
+    # the last digit of a time that was written rounded moves a step by as much as this
+    rounding = 4 * float(np.spacing(max(abs(t[0]), abs(t[-1]))))
+    gaps = np.flatnonzero(steps > GAP * median)
+    regular = steps[steps <= GAP * median]
+    remarks = []
+    if count := int(np.sum(np.abs(regular - median) > JITTER * median + rounding)):
+        low, high = float(regular.min()), float(regular.max())
+        remarks.append(
+            f"the time step is not regular: {low:.4g} to {high:.4g} s, median {median:.4g} s; "
+            f"{count} of {len(steps)} are more than {JITTER:.0%} off"
+        )
+    if gaps.size:
+        told = ", ".join(f"{steps[i]:.4g} s after t = {t[i]:.6g} s" for i in gaps[:MOST_TOLD])
+        more = f" and {gaps.size - MOST_TOLD} more" if gaps.size > MOST_TOLD else ""
+        some = "a gap" if gaps.size == 1 else f"{gaps.size} gaps"
+        remarks.append(f"{some} in the time, where the step is {median:.4g} s: {told}{more}")
+    return remarks
+
+
+def signal_remarks(name: str, t: Vector, y: Vector, unit: str = "") -> list[str]:
+    """What is odd about a signal y(t), (N,): constant, clipped, made from a lower rate, coarse."""
+    if len(y) < 3:
+        return []
+    shown = f" {unit}" if unit else ""
+    if np.ptp(y) == 0:
+        return [f"{name} is constant: {y[0]:.6g}{shown} in every sample"]
+    if len(y) < FEWEST:
+        return []
+    levels = np.unique(y)
+    found = _clipped(name, y, levels, shown)
+    made = [] if len(levels) < FEWEST_LEVELS else _from_lower_rate(name, t, y)
+    return [*found, *made, *([] if made else _coarse(name, y, levels, shown))]
+
+
+def _clipped(name: str, y: Vector, levels: Vector, unit: str) -> list[str]:
+    """A signal that comes in steps, and then stays at exactly its extreme value, several times.
+
+    A signal that turns round smoothly stays at its extreme too where it is read coarsely, but
+    arrives there by the smallest of its steps.
+    """
+    if len(levels) < FEWEST_LEVELS:
+        return []  # a square wave, or a switch
+    smallest = float(np.min(np.diff(levels)))
+    remarks = []
+    for extreme, word in ((levels[-1], "largest"), (levels[0], "smallest")):
+        begins, ends = _runs(y == extreme)
+        long = np.flatnonzero((ends - begins >= RUN) & (begins > 0))
+        arrived = np.abs(y[begins[long]] - y[begins[long] - 1])
+        abrupt = long[arrived > ABRUPT * smallest]
+        count = int((ends - begins)[abrupt].sum())
+        if len(abrupt) >= FEWEST_RUNS and count >= CLIPPED_SHARE * len(y):
+            remarks.append(
+                f"{name} stays at exactly its {word} value, {extreme:.6g}{unit}, in {len(abrupt)} "
+                f"stretches of together {count} samples: is the sensor at the end of its range?"
+            )
+    return remarks
+
+
+def _runs(marks: Marks) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Begin and end (behind the last) of each stretch of true marks."""
+    edges = np.diff(np.concatenate([[0], marks.astype(np.int8), [0]]))
+    return np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
+
+
+def _from_lower_rate(name: str, t: Vector, y: Vector) -> list[str]:
+    """Samples on straight lines, or held, between points that stand a fixed number apart."""
+    steps = np.diff(t)
+    if float(np.ptp(steps)) > JITTER * float(np.median(steps)):
+        return []
+    first = np.diff(y)
+    second = np.diff(first)
+    size = float(np.max(np.abs(first)))
+    moving = np.abs(first) > 1e-9 * size
+    kinks = np.abs(second) > 1e-6 * size
+    every = _pattern(np.flatnonzero(kinks), len(second), moving)
+    if every and moving.mean() > 0.5:
+        share = 1.0 - float(kinks.mean())
+        return [
+            f"{name} lies on straight lines between every {every}th sample ({share:.0%} of its "
+            f"second differences are zero): it was taken at {1 / (every * np.median(steps)):.4g} Hz"
+        ]
+    every = _pattern(np.flatnonzero(moving), len(first), moving)
+    if every:
+        return [
+            f"{name} changes only at every {every}th sample: it was taken at "
+            f"{1 / (every * np.median(steps)):.4g} Hz"
+        ]
+    return []
+
+
+def _pattern(places: NDArray[np.intp], count: int, moving: Marks) -> int:
+    """The number k > 1 such that nearly all places stand at multiples of k from each other; or 0.
+
+    They must cover most of the stretches in which the signal moves at all.
+    """
+    if len(places) < FEWEST_KINKS:
+        return 0
+    gaps = np.diff(places)
+    every = int(np.median(gaps))
+    if not 2 <= every <= LONGEST_PATTERN or len(places) < 0.5 * count / every * moving.mean():
+        return 0
+    rests = np.bincount(places % every, minlength=every)
+    return every if rests.max() >= REGULAR * len(places) else 0
+
+
+def _coarse(name: str, y: Vector, levels: Vector, unit: str) -> list[str]:
+    """Readings in few equal steps: their rounding is noise that no model explains."""
+    if not FEWEST_LEVELS <= len(levels) <= len(y) / 2:
+        return []
+    gaps = np.diff(levels)
+    step = float(gaps.min())
+    multiples = gaps / step
+    count = float(np.ptp(levels)) / step
+    if count > MOST_LEVELS or float(np.max(np.abs(multiples - np.round(multiples)))) > 0.05:
+        return []
+    return [
+        f"{name} is read in steps of {step:.3g}{unit} ({count:.0f} over its range): the rounding "
+        f"alone has a standard deviation of {step / math.sqrt(12):.3g}{unit}"
+    ]

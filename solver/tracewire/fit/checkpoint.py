@@ -1,0 +1,103 @@
+"""The saved file of a fit: enough to go on from where it was."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import time
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.errors import OptionError, Place, Problem
+from tracewire.fit.criterion import Criterion
+from tracewire.fit.result import Improvement
+from tracewire.fit.search import Search
+
+Vector = NDArray[np.float64]
+EVERY = 2.0
+KIND = "a fit of tracewire"
+KEYS = ("method", "seed", "names", "best", "state", "evaluations", "iterations", "history")
+
+
+class Store:
+    """Writes how far a fit is to a file, every two seconds and at the end."""
+
+    def __init__(self, path: str | Path, method: str) -> None:
+        self.path, self.method = Path(path), method
+        self.written = -math.inf
+
+    def __call__(self, search: Search, last: bool) -> None:
+        """Write, unless it was done just before. Raises OptionError where that is not possible."""
+        now = time.perf_counter()
+        if not last and now - self.written < EVERY:
+            return
+        self.written = now
+        content = {
+            "kind": KIND,
+            "method": self.method,
+            "seed": search.seed,
+            "names": _names(search.criterion),
+            "best": (search.best * search.criterion.scales).tolist(),
+            "criterion": search.best_value if math.isfinite(search.best_value) else None,
+            "evaluations": search.criterion.evaluations,
+            "iterations": search.iterations,
+            "history": [asdict(step) for step in search.history],
+            "state": dict(search.state),
+        }
+        beside = self.path.with_name(self.path.name + ".part")
+        try:
+            beside.write_text(json.dumps(content, indent=1), encoding="utf-8")
+            os.replace(beside, self.path)
+        except OSError as error:
+            what = f"the file cannot be written: {error.strerror or error}"
+            hint = "Name a file in a folder that exists and may be written to."
+            raise OptionError.one(what, Place(str(self.path)), hint=hint) from None
+
+
+def resume_from(path: str | Path, method: str, criterion: Criterion) -> Mapping[str, Any]:
+    """The content of a saved file: `best` in SI, and `state`, empty where another method saved it.
+
+    Raises OptionError: no such file, another content, other unknowns.
+    """
+    place = Place(str(path))
+    try:
+        content = json.loads(Path(path).read_text(encoding="utf-8"))
+    except OSError as error:
+        what = f"the saved fit cannot be read: {error.strerror or error}"
+        raise OptionError.one(what, place, hint="Check its path.") from None
+    except ValueError:
+        content = None
+    if (
+        not isinstance(content, dict)
+        or content.get("kind") != KIND
+        or not content.keys() >= {*KEYS}
+    ):
+        hint = "Name the file that --save, or save= of fit, has written."
+        raise OptionError.one("this is not the saved file of a fit", place, hint=hint)
+    names = _names(criterion)
+    if content["names"] != names:
+        what = f"the saved fit is one of {', '.join(content['names'])}"
+        hint = f"Free the same, or begin anew; free now: {', '.join(names)}."
+        raise OptionError([Problem(what, place, hint=hint)])
+    if content["method"] != method:
+        content["state"] = {}
+    return content
+
+
+def earlier(content: Mapping[str, Any]) -> list[Improvement]:
+    """The history in a saved file."""
+    return [Improvement(**step) for step in content["history"]]
+
+
+def _names(criterion: Criterion) -> list[str]:
+    """The unknowns in their order: parameters and sensors, then free starts by series."""
+    names = [u.name for u in criterion.unknowns]
+    for segment in criterion.segments:
+        names += [f"{segment.measured.name}: start.{state}" for state in segment.free]
+    return names

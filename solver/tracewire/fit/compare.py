@@ -1,0 +1,84 @@
+"""Series beside the model: what the sensors show over whole series, before and after a fit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import Model
+from tracewire.fit.criterion import Criterion
+from tracewire.fit.descent import descend
+from tracewire.fit.measured import Measured
+from tracewire.fit.result import Comparison
+from tracewire.fit.segment import Segment
+
+Vector = NDArray[np.float64]
+
+
+def shown_by_series(
+    criterion: Criterion, z: Vector, others: Sequence[Segment] = ()
+) -> dict[str, Vector]:
+    """What the sensors show (N, signals) by series, with samples that do not count; NaN where no
+    segment is. `others` get free start values of their own.
+
+    Raises SimulationError where a run fails.
+    """
+    named, starts = criterion.split(z)
+    found: dict[str, Vector] = {}
+    for segment, start in zip(criterion.segments, starts, strict=True):
+        _fill(found, criterion, segment, named, start)
+    for segment in others:
+        own: Mapping[str, float] = {}
+        if segment.free:
+            fixed = {**criterion.parameters, **named}
+            alone = Criterion(criterion.model, [segment], [], fixed, criterion.rtol)
+            (own,) = alone.split(descend(alone, alone.begin()).z)[1]
+        _fill(found, criterion, segment, named, own)
+    return found
+
+
+def _fill(
+    found: dict[str, Vector],
+    criterion: Criterion,
+    segment: Segment,
+    named: Mapping[str, float],
+    start: Mapping[str, float],
+) -> None:
+    """Put what a segment shows into the rows of its series; rows before those that count, too."""
+    measured = segment.measured
+    rows = segment.rows
+    before = np.flatnonzero((measured.t < measured.counts_from) & (measured.t >= segment.begin))
+    if len(before) and len(rows) and before[-1] == rows[0] - 1:
+        rows = np.concatenate((before, rows))
+    shown = criterion.outputs(replace(segment, rows=rows), named, start)
+    whole = found.setdefault(measured.name, np.full((len(measured.t), shown.shape[1]), np.nan))
+    whole[rows] = shown
+
+
+def compared(
+    model: Model,
+    series: Sequence[Measured],
+    before: Mapping[str, Vector],
+    after: Mapping[str, Vector],
+) -> tuple[Comparison, ...]:
+    """Every signal of every series beside what is shown before and after."""
+    return tuple(
+        Comparison(
+            series=m.name,
+            use=m.use,
+            signal=signal,
+            unit=model.flat.units.get(signal, ""),
+            t=m.t,
+            measured=values,
+            before=before[m.name][:, n],
+            after=after[m.name][:, n],
+            counts=m.t >= m.counts_from,
+            period=m.periods.get(signal, 0.0),
+            sigma=m.sigma.get(signal),
+        )
+        for m in series
+        for n, (signal, values) in enumerate(m.values.items())
+    )

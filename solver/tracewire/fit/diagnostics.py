@@ -1,0 +1,263 @@
+"""Is what is left of each measured signal noise, or is something missing?"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
+from scipy.special import chdtrc, ndtr, ndtri
+
+from tracewire.errors import FormulaError
+from tracewire.fit.measured import Measured
+from tracewire.fit.noise import channel_noise, noise_of
+from tracewire.fit.result import Comparison, Fit
+from tracewire.fit.segment import of_diagram
+from tracewire.formula import Expression, evaluate, names_of
+from tracewire.solve import parameter_values
+
+Vector = NDArray[np.float64]
+
+AT_NOISE = 1.3**0.5
+"""Times the noise up to which a residual is at it: the noise itself is known to 8 % or so."""
+DOUBT = 0.01
+"""Probability below which chance is no explanation."""
+NOTABLE = 0.1
+"""Autocorrelation that matters; less may be significant in long records and is not important."""
+FAR = 4.0
+"""Robust standard deviations from which a sample is an outlier; chance has 6 in 100 000."""
+LEAST = 10
+LAGS, COMPONENTS = 20, 6
+"""So many last samples of a drive, and combinations of these, may show in a residual."""
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """What is left of one measured signal of one series after a fit.
+
+    `residual` (N,) is measured - simulated of the samples that count, in SI, `size` its root mean
+    square and `noise` that of the sensor: `declared`, or estimated from the data. `step` is the
+    median time between samples in s. `correlation` (L,) is the autocorrelation at `lags` (L,) in
+    samples, white noise stays within +-`band` 95 % of the time, `memory` is the time in s after
+    which it has fallen to 1/e. `whiteness` is the probability that white noise looks as correlated
+    (Ljung and Box), `sign_changes` that it changes its sign as seldom or as often. `independence`
+    holds by measured input, by signal of time alone that drives the model, and by the simulated
+    signal itself, the probability that something independent of it follows it as closely.
+    `outliers` is the share of samples beyond 4 robust standard deviations. `words` says it in a
+    sentence.
+    """
+
+    series: str
+    use: str
+    signal: str
+    unit: str
+    residual: Vector
+    size: float
+    noise: float
+    declared: bool
+    step: float
+    lags: Vector
+    correlation: Vector
+    band: float
+    memory: float
+    whiteness: float
+    sign_changes: float
+    independence: Mapping[str, float]
+    outliers: float
+    words: str
+
+    @property
+    def is_white(self) -> bool:
+        """Whether no correlation in time is seen that would matter."""
+        return self.whiteness >= DOUBT or bool(np.abs(self.correlation[1:]).max() < NOTABLE)
+
+
+def diagnose(fit: Fit) -> tuple[Diagnosis, ...]:
+    """Every measured signal of every series of a fit, in the order of its comparisons.
+
+    Signals with fewer than 10 samples that count are left out. Samples count by their index.
+    """
+    series = {m.name: m for m in fit.measured}
+    return tuple(
+        _diagnosis(fit, one, series[one.series])
+        for one in fit.comparisons
+        if np.count_nonzero(_counted(one)) >= LEAST
+    )
+
+
+def autocorrelation(residual: Vector, count: int) -> Vector:
+    """The autocorrelation of lags 0 to count - 1 of a residual (N,), its mean not removed."""
+    square = float(residual @ residual)
+    if square == 0:
+        return np.asarray(np.eye(1, count)[0])
+    return _products(residual, residual, count) / square
+
+
+def ljung_box(correlation: Vector, samples: int) -> float:
+    """The probability that white noise looks as correlated, from lags 0 to m.
+
+    Q = N (N + 2) sum rho_k^2/(N - k) against chi-square with m degrees of freedom (G. M. Ljung and
+    G. E. P. Box, Biometrika 65, 1978, 297).
+    """
+    k = np.arange(1, len(correlation))
+    q = samples * (samples + 2) * float(np.sum(correlation[1:] ** 2 / (samples - k)))
+    return float(chdtrc(len(k), q))
+
+
+def sign_change_probability(residual: Vector) -> float:
+    """The probability that independent signs change as seldom or as often as those of a residual.
+
+    The test of runs (A. Wald and J. Wolfowitz, Annals of Mathematical Statistics 11, 1940, 147).
+    """
+    signs = residual[residual != 0] > 0
+    above, below = float(np.sum(signs)), float(np.sum(~signs))
+    both = 2 * above * below
+    if both == 0:
+        return 0.0 if len(signs) > LEAST else 1.0
+    count = above + below
+    variance = both * (both - count) / (count**2 * (count - 1))
+    runs = 1 + np.count_nonzero(signs[1:] != signs[:-1])
+    return float(2 * ndtr(-abs(runs - both / count - 1) / max(variance, 1e-12) ** 0.5))
+
+
+def independence(residual: Vector, other: Vector, lags: int) -> float:
+    """The probability that a residual independent of a signal follows it as closely; both (N,).
+
+    The residual is regressed on the signal's last `lags` values, on no more than the 6 principal
+    components of these that are above a tenth of the first. With coefficients c and K their
+    covariance under the correlation of what is then left, c' K^-1 c is chi-square (A. Wald,
+    Transactions of the American Mathematical Society 54, 1943, 426).
+    """
+    past = sliding_window_view(other, lags)
+    x = residual[lags - 1 :] - np.mean(residual[lags - 1 :])
+    past = past - past.mean(axis=0)
+    squares, components = np.linalg.eigh(past.T @ past)  # ascending
+    if squares[-1] <= 1e-20 * lags * float(other @ other):
+        return 1.0
+    strong = squares > 0.01 * squares[-1]
+    strong[:-COMPONENTS] = False
+    basis = past @ components[:, strong] / np.sqrt(squares[strong])
+    follows = basis.T @ x
+    left = x - basis @ follows
+    noise = noise_of(left, float(np.sqrt(left @ left / (len(x) - len(follows)))))
+    if noise.level == 0:
+        return 1.0
+    covariance = basis.T @ noise.spread(basis)
+    return float(chdtrc(len(follows), follows @ np.linalg.solve(covariance, follows)))
+
+
+def _products(x: Vector, y: Vector, lags: int) -> Vector:
+    """The sums over n of x_(n+k) y_n for the lags k = 0 to lags - 1."""
+    size = 2 * len(x)
+    spectrum = np.fft.rfft(x, size) * np.conj(np.fft.rfft(y, size))
+    return np.asarray(np.fft.irfft(spectrum, size)[:lags])
+
+
+def _counted(comparison: Comparison) -> NDArray[np.bool_]:
+    return np.asarray(comparison.counts & np.isfinite(comparison.after))
+
+
+def _drives(fit: Fit, measured: Measured, t: Vector) -> dict[str, Vector]:
+    """What drives the model at times t (N,): its measured inputs, and signals of time alone."""
+    found = {name: np.interp(t, *known) for name, known in measured.inputs.items()}
+    flat = fit.model.flat
+    given = {**fit.parameters, **of_diagram(fit.values)}
+    values = parameter_values(fit.model, given, measured.preset)
+    timed: dict[str, Expression] = {}
+    others = [state.rate for state in flat.states]
+    for name, formula in flat.signals.items():
+        read = set(names_of(formula)) - set(values)
+        if read and read <= {"t", *timed}:
+            timed[name] = formula
+        else:
+            others.append(formula)
+    driving = {name for formula in others for name in names_of(formula)} & set(timed)
+    for name in driving:
+        formula = timed[name]
+        try:
+            found[name] = np.array([_at(time, formula, timed, values) for time in t])
+        except FormulaError:  # a table, or no number at some time: nothing to compare with
+            continue
+    return found
+
+
+def _at(
+    time: float,
+    formula: Expression,
+    timed: Mapping[str, Expression],
+    values: Mapping[str, float],
+) -> float:
+    known = {**values, "t": time}
+    for name in names_of(formula):
+        if name in timed:
+            known[name] = _at(time, timed[name], timed, values)
+    return evaluate(formula, known)
+
+
+def _diagnosis(fit: Fit, comparison: Comparison, measured: Measured) -> Diagnosis:
+    rows = _counted(comparison)
+    residual = comparison.residual_after[rows]
+    t = comparison.t[rows]
+    count, step = len(residual), float(np.median(np.diff(t)))
+    lags = np.arange(min(int(10 * np.log10(count)), count // 4) + 1)
+    correlation = autocorrelation(residual, len(lags))
+    others = _drives(fit, measured, t)
+    others[comparison.signal] = comparison.after[rows]
+    spread = 1.4826 * float(np.median(np.abs(residual - np.median(residual))))
+    far = np.abs(residual - np.median(residual)) > FAR * spread
+    found = Diagnosis(
+        series=comparison.series,
+        use=comparison.use,
+        signal=comparison.signal,
+        unit=comparison.unit,
+        residual=residual,
+        size=float(np.sqrt(np.mean(residual**2))),
+        noise=channel_noise([measured])[comparison.signal],
+        declared=measured.sigma.get(comparison.signal) is not None,
+        step=step,
+        lags=lags.astype(np.float64),
+        correlation=correlation,
+        band=float(ndtri(0.975)) / count**0.5,
+        memory=step * _memory(residual),
+        whiteness=ljung_box(correlation, count),
+        sign_changes=sign_change_probability(residual),
+        independence={
+            n: independence(residual, x, min(LAGS, count // 5)) for n, x in others.items()
+        },
+        outliers=float(np.mean(far)) if spread > 0 else 0.0,
+        words="",
+    )
+    return _with_words(found)
+
+
+def _memory(residual: Vector) -> int:
+    """The first lag at which the autocorrelation is below 1/e."""
+    correlation = autocorrelation(residual, len(residual) // 2)
+    below = np.flatnonzero(correlation < np.exp(-1))
+    return int(below[0]) if len(below) else len(correlation)
+
+
+def _with_words(found: Diagnosis) -> Diagnosis:
+    times = found.size / found.noise
+    source = "declared noise" if found.declared else "noise"
+    over = f"correlated over {found.memory:.2g} s"
+    if times > AT_NOISE and not found.is_white:
+        words = f"the residual is {times:.2g} times the {source} and {over}: something is missing"
+        words += "; `tracewire trace` looks for it"
+    elif times > AT_NOISE:
+        words = f"the residual is {times:.2g} times the {source}, yet white: the noise is larger"
+        words += " than declared" if found.declared else " than its differences tell"
+    elif not found.is_white:
+        words = f"at the {source}, yet {over}: something small may be missing; errors allow for it"
+    elif times < 0.7 and found.declared:
+        words = f"white, and {times:.2g} times the declared noise: sigma is declared too large"
+    else:
+        words = f"white, at the {source}"
+    depends = [n for n, p in found.independence.items() if p < DOUBT and n != found.signal]
+    if depends:
+        words += f"; it depends on {' and '.join(depends)}, which drives the model"
+    if found.outliers > 0.005:
+        words += f"; {100 * found.outliers:.2g} % are outliers, beyond {FAR:g} standard deviations"
+    return replace(found, words=words)

@@ -1,0 +1,40 @@
+"""How far a model follows a measured series."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.fit.segment import Segment
+
+Vector = NDArray[np.float64]
+FOLLOWED = 0.2
+"""A model follows a series where it is off by less than this part of the series' spread."""
+PARTS = 10
+"""Of a series, to see what it usually swings."""
+NOISE = 4.0
+"""A spread of data is at least this many times their noise."""
+
+
+def followed(off: Vector, spread: Vector) -> int:
+    """The first samples that are followed, of those that are `off` (N, signals), in SI."""
+    lost = np.any(np.abs(off) > FOLLOWED * spread, axis=1)
+    return int(np.argmax(lost)) if lost.any() else len(lost)
+
+
+def spread_of(segment: Segment, parts: int = 1) -> Vector:
+    """The standard deviation of each signal of a segment, shape (signals,) in SI.
+
+    With `parts`, the median of those of so many parts: what a signal usually swings, without its
+    drift. It is not less than what the noise of the series makes of it.
+    """
+    noise = np.array(
+        [
+            np.std(np.diff(values, 2)) / np.sqrt(6.0) if len(values) > 2 else 0.0
+            for values in segment.measured.values.values()
+        ]
+    )
+    samples = segment.samples()
+    pieces = np.array_split(samples, min(parts, max(len(samples) // 10, 1)))
+    spread = np.median([np.std(piece, axis=0) for piece in pieces], axis=0)
+    return np.asarray(np.maximum(np.maximum(spread, NOISE * noise), 1e-300))

@@ -1,0 +1,182 @@
+"""The method growing_windows: least squares on growing parts of each series.
+
+On a long record the criterion of an unstable or barely damped system is full of minima; on its
+first samples it has one. So the search begins there, and goes on as far as the model follows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.fit.criterion import Criterion, half_square
+from tracewire.fit.descent import descend
+from tracewire.fit.methods.following import PARTS, followed, spread_of
+from tracewire.fit.search import Ended, Search
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+Counts = NDArray[np.intp]
+
+LEAST = 8
+"""Samples in the first part of a series, at least."""
+ASTRAY = 0.3
+"""A search has gone astray on a part where this part of its spread remains."""
+SLOWEST, FASTEST = 1.1, 4.0
+"""By which factors a part grows."""
+WIDTH = 0.3
+"""How far unknowns may go on one part, as a part of their size: a standard deviation."""
+STEPS, ENOUGH = 20, 1e-3
+"""Of least squares on a part: the most steps, and the relative change that ends it."""
+LAST_STEPS, LAST_ENOUGH = 100, 1e-8
+"""The same on the whole series."""
+MOST_PARTS = 200
+
+
+def by_growing_windows(search: Search) -> Ended:
+    """The minimum by least squares on the first samples, then on more and more of them.
+
+    A part grows to where the model has followed the series so far. On each, unknowns are held to
+    where they stood, with the weight that the residual's size gives to a relative width of 0.3, so
+    that a short part cannot move what it does not determine. Where the search goes astray on a
+    part, it goes back and tries a shorter one. At the end comes least squares on the whole series.
+    """
+    windows = _Windows(search)
+    while not windows.is_whole() and windows.number < MOST_PARTS:
+        windows.next()
+    search.tell(0.9, "the whole series")
+    ended = descend(
+        search, windows.z, steps=LAST_STEPS, tolerance=LAST_ENOUGH, stepped=search.iterated
+    )
+    if search.best_value < 0.5 * ended.after:  # an earlier part has led to a better minimum
+        ended = descend(
+            search, search.best, steps=LAST_STEPS, tolerance=LAST_ENOUGH, stepped=search.iterated
+        )
+    parts = f"after {windows.number} growing parts"
+    return Ended(ended.z, search.iterations, int(ended.converged), f"{ended.message} {parts}")
+
+
+class _Windows:
+    """How far the search is: the unknowns z, the samples of each series that are followed, and
+    those of the next part."""
+
+    def __init__(self, search: Search) -> None:
+        self.search = search
+        segments = search.criterion.segments
+        self.sizes = np.array([len(s.rows) for s in segments])
+        self.spreads = [spread_of(s, PARTS) for s in segments]
+        kept = search.resumed
+        self.z = np.array(kept["z"]) / search.criterion.scales if kept else search.begin
+        self.number = int(kept["number"]) if kept else 0
+        least = np.minimum(LEAST, self.sizes)
+        self.reached = np.array(kept["reached"]) if kept else np.minimum(LEAST // 2, self.sizes)
+        self.counts = np.array(kept["counts"]) if kept else np.maximum(self.followed(self.z), least)
+
+    def is_whole(self) -> bool:
+        """Whether the next part is the whole series."""
+        return bool(np.all(self.counts >= self.sizes))
+
+    def next(self) -> None:
+        """Least squares on the next part, and how much of the series comes after it."""
+        search = self.search
+        self.number += 1
+        share = float(np.mean(self.counts / self.sizes))
+        search.tell(0.9 * share, f"part {self.number}, {100 * share:.2g} % of the series")
+        part = _Part(search, self.counts, self.z)
+        ended = descend(part, self.z, steps=STEPS, tolerance=ENOUGH)
+        search.iterated(ended.z, half_square(part.plain(ended.residual)), f"part {self.number}")
+        longest = self.counts.copy()
+        between = np.sqrt(self.reached * self.counts).astype(int)
+        if part.is_astray(ended.z) and np.any(self.counts > SLOWEST * between):
+            self.counts = np.maximum(between, 1)
+        else:
+            self.z, self.reached = ended.z, longest
+            most = np.ceil(FASTEST * longest).astype(int)
+            least = np.ceil(SLOWEST * longest).astype(int)
+            followed = np.clip(self.followed(self.z), least, most)
+            self.counts = np.minimum(followed, self.sizes)
+        search.keep(
+            {
+                "z": (self.z * search.criterion.scales).tolist(),
+                "number": self.number,
+                "reached": self.reached.tolist(),
+                "counts": self.counts.tolist(),
+            }
+        )
+
+    def followed(self, z: Vector) -> Counts:
+        """How many first samples of each series the model follows, shape (segments,)."""
+        search = self.search
+        search.refuse_more()
+        residuals = search.criterion.residuals(z)
+        search.notice(z, half_square(search.criterion.weigh(residuals)))
+        found = []
+        for segment, residual, spread in zip(
+            search.criterion.segments, residuals, self.spreads, strict=True
+        ):
+            sigma = search.criterion.sigma[segment.measured.name]
+            found.append(followed(residual * sigma, spread))
+        return np.array(found)
+
+
+class _Part:
+    """The criterion on the first samples of each series, with the unknowns held to where they are.
+
+    Its vector has that of the criterion, and then one entry for each unknown.
+    """
+
+    def __init__(self, search: Search, counts: Counts, around: Vector) -> None:
+        self.search, self.around = search, around
+        segments = search.criterion.segments
+        shorter = [replace(s, rows=s.rows[:n]) for s, n in zip(segments, counts, strict=True)]
+        self.criterion: Criterion = search.criterion.on(shorter)
+        self.pull = np.zeros(len(around))
+        before = self.plain(self.vector(around))
+        noise = 2 * half_square(before) / max(len(before), 1)
+        self.pull = np.sqrt(noise) / (WIDTH * np.maximum(np.abs(around), 1.0))
+
+    def bounds(self) -> tuple[Vector, Vector]:
+        """Those of the search."""
+        return self.search.bounds()
+
+    def vector(self, z: Vector) -> Vector:
+        """The vector (M + n,)."""
+        self.search.refuse_more()
+        vector = self.criterion.vector(z)
+        self._count(z)
+        return np.concatenate([vector, self.pull * (z - self.around)])
+
+    def both(self, z: Vector) -> tuple[Vector, Matrix]:
+        """The vector (M + n,) and its derivatives (M + n, n)."""
+        self.search.refuse_more()
+        vector, matrix = self.criterion.both(z)
+        self._count(z)
+        held = self.pull * (z - self.around)
+        return np.concatenate([vector, held]), np.concatenate([matrix, np.diag(self.pull)])
+
+    def plain(self, vector: Vector) -> Vector:
+        """The criterion's part of a vector (M + n,)."""
+        return vector[: len(vector) - len(self.around)]
+
+    def is_astray(self, z: Vector) -> bool:
+        """Whether much of the spread of the data on this part remains."""
+        residuals = self.criterion.residuals(z)
+        self._count(z)
+        for segment, residual in zip(self.criterion.segments, residuals, strict=True):
+            off = np.sqrt(np.mean(residual**2, axis=0))
+            sigma = self.criterion.sigma[segment.measured.name]
+            if np.any(off * sigma > ASTRAY * spread_of(segment)):
+                return True
+        return False
+
+    def _count(self, z: Vector) -> None:
+        """Count what the part has evaluated as evaluations of the search, and tell progress."""
+        whole = self.search.criterion
+        whole.evaluations += self.criterion.evaluations
+        whole.failures += self.criterion.failures
+        whole.failure = self.criterion.failure or whole.failure
+        self.criterion.evaluations = 0
+        self.criterion.failures.clear()
+        self.search.notice(z, np.inf)

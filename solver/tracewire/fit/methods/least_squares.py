@@ -1,0 +1,26 @@
+"""The method least_squares: a trust region on forward sensitivities."""
+
+from __future__ import annotations
+
+from tracewire.fit.descent import descend
+from tracewire.fit.search import Ended, Search
+
+MOST = 1_000_000
+EXACT, NOISY = 1e-14, 1e-2
+"""The tolerance of formulas alone; and that of runs, over their rtol."""
+
+
+def by_least_squares(search: Search) -> Ended:
+    """The minimum next to the begin: fast and exact from nearby, astray from afar."""
+    steps = int(min(MOST, search.options.evaluations(search.size)))
+    criterion = search.criterion
+    moving = bool(criterion.model.states)
+    ended = descend(
+        search,
+        search.begin,
+        steps=steps,
+        tolerance=NOISY * criterion.rtol if moving else EXACT,
+        frugal=moving,
+        stepped=search.iterated,
+    )
+    return Ended(ended.z, search.iterations, int(ended.converged), ended.message)

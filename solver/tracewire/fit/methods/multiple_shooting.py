@@ -1,0 +1,170 @@
+"""The method multiple_shooting: segments with free start states that grow together.
+
+A chaotic record cannot be followed by one run: whatever the parameters, small errors grow until
+nothing is left of the beginning. Segments of about a swing can be followed; their gaps are closed
+while the parameters are found (H. G. Bock, 1983; E. Baake et al., Phys. Rev. A 45, 1992, 5524).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.errors import FitError, Problem, SimulationError
+from tracewire.fit.criterion import half_square
+from tracewire.fit.descent import descend
+from tracewire.fit.methods.chain import Chain
+from tracewire.fit.search import Ended, Search, Stopped
+
+Vector = NDArray[np.float64]
+WEIGHTS = tuple(10.0**k for k in range(-1, 7))
+"""Of the gaps in the criterion, as a part of what the data spread, one stage after the other."""
+STEPS, ENOUGH = 15, 1e-3
+"""Of a stage: the most steps, and the relative change that ends it."""
+LAST_STEPS, LAST_ENOUGH = 40, 1e-6
+"""The same of the last stage."""
+CLOSED = 1e-5
+"""Gaps of this part of what states change from one start to the next are closed."""
+DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-12, 1e10
+ALIKE = 2.0
+"""One run is as good as the segments where its criterion is at most so many times theirs."""
+
+NOTHING = 1e-6
+"""And where it is this part of what the data spread, it is as good as none."""
+
+
+def by_multiple_shooting(search: Search) -> Ended:
+    """The minimum over parameters and start states of segments, whose gaps weigh more and more.
+
+    Each stage is a damped Gauss-Newton search (Levenberg and Marquardt) by forward sensitivities.
+    Where one run over the whole series is as good as the segments at the end, least squares goes on
+    with it; else the record is chaotic, and the result is that of the segments.
+
+    Raises FitError where a segment cannot be simulated at the begin.
+    """
+    chain = _Shooting(search)
+    try:
+        chain.stages()
+    except Stopped as stopped:
+        return chain.ended(stopped.exitflag, stopped.message)
+    except KeyboardInterrupt:
+        message = "stopped by Ctrl-C: this is the last state"
+        return chain.ended(-1, message, interrupted=True)
+    return chain.together()
+
+
+class _Shooting:
+    """How far the search is: the unknowns z of the chain, the stage, and the largest gap."""
+
+    def __init__(self, search: Search) -> None:
+        self.search = search
+        self.chain = Chain(search.criterion)
+        self.low, self.high = self.chain.criterion.bounds()
+        self.scales = self.chain.criterion.scales
+        kept = search.resumed
+        self.stage = int(kept["stage"]) if kept else 0
+        self.z = np.array(kept["z"]) / self.scales if kept else self._begin()
+        spread = sum(
+            float(np.sum((self.chain.criterion.weights(n) * _centred(s.samples())) ** 2))
+            for n, s in enumerate(self.chain.segments)
+        )
+        self.unit = max(spread, 1e-300)  # in sigma of 1
+        sigmas = np.concatenate(list(self.chain.criterion.sigma.values()))
+        self.unit /= float(np.mean(sigmas**2))
+        self.value, self.gap = np.inf, np.inf
+
+    def _begin(self) -> Vector:
+        """The unknowns of the search, with the starts of segments as the data tell them."""
+        z = self.chain.criterion.begin()
+        count = self.chain.parameters
+        z[:count] = self.search.begin[:count]
+        return z
+
+    def stages(self) -> None:
+        """Close the gaps."""
+        for stage in range(self.stage, len(WEIGHTS)):
+            self.stage = stage
+            last = stage == len(WEIGHTS) - 1
+            steps, enough = (LAST_STEPS, LAST_ENOUGH) if last else (STEPS, ENOUGH)
+            self.descend(WEIGHTS[stage] * self.unit, steps, enough)
+            self.search.keep({"stage": stage + 1, "z": (self.z * self.scales).tolist()})
+            if self.gap < CLOSED:
+                return
+
+    def descend(self, weight: float, steps: int, enough: float) -> None:
+        """Levenberg-Marquardt steps with one weight of the gaps."""
+        search, chain, damping = self.search, self.chain, DAMPING
+        for number in range(steps):
+            share = (self.stage + number / steps) / len(WEIGHTS)
+            search.tell(share, f"{len(chain.segments)} segments, gaps up to {self.gap:.2g}")
+            try:
+                normal = chain.normal(self.z, weight)
+            except SimulationError as error:
+                raise FitError(
+                    [Problem(f"a segment does not run: {p.what}", p.place) for p in error.problems]
+                ) from None
+            self._count()
+            outward = (self.z <= self.low) & (normal.gradient > 0)
+            outward |= (self.z >= self.high) & (normal.gradient < 0)
+            free = np.flatnonzero(~outward)
+            diagonal = np.maximum(np.diag(normal.matrix), 1e-12 * np.diag(normal.matrix).max())
+            while damping <= MOST_DAMPING:
+                damped = normal.matrix + damping * np.diag(diagonal)
+                step = np.zeros(len(self.z))
+                step[free] = -np.linalg.solve(damped[np.ix_(free, free)], normal.gradient[free])
+                trial = np.clip(self.z + step, self.low, self.high)
+                value, gap = chain.value(trial, weight)
+                self._count()
+                if value < normal.value:
+                    break
+                damping *= 5.0
+            else:
+                return
+            damping = max(damping / 5.0, LEAST_DAMPING)
+            self.z, self.value, self.gap = trial, value, gap
+            search.iterated(self._own(), value, f"gaps up to {gap:.2g}")
+            if value > (1 - enough) * normal.value:
+                return
+
+    def together(self) -> Ended:
+        """The end, on one run over the whole series where that is as good as the segments."""
+        search, z = self.search, self._own()
+        apart = half_square(self.chain.criterion.vector(self.z))
+        if search.value(z) <= ALIKE * apart + NOTHING * self.unit:
+            ended = descend(search, z, stepped=search.iterated)
+            message = f"{ended.message}; {len(self.chain.segments)} segments have grown together"
+            return Ended(ended.z, search.iterations, int(ended.converged), message)
+        closed = self.gap < CLOSED
+        return self.ended(int(closed), "converged" if closed else "the gaps did not close")
+
+    def ended(self, exitflag: int, message: str, interrupted: bool = False) -> Ended:
+        """The end as it is, on segments."""
+        what = f"{len(self.chain.segments)} segments, gaps up to {self.gap:.1e} of a segment"
+        return Ended(
+            self.z,
+            self.search.iterations,
+            exitflag,
+            f"{message}: {what}",
+            self.chain.criterion,
+            interrupted,
+        )
+
+    def _own(self) -> Vector:
+        """The unknowns of the search among those of the chain."""
+        values, starts = self.chain.criterion.split(self.z)
+        heads = [0, *(n + 1 for n, on in enumerate(self.chain.follows[:-1]) if not on)]
+        found = [*values.values(), *(v for n in heads for v in starts[n].values())]
+        z = np.array(found) / self.search.criterion.scales
+        return np.asarray(np.clip(z, self.search.low, self.search.high))
+
+    def _count(self) -> None:
+        """Count what the chain has evaluated as evaluations of the search, and tell progress."""
+        whole, own = self.search.criterion, self.chain.criterion
+        whole.evaluations += own.evaluations
+        own.evaluations = 0
+        self.search.notice(self.search.begin, np.inf)
+        self.search.refuse_more()
+
+
+def _centred(samples: Vector) -> Vector:
+    return np.asarray(samples - samples.mean(axis=0))

@@ -1,0 +1,205 @@
+"""The method shooting: random shots round the best point, and the simplex from there.
+
+Source: paper B, section 5: "a combination of the simplex method and stochastic shooting near the
+current value of p". Where the criterion jumps, because the model comes to another of its motions, a
+simplex stays on the side where it began; a shot may land on the other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.fit.descent import descend
+from tracewire.fit.fminsearch import CONVERGED, fminsearch
+from tracewire.fit.methods.together import values_at
+from tracewire.fit.optimset import OptimValues, Options
+from tracewire.fit.search import Ended, Search
+
+Vector = NDArray[np.float64]
+FIRST_RADIUS = 0.05
+"""Of the shots, as a part of the size of each unknown: a standard deviation."""
+NEAREST = 0.2
+"""A shot has the radius of its round, or one that is smaller, down to this part of it."""
+LEAST_RADIUS = 1e-5
+SHOTS, LEAST_SHOTS = 2, 10
+"""Shots in a round, for each unknown, and at least; twice as many where there is no simplex."""
+PATIENCE, STALLED = 5, 0.8
+"""A simplex is left where so many evaluations for each unknown leave this part of the criterion."""
+EDGE = 0.05
+"""Of the simplex of fminsearch, as a part of each unknown."""
+GAIN = 1e-3
+"""A round that gains less than this part of the criterion has gained nothing."""
+ZERO = 0.02
+"""The least size of an unknown, as a part of what it is scaled by."""
+LEAST_EDGE = 1e-4
+"""A simplex ends where it has shrunk to this part of its first edges, or its values have."""
+LONGEST = 8.0
+"""Shots along the simplex are as long as it is, and up to so many times longer."""
+POLISHING, POLISHED = 10, 0.9
+"""Steps of least squares; where they leave more than this part of the criterion they are not tried
+again before a shot is better."""
+ENOUGH = 1e-6
+"""The relative change that ends them."""
+KEPT = ("vertices", "values", "iteration", "procedure", "evaluations")
+LOST = 8
+"""So many rounds without gain end the search."""
+
+
+@dataclass(frozen=True)
+class _State:
+    """Where a round begins: its number, the unknowns in SI and their criterion, the radius of the
+    shots, rounds without gain so far, the simplex where the last round has left it, and whether
+    least squares have come to their end there."""
+
+    z: tuple[float, ...]
+    value: float
+    number: int = 0
+    radius: float = FIRST_RADIUS
+    lost: int = 0
+    simplex: Mapping[str, Any] | None = None
+    is_polished: bool = False
+
+
+def by_shooting(search: Search) -> Ended:
+    """The minimum by rounds of shots round the best point, and of the simplex.
+
+    Shots are normally distributed in each unknown. From a better one a new simplex begins; else
+    more shots go along the simplex as it lies, the best of them join it, and it moves on. It is
+    left where it comes forward slowly. The radius of a round follows the best shot; without a good
+    one it gets smaller, and in the end begins anew. Where the simplex is left, a few steps of least
+    squares go down to the bottom of the valley that it is in: these are not in the paper.
+    """
+    scales = search.criterion.scales
+    if search.resumed:
+        state = _State(**search.resumed)
+    else:
+        state = _State(tuple(search.begin * scales), search.value(search.begin))
+    while state.lost < LOST:
+        before = state.value
+        search.tell(0.0, f"round {state.number + 1}, shots of {100 * state.radius:.2g} %")
+        state = _with_shots(search, state)
+        search.tell(0.0, f"round {state.number + 1}, simplex")
+        state = _with_simplex(search, state)
+        if not state.is_polished:
+            search.tell(0.0, f"round {state.number + 1}, least squares")
+            state = _with_least_squares(search, state)
+        lost = 0 if state.value < (1 - GAIN) * before else state.lost + 1
+        state = replace(state, number=state.number + 1, lost=lost)
+        search.keep(asdict(state))
+        search.iterated(np.array(state.z) / scales, state.value, f"round {state.number}")
+    message = f"converged: {LOST} rounds of shots and of the simplex have gained nothing"
+    return Ended(np.array(state.z) / scales, search.iterations, 1, message)
+
+
+def _with_shots(search: Search, state: _State) -> _State:
+    """The state after shots: the best point of them and of before, and the radius that follows."""
+    rng, scales = search.rng(state.number), search.criterion.scales
+    z = np.array(state.z) / scales
+    count = max(SHOTS * search.size, LEAST_SHOTS) * (2 if state.simplex is None else 1)
+    radii = state.radius * NEAREST ** rng.uniform(0.0, 1.0, count)
+    moves = rng.standard_normal((count, search.size)) * radii[:, None] * _sizes(z)
+    points = [search.folded(z + move) for move in moves]
+    values = np.array(list(values_at(search, points)))
+    best = int(np.argmin(values))
+    if values[best] < state.value:  # another motion, or far from the end: a new simplex
+        radius = float(np.clip(2 * radii[best], state.radius / 2, 2 * FIRST_RADIUS))
+        there = tuple((points[best] * scales).tolist())
+        value = float(values[best])
+        return replace(state, z=there, value=value, radius=radius, simplex=None, is_polished=False)
+    radius = state.radius / 2 if state.radius > 2 * LEAST_RADIUS else FIRST_RADIUS
+    state = replace(state, radius=radius)
+    return state if state.simplex is None else _with_long_shots(search, state, state.simplex, rng)
+
+
+def _with_long_shots(
+    search: Search, state: _State, simplex: Mapping[str, Any], rng: np.random.Generator
+) -> _State:
+    """The state after shots along the simplex, and beyond it; the best join it for its worst."""
+    vertices, known = np.array(simplex["vertices"]), np.array(simplex["values"])
+    spread = (vertices - vertices.mean(axis=0)) / np.sqrt(search.size)
+    stretch = LONGEST ** rng.uniform(0.0, 1.0, (search.size, 1))
+    shots = vertices[0] + stretch * rng.standard_normal((search.size, len(vertices))) @ spread
+    frame = _Frame(search, simplex)
+    values = np.array(list(values_at(search, [frame.point(x) for x in shots])))
+    vertices, known = np.vstack([vertices, shots]), np.concatenate([known, values])
+    kept = np.argsort(known, kind="stable")[: search.size + 1]
+    joined = {**simplex, "vertices": vertices[kept].tolist(), "values": known[kept].tolist()}
+    if known[kept[0]] < state.value:
+        there = frame.point(vertices[kept[0]]) * search.criterion.scales
+        state = replace(state, z=tuple(there.tolist()), value=float(known[kept[0]]))
+    return replace(state, simplex=joined)
+
+
+class _Frame:
+    """The unknowns in which fminsearch moves: all 1 at the centre, so that its edges are a radius.
+
+    It is that of a kept simplex, or one round z.
+    """
+
+    def __init__(self, search: Search, kept: Mapping[str, Any]) -> None:
+        self.search = search
+        self.centre, self.unit = np.array(kept["centre"]), np.array(kept["unit"])
+
+    def point(self, x: Vector) -> Vector:
+        """The scaled unknowns of a vertex."""
+        return self.search.folded(self.centre + (x - 1.0) * self.unit)
+
+
+def _with_simplex(search: Search, state: _State) -> _State:
+    """The state after moves of the simplex, the kept one or a new one, until it stalls."""
+    scales = search.criterion.scales
+    z = np.array(state.z) / scales
+    kept = state.simplex
+    if kept is None:
+        unit = state.radius / EDGE * _sizes(z)
+        kept = {"centre": z.tolist(), "unit": unit.tolist()}
+    frame = _Frame(search, kept)
+    last = {key: kept[key] for key in KEPT if key in kept}
+    told: list[tuple[int, float]] = []
+
+    def stalls(x: Vector, values: OptimValues, when: str) -> bool:
+        told.append((values.funccount, values.fval))
+        since = values.funccount - PATIENCE * search.size
+        old = [value for count, value in told if count <= since]
+        return when == "iter" and bool(old) and values.fval > STALLED * old[-1]
+
+    found = fminsearch(
+        lambda x: search.value(frame.point(x)),
+        np.ones(search.size),
+        Options(
+            Display="off",
+            MaxIter=np.inf,
+            MaxFunEvals=np.inf,
+            TolX=LEAST_EDGE * EDGE,
+            TolFun=LEAST_EDGE * state.value,
+            OutputFcn=stalls,
+        ),
+        resumed=last,
+        keep=last.update,
+    )
+    simplex = None if found.exitflag == CONVERGED else {**kept, **last}
+    if found.fval < state.value:
+        there = frame.point(found.x) * scales
+        state = replace(state, z=tuple(there.tolist()), value=float(found.fval))
+    return replace(state, simplex=simplex)
+
+
+def _with_least_squares(search: Search, state: _State) -> _State:
+    """The state after some steps of least squares."""
+    scales = search.criterion.scales
+    ended = descend(search, np.array(state.z) / scales, steps=POLISHING, tolerance=ENOUGH)
+    is_polished = ended.after > POLISHED * state.value
+    if ended.after >= state.value:
+        return replace(state, is_polished=is_polished)
+    there = tuple((ended.z * scales).tolist())
+    return replace(state, z=there, value=ended.after, simplex=None, is_polished=is_polished)
+
+
+def _sizes(z: Vector) -> Vector:
+    """The size of each unknown: its value, or a part of what it is scaled by where that is more."""
+    return np.maximum(np.abs(z), ZERO)

@@ -1,0 +1,56 @@
+"""Several points of a search at once, in threads: a run lets other threads work meanwhile."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.fit.criterion import Criterion
+from tracewire.fit.search import Search
+
+Vector = NDArray[np.float64]
+
+
+def values_at(
+    search: Search, points: Sequence[Vector], told: Callable[[int], None] | None = None
+) -> Iterator[float]:
+    """The criterion at each of the points, in their order.
+
+    What comes is the same for any number of threads. `told` gets the number of points that are
+    done. Raises Stopped where the limit of evaluations is reached, behind the last point that it
+    allows.
+    """
+    whole = search.criterion
+    allowed = max(int(search.options.evaluations(search.size)) - whole.evaluations, 0)
+    part = points[:allowed]
+
+    def valued(z: Vector) -> tuple[Criterion, float]:
+        own = whole.on(whole.segments)
+        return own, own.value(z)
+
+    with ThreadPoolExecutor(max(1, min(_cores(), len(part)))) as pool:
+        try:
+            for number, (z, (own, value)) in enumerate(
+                zip(part, pool.map(valued, part), strict=True), 1
+            ):
+                whole.evaluations += own.evaluations
+                whole.failures += own.failures
+                whole.failure = own.failure or whole.failure
+                if told is not None:
+                    told(number)
+                search.notice(z, value)
+                yield value
+        except BaseException:  # Ctrl-C, or a limit: what is not yet begun shall not begin
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    if len(part) < len(points):
+        search.refuse_more()
+
+
+def _cores() -> int:
+    """The cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

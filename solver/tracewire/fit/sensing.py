@@ -1,0 +1,86 @@
+"""From a run to what the sensors of a segment show, gain*y(t - delay) + offset, and derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.fit.measured import Sensor
+from tracewire.fit.segment import Segment
+from tracewire.solve import Run
+
+Vector = NDArray[np.float64]
+STEP = 1e-3
+"""Of a sample interval: how far to each side a signal is sampled for its rate."""
+
+
+class Sensing:
+    """The sensors of a segment with the values of unknowns, and when they look at their signals.
+
+    `named` holds unknowns by name (`offset.SIGNAL` ...), which replace those of the series. With
+    `rates`, signals are sampled for d y/dt, too. `times` are the sample times that a run needs; a
+    sensor that looks back before its begin sees the signal there.
+    """
+
+    def __init__(self, segment: Segment, named: Mapping[str, float], rates: bool = False) -> None:
+        self.segment = segment
+        self.sensors = [_sensor(segment, signal, named) for signal in segment.signals]
+        self.rates = rates
+        t = segment.t
+        self.begin = min(segment.begin, float(t[0]))
+        looks: Vector = np.array([t - sensor.delay for sensor in self.sensors])
+        if not rates and not any(sensor.delay for sensor in self.sensors):
+            self.times, self.at = t, np.broadcast_to(np.arange(len(t)), looks.shape)
+            return
+        if rates:
+            self.step = STEP * float(np.median(np.diff(t))) if len(t) > 1 else STEP
+            looks = np.concatenate([looks, looks - self.step, looks + self.step])
+        self.times, at = np.unique(np.maximum(looks, self.begin), return_inverse=True)
+        self.at = at.reshape(looks.shape)
+
+    def shown(self, run: Run) -> Vector:
+        """What the sensors show, shape (N, signals)."""
+        columns = [
+            sensor.gain * run[signal][at] + sensor.offset
+            for signal, sensor, at in zip(self.segment.signals, self.sensors, self.at, strict=False)
+        ]
+        return np.stack(columns, axis=1)
+
+    def derivative(self, run: Run, name: str, sensitivity: str = "") -> Vector:
+        """d shown/d an unknown, shape (N, signals).
+
+        `sensitivity` is the name under which the run has the derivatives of the signals in it; for
+        an unknown of a sensor it is not needed.
+        """
+        found = np.zeros((len(self.segment.rows), len(self.segment.signals)))
+        kind, _, of = name.partition(".")
+        for column, (signal, sensor) in enumerate(
+            zip(self.segment.signals, self.sensors, strict=True)
+        ):
+            if sensitivity:
+                slope = run.sensitivities[sensitivity][signal]
+                found[:, column] = sensor.gain * slope[self.at[column]]
+            elif signal == of and kind == "offset":
+                found[:, column] = 1.0
+            elif signal == of and kind == "gain":
+                found[:, column] = run[signal][self.at[column]]
+            elif signal == of and kind == "delay":
+                found[:, column] = -sensor.gain * self._rate(run, signal, column)
+        return found
+
+    def _rate(self, run: Run, signal: str, column: int) -> Vector:
+        count = len(self.segment.signals)
+        down, up = self.at[count + column], self.at[2 * count + column]
+        width = np.maximum(self.times[up] - self.times[down], 1e-300)
+        return np.asarray((run[signal][up] - run[signal][down]) / width)
+
+
+def _sensor(segment: Segment, signal: str, named: Mapping[str, float]) -> Sensor:
+    own = segment.measured.sensor(signal)
+    return Sensor(
+        offset=named.get(f"offset.{signal}", own.offset),
+        gain=named.get(f"gain.{signal}", own.gain),
+        delay=named.get(f"delay.{signal}", own.delay),
+    )

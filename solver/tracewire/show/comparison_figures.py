@@ -1,0 +1,195 @@
+"""`plot_comparisons`: measured against simulated, with the residual under it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.errors import OptionError, Problem
+from tracewire.fit import Comparison
+from tracewire.show.style import (
+    AFTER,
+    BAND,
+    BEFORE,
+    MEASURED,
+    QUIET,
+    UNCOUNTED,
+    USES,
+    align_ylabels,
+    cut,
+    dots,
+    fit_time,
+    panels,
+    plain_numbers,
+    save,
+    shortened,
+    styled,
+    with_unit,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+MOST_COMPARISONS = 12
+MANY_POINTS = 5000
+"""A vector picture holds more points than this as pixels: its file would be slow to open."""
+FAR = 4.0
+"""A model before the fit that is this many times as far away is left out of the axis' limits."""
+
+Vector = NDArray[np.float64]
+
+
+def plot_comparisons(path: str | Path, comparisons: Sequence[Comparison], title: str = "") -> Path:
+    """Draw each measured signal of each series, the model before and after, and the residual.
+
+    Samples that do not count are pale and their time is shaded; a signal that is compared modulo a
+    period is drawn on the branch of the measurement. The strip below is measured - simulated after
+    the fit, and before it where that is of like size, with +-2 sigma where sigma is known.
+    Raises OptionError: no comparison, another ending of the file; OSError.
+    """
+    if not comparisons:
+        what = "a figure of no measured signal cannot be drawn"
+        raise OptionError([Problem(what, hint="Compare at least one series.")])
+    title = shortened(title, len(comparisons), MOST_COMPARISONS, "signals")
+    chosen = comparisons[:MOST_COMPARISONS]
+    with styled():
+        figure, axes = panels([2.3, 1.0] * len(chosen), title, sharex=False)
+        for n, compared in enumerate(chosen):
+            draw_comparison(axes[2 * n], axes[2 * n + 1], compared)
+        axes[-1].set_xlabel("t [s]")
+        align_ylabels(axes)
+        return save(figure, path)
+
+
+def draw_comparison(upper: Axes, lower: Axes, compared: Comparison, now: str = "after") -> None:
+    """Draw one comparison into a panel and the strip under it; `now` names the fitted model."""
+    t, counts = compared.t, compared.counts
+    left_before, left_after = compared.residual_before, compared.residual_after
+    before, after = compared.measured - left_before, compared.measured - left_after
+    points = dots(len(t)) | {"rasterized": len(t) > MANY_POINTS}
+    upper.plot(t[counts], compared.measured[counts], label="measured", **points)
+    if not counts.all():
+        upper.plot(t[~counts], compared.measured[~counts], **points | {"alpha": 0.2})
+    # the dashes above the line: both are seen where they agree
+    many = len(t) > MANY_POINTS
+    upper.plot(t, _unjoined(before, compared.period), "--", color=BEFORE, linewidth=1.1, zorder=3,
+               label="before", rasterized=many)  # fmt: skip
+    upper.plot(t, _unjoined(after, compared.period), color=AFTER, label=now, rasterized=many)
+    limit(upper, (compared.measured, after), before)
+    upper.set_ylabel(with_unit(cut(compared.signal), compared.unit))
+    upper.tick_params(labelbottom=False)
+    _draw_strip(lower, compared, left_before, left_after, many)
+    _write_titles(upper, lower, compared, now)
+    for panel in (upper, lower):
+        for k, (begin, end) in enumerate(_uncounted(t, counts)):
+            label = "does not count" if k == 0 and panel is upper else None
+            panel.axvspan(begin, end, color=UNCOUNTED, linewidth=0, zorder=0, label=label)
+        fit_time(panel, t)
+        plain_numbers(panel.yaxis)
+    upper.legend(
+        loc="lower right",
+        bbox_to_anchor=(1, 0.98),
+        ncols=4,
+        borderpad=0,
+        markerscale=6 / points["markersize"],
+    )
+
+
+def limit(panel: Axes, shown: Sequence[Vector], far: Vector) -> None:
+    """Limits of y that hold `shown`, and `far` as long as it does not make these flat."""
+    near = np.concatenate([values[np.isfinite(values)] for values in shown])
+    far = far[np.isfinite(far)]
+    if not len(near):
+        return
+    low, high = float(near.min()), float(near.max())
+    span = high - low or abs(high) or 1.0
+    if len(far):
+        low = max(min(low, float(far.min())), low - FAR / 2 * span)
+        high = min(max(high, float(far.max())), high + FAR / 2 * span)
+    margin = 0.05 * (high - low or span)
+    panel.set_ylim(low - margin, high + margin)
+
+
+def root_mean_square(values: Vector, counts: NDArray[np.bool_]) -> float:
+    """Root mean square of the samples that count; NaN where there are none."""
+    chosen = values[counts]
+    largest = float(np.abs(chosen).max(initial=0.0))
+    if largest == 0 or not np.isfinite(largest):
+        return largest if len(chosen) else float("nan")
+    return largest * float(np.sqrt(np.mean((chosen / largest) ** 2)))  # no square overflows
+
+
+def _draw_strip(
+    panel: Axes, compared: Comparison, before: Vector, after: Vector, many: bool
+) -> None:
+    sigma = compared.sigma
+    if sigma is not None:
+        panel.axhspan(-2 * sigma, 2 * sigma, color=BAND, linewidth=0, zorder=0.2, label="±2 σ")
+    alike = root_mean_square(before, compared.counts) <= FAR * root_mean_square(
+        after, compared.counts
+    )
+    if alike:
+        panel.plot(compared.t, before, color=BEFORE, linewidth=0.7, rasterized=many)
+    panel.plot(compared.t, after, color=AFTER, linewidth=0.8, rasterized=many)
+    panel.axhline(0.0, color=QUIET, linewidth=0.7)
+    for edge in () if sigma is None else (-2 * sigma, 2 * sigma):
+        panel.axhline(edge, color=MEASURED, linewidth=0.7, linestyle=":", zorder=3)
+    edges = (0.0,) if sigma is None else (-2.5 * sigma, 2.5 * sigma)
+    counted = after[compared.counts] if compared.counts.any() else after
+    limit(panel, (counted, np.array(edges)), before if alike else after)
+    panel.set_ylabel(with_unit("residual", compared.unit).replace(" ", "\n", 1))
+    if sigma is not None:
+        panel.legend(loc="lower right", bbox_to_anchor=(1, 0.98), borderpad=0, handlelength=1.2)
+
+
+def _write_titles(upper: Axes, lower: Axes, compared: Comparison, now: str) -> None:
+    upper.text(
+        0.0,
+        1.03,
+        f" {compared.use}: {cut(compared.series, 40)} ",
+        transform=upper.transAxes,
+        fontsize=9,
+        bbox={"facecolor": USES.get(compared.use, "#EEEEEE"), "edgecolor": "none", "pad": 2.0},
+    )
+    before = root_mean_square(compared.residual_before, compared.counts)
+    after = root_mean_square(compared.residual_after, compared.counts)
+    unit = f" {compared.unit}" if compared.unit else ""
+    words = [
+        f"{when}: " + (f"{value:.3g}{unit}" if np.isfinite(value) else "no run")
+        for when, value in (("before", before), (now, after))
+    ]
+    text = f"rms of the residual {', '.join(words)}"
+    if compared.sigma and np.isfinite(after):
+        text += f" = {after / compared.sigma:.3g} σ"
+    lower.set_title(text, fontsize=8.5, color="#555555", loc="left", pad=3)
+
+
+def _unjoined(values: Vector, period: float) -> Vector:
+    """A signal modulo a period without the lines from one end of the period to the other."""
+    if period <= 0 or len(values) < 2:
+        return values
+    jumps = np.flatnonzero(np.abs(np.diff(values)) > period / 2)
+    values = values.copy()
+    values[jumps] = np.nan
+    return values
+
+
+def _uncounted(t: Vector, counts: NDArray[np.bool_]) -> list[tuple[float, float]]:
+    """The stretches of time (s) whose samples do not count; single samples among others are none.
+
+    A stretch ends half-way to the next sample that counts.
+    """
+    edges = np.flatnonzero(np.diff(counts.astype(int)))
+    middle = ((t[edges] + t[edges + 1]) / 2).tolist()
+    borders = [float(t[0]), *middle, float(t[-1])]
+    states = [bool(counts[0]), *counts[edges + 1].tolist()]
+    lengths = np.diff([0, *(edges + 1), len(t)])
+    return [
+        (begin, end)
+        for begin, end, counted, length in zip(borders, borders[1:], states, lengths, strict=False)
+        if not counted and length > 1
+    ]

@@ -1,0 +1,193 @@
+"""A fit in tables and sentences: what was found, how sure that is, and what is left over."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from tracewire.fit import Comparison, Fit
+from tracewire.fit.diagnostics import Diagnosis, diagnose
+from tracewire.show.comparison_figures import root_mean_square
+from tracewire.show.parameter_figures import unknown_width
+from tracewire.show.summary import Table, shown
+
+UNKNOWN = "not determined"
+
+
+def fit_tables(fit: Fit) -> tuple[Table, ...]:
+    """The tables of a fit, without those that are empty."""
+    tables = (fit_table(fit), tied_table(fit), starts_table(fit), comparison_table(fit))
+    return tuple(table for table in tables if table.rows)
+
+
+def fit_table(fit: Fit) -> Table:
+    """Fitted parameters, offsets, gains and delays with standard errors and 95 % intervals."""
+    rows = []
+    for name, value in fit.values.items():
+        error = fit.errors.get(name, math.nan)
+        low, high = fit.intervals.get(name, (math.nan, math.nan))
+        interval = UNKNOWN
+        if math.isfinite(low) and math.isfinite(high):
+            interval = f"{rounded(low, error, 3)} to {rounded(high, error, 3)}"
+        rows.append(
+            (
+                name,
+                shown(fit.began[name]),
+                rounded(value, error),
+                f"{error:.3g}" if math.isfinite(error) else "–",
+                interval,
+                unit_of(fit, name),
+                _remark(fit, name),
+            )
+        )
+    header = ("parameter", "before", "after", "standard error", "95 % interval", "unit", "remark")
+    return Table("fitted parameters", header, tuple(rows), frozenset({1, 2, 3, 4}))
+
+
+def rounded(value: float, error: float, least: int = 6) -> str:
+    """A number with as many digits as its standard error leaves meaning, at least `least`."""
+    digits = least
+    if value != 0 and math.isfinite(error) and error > 0:
+        needed = math.floor(math.log10(abs(value))) - math.floor(math.log10(error)) + 2
+        digits = max(digits, min(needed, 12))
+    return f"{value:.{digits}g}"
+
+
+def unit_of(fit: Fit, name: str) -> str:
+    """The unit of a fitted value: of a parameter, or of a sensor's offset, gain or delay."""
+    flat = fit.model.flat
+    if name in flat.parameters:
+        return flat.parameters[name].unit
+    kind, _, signal = name.partition(".")
+    return {"offset": flat.units.get(signal, ""), "delay": "s"}.get(kind, "")
+
+
+def _remark(fit: Fit, name: str) -> str:
+    found = fit.uncertainty
+    if name in found.at_bounds or _at_bound(fit.values[name], fit.bounds[name]):
+        return "at its bound"
+    if name in found.unmoved:
+        return unknown_width(fit, name)
+    if math.isfinite(fit.errors.get(name, math.nan)):
+        return ""
+    own = {other for d in found.directions if name in d.names for other in d.names} - {name}
+    few = [
+        other
+        for other in fit.values
+        if other in own and not math.isfinite(fit.errors.get(other, math.nan))
+    ]
+    more = f" and {len(few) - 3} more" if len(few) > 3 else ""
+    return f"only together with {', '.join(few[:3])}{more}" if few else ""
+
+
+def _at_bound(value: float, bounds: tuple[float, float]) -> bool:
+    low, high = bounds
+    near = 1e-6 * (high - low) if math.isfinite(high - low) else 1e-9 * abs(value)
+    return value - low <= near or high - value <= near
+
+
+def tied_table(fit: Fit) -> Table:
+    """Parameters that are not free themselves, but follow from fitted ones by their formulas.
+
+    Those of a subsystem that only take the value of one outside are left out.
+    """
+    from tracewire.formula import Name, to_text
+    from tracewire.solve import parameter_values
+
+    flat = fit.model.flat
+    own = {name for name in fit.values if name in flat.parameters}
+    before = parameter_values(fit.model, {name: fit.began[name] for name in own})
+    after = parameter_values(fit.model, {name: fit.values[name] for name in own})
+    rows = tuple(
+        (name, to_text(flat.parameters[name].formula), shown(before[name]), shown(value),
+         flat.parameters[name].unit)
+        for name, value in after.items()
+        if name not in own
+        and value != before[name]
+        and not ("." in name and isinstance(flat.parameters[name].formula, Name))
+    )  # fmt: skip
+    header = ("parameter", "formula", "before", "after", "unit")
+    return Table("parameters that follow from these", header, rows, frozenset({2, 3}))
+
+
+def starts_table(fit: Fit) -> Table:
+    """Fitted start values by series and state, in SI."""
+    units = {state.name: state.unit for state in fit.model.flat.states}
+    rows = tuple(
+        (series, state, shown(value), units.get(state, ""))
+        for series, starts in fit.starts.items()
+        for state, value in starts.items()
+    )
+    return Table("fitted start values", ("series", "state", "start", "unit"), rows, frozenset({2}))
+
+
+def comparison_table(fit: Fit) -> Table:
+    """Root mean square errors before and after, by series and signal, in SI and in sigma."""
+    known = any(c.sigma for c in fit.comparisons)
+    header = ("series", "use", "signal", "samples", "unit", "rmse before", "rmse after")
+    rows = tuple(_compared(c, known) for c in fit.comparisons)
+    more = ("before in σ", "after in σ") if known else ()
+    numeric = frozenset({3, *range(5, len(header) + len(more))})
+    return Table("measured against simulated", (*header, *more), rows, numeric)
+
+
+def _compared(compared: Comparison, in_sigma: bool) -> tuple[str, ...]:
+    errors = [
+        root_mean_square(residual, compared.counts)
+        for residual in (compared.residual_before, compared.residual_after)
+    ]
+    sigma = compared.sigma
+    cells = [_error(error) for error in errors]
+    if in_sigma:
+        cells += [
+            f"{error / sigma:.3g}" if sigma and math.isfinite(error) else "" for error in errors
+        ]
+    samples = str(int(compared.counts.sum()))
+    return compared.series, compared.use, compared.signal, samples, compared.unit, *cells
+
+
+def _error(value: float) -> str:
+    return f"{value:.4g}" if math.isfinite(value) else "no run"
+
+
+def fit_text(fit: Fit) -> str:
+    """What the fit did, in one paragraph."""
+    before, after = fit.criterion_before, fit.criterion
+    message = " ".join(fit.message.split()).rstrip(".")
+    change = f"fell from {before:.4g} to {after:.4g}"
+    if after >= before:
+        change = f"stayed at {after:.4g}: nothing better was found"
+    elif after > 0:
+        change += f", {before / after:.4g}-fold,"
+    return (
+        f"{fit.method}: the criterion {change} in {fit.evaluations} evaluations and "
+        f"{fit.seconds:.1f} s: {message}."
+    )
+
+
+def fit_words(fit: Fit) -> tuple[str, ...]:
+    """What a reader of the tables must know, a paragraph each: what the data do not determine, what
+    is left in the residual, and what was odd.
+    """
+    return (*identifiability_words(fit), *residual_words(diagnose(fit)), *remark_words(fit))
+
+
+def identifiability_words(fit: Fit) -> tuple[str, ...]:
+    """What the data do not determine."""
+    return tuple(map(sentence, fit.uncertainty.words))
+
+
+def residual_words(found: Sequence[Diagnosis]) -> tuple[str, ...]:
+    """What the residual after the fit is like, by series and signal."""
+    return tuple(sentence(f"{d.series} ({d.use}), {d.signal}: {d.words}") for d in found)
+
+
+def remark_words(fit: Fit) -> tuple[str, ...]:
+    """What was odd about the fit or its data."""
+    odd = [f"{m.name}: {text}" for m in fit.measured for text in m.remarks]
+    return tuple(map(sentence, dict.fromkeys([*fit.remarks, *odd])))
+
+
+def sentence(text: str) -> str:
+    """A text with a full stop; its first letter stays, which may be that of a name."""
+    return text if text.endswith((".", "!", "?")) else f"{text}."
