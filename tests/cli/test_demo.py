@@ -16,11 +16,11 @@ def test_the_demo_writes_what_it_promises(call: Any, tmp_path: Path) -> None:
     for step in ("no problems", "s simulated in", "the criterion fell from", "verdict: effect"):
         assert step in told.out
     assert f"figures and reports are in {folder}/" in told.out
-    for figure in ("torsion.png", "fit/fit.png", "trace/held_out.png", "trace/residual.png"):
+    for figure in ("torsion.png", "trace/held_out.png", "trace/residual.png"):
         assert (folder / figure).read_bytes().startswith(b"\x89PNG")
-    fitted = (folder / "fit" / "report.md").read_text(encoding="utf-8")
+    fitted = (folder / "fit" / "report.html").read_text(encoding="utf-8")
     traced = (folder / "trace" / "report.md").read_text(encoding="utf-8")
-    assert fitted.startswith("# Fit of Double torsion pendulum\n")
+    assert "<h1>Fit of Double torsion pendulum</h1>" in fitted
     assert traced.startswith("# Trace of Pendulum with viscous friction\n")
     assert "coulomb" in traced
     patch = (folder / "pendulum.patch").read_text(encoding="utf-8")

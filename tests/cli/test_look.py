@@ -91,6 +91,19 @@ def test_check_tells_the_windows_of_a_series(call: Any, swing: Path) -> None:
     assert "run_1 (gate): 2 samples from 1.7 to 2 s of theta" in told
 
 
+def test_check_tells_parameters_that_are_not_what_is_required(call: Any, tmp_path: Path) -> None:
+    file = tmp_path / "decay.yaml"
+    file.write_text(
+        "span: [0, 1]\nparameters: {m: 1}\nrequire: [m > 0]\n"
+        "blocks: {x: {type: integrator, of: r}, r: {type: constant, value: 1/m}}\n"
+        "presets: {upside_down: {m: -2}}\n",
+        encoding="utf-8",
+    )
+    told = call("check", file)
+    assert (told.code, told.out) == (1, "")
+    assert "decay.yaml:3:11: the parameters do not meet 'm > 0': m = -2." in told.err
+
+
 def test_check_names_a_measured_file_that_is_missing(call: Any, swing: Path) -> None:
     swing.with_name("run_1.csv").unlink()
     told = call("check", swing)

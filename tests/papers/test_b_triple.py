@@ -12,6 +12,7 @@ from oracles.triple_pendulum import PARAMETERS, STATES, solve
 from tracewire.compile import Model, compile
 from tracewire.diagram import read
 from tracewire.errors import SimulationError, TracewireError
+from tracewire.fit import Fit, Measured, fit
 from tracewire.solve import parameter_values, simulate
 
 PENDULUM = Path(__file__).parents[2] / "diagrams/papers/b_triple/pendulum.yaml"
@@ -95,3 +96,59 @@ def test_a_mass_matrix_that_is_not_positive_definite_is_refused_with_its_values(
     told = str(caught.value)
     assert "the parameters do not meet 'B1*B2 - N12**2 > 0': B1 = 0.19, B2 = 0.08" in told
     assert "pendulum.yaml:" in told
+
+
+TEN = ("B2", "B3", "N12", "N13", "N23", "M2", "M3", "c1", "c2", "c3")
+
+
+def record(name: str, frequency: float, end: float, noise: float = 0.0) -> Measured:
+    t = np.arange(round(100 * end) + 1) / 100
+    angles = solve(t, frequency)[:3]
+    angles = angles + noise * np.random.default_rng(7).standard_normal(angles.shape)
+    values = {state: angles[n] for n, state in enumerate(STATES[:3])}
+    return Measured(name, "train", t, values, preset=name)
+
+
+def off(part: float, seed: int) -> dict[str, float]:
+    signs = np.random.default_rng(seed).choice([-1, 1], len(TEN))
+    return {name: PARAMETERS[name] * (1 + part * s) for name, s in zip(TEN, signs, strict=True)}
+
+
+def worst(found: Fit) -> float:
+    return max(abs(found.values[name] / PARAMETERS[name] - 1) for name in TEN)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [1, 9])
+def test_growing_windows_recover_ten_parameters_from_20_percent_off(
+    model: Model, seed: int
+) -> None:
+    """Two starts whose mass matrix is nearly singular: a fixed first window leads astray there."""
+    frequencies = {"f_0_30": 0.3, "f_0_45": 0.45, "f_0_60": 0.6}
+    measured = [record(name, f, 15.0) for name, f in frequencies.items()]
+    found = fit(model, measured, method="growing_windows", parameters=off(0.2, seed))
+    assert worst(found) < 1e-3
+
+
+@pytest.mark.slow
+def test_multiple_shooting_recovers_them_from_a_chaotic_record(model: Model) -> None:
+    measured = [record("chaotic", 0.73, 20.0, noise=2e-3)]
+    one = fit(model, measured, method="least_squares", parameters=off(0.1, 0))
+    found = fit(model, measured, method="multiple_shooting", parameters=off(0.1, 0))
+    assert worst(one) > 0.05
+    assert worst(found) < 0.01
+
+
+def test_a_start_whose_mass_matrix_is_not_positive_definite_is_refused(model: Model) -> None:
+    with pytest.raises(TracewireError) as caught:
+        fit(model, [record("f_0_60", 0.6, 0.5)], parameters={"B2": 0.08})
+    assert "B1*B2 - N12**2 > 0" in str(caught.value)
+
+
+def test_a_trial_whose_mass_matrix_is_not_positive_definite_counts_as_far_away(
+    model: Model,
+) -> None:
+    measured = [record("f_0_60", 0.6, 2.0)]
+    found = fit(model, measured, method="multistart", free=["B2", "N12"], seed=1)
+    assert found.values == pytest.approx({"B2": 0.1602, "N12": 0.1262}, rel=1e-3)
+    assert any("its run failed" in remark for remark in found.remarks)

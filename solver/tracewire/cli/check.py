@@ -22,8 +22,11 @@ def check(
       tracewire check pendulum.yaml
     """
     from tracewire.show.summary import contents, contents_text, series_contents
+    from tracewire.solve import parameter_values
 
     model = load_model(diagram, library)
+    for preset in ("", *model.flat.presets):  # they must be what the diagram requires
+        parameter_values(model, {}, preset)
     measured = []
     if model.diagram.measured:
         with working("reading the measured series"):

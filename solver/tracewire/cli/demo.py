@@ -41,11 +41,12 @@ def demo(
     check(torsion)
     print_text("\n--- 2. run it")
     run(torsion, figure=str(folder / "torsion.png"))
-    print_text(
-        "\n--- 3. fit the nine parameters of the paper's appendix, 100 iterations of its 150"
-    )
-    fit(torsion, max_iter=100, report=str(folder / "fit" / "report.md"))
-    print_text("\n--- 4. trace what the diagram of a swinging pendulum lacks")
+    print_text("\n--- 3. fit the nine parameters of the paper's appendix, as it does")
+    fit(torsion, max_iter=150)
+    print_text("\n--- 4. hold the two that the data do not determine, and fit by least squares")
+    report = str(folder / "fit" / "report.html")
+    fit(torsion, method="least_squares", fix=["alpha", "beta"], report=report)
+    print_text("\n--- 5. trace what the diagram of a swinging pendulum lacks")
     patch = str(folder / "pendulum.patch")
     trace(pendulum, report=str(folder / "trace" / "report.md"), output=patch)
     print_text(

@@ -69,6 +69,7 @@ class _Windows:
         self.spreads = [spread_of(s, PARTS) for s in segments]
         kept = search.resumed
         self.z = np.array(kept["z"]) / search.criterion.scales if kept else search.begin
+        self.value = search.best_value  # of the whole series at z
         self.number = int(kept["number"]) if kept else 0
         least = np.minimum(LEAST, self.sizes)
         self.reached = np.array(kept["reached"]) if kept else np.minimum(LEAST // 2, self.sizes)
@@ -86,7 +87,6 @@ class _Windows:
         search.tell(0.9 * share, f"part {self.number}, {100 * share:.2g} % of the series")
         part = _Part(search, self.counts, self.z)
         ended = descend(part, self.z, steps=STEPS, tolerance=ENOUGH)
-        search.iterated(ended.z, half_square(part.plain(ended.residual)), f"part {self.number}")
         longest = self.counts.copy()
         between = np.sqrt(self.reached * self.counts).astype(int)
         if part.is_astray(ended.z) and np.any(self.counts > SLOWEST * between):
@@ -105,13 +105,15 @@ class _Windows:
                 "counts": self.counts.tolist(),
             }
         )
+        search.iterated(self.z, self.value, f"part {self.number}")
 
     def followed(self, z: Vector) -> Counts:
         """How many first samples of each series the model follows, shape (segments,)."""
         search = self.search
         search.refuse_more()
         residuals = search.criterion.residuals(z)
-        search.notice(z, half_square(search.criterion.weigh(residuals)))
+        self.value = half_square(search.criterion.weigh(residuals))
+        search.notice(z, self.value)
         found = []
         for segment, residual, spread in zip(
             search.criterion.segments, residuals, self.spreads, strict=True
