@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -264,6 +265,29 @@ def test_a_diagram_that_does_not_run_exits_with_1(call: Any, decay: Path) -> Non
 def test_a_fixed_parameter_stays(call: Any, decay: Path) -> None:
     data = call("fit", decay, *QUICK, "--fix", "x0", "--json").data
     assert list(data["values"]) == ["rate"]
+
+
+def test_what_is_found_of_sensors_is_written_in_their_units(call: Any, decay: Path) -> None:
+    """The record in mm, shown 5 mm too high, 40 ms late, and 10 % too large."""
+    late = 1000 * (1.1 * 0.15 * np.exp(-1.7 * np.maximum(T - 0.04, 0)) + 0.005)
+    rows = [f"{t},{value}" for t, value in zip(T.tolist(), late.tolist(), strict=True)]
+    decay.with_name("run.csv").write_text("\n".join(["t,position", *rows]), encoding="utf-8")
+    sensor = (
+        "{column: position, unit: mm, offset: {fit: [-20, 20]}, gain: {value: 1, fit: [0.5, 2]}, "
+        "delay: {fit: [0, 0.1]}}"
+    )
+    replaced(decay, "signals: {x: position}}", f"signals: {{x: {sensor}}}}}")
+    replaced(decay, "value: 100, unit: mm", "value: 150, unit: mm")
+    told = call("fit", decay, *QUICK, "--fix", "x0", "--apply", "--json")
+    assert told.data["values"] == pytest.approx(
+        {"rate": 1.7, "gain.x": 1.1, "offset.x": 0.005, "delay.x": 0.04}, rel=1e-3
+    )
+    text = decay.read_text(encoding="utf-8")
+    assert re.search(r"offset: \{fit: \[-20, 20\], value: (5|5\.0000\d|4\.9999\d)\}", text)
+    assert re.search(r"gain: \{value: 1\.(1|10000\d|09999\d*), fit: \[0\.5, 2\]\}", text)
+    assert call("fit", decay, *QUICK, "--fix", "x0", "--json").data["before"] == pytest.approx(
+        told.data["values"], rel=1e-4
+    )
 
 
 def test_a_profile_is_told(call: Any, decay: Path) -> None:

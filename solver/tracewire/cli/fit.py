@@ -23,6 +23,7 @@ from tracewire.cli.values import parameter_values_of
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from tracewire.diagram import Diagram
     from tracewire.fit import Fit, Options, Profile, Progress
 
 TELL_EVERY = 10.0
@@ -100,7 +101,7 @@ def fit(
       tracewire fit pendulum.yaml --fix c --profile w0_squared
       tracewire fit pendulum.yaml --MaxIter 150 --save fit.json --apply
     """
-    from tracewire.diagram import set_values
+    from tracewire.diagram import set_sensors, set_values
     from tracewire.fit import fit as fit_model
     from tracewire.fit import profile as profile_of
 
@@ -135,7 +136,12 @@ def fit(
             profiles.append(profile_of(found, name))
     written = write_report(found, report, profiles)
     own = {n: v for n, v in found.values.items() if n in model.flat.parameters}
-    written += store(model.diagram, lambda: set_values(model.diagram, own), apply, output)
+    sensors = {n: v for n, v in found.values.items() if n not in own}
+
+    def edited() -> Diagram:
+        return set_sensors(set_values(model.diagram, own), sensors)
+
+    written += store(model.diagram, edited, apply, output)
     if as_json:
         print_json(_json(found, profiles) | {"written": written})
     else:

@@ -23,6 +23,7 @@ from tracewire.diagram.edit import (
     add_offset,
     difference,
     remove_addend,
+    set_sensors,
     set_values,
 )
 from tracewire.diagram.loops import cycles, shown_cycle
@@ -68,6 +69,7 @@ __all__ = [
     "read",
     "read_text",
     "remove_addend",
+    "set_sensors",
     "set_values",
     "shown_cycle",
     "signals",

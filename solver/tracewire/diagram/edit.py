@@ -12,7 +12,7 @@ import math
 from collections.abc import Mapping
 
 from tracewire.data import column_unit
-from tracewire.diagram.diagram import BlockUse, Diagram, Series
+from tracewire.diagram.diagram import BlockUse, Diagram, Series, Value
 from tracewire.diagram.names import find_recorded
 from tracewire.diagram.outline import Outline
 from tracewire.diagram.read import read_text
@@ -130,6 +130,46 @@ def add_offset(
     return _reread(diagram, changes)
 
 
+def set_sensors(diagram: Diagram, values: Mapping[str, float]) -> Diagram:
+    """The diagram with other offsets, gains and delays of sensors that are free in a fit.
+
+    `values` has them by `offset.SIGNAL`, `gain.SIGNAL`, `delay.SIGNAL` in SI; every series in which
+    one is free gets it, in the unit that its text has.
+    """
+    root = Outline(diagram).root
+    changes = []
+    for path, value in values.items():
+        kind, _, signal = path.partition(".")
+        for series in diagram.measured.values():
+            channel = series.channels.get(signal)
+            known: Value | None = getattr(channel, kind, None)
+            if channel is None or known is None or known.fit is None:
+                continue
+            node = _channel(diagram, root, series, signal)
+            assert isinstance(node, Entries)
+            entry = node.values[kind]
+            assert isinstance(entry, Entries)
+            bare = kind == "offset" and not known.unit
+            factor = known.factor * (_factor(series, signal) if bare else 1.0)
+            low, high = (end / factor for end in known.fit)
+            number = _digits(value / factor, low, high)
+            if "value" in entry.values:
+                changes.append(replaced(entry.values["value"], number))
+            else:
+                changes.append(entry_last(diagram.text, entry, "value", number))
+    return _reread(diagram, changes)
+
+
+def _channel(diagram: Diagram, root: Entries, series: Series, signal: str) -> Node:
+    """The text of a measured signal in its series."""
+    node: Node = root
+    for key in ("measured", series.name, "signals"):
+        assert isinstance(node, Entries)
+        node = node.values[key]
+    assert isinstance(node, Entries)
+    return next(n for name, _, n in node if find_recorded(diagram, name) == signal)
+
+
 def _copy(text: str, node: Node, number: str) -> str:
     """The text of a value with another number, on one line."""
     if not isinstance(node, Entries):
@@ -147,12 +187,7 @@ def _offset(
     value: float,
     fit: tuple[float, float] | None,
 ) -> Change:
-    node: Node = root
-    for key in ("measured", series.name, "signals"):
-        assert isinstance(node, Entries)
-        node = node.values[key]
-    assert isinstance(node, Entries)
-    given = next(n for name, _, n in node if find_recorded(diagram, name) == signal)
+    given = _channel(diagram, root, series, signal)
     factor = _factor(series, signal)
     ends = fit or (-math.inf, math.inf)
     low, high = (end / factor for end in ends)
