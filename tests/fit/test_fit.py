@@ -133,11 +133,6 @@ def test_a_validation_series_gets_its_own_start_and_the_fitted_offset() -> None:
     assert found.comparisons[1].rmse_after < 1e-4
 
 
-def test_without_train_series_all_are_fitted() -> None:
-    found = fitted(OSCILLATOR, series(oscillation(T, 0.9), use="validate"))
-    assert found.values["k"] == pytest.approx(K, rel=1e-4)
-
-
 def test_named_parameters_are_fitted_instead_of_the_declared() -> None:
     found = fitted(OSCILLATOR, series(oscillation(T, 1.2)), free=["x0", "k", "k"],
                    parameters={"c": C})  # fmt: skip
@@ -348,3 +343,61 @@ def test_the_same_fit_twice_is_the_same() -> None:
     first, second = fitted(OSCILLATOR, measured), fitted(OSCILLATOR, measured)
     assert replace(first, seconds=0.0).values == replace(second, seconds=0.0).values
     assert first.errors == second.errors
+
+
+def test_without_a_series_for_training_nothing_is_fitted() -> None:
+    told = refused(DataError, measured=[series(oscillation(T), use="validate")])
+    assert told == (
+        "no series is for training: run (validate). Give one `use: train`, or leave `use:` out."
+    )
+
+
+def test_a_delay_beyond_the_record_is_told() -> None:
+    late = series(oscillation(T), sensors={"x": Sensor(delay=100.0)})
+    assert refused(DataError, measured=[late]) == (
+        "the delay of 'x' in 'run' is 100 s, and the record is 6 s long. "
+        "Is it in s? Correct `delay:`."
+    )
+
+
+def test_presets_that_disagree_on_a_free_parameter_are_told() -> None:
+    text = OSCILLATOR + "  soft: {k: 2}\n"
+    pair = [series(oscillation(T), "one", preset="soft"), series(oscillation(T), "two")]
+    told = refused(OptionError, text, measured=pair)
+    assert told == (
+        "'k' is free and the same for all series, and their presets say 2 (soft), 3 (no preset). "
+        "Fix it, or take it out of the presets."
+    )
+
+
+def test_a_search_that_ends_before_a_minimum_says_so() -> None:
+    noisy = series(oscillation(T, 0.9) + NOISE)
+    few = optimset(MaxIter=5, Display="off")
+    found = fitted(OSCILLATOR, noisy, method="fminsearch", options=few)
+    assert found.remarks[0].startswith("the search ended before a minimum: the slope there leads ")
+    assert fitted(OSCILLATOR, noisy).remarks == ()
+
+
+def test_a_series_that_begins_elsewhere_is_told() -> None:
+    train, other = series(oscillation(T, 0.9)), series(oscillation(T, 0.4), "other", use="validate")
+    (remark,) = fitted(OSCILLATOR, train, other).remarks
+    assert remark == (
+        "other: x begins at 0.4, and the run is at 0.9 there (SI): where that is another start, "
+        "say start: {x: free}"
+    )
+
+
+def test_a_robust_loss_that_counts_all_as_outliers_has_no_errors() -> None:
+    far = series(oscillation(T, 0.9) + 100 * NOISE, sigma={"x": 1e-3})
+    found = fitted(OSCILLATOR, far, loss="cauchy")
+    assert "most samples of x in run count as outliers" in found.uncertainty.words[0]
+    assert all(np.isnan(error) for error in found.errors.values())
+
+
+def test_outliers_do_not_lead_a_robust_loss_astray() -> None:
+    spoilt = oscillation(T, 0.9) + NOISE
+    spoilt[::10] += 3.0
+    measured = series(spoilt, sigma={"x": 0.01})
+    plain, robust = (fitted(OSCILLATOR, measured, loss=loss) for loss in ("linear", "huber"))
+    assert abs(plain.values["k"] - K) > 5 * abs(robust.values["k"] - K)
+    assert robust.values == pytest.approx({"k": K, "c": C}, rel=0.02)

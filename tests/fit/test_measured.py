@@ -395,3 +395,16 @@ def test_remarks_are_on_the_window_that_is_used(file: Path) -> None:
         "a gap in the time, where the step is 0.01 s: 1.01 s after t = 1.99 s",
     )
     assert one(file, "time: t, to: 1.9").remarks == ()
+
+
+def test_an_input_that_rests_under_a_sign_is_remarked(file: Path) -> None:
+    rows = "".join(f"{i / 100:g},0,{max(i - 20, 0) / 100:g}\n" for i in range(100))
+    written(file, "t,angle,u\n" + rows)
+    text = TOP.replace("of: drive", "of: rub").replace(
+        "presets:", "  rub: {type: expression, formula: -sign(drive)}\npresets:"
+    )
+    series = PLAIN.replace("}}}", "}}, inputs: {drive: u}}")
+    file.write_text(text + series, encoding="utf-8")
+    (run,) = load_measured(compile(read(file)))
+    (remark,) = [remark for remark in run.remarks if "input" in remark]
+    assert remark.startswith("the input drive is exactly zero from 0 to 0.2 s: there 'rub' keeps")

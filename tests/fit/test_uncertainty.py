@@ -100,7 +100,7 @@ def test_several_series_count_by_their_weights() -> None:
         columns_of("a", np.ones(1)),
         correlated=False,
     )
-    level = np.sqrt(np.mean(parts[0] ** 2) * 2 * COUNT / (2 * COUNT - 1))
+    level = np.sqrt(np.sum(parts[0] ** 2) / (COUNT - 1))
     assert found.errors["a"] == pytest.approx(level / np.sqrt(COUNT))
 
 

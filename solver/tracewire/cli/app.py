@@ -15,7 +15,7 @@ from tracewire.cli.blocks import blocks
 from tracewire.cli.check import check
 from tracewire.cli.demo import demo
 from tracewire.cli.fit import fit
-from tracewire.cli.output import INTERRUPTED, print_problems
+from tracewire.cli.output import INTERRUPTED, Cut, print_problems
 from tracewire.cli.run import run
 from tracewire.cli.show import show
 from tracewire.cli.trace import trace
@@ -76,6 +76,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if ended != INTERRUPTED:  # what typer makes of an interrupt
             return ended if isinstance(ended, int) else 0
         problems, code = [STOPPED], INTERRUPTED
+    except Cut:
+        sys.stdout.flush()
+        return INTERRUPTED
     except BrokenPipeError:  # the reader, such as `head`, has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1

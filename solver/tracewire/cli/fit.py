@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries, load_model
-from tracewire.cli.output import INTERRUPTED, note, print_json, print_table, print_text, working
+from tracewire.cli.output import Cut, note, print_json, print_table, print_text, working
 from tracewire.cli.reporting import (
     Apply,
     Output,
@@ -131,9 +131,15 @@ def fit(
             progress=_told(tell),
         )
         profiles: list[Profile] = []
-        for name in profile or []:
+        cut = found.interrupted
+        for name in () if cut else profile or ():
             tell(f"profile of {name}")
-            profiles.append(profile_of(found, name))
+            try:
+                profiles.append(profile_of(found, name))
+            except KeyboardInterrupt:  # the fit is done, and is told
+                note(f"the profile of {name} was interrupted")
+                cut = True
+                break
     written = write_report(found, report, profiles)
     own = {n: v for n, v in found.values.items() if n in model.flat.parameters}
     sensors = {n: v for n, v in found.values.items() if n not in own}
@@ -146,8 +152,8 @@ def fit(
         print_json(_json(found, profiles) | {"written": written})
     else:
         _print(found, profiles, written)
-    if found.interrupted:
-        raise typer.Exit(INTERRUPTED)
+    if cut:
+        raise Cut
 
 
 def _options(limits: dict[str, float], plot: bool) -> Options | None:

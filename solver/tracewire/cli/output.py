@@ -24,6 +24,10 @@ WIDTH_OF_A_PIPE = 200
 SOON = 1.0  # s: what takes no longer needs no progress
 
 
+class Cut(Exception):
+    """The work was interrupted, and what there is of it has been told."""
+
+
 def print_text(text: str) -> None:
     """Print plain text to stdout."""
     typer.echo(text)

@@ -137,11 +137,7 @@ class Criterion:
     def both(self, z: Vector) -> tuple[Vector, Matrix]:
         """`vector` (M,) and its derivatives (M, n), from one run with sensitivities."""
         residuals, derivatives = self.residuals_and_derivatives(z)
-        rows = []
-        for n, (r, matrix) in enumerate(zip(residuals, derivatives, strict=True)):
-            slopes = LOSSES[self.loss](r).slope * self.weights(n)
-            rows.append(slopes.reshape(-1, 1) * matrix)
-        return self.weigh(residuals), np.concatenate(rows)
+        return self.weigh(residuals), self.weigh_derivatives(residuals, derivatives)
 
     def weigh(self, residuals: Sequence[Vector]) -> Vector:
         """The residuals of all segments as `vector` has them."""
@@ -149,6 +145,17 @@ class Criterion:
         return np.concatenate(
             [(loss(r).residual * self.weights(n)).ravel() for n, r in enumerate(residuals)]
         )
+
+    def weigh_derivatives(
+        self, residuals: Sequence[Vector], derivatives: Sequence[Matrix]
+    ) -> Matrix:
+        """The derivatives (M, n) of what `weigh` makes of the residuals."""
+        loss = LOSSES[self.loss]
+        rows = [
+            (loss(r).slope * self.weights(n)).reshape(-1, 1) * matrix
+            for n, (r, matrix) in enumerate(zip(residuals, derivatives, strict=True))
+        ]
+        return np.concatenate(rows)
 
     def weights(self, n: int) -> Vector:
         """The weights w (N, signals) of the residuals of segment n."""
@@ -213,7 +220,7 @@ class Criterion:
                 self.model,
                 parameters=of_diagram(values),
                 start={**segment.start, **start},
-                span=(sensing.begin, float(sensing.times[-1])),
+                span=(sensing.begin, sensing.end),
                 times=sensing.times,
                 rtol=self.rtol,
                 preset=segment.measured.preset,

@@ -14,12 +14,18 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model, compile
 from tracewire.errors import DataError, FitError, OptionError, Problem, unknown
+from tracewire.fit.caveats import caveats, starts_elsewhere, unfinished
 from tracewire.fit.checkpoint import Store, earlier, resume_from
 from tracewire.fit.compare import compared, shown_by_series
 from tracewire.fit.criterion import Criterion, half_square
 from tracewire.fit.measured import Measured, load_measured, measured_signals
 from tracewire.fit.methods import METHODS
 from tracewire.fit.optimset import Options, optimset
+from tracewire.fit.refusals import (
+    refuse_few_samples,
+    refuse_presets_of_free,
+    refuse_unusable,
+)
 from tracewire.fit.result import Comparison, Fit
 from tracewire.fit.search import Ended, Progress, Search, Stopped
 from tracewire.fit.starts import whole_segment
@@ -28,6 +34,7 @@ from tracewire.fit.unknowns import chosen_unknowns
 from tracewire.solve import parameter_values
 
 Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
 AMPLE = "10000*numberofvariables"
 """The limits of a method that is not Scilab's, where no options are given."""
 
@@ -83,14 +90,16 @@ def fit(
     if not series:
         raise DataError([Problem("there is no measured series to fit to")])
     model = with_measured_signals(model, series)
-    train = [m for m in series if m.use == "train"] or list(series)
+    train = [m for m in series if m.use == "train"]
+    refuse_unusable(series, train)
     values = parameter_values(model, parameters or {}, _common_preset(train))
     unknowns = chosen_unknowns(model, train, values, free, fixed)
+    refuse_presets_of_free(model, train, [u.name for u in unknowns])
     unknowns = [replace(u, scale=_size(scale or {}, u.name, u.scale)) for u in unknowns]
     segments = [whole_segment(model, m) for m in train]
     others = [whole_segment(model, m) for m in series if m not in train]
     criterion = Criterion(model, segments, unknowns, parameters or {}, rtol, loss=loss)
-    _refuse_few_samples(criterion)
+    refuse_few_samples(criterion)
 
     first = criterion.begin()
     units = np.ones(len(first))
@@ -134,6 +143,10 @@ def fit(
     for segment, start in zip(last.segments, starts, strict=True):
         found_starts.setdefault(segment.measured.name, start)
     follows = bool(model.states) if correlated is None else correlated
+    uncertainty = uncertainty_of(last, z, residuals, derivatives, follows)
+    matrix = last.weigh_derivatives(residuals, derivatives)
+    short = unfinished(uncertainty, last, matrix, last.weigh(residuals))
+    shown = compared(model, series, before, shown_by_series(last, z, others))
     return Fit(
         model=model,
         method=method,
@@ -149,15 +162,15 @@ def fit(
         exitflag=ended.exitflag,
         message=ended.message,
         seconds=time.perf_counter() - began,
-        comparisons=compared(model, series, before, shown_by_series(last, z, others)),
-        uncertainty=uncertainty_of(last, z, residuals, derivatives, follows),
+        comparisons=shown,
+        uncertainty=uncertainty,
         history=tuple(search.history),
         seed=seed,
         loss=loss,
         parameters=dict(parameters or {}),
         rtol=rtol,
         interrupted=ended.interrupted,
-        remarks=tuple(_remarks(series, failures, last)),
+        remarks=(*short, *starts_elsewhere(model, series, shown), *caveats(series, failures, last)),
     )
 
 
@@ -217,28 +230,3 @@ def _size(scale: Mapping[str, float], name: str, usual: float) -> float:
         what = f"the scale of '{name}' is {size:g}"
         raise OptionError.one(what, hint="Give a number above zero, of the size of its changes.")
     return size
-
-
-def _refuse_few_samples(criterion: Criterion) -> None:
-    samples = sum(len(s.rows) * len(s.signals) for s in criterion.segments)
-    unknowns = len(criterion.scales)
-    if samples <= unknowns:
-        what = f"{samples} measured values cannot determine {unknowns} unknowns"
-        hint = "Fix some parameters or start values, or measure more."
-        raise DataError([Problem(what, hint=hint)])
-
-
-def _remarks(
-    series: Sequence[Measured], failures: Mapping[str, int], criterion: Criterion
-) -> list[str]:
-    """What a reader of the result must know."""
-    remarks = [f"{m.name}: {remark}" for m in series for remark in m.remarks]
-    for name, count in failures.items():
-        times = "once" if count == 1 else f"{count} times"
-        remarks.append(
-            f"{name}: its run failed {times} during the search, and counted as far from the data"
-        )
-    if failures and criterion.failure is not None:
-        remarks.append(f"the last failure: {criterion.failure.problems[0].what}")
-    remarks += [f"{name}: {warning}" for name, warning in sorted(criterion.warnings)]
-    return remarks

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import comb
 
 import numpy as np
@@ -128,12 +128,26 @@ def noise_of(residual: Vector, level: float, correlated: bool = True) -> Noise:
     return best
 
 
-def noises_of(residuals: Sequence[Matrix], correlated: bool, inflation: float) -> list[list[Noise]]:
-    """The noise behind each signal of each segment; the mean square is too small by `inflation`."""
-    return [
-        [noise_of(x, float(np.sqrt(np.mean(x**2) * inflation)), correlated) for x in r.T]
-        for r in residuals
-    ]
+def noises_beside(
+    residuals: Sequence[Matrix], correlated: bool, basis: Matrix
+) -> list[list[Noise]]:
+    """The noise behind each signal, of which a fit has taken the part in `basis` (M, n).
+
+    The mean sum of squares that is left is level^2 (N - tr basis' R basis), R the autocorrelation:
+    N - n where the noise is white, and much less where it is as smooth as the derivatives.
+    """
+    found, at = [], 0
+    for r in residuals:
+        rows = basis[at : at + r.size].reshape(*r.shape, -1)
+        at += r.size
+        channels = []
+        for n, x in enumerate(r.T):
+            unit = noise_of(x, 1.0, correlated)
+            taken = float(np.sum(rows[:, n] * unit.spread(rows[:, n])))
+            left = max(len(x) - taken, 1.0)
+            channels.append(replace(unit, level=float(np.sqrt(x @ x / left))))
+        found.append(channels)
+    return found
 
 
 def noise_in(basis: Matrix, weights: Sequence[Matrix], noises: Sequence[Sequence[Noise]]) -> Matrix:

@@ -17,6 +17,8 @@ LARGEST_ANGLE = 20.0
 MUCH_LONGER = 100.0
 FAR = 10.0
 NEAR_PI = 0.3
+RESTING = 5
+"""Samples of exactly zero that are no passage through zero."""
 
 
 def check_quantities(model: Model, series: Series, record: Record) -> None:
@@ -68,7 +70,30 @@ def remarks_on(
                     f"{name} begins at {column[0]:.4g} rad, about pi from the diagram's start at "
                     f"{start:.4g} rad: is the angle measured from another line?"
                 )
+    found += _on_rest(model, series, read)
     return tuple(found)
+
+
+def _on_rest(model: Model, series: Series, read: Record) -> list[str]:
+    """Inputs that rest at exactly zero where a sign or a friction asks for their side."""
+    found = []
+    guards = {mode.text: mode.signal for mode in model.modes}
+    for name in series.inputs:
+        column = read.columns.get(f"input {name}")
+        if column is None or name not in guards:
+            continue
+        still = np.concatenate(([0], (column == 0.0).astype(int), [0]))
+        edges = np.flatnonzero(np.diff(still))
+        first, last = edges[::2], edges[1::2] - 1
+        if len(first) and (longest := int(np.argmax(last - first))) >= 0:
+            a, b = int(first[longest]), int(last[longest])
+            if b - a >= RESTING:
+                found.append(
+                    f"the input {name} is exactly zero from {read.t[a]:g} to {read.t[b]:g} s: "
+                    f"there '{guards[name]}' keeps one side, as if it moved; cut such stretches "
+                    "off (from:), or do not count them (burn_in:)"
+                )
+    return found
 
 
 def _on_span(

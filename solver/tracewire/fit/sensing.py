@@ -40,6 +40,12 @@ class Sensing:
         self.times, at = np.unique(np.maximum(looks, self.begin), return_inverse=True)
         self.at = at.reshape(looks.shape)
 
+    @property
+    def end(self) -> float:
+        """Where a run may end: at the last time that is looked at, and after the begin."""
+        last = float(self.times[-1])
+        return last if last > self.begin else float(self.segment.t[-1])
+
     def shown(self, run: Run) -> Vector:
         """What the sensors show, shape (N, signals)."""
         columns = [

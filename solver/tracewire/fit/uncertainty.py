@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,13 +13,15 @@ from tracewire.fit.combinations import Direction, Point, described, followers
 from tracewire.fit.criterion import Criterion
 from tracewire.fit.identify import Known, flat_directions
 from tracewire.fit.loss import LOSSES
-from tracewire.fit.noise import degrees_of, noise_in, noises_of
+from tracewire.fit.noise import degrees_of, noise_in, noises_beside
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 
 AT_BOUND = 1e-6
 """Part of the width between bounds within which a value sits on one."""
+FAR = 3.0
+"""In sigma: beyond it a robust loss takes a residual for an outlier."""
 UNMOVED = 10.0
 """Relative standard error of a parameter, all others known, from which the data do not move it."""
 
@@ -108,7 +110,7 @@ def uncertainty_of(
         low * criterion.scales,
         high * criterion.scales,
     )
-    return uncertainty_from(
+    found = uncertainty_from(
         [_pseudo(r, criterion.loss) for r in residuals],
         derivatives,
         [criterion.weights(n) for n in range(len(segments))],
@@ -118,6 +120,27 @@ def uncertainty_of(
         accuracy=max(1e-6, criterion.rtol),
         value=lambda values: criterion.value(values / criterion.scales),
     )
+    lost = _lost(criterion, residuals)
+    if not lost:
+        return found
+    words = (
+        f"with the loss {criterion.loss} most samples of {', '.join(lost)} count as outliers: the "
+        "errors say nothing; begin from a fit with the linear loss, or correct sigma"
+    )
+    covariance = np.full_like(found.covariance, np.nan)
+    return replace(found, covariance=covariance, words=(words, *found.words))
+
+
+def _lost(criterion: Criterion, residuals: Sequence[Matrix]) -> list[str]:
+    """The signals most of whose residuals are where a robust loss hardly counts them."""
+    if criterion.loss == "linear":
+        return []
+    return [
+        f"{signal} in {segment.measured.name}"
+        for segment, r in zip(criterion.segments, residuals, strict=True)
+        for signal, far in zip(segment.signals, np.mean(np.abs(r) > FAR, axis=0), strict=True)
+        if far > 0.5
+    ]
 
 
 def _pseudo(residual: Matrix, loss: str) -> Matrix:
@@ -176,9 +199,9 @@ def uncertainty_from(
     lengths = np.linalg.norm(matrix, axis=0)
     moving = lengths > 1e-12 * lengths.max(initial=0.0)
     free = np.flatnonzero(moving & ~at_bound).tolist()
-    samples = sum(r.size for r in residuals)
-    noises = noises_of(residuals, correlated, samples / max(samples - len(free), 1))
     basis, response = np.linalg.qr(matrix)
+    own = np.linalg.qr(matrix[:, free])[0]
+    noises = noises_beside(residuals, correlated, own)
     noise = noise_in(basis, weighted, noises)
     alone = np.array([_error_alone(response[:, j], noise) for j in range(len(names))])
     unmoved = ~moving | (alone > UNMOVED)
@@ -232,10 +255,9 @@ def criterion_unit(
     matrix = np.concatenate(
         [w.reshape(-1, 1) * m for w, m in zip(weights, derivatives, strict=True)]
     )
-    samples = sum(r.size for r in residuals)
     seen = [_pseudo(r, criterion.loss) for r in residuals]
-    noises = noises_of(seen, correlated, samples / max(samples - matrix.shape[1], 1))
     basis, response = np.linalg.qr(matrix)
+    noises = noises_beside(seen, correlated, basis)
     noise = noise_in(basis, weights, noises)
     answer = np.linalg.pinv(response, rcond=1e-6)[one]
     variance = float(answer @ noise @ answer)

@@ -116,7 +116,7 @@ def _run(
             model,
             parameters=of_diagram(values),
             start=start,
-            span=(sensing.begin, float(sensing.times[-1])),
+            span=(sensing.begin, sensing.end),
             times=sensing.times,
             rtol=whole.rtol,
             preset=part.measured.preset,

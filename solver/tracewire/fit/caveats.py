@@ -1,0 +1,78 @@
+"""What a reader of a fit must know beside its numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import Model
+from tracewire.fit.criterion import Criterion
+from tracewire.fit.measured import Measured
+from tracewire.fit.result import Comparison
+from tracewire.fit.uncertainty import Uncertainty
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+ELSEWHERE = 0.2
+"""Of the range of a measured state: a first sample so far from the run's is another start."""
+
+
+def unfinished(
+    uncertainty: Uncertainty, criterion: Criterion, matrix: Matrix, vector: Vector
+) -> list[str]:
+    """That the search ended before a minimum: a Gauss-Newton step goes beyond the errors."""
+    names = uncertainty.names
+    held = {names.index(name) for name in uncertainty.at_bounds}
+    moved = [j for j in range(matrix.shape[1]) if j not in held]
+    lengths = np.maximum(np.linalg.norm(matrix[:, moved], axis=0), 1e-300)
+    step = np.zeros(matrix.shape[1])
+    step[moved] = np.linalg.lstsq(matrix[:, moved] / lengths, -vector)[0] / lengths
+    far = {
+        name: abs(move) / error
+        for name, move in zip(names, step * criterion.scales, strict=False)
+        if (error := uncertainty.errors[name]) > 0 and abs(move) > error
+    }
+    if not far:
+        return []
+    most = max(far, key=lambda name: far[name])
+    return [
+        f"the search ended before a minimum: the slope there leads {most} {far[most]:.2g} standard "
+        "errors further, so errors and intervals say nothing yet; go on with --method least_squares"
+    ]
+
+
+def starts_elsewhere(
+    model: Model, series: Sequence[Measured], comparisons: Sequence[Comparison]
+) -> list[str]:
+    """Series without start values that begin elsewhere than the run."""
+    without = {m.name for m in series if not m.start and not m.periods}
+    found = []
+    for c in comparisons:
+        if c.series not in without or c.signal not in model.states:
+            continue
+        measured, simulated = float(c.measured[0]), float(c.after[0])
+        if abs(measured - simulated) > ELSEWHERE * float(np.ptp(c.measured)):
+            found.append(
+                f"{c.series}: {c.signal} begins at {measured:.4g}, and the run is at "
+                f"{simulated:.4g} there (SI): where that is another start, say "
+                f"start: {{{c.signal}: free}}"
+            )
+    return found
+
+
+def caveats(
+    series: Sequence[Measured], failures: Mapping[str, int], criterion: Criterion
+) -> list[str]:
+    """What a reader of the result must know."""
+    remarks = [f"{m.name}: {remark}" for m in series for remark in m.remarks]
+    for name, count in failures.items():
+        times = "once" if count == 1 else f"{count} times"
+        remarks.append(
+            f"{name}: its run failed {times} during the search, and counted as far from the data"
+        )
+    if failures and criterion.failure is not None:
+        remarks.append(f"the last failure: {criterion.failure.problems[0].what}")
+    remarks += [f"{name}: {warning}" for name, warning in sorted(criterion.warnings)]
+    return remarks
