@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import networkx as nx
 
@@ -64,6 +65,11 @@ class Model:
 
     @cached_property
     def _parameter_formulas(self) -> dict[str, dict[str, Expression]]:
+        return {}
+
+    @cached_property
+    def kept(self) -> dict[Any, Any]:
+        """What those who run the model make of it once and keep: by a key that is theirs."""
         return {}
 
     @cached_property
@@ -134,6 +140,10 @@ class Model:
         guard_fourth (M: derivatives of the guards along the flow).
         """
         return self._routines.address(name)
+
+    def addresses(self, names: Sequence[str]) -> list[int]:
+        """The addresses of several functions: see `address`."""
+        return self._routines.addresses(names)
 
     def compiled_address(self, name: str) -> int:
         """The same, but a function that was never called is compiled now.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from threading import RLock
 from typing import Any, Literal
 
@@ -103,7 +103,7 @@ class Routines:
         self._evaluated: dict[str, dict[str, Function]] = {}
         self._kept: list[Any] = []  # machine code and callbacks, which live as long as this does
 
-    @property
+    @cached_property
     def sizes(self) -> Sizes:
         """The lengths of the arrays."""
         size = {name: routine.size for name, routine in self.eager.items()}
@@ -175,6 +175,12 @@ class Routines:
                 self._kept.append(callback)
                 self._callbacks[name] = address_of(callback)
             return self._callbacks[name]
+
+    def addresses(self, names: Sequence[str]) -> list[int]:
+        """The addresses of several functions."""
+        with self.lock:
+            known = self._addresses
+            return [known[name] if name in known else self.address(name) for name in names]
 
     def compiled_address(self, name: str) -> int:
         """The address of a function, compiled now where it has not been."""

@@ -76,6 +76,7 @@ class Criterion:
             + [s.start_scale(name) for s in self.segments for name in s.free]
         )
         self._samples = [segment.samples() for segment in self.segments]
+        self._weights: dict[int, Vector] = {}
         self._rates = any(u.name.startswith("delay.") for u in self.unknowns)
 
     def on(self, segments: Sequence[Segment]) -> Criterion:
@@ -159,12 +160,14 @@ class Criterion:
 
     def weights(self, n: int) -> Vector:
         """The weights w (N, signals) of the residuals of segment n."""
+        if n in self._weights:
+            return self._weights[n]
         measured, samples = self.segments[n].measured, self._samples[n]
         counts = [measured.weights.get(name, 1.0) for name in measured.values]
         shares = measured.weight * np.array(counts)
         if self.weighting == "mean":
             shares = shares / len(samples)
-        return np.broadcast_to(np.sqrt(shares), samples.shape)
+        return self._weights.setdefault(n, np.broadcast_to(np.sqrt(shares), samples.shape))
 
     # --- residuals ------------------------------------------------------------------------------
 
@@ -317,8 +320,8 @@ def half_square(vector: Vector) -> float:
 
 def _refuse_huge(segment: Segment, shown: Vector) -> None:
     """Raises SimulationError where squares of what is shown would be no numbers any more."""
-    largest = float(np.max(np.abs(shown), initial=0.0))
-    if not largest < LARGEST:
+    if not (np.abs(shown) < LARGEST).all():
+        largest = float(np.max(np.abs(shown)))
         what = f"the series '{segment.measured.name}' is simulated as large as {largest:.3g}"
         raise SimulationError([Problem(what, hint="Begin elsewhere, or narrow `fit:` bounds.")])
 

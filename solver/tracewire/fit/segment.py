@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +30,7 @@ class Segment:
     start: Mapping[str, float] = field(default_factory=dict)
     free: tuple[str, ...] = ()
 
-    @property
+    @cached_property
     def t(self) -> Vector:
         """The sample times, shape (N,) in s."""
         return self.measured.t[self.rows]

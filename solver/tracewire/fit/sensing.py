@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,15 +30,16 @@ class Sensing:
         self.rates = rates
         t = segment.t
         self.begin = min(segment.begin, float(t[0]))
-        looks: Vector = np.array([t - sensor.delay for sensor in self.sensors])
+        self.at: Sequence[slice | NDArray[np.intp]]
         if not rates and not any(sensor.delay for sensor in self.sensors):
-            self.times, self.at = t, np.broadcast_to(np.arange(len(t)), looks.shape)
+            self.times, self.at = t, [slice(len(t))] * len(self.sensors)
             return
+        looks: Vector = np.array([t - sensor.delay for sensor in self.sensors])
         if rates:
             self.step = STEP * float(np.median(np.diff(t))) if len(t) > 1 else STEP
             looks = np.concatenate([looks, looks - self.step, looks + self.step])
         self.times, at = np.unique(np.maximum(looks, self.begin), return_inverse=True)
-        self.at = at.reshape(looks.shape)
+        self.at = list(at.reshape(looks.shape))
 
     @property
     def end(self) -> float:

@@ -41,6 +41,7 @@ from tracewire.solve.sensitivities import undefined
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
+Ints = NDArray[np.int64]
 Tell = Callable[[float, float], object]
 """Is told how far the work is: the part that is done, 0 to 1, and the seconds that are left."""
 PAUSE = 0.1  # s between two pauses, about
@@ -70,6 +71,7 @@ class Execution:
     tell: Tell | None = None
     halt: Halt | None = None
     asked: tuple[str, ...] = ()
+    table: Ints | None = None
     rows: list[Matrix] = field(default_factory=list)
     logged: int = 0
     seconds: float = 0.0
@@ -110,8 +112,8 @@ class Execution:
         """Integrate until the end, or until the user wants to stop; whether it is the end."""
         began = time.perf_counter()
         ints, now = self.progress.ints, self.progress.now
-        go_on, table = ready(advance), table_of(self.arrays)
-        core = table.ctypes.data
+        table = table_of(self.arrays) if self.table is None else self.table
+        go_on, core = ready(advance), table.__array_interface__["data"][0]
         budget, last = first_budget(self.model), -PAUSE
         while not halt.asked:
             before, done = self.seconds, int(ints[STEPS])
@@ -151,8 +153,10 @@ class Execution:
         """Take the events that the core has logged."""
         logged = int(self.progress.ints[LOGGED])
         if logged:
-            moved = self.arrays.sensitivity.times[:logged]
-            self.rows.append(np.hstack([self.progress.log[:logged], moved]))
+            rows = self.progress.log[:logged].copy()
+            if self.asked:
+                rows = np.hstack([rows, self.arrays.sensitivity.times[:logged]])
+            self.rows.append(rows)
             self.progress.ints[LOGGED] = 0
             self.logged += logged
 
@@ -187,12 +191,13 @@ class Execution:
         said = []
         if self.progress.ints[WARNINGS] & NOT_UNIQUE:
             said.append(f"the start at t = {t:g} s is not unique: two modes fit it")
-        for reset in np.flatnonzero(self.progress.overlooked):
+        for reset in np.flatnonzero(self.progress.overlooked).tolist():
             name = self.model.lowered.resets[reset].name
             said.append(
                 f"the start at t = {t:g} s lies on the guard of {name}, which does not fire there"
             )
-        said.extend(undefined(self.model, self.arrays.sensitivity))
+        if self.asked:
+            said.extend(undefined(self.model, self.arrays.sensitivity))
         return tuple(said)
 
 

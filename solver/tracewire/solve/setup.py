@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +56,14 @@ class Tolerance:
     step: float = np.inf
 
 
+def kept_plan(model: Model) -> Plan:
+    """The modes, resets and transitions of a model as arrays, made once."""
+    found = model.kept.get("plan")
+    if found is None:
+        found = model.kept["plan"] = new_plan(model)
+    return cast(Plan, found)
+
+
 def new_plan(model: Model) -> Plan:
     """The modes, resets and transitions of a model as arrays."""
     modes, low = model.modes, model.lowered
@@ -92,20 +101,29 @@ def new_plan(model: Model) -> Plan:
     )
 
 
-def new_flow(model: Model, parameters: Vector, tables: Sequence[Table]) -> Flow:
-    """The field of a model for one set of parameters, with its modes as they are by default."""
+def new_flow(model: Model, parameters: Vector, tables: Vector) -> Flow:
+    """The field of a model for one set of parameters, with its modes as they are by default.
+
+    `tables` are packed.
+    """
     sizes, count = model.sizes, len(model.modes)
-    constants = np.zeros(max(1, sizes.constants))
-    invoke_at(model.address("prepare"), 0.0, parameters, NOTHING, NOTHING, NOTHING, constants)
-    return Flow(
-        address=np.array([model.address(name) for name in FUNCTIONS], dtype=np.int64),
+    flow = Flow(
+        address=np.empty(len(FUNCTIONS), dtype=np.int64),
         m=np.array([*(mode.at_zero for mode in model.modes), *[0.0] * count], dtype=float),
-        c=constants,
-        k=packed(tables),
+        c=np.zeros(max(1, sizes.constants)),
+        k=tables,
         bound=np.full(count, FREE, dtype=np.int64),
         push=np.zeros((count, sizes.states)),
         counts=np.zeros(4, dtype=np.int64),
     )
+    prepare(model, flow, parameters)
+    return flow
+
+
+def prepare(model: Model, flow: Flow, parameters: Vector) -> None:
+    """Let a field whose constants are zero have these parameters, and the functions as they are."""
+    flow.address[:] = model.addresses(FUNCTIONS)
+    invoke_at(model.address("prepare"), 0.0, parameters, NOTHING, NOTHING, NOTHING, flow.c)
 
 
 def starts(model: Model, flow: Flow) -> Vector:
@@ -118,6 +136,8 @@ def starts(model: Model, flow: Flow) -> Vector:
 
 def packed(tables: Sequence[Table]) -> Vector:
     """All tables in one array: their offsets, then of each its length, points, values, slopes."""
+    if not tables:
+        return np.zeros(1)
     parts: list[Vector] = [np.zeros(len(tables))]
     offset = len(tables)
     for number, (x, y) in enumerate(tables):
@@ -137,17 +157,13 @@ def new_progress(
 ) -> Progress:
     """A run that has not begun."""
     n, count = len(x), len(model.modes)
-    now, ints = np.zeros(7), np.zeros(15, dtype=np.int64)
-    now[T], now[H], now[END], now[LENGTH] = span[0], 0.0, span[1], span[1] - span[0]
-    now[RTOL], now[FIXED] = tolerance.rtol, tolerance.step
-    ints[METHOD] = -1 if method == "auto" else NAMES.index(method)
     width = LOG_HEAD + 2 * n
-    return Progress(
-        now=now,
-        x=x.copy(),
-        atol=tolerance.atol,
-        ints=ints,
-        times=times,
+    progress = Progress(
+        now=np.zeros(7),
+        x=np.empty(n),
+        atol=np.empty(n),
+        ints=np.zeros(15, dtype=np.int64),
+        times=np.empty(len(times)),
         samples=np.full((len(times), len(model.recorded)), np.nan),
         log=np.empty((max(4 * count + 16, LOG_VALUES // width), width)),
         stiff=np.empty((MOST_STIFF, 3 * count)),
@@ -157,6 +173,24 @@ def new_progress(
         which=np.zeros(count + 8, dtype=np.int64),
         overlooked=np.zeros(len(model.lowered.resets), dtype=np.int64),
     )
+    set_up(progress, x, span, times, method, tolerance)
+    return progress
+
+
+def set_up(
+    progress: Progress,
+    x: Vector,
+    span: tuple[float, float],
+    times: Vector,
+    method: str,
+    tolerance: Tolerance,
+) -> None:
+    """Let a run that has not begun be this one."""
+    now = progress.now
+    now[T], now[H], now[END], now[LENGTH] = span[0], 0.0, span[1], span[1] - span[0]
+    now[RTOL], now[FIXED] = tolerance.rtol, tolerance.step
+    progress.x[:], progress.atol[:], progress.times[:] = x, tolerance.atol, times
+    progress.ints[METHOD] = -1 if method == "auto" else NAMES.index(method)
 
 
 def new_arrays(flow: Flow, plan: Plan, progress: Progress, sensitivity: Sensitivity) -> Arrays:

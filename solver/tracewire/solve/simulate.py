@@ -23,17 +23,22 @@ from tracewire.solve.sensitivities import by_name, checked, follow, new_sensitiv
 from tracewire.solve.setup import (
     Table,
     Tolerance,
+    kept_plan,
     new_arrays,
     new_flow,
-    new_plan,
     new_progress,
+    packed,
+    prepare,
+    set_up,
     starts,
 )
+from tracewire.solve.space import Space, give_back, take
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 DEFAULT_SAMPLES = 1001
 MOST_SAMPLES = 10_000_000
+MOST_KEPT = 100  # of the values that parameters have by themselves
 
 
 def simulate(
@@ -79,20 +84,35 @@ def simulate(
         raise OptionError([unknown("method", method, ["auto", *NAMES])])
     tolerance = tolerance_of(model, rtol, atol, method, step, end - begin)
     vector = np.array([*values.values(), 0.0])  # never empty
-    flow = new_flow(model, vector, tables_of(model, values, inputs or {}))
-    x = start_of(model, flow, start or {})
-    state = new_progress(model, x, (begin, end), samples, method, tolerance)
-    chain = follow(model.parameter_formulas(preset), values, asked, parameters or {})
-    sensitivity = new_sensitivity(model, flow, state, asked, chain, start or {})
-    arrays = new_arrays(flow, new_plan(model), state, sensitivity)
-    execution = Execution(model, arrays, limits or Limits(), begin, progress, asked=asked)
+    tables = packed(tables_of(model, values, inputs or {}))
+    key = len(samples), len(tables)
+    space = None if asked else take(model, key)
+    if space is not None:
+        arrays, flow, state = space.arrays, space.arrays.flow, space.arrays.progress
+        flow.k[:] = tables
+        prepare(model, flow, vector)
+        x = start_of(model, flow, start or {})
+        set_up(state, x, (begin, end), samples, method, tolerance)
+    else:
+        flow = new_flow(model, vector, tables)
+        x = start_of(model, flow, start or {})
+        state = new_progress(model, x, (begin, end), samples, method, tolerance)
+        chain = follow(model.parameter_formulas(preset), values, asked, parameters or {})
+        sensitivity = new_sensitivity(model, flow, state, asked, chain, start or {})
+        arrays = new_arrays(flow, kept_plan(model), state, sensitivity)
+        space = None if asked else Space(key, arrays)
+    table = None if space is None else space.table
+    execution = Execution(model, arrays, limits or Limits(), begin, progress, None, asked, table)
     try:
         execution.run()
     except Interrupted as error:
         error.run = run_of(execution, values, x, samples[: state.ints[SAMPLED]])
         raise
     refuse_nan(model, state.samples, samples)
-    return run_of(execution, values, x, samples)
+    run = run_of(execution, values, x, samples)
+    if space is not None:
+        give_back(model, space)
+    return run
 
 
 def run_of(execution: Execution, values: Mapping[str, float], x: Vector, t: Vector) -> Run:
@@ -102,7 +122,7 @@ def run_of(execution: Execution, values: Mapping[str, float], x: Vector, t: Vect
     return Run(
         title=model.flat.title,
         t=t,
-        signals={name: state.samples[: len(t), n].copy() for n, name in enumerate(model.recorded)},
+        signals=dict(zip(model.recorded, state.samples[: len(t)].T.copy(), strict=True)),
         units={name: model.flat.units.get(name, "") for name in model.recorded},
         events=EventLog(lambda: execution.events),
         parameters=values,
@@ -128,8 +148,8 @@ def tolerance_of(
     if problems:
         raise OptionError(problems)
     usual = rtol * 1e-3 if atol is None or isinstance(atol, Mapping) else atol
-    absolute = np.array([given.get(name, usual) for name in model.states], dtype=float)
-    if not (1e-14 <= rtol < 1 and np.all(absolute > 0) and np.all(np.isfinite(absolute))):
+    absolute = [given.get(name, usual) for name in model.states]
+    if not (1e-14 <= rtol < 1 and all(0 < value < math.inf for value in absolute)):
         shown = ", ".join(f"{name}: {value:g}" for name, value in given.items())
         told = f"{{{shown}}}" if given else f"{usual:g}"
         what = f"rtol = {rtol:g} and atol = {told} cannot be met"
@@ -140,7 +160,7 @@ def tolerance_of(
     if step is not None and not 0 < step <= length:
         what = f"steps of {step:g} s do not fit into a span of {length:g} s"
         raise OptionError([Problem(what, hint="Give a step above 0 and below the span.")])
-    return Tolerance(rtol, absolute, np.inf if step is None else step)
+    return Tolerance(rtol, np.array(absolute, dtype=float), np.inf if step is None else step)
 
 
 def parameter_values(
@@ -164,9 +184,26 @@ def parameter_values(
     if problems:
         raise OptionError(problems)
     values = {name: float(value) for name, value in given.items()}
-    for name, formula in model.parameter_formulas(preset).items():
-        if name not in values:
+    key = "values", preset, tuple(values)
+    known = model.kept.get(key)
+    if known is None:  # what follows from nothing that is given is the same every time
+        following = []
+        for name, formula in model.parameter_formulas(preset).items():
+            if name in values:
+                continue
             values[name] = evaluate(formula, values, flat.parameters[name].place)
+            if any(read in given or read in following for read in names_of(formula)):
+                following.append(name)
+        changing = {*given, *following}
+        same = {name: value for name, value in values.items() if name not in changing}
+        if len(model.kept) < MOST_KEPT:
+            model.kept[key] = same, following
+    else:
+        same, following = known
+        values |= same
+        formulas = model.parameter_formulas(preset)
+        for name in following:
+            values[name] = evaluate(formulas[name], values, flat.parameters[name].place)
     refuse_unmet(model, values)
     return {name: values[name] for name in flat.parameters}
 
@@ -188,8 +225,8 @@ def refuse_unmet(model: Model, values: Mapping[str, float]) -> None:
 def ascending(times: ArrayLike) -> Vector:
     """Sample times (N,) as they are used. Raises OptionError where they do not ascend."""
     samples = np.array(times, dtype=float).ravel()
-    increasing = bool(np.all(np.diff(samples) > 0)) and bool(np.isfinite(samples).all())
-    if not len(samples) or not increasing:
+    increasing = bool((samples[1:] > samples[:-1]).all())  # not so where one is NaN
+    if not len(samples) or not (increasing and -math.inf < samples[0] and samples[-1] < math.inf):
         what = "the sample times do not ascend"
         raise OptionError([Problem(what, hint="Sort them, without repetition or NaN.")])
     return samples
@@ -291,6 +328,8 @@ def start_of(model: Model, flow: Flow, given: Mapping[str, float]) -> Vector:
 
 def refuse_nan(model: Model, samples: Matrix, t: Vector) -> None:
     """A recorded signal may be undefined where no state depends on it."""
+    if np.isfinite(samples).all():
+        return
     for n, name in enumerate(model.recorded):
         bad = np.flatnonzero(~np.isfinite(samples[:, n]))
         if len(bad):

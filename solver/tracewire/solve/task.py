@@ -15,7 +15,7 @@ from tracewire.formula import names_of
 from tracewire.solve.core.arrays import Plan
 from tracewire.solve.core.flow import FREE, FUNCTIONS
 from tracewire.solve.core.integrate import advance
-from tracewire.solve.core.jit import invoke_at, ready
+from tracewire.solve.core.jit import ready
 from tracewire.solve.core.methods import NAMES
 from tracewire.solve.execute import Execution
 from tracewire.solve.interrupt import Halt
@@ -29,7 +29,7 @@ from tracewire.solve.observers import (
     instants,
 )
 from tracewire.solve.sensitivities import new_sensitivity
-from tracewire.solve.setup import NOTHING, new_arrays, new_flow, new_plan, new_progress
+from tracewire.solve.setup import kept_plan, new_arrays, new_flow, new_progress, packed, prepare
 from tracewire.solve.simulate import (
     ascending,
     parameter_values,
@@ -106,7 +106,7 @@ class Task:
         self.tables_vary = any(names_of(formula) for formula in defaults)
         for name in FUNCTIONS:  # one that is made during a run would wait for Python's lock
             model.compiled_address(name)
-        self.flow = new_flow(model, vector, tables)
+        self.flow = new_flow(model, vector, packed(tables))
         self.check_times()
         ready(advance)  # not in a thread
 
@@ -117,7 +117,7 @@ class Task:
 
     def _plan(self) -> Plan:
         """The plan, in which the states follow the recorded signals where a section asks for it."""
-        plan = new_plan(self.model)
+        plan = kept_plan(self.model)
         if self.section is None or self.section.period is None:
             return plan
         return plan._replace(direct=np.append(plan.direct, np.arange(len(self.model.states))))
@@ -183,17 +183,17 @@ class Task:
         tolerance = tolerance_of(model, rtol, absolute, self.method, step, end - begin)
         vector = np.array([*values.values(), 0.0])
         if self.tables_vary:
-            flow = new_flow(model, vector, tables_of(model, values, self.inputs))
+            flow = new_flow(model, vector, packed(tables_of(model, values, self.inputs)))
         else:
             flow = base._replace(
+                address=base.address.copy(),
                 m=base.m.copy(),
                 c=np.zeros(len(base.c)),
                 bound=np.full(len(base.bound), FREE, dtype=np.int64),
                 push=np.zeros(base.push.shape),
                 counts=np.zeros(len(base.counts), dtype=np.int64),
             )
-            prepare = model.address("prepare")
-            invoke_at(prepare, 0.0, vector, NOTHING, NOTHING, NOTHING, flow.c)
+            prepare(model, flow, vector)
         x = start_of(model, flow, start)
         every = np.union1d(times, marks)
         state = new_progress(model, x, (begin, end), every, self.method, tolerance)

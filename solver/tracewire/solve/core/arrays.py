@@ -225,6 +225,13 @@ int_pointer: Any = intrinsic(_int_pointer)
 
 
 @helper
+def copy(values: Vector, to: Vector) -> None:
+    """Let `to` have these values: an assignment of arrays looks at their shapes, which is slow."""
+    for i in range(len(values)):
+        to[i] = values[i]
+
+
+@helper
 def vector(core: int, field: int) -> Vector:
     """A field of numbers."""
     table = numba.carray(int_pointer(core), (3 * field + 3,))

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracewire.solve.core.arrays import Matrix, Vector, flow_of
+from tracewire.solve.core.arrays import Matrix, Vector, copy, flow_of
 from tracewire.solve.core.jit import helper, invoke, unit
 from tracewire.solve.core.linear import factor, solved
 
@@ -40,7 +40,8 @@ INDEPENDENT = 1e-10
 def evaluate(core: int, which: int, t: float, x: Vector, out: Vector) -> None:
     """One of the model's functions with the modes as they stand."""
     flow = flow_of(core)
-    out[:] = 0.0
+    if which > GUARD_RATES:  # the others write all of it
+        out[:] = 0.0
     invoke(flow.address[which], t, x, flow.m, flow.c, flow.k, out)
 
 
@@ -49,16 +50,34 @@ def patterns(core: int, which: int, t: float, x: Vector, size: int) -> Matrix:
     """A function at all sliding modes 0 (row 0), and its change as each of them becomes 1."""
     flow = flow_of(core)
     rows = np.empty((1 + flow.counts[SLIDING], size))
-    slides = np.flatnonzero(flow.bound == SLIDING)
-    for i in slides:
-        flow.m[i] = 0.0
+    for i in range(len(flow.bound)):
+        if flow.bound[i] == SLIDING:
+            flow.m[i] = 0.0
     evaluate(core, which, t, x, rows[0])
-    for row, i in enumerate(slides):
+    row = 0
+    for i in range(len(flow.bound)):
+        if flow.bound[i] != SLIDING:
+            continue
+        row += 1
         flow.m[i] = 1.0
-        evaluate(core, which, t, x, rows[1 + row])
-        rows[1 + row] -= rows[0]
+        evaluate(core, which, t, x, rows[row])
+        for j in range(size):
+            rows[row, j] -= rows[0, j]
         flow.m[i] = 0.0
     return rows
+
+
+@helper
+def _held_alone(core: int, t: float, x: Vector) -> Vector:
+    """The fraction of the only slide; NaN where none holds it."""
+    flow = flow_of(core)
+    modes, fraction = len(flow.bound), np.empty(1)
+    moves = patterns(core, GUARD_RATES, t, x, modes)
+    for i in range(modes):
+        if flow.bound[i] == SLIDING:
+            change = moves[1, i]
+            fraction[0] = -moves[0, i] / change if 0.0 < abs(change) < np.inf else np.nan
+    return fraction
 
 
 @unit
@@ -66,6 +85,8 @@ def held(core: int, t: float, x: Vector) -> Vector:
     """The fractions of the slides, then the forces of the contacts; NaN where none hold them."""
     flow = flow_of(core)
     n, modes = len(x), len(flow.bound)
+    if flow.counts[SLIDING] == 1 and flow.counts[RESTING] == 0:  # the usual case, made fast
+        return _held_alone(core, t, x)
     slides = np.flatnonzero(flow.bound == SLIDING)
     rests = np.flatnonzero(flow.bound == RESTING)
     some, count = len(slides), len(slides) + len(rests)
@@ -95,8 +116,12 @@ def held(core: int, t: float, x: Vector) -> Vector:
 def push(core: int, forces: Vector, out: Vector) -> None:
     """Add what the contacts do to the rates."""
     flow = flow_of(core)
-    for row, i in enumerate(np.flatnonzero(flow.bound == RESTING)):
-        out += forces[row] * flow.push[i]
+    row = 0
+    for i in range(len(flow.bound)):
+        if flow.bound[i] == RESTING:
+            for j in range(len(out)):
+                out[j] += forces[row] * flow.push[i, j]
+            row += 1
 
 
 @unit
@@ -104,9 +129,10 @@ def blended(core: int, which: int, t: float, x: Vector, fractions: Vector, out: 
     """A function on a slide, as the blend of its values on the sides."""
     flow = flow_of(core)
     rows = patterns(core, which, t, x, len(out))
-    out[:] = rows[0]
+    copy(rows[0], out)
     for row in range(flow.counts[SLIDING]):
-        out += fractions[row] * rows[1 + row]
+        for j in range(len(out)):
+            out[j] += fractions[row] * rows[1 + row, j]
 
 
 @unit

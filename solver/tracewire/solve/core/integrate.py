@@ -9,6 +9,7 @@ import numpy as np
 from tracewire.solve.core import locate, methods, schedule
 from tracewire.solve.core.arrays import (
     Vector,
+    copy,
     crossings_of,
     flow_of,
     plan_of,
@@ -147,15 +148,18 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
         sample_inside(core, method, end)
         last = end >= limit
         now[T] = limit if last else end
-        x[:] = trial.x_end
+        copy(trial.x_end, x)
         if flow.counts[SLIDING] + flow.counts[RESTING]:
             pin(core, now[T], x)
         now[H] = max(now[H], trial.ends[1] * ratio) if last else trial.ends[1] * ratio
         if method == ROSENBROCK or flow.counts[SLIDING] + flow.counts[RESTING]:
             rates(core, now[T], x, rate)
         else:
-            rate[:] = trial.rate_end
-        locate.margins(core, now[T], x, start)
+            copy(trial.rate_end, rate)
+        if last or flow.counts[SLIDING] + flow.counts[RESTING]:
+            locate.margins(core, now[T], x, start)
+        else:  # the last sample is that of the same time and states
+            copy(watch_of(core).rows[locate.SAMPLES - 1], start)
         if _watch_stiffness(core):
             _choose(core)
     if limit == due:
@@ -182,10 +186,15 @@ def _choose(core: int) -> None:
     ints[CURRENT] = DORMAND_PRINCE
     if ints[STIFF_ROWS] == 0:
         return
-    key = np.empty(progress.stiff.shape[1])
-    _key(core, key)
+    flow, stiff = flow_of(core), progress.stiff
+    count = len(flow.m)
     for row in range(ints[STIFF_ROWS]):
-        if np.all(progress.stiff[row] == key):
+        same = True
+        for i in range(count):
+            same = same and stiff[row, i] == flow.m[i]
+        for i in range(len(flow.bound)):
+            same = same and stiff[row, count + i] == flow.bound[i]
+        if same:
             ints[CURRENT] = ROSENBROCK
             return
 
@@ -319,7 +328,7 @@ def _crossed(core: int) -> int:
     end = trial.ends[0] + trial.ends[1]
     sample_inside(core, ints[CURRENT], end)
     now[T] = end
-    x[:] = trial.x_end
+    copy(trial.x_end, x)
     hit = watched.hit
     locate.margins(core, end, x, watched.start)
     locate.reached(core, end, x, TOGETHER * now[LENGTH], hit)
@@ -333,9 +342,11 @@ def _crossed(core: int) -> int:
         crossings.how[i], crossings.to[i] = kind, watched.to[row]
         up = watched.sign[row] < 0 if kind == GUARD else watched.to[row] > 0.5
         crossings.up[i] = int(up)
-    before = x.copy()
     status = happen(core, end, x)
-    now[H] = now[H] / 4 if np.all(before == x) else 0.0
+    same = True  # as at the end of the trial, which is x before the event
+    for i in range(len(x)):
+        same = same and x[i] == trial.x_end[i]
+    now[H] = now[H] / 4 if same else 0.0
     ints[SUSPICIOUS] = 0
     return status
 

@@ -86,6 +86,18 @@ def helper(function: Function) -> Function:
         return cast(Function, numba.njit(cache=True, nogil=True, error_model="numpy")(function))
 
 
+def inlined(function: Function) -> Function:
+    """A helper whose instructions stand in its callers: loops over what these know are unrolled."""
+    built = numba.njit(nogil=True, error_model="numpy", forceinline=True)
+    return cast(Function, built(function))
+
+
+def _written(name: str, text: str, names: dict[str, Any], file: str = "<core>") -> Any:
+    """The function that a text defines: numba wants each argument by its name."""
+    exec(compile(text, file, "exec"), names)
+    return names[name]
+
+
 class Unit:
     """A function of the core with its symbol and its types; compiled when a run first needs it."""
 
@@ -99,27 +111,66 @@ class Unit:
 
     def compile(self) -> None:
         """Make the machine code, or get it from the cache, and let the symbol be known."""
-        signature = self.result(*self.given.values())
+        signature = self.result(*self._plain())
         with _cached_here():
-            self.code = numba.cfunc(signature, cache=True, error_model="numpy")(self.function)
+            self.code = numba.cfunc(signature, cache=True, error_model="numpy")(self._entry())
         binding.add_symbol(self.symbol, self.code.address)
+
+    def _plain(self) -> list[Any]:
+        """The types of the arguments, where an array is a pointer and its shape.
+
+        An array as numba has it has an owner, who is told whenever a function takes the array and
+        leaves it: that costs more than many of the functions.
+        """
+        found: list[Any] = []
+        for kind in self.given.values():
+            if isinstance(kind, types.Array):
+                found += [types.CPointer(kind.dtype), *[types.int64] * kind.ndim]
+            else:
+                found.append(kind)
+        return found
+
+    def _entry(self) -> Any:
+        """The function with plain arguments."""
+        plain, full = [], []
+        for name, kind in self.given.items():
+            if isinstance(kind, types.Array):
+                shape = [f"{name}_{axis}" for axis in range(kind.ndim)]
+                plain += [name, *shape]
+                full.append(f"carray({name}, ({', '.join(shape)},))")
+            else:
+                plain.append(name)
+                full.append(name)
+        name, code = self.function.__name__, self.function.__code__
+        text = f"def {name}({', '.join(plain)}):\n    return body({', '.join(full)})\n"
+        names = {"body": inlined(self.function), "carray": numba.carray}
+        entry = _written(name, text, names, code.co_filename)
+        # the cache finds it by file and line: those of the function
+        entry.__code__ = entry.__code__.replace(co_firstlineno=code.co_firstlineno)
+        entry.__module__ = self.function.__module__
+        return entry
 
     def call(self, context: Any, builder: Any, _: Any, values: Any) -> Any:
         """The instructions of a call."""
-        kinds = [context.get_value_type(kind) for kind in (self.result, *self.given.values())]
+        plain = []
+        for kind, value in zip(self.given.values(), values, strict=True):
+            if isinstance(kind, types.Array):
+                array = context.make_array(kind)(context, builder, value)
+                plain += [array.data, *cgutils.unpack_tuple(builder, array.shape, kind.ndim)]
+            else:
+                plain.append(value)
+        kinds = [context.get_value_type(kind) for kind in (self.result, *self._plain())]
         there = ir.FunctionType(kinds[0], kinds[1:])
         outside = cgutils.get_or_insert_function(builder.module, there, self.symbol)
-        value = builder.call(outside, values)
+        value = builder.call(outside, plain)
         return context.get_dummy_value() if self.result is types.void else value
 
     def stub(self) -> Any:
         """What other functions call."""
-        made: dict[str, Any] = {"unit": self}  # numba wants each argument by its name
-        names = ", ".join(self.given)
-        text = f"def {self.function.__name__}(typing, {names}):\n"
+        name, names = self.function.__name__, ", ".join(self.given)
+        text = f"def {name}(typing, {names}):\n"
         text += "    return unit.result(*unit.given.values()), unit.call"
-        exec(text, made)
-        return intrinsic(made[self.function.__name__])
+        return intrinsic(_written(name, text, {"unit": self}))
 
 
 def unit(function: Function) -> Function:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.solve.core.jit import unit
+from tracewire.solve.core.jit import inlined, unit
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -46,6 +46,23 @@ def factor(matrix: Matrix, pivots: Ints) -> float:
 def substitute(factors: Matrix, pivots: Ints, right: Vector) -> None:
     """Replace the right side by the solution."""
     n = len(factors)
+    if n == 2:
+        _substitute(factors, pivots, right, 2)
+    elif n == 3:
+        _substitute(factors, pivots, right, 3)
+    elif n == 4:
+        _substitute(factors, pivots, right, 4)
+    elif n == 5:
+        _substitute(factors, pivots, right, 5)
+    elif n == 6:
+        _substitute(factors, pivots, right, 6)
+    else:
+        _substitute(factors, pivots, right, n)
+
+
+@inlined
+def _substitute(factors: Matrix, pivots: Ints, right: Vector, n: int) -> None:
+    """The same, built in with its size: short loops are faster where the compiler knows them."""
     for j in range(n):
         row = pivots[j]
         if row != j:

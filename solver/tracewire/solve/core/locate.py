@@ -13,6 +13,7 @@ from tracewire.solve.core import methods
 from tracewire.solve.core.arrays import (
     Ints,
     Vector,
+    copy,
     flow_of,
     plan_of,
     progress_of,
@@ -135,13 +136,15 @@ def find(core: int, method: int) -> int:
     watched, trial = watch_of(core), trial_of(core)
     rows, start, found = watched.rows, watched.start, watched.found
     count = watched_count(core)
-    found[:] = np.inf
     if count == 0:
         return NOTHING
     level = noise(trial.x)
     for k in range(1, SAMPLES):
         _margins_inside(core, method, k / (SAMPLES - 1), rows[k])
-    rows[0] = start
+    copy(start, rows[0])
+    if _is_quiet(core, count, level):
+        return NOTHING
+    found[:] = np.inf
     first, fresh = SAMPLES - 1, False
     for k in range(1, SAMPLES):
         for i in range(count):
@@ -182,11 +185,34 @@ def find(core: int, method: int) -> int:
     return INSIDE
 
 
+@helper
+def _is_quiet(core: int, count: int, level: float) -> bool:
+    """Whether all margins are armed, none is below zero at a sample, and none may dip below it.
+
+    Nearly all steps are so; without branches the loop takes several margins at a time.
+    """
+    watched = watch_of(core)
+    rows, kind, armed = watched.rows, watched.kind, watched.armed
+    loud = 0
+    for i in range(count):
+        floor = level if kind[i] == GUARD else HELD_NOISE
+        least = min(rows[0, i], 0.0) - floor
+        loud |= int(armed[i] == 0)
+        for k in range(1, SAMPLES):
+            loud |= int(rows[k, i] < least)
+        for k in range(1, SAMPLES - 1):
+            before, here, after = rows[k - 1, i], rows[k, i], rows[k + 1, i]
+            bend, slope = after - 2 * here + before, after - before
+            dips = int(slope * slope > 8 * bend * here) & int(abs(slope) <= 2 * bend)
+            loud |= int(bend > 0) & dips & int(before > floor)
+    return loud == 0
+
+
 @unit
 def _margins_inside(core: int, method: int, theta: float, out: Vector) -> None:
     trial = trial_of(core)
     if theta == 1.0:
-        trial.at[:] = trial.x_end
+        copy(trial.x_end, trial.at)
     else:
         methods.inside(core, method, theta, trial.at)
     margins(core, trial.ends[0] + theta * trial.ends[1], trial.at, out)
@@ -252,13 +278,12 @@ def _dip(core: int, method: int, count: int, item: int, floor: float) -> float:
 @unit
 def reached(core: int, t: float, x: Vector, reach: float, out: Ints) -> int:
     """Mark the guards whose level is passed, or will be within the time `reach`; how many."""
-    flow = flow_of(core)
     watched = watch_of(core)
     total, start = watched_count(core), watched.start
     out[:] = 0
     if total == 0 or watched.kind[0] != GUARD:
         return 0
-    rates = np.empty(len(flow.bound))
+    rates = trial_of(core).guards
     guard_rates(core, t, x, rates)
     level, count = noise(x), 0
     for row in range(total):

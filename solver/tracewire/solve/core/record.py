@@ -31,7 +31,8 @@ def sample_inside(core: int, method: int, end: float) -> None:
         if is_sensitive(core):
             follow(core, method, end)
         return
-    at = np.empty(len(trial.x))
+    # what follows sensitivities has its own use for trial.at
+    at = np.empty(len(trial.x)) if is_sensitive(core) else trial.at
     while row < len(progress.times) and progress.times[row] < end:
         time = progress.times[row]
         methods.inside(core, method, (time - trial.ends[0]) / trial.ends[1], at)
@@ -82,8 +83,8 @@ def log(
         return
     entry = progress.log[row]
     entry[0], entry[1], entry[2], entry[3] = t, kind, mode, direction
-    entry[LOG_HEAD : LOG_HEAD + n] = before
-    entry[LOG_HEAD + n :] = after
+    for i in range(n):
+        entry[LOG_HEAD + i], entry[LOG_HEAD + n + i] = before[i], after[i]
     progress.ints[LOGGED] = row + 1
     if is_sensitive(core):
         sensitivity = sensitivity_of(core)

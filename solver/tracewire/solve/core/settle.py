@@ -64,13 +64,15 @@ def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
     progress = progress_of(core)
     modes = len(plan.kind)
     guards, after = np.empty(modes), np.empty(modes)
-    seen = np.empty((MOST_ROUNDS, 3 * modes))
+    seen = np.empty((0, 3 * modes))  # until a second round needs it, which is rare
+    flags = np.empty((3, modes), dtype=np.int64)
+    zero, moved = flags[0], flags[1]
     rounds = 0
     _floor_edges(core, t, x, marks)
     while True:
         level = noise(x)
         evaluate(core, GUARDS, t, x, guards)
-        zero, moved = np.zeros(modes, dtype=np.int64), np.zeros(modes, dtype=np.int64)
+        flags[:] = 0
         for i in range(modes):
             if plan.is_timed[i] or plan.kind[i] == MEMORY or flow.bound[i] == RESTING:
                 continue
@@ -94,8 +96,8 @@ def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
                 if loop >= 0:
                     moved[loop] = 1
         _close_contacts(core, t, x, zero)
-        undecided = np.flatnonzero(zero)
-        if len(undecided):
+        if np.any(zero):
+            undecided = np.flatnonzero(zero)
             how = decide(core, t, x, undecided, fresh)
             if how in (NONE, NO_BLEND):
                 return _refuse(core, NO_MODE if how == NONE else NO_SLIDE, t, undecided)
@@ -108,7 +110,7 @@ def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
         if _open_contacts(core, t, x, marks, level):
             continue
         evaluate(core, GUARDS, t, x, guards)
-        wrong = np.zeros(modes, dtype=np.int64)
+        wrong = flags[2]
         for i in range(modes):
             fixed = zero[i] == 1 or marks[i] == LEFT
             if not fixed and not margin(core, i, guards[i]) >= -level:
@@ -121,6 +123,8 @@ def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
             if not np.any(wrong):
                 return FINISHED
             marks[:] = 0
+        if len(seen) == 0:
+            seen = np.full((MOST_ROUNDS, 3 * modes), np.nan)
         key = seen[min(rounds, MOST_ROUNDS - 1)]
         key[: 2 * modes] = flow.m
         key[2 * modes :] = flow.bound
@@ -135,8 +139,10 @@ def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
 @unit
 def _floor_edges(core: int, t: float, x: Vector, marks: Ints) -> bool:
     """Move the floors that stand on a whole number to the side that their guards go to."""
-    flow, plan, changed = flow_of(core), plan_of(core), False
-    if not np.any(plan.kind == FLOOR):
+    flow, plan, changed, some = flow_of(core), plan_of(core), False, False
+    for kind in plan.kind:
+        some = some or kind == FLOOR
+    if not some:
         return False
     modes, level = len(plan.kind), noise(x)
     guards, along, field = np.empty(modes), np.empty(modes), np.empty(len(x))

@@ -79,15 +79,16 @@ def happen(core: int, t: float, x: Vector) -> int:
     modes = len(plan.kind)
     enter(core, t, x)
     before, old, bound = x.copy(), flow.m.copy(), flow.bound.copy()
-    fired = np.full(modes, -1)  # the last reset that the guard of a mode fired
+    flags, numbers = np.zeros((3, modes), dtype=np.int64), np.zeros((2, modes))
+    fired = flags[0]  # the last reset that the guard of a mode fired
+    fired[:] = -1
+    turned, marks = flags[1], flags[2]
+    speed = numbers[0]  # the guard's rate before it fired, along its side
     done = np.zeros(len(plan.resets), dtype=np.int64)
-    speed = np.zeros(modes)  # the guard's rate before it fired, along its side
-    turned = np.zeros(modes, dtype=np.int64)
     jumps = np.zeros((modes, len(x)))
     status = _resets(core, t, x, done, fired, speed, turned, jumps)
     if status != FINISHED:
         return status
-    marks = np.zeros(modes, dtype=np.int64)
     _cross(core, t, before, x, turned, marks)
     for i in range(modes):
         if turned[i]:
@@ -96,10 +97,11 @@ def happen(core: int, t: float, x: Vector) -> int:
     status = settle(core, t, x, marks, False)
     if status != FINISHED:
         return status
-    waits = np.full(modes, contact.FLIES)
+    waits = numbers[1]
+    waits[:] = contact.FLIES
     closed = False
-    for i in np.flatnonzero(turned):
-        if flow.bound[i] != FREE:
+    for i in range(modes):
+        if not turned[i] or flow.bound[i] != FREE:
             continue
         side = contact.side_of(core, fired[i])
         waits[i] = contact.wait(core, t, x, i, speed[i], side)
@@ -139,6 +141,8 @@ def _resets(
     progress = progress_of(core)
     crossings = crossings_of(core)
     count, modes = len(plan.resets), len(plan.kind)
+    if count == 0:
+        return FINISHED
     due, along = np.zeros(count, dtype=np.int64), np.empty(modes)
     for reset in range(count):
         i, direction = plan.resets[reset, 0], plan.resets[reset, 1]
@@ -220,7 +224,8 @@ def _cross(core: int, t: float, before: Vector, after: Vector, turned: Ints, mar
     crossings = crossings_of(core)
     plan = plan_of(core)
     modes = len(plan.kind)
-    here, there = np.empty(modes), np.empty(modes)
+    guards = np.empty((2, modes))
+    here, there = guards[0], guards[1]
     evaluate(core, GUARDS, t, before, here)
     evaluate(core, GUARDS, t, after, there)
     level = noise(before)
@@ -267,7 +272,9 @@ def _write_log(
     flow = flow_of(core)
     plan = plan_of(core)
     crossings = crossings_of(core)
-    for reset in np.flatnonzero(done):
+    for reset in range(len(done)):
+        if not done[reset]:
+            continue
         i = plan.resets[reset, 0]
         way = plan.resets[reset, 1]
         if crossings.how[i] >= 0:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tracewire.solve.core.arrays import Vector, trial_of
+from tracewire.solve.core.arrays import Vector, copy, trial_of
 from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.methods import dop853, dormand_prince, rosenbrock, runge_kutta
 from tracewire.solve.core.methods.trial import norm
@@ -17,7 +17,7 @@ def step(core: int, method: int, t: float, x: Vector, rate: Vector, h: float) ->
     into = trial_of(core)
     into.ends[0] = t
     into.ends[1] = h
-    into.x[:] = x
+    copy(x, into.x)
     if method == ROSENBROCK:
         rosenbrock.step(core, t, x, rate, h)
     elif method == DOP853:

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from tracewire.solve.core.arrays import Vector, trial_of
+from tracewire.solve.core.arrays import Vector, copy, trial_of
 from tracewire.solve.core.flow import rates
 from tracewire.solve.core.jit import unit
 
@@ -46,7 +46,7 @@ def step(core: int, t: float, x: Vector, rate: Vector, h: float) -> None:
     into = trial_of(core)
     n = len(x)
     k, at, end = into.stages, into.error, into.x_end
-    k[0] = rate
+    copy(rate, k[0])
     for i in range(n):
         end[i] = x[i] + h * (A[1, 0] * k[0, i])
     rates(core, t + C[1] * h, end, k[1])

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracewire.solve.core.arrays import Vector, trial_of
+from tracewire.solve.core.arrays import Vector, copy, trial_of
 from tracewire.solve.core.flow import jacobian, rates
-from tracewire.solve.core.jit import unit
+from tracewire.solve.core.jit import inlined, unit
 from tracewire.solve.core.linear import factor, substitute
 
 GAMMA = 0.21193756319429014
@@ -175,22 +175,16 @@ def step(core: int, t: float, x: Vector, rate: Vector, h: float) -> None:
         into.x_end[:] = np.nan
         return
     slope = into.rate_end
-    at[:] = x
-    slope[:] = rate
-    for stage in range(8):
-        if stage:
-            for i in range(n):
-                total = 0.0
-                for k in range(stage):
-                    total += A[stage, k] * stages[k, i]
-                at[i] = x[i] + total
-            rates(core, t + C[stage] * h, at, slope)
-        for i in range(n):
-            total = 0.0
-            for k in range(stage):
-                total += COUPLING[stage, k] * stages[k, i]
-            stages[stage, i] = slope[i] + total / h + h * D[stage] * matrix[i, n]
-        substitute(factors, into.pivots, stages[stage])
+    copy(x, at)
+    copy(rate, slope)
+    _stage(core, 0, t, x, h)
+    _stage(core, 1, t, x, h)
+    _stage(core, 2, t, x, h)
+    _stage(core, 3, t, x, h)
+    _stage(core, 4, t, x, h)
+    _stage(core, 5, t, x, h)
+    _stage(core, 6, t, x, h)
+    _stage(core, 7, t, x, h)
     for i in range(n):
         into.error[i] = stages[7, i]
         at[i] += stages[7, i]
@@ -199,6 +193,27 @@ def step(core: int, t: float, x: Vector, rate: Vector, h: float) -> None:
             for k in range(8):
                 total += INSIDE[row, k] * stages[k, i]
             into.inner[row, i] = total
+
+
+@inlined
+def _stage(core: int, stage: int, t: float, x: Vector, h: float) -> None:
+    """One stage, built in with its number: a loop over the numbers would not be unrolled."""
+    into = trial_of(core)
+    n = len(x)
+    stages, at, slope = into.stages, into.x_end, into.rate_end
+    if stage:
+        for i in range(n):
+            total = 0.0
+            for k in range(stage):
+                total += A[stage, k] * stages[k, i]
+            at[i] = x[i] + total
+        rates(core, t + C[stage] * h, at, slope)
+    for i in range(n):
+        total = 0.0
+        for k in range(stage):
+            total += COUPLING[stage, k] * stages[k, i]
+        stages[stage, i] = slope[i] + total / h + h * D[stage] * into.matrix[i, n]
+    substitute(into.factors, into.pivots, stages[stage])
 
 
 @unit
