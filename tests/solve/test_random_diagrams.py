@@ -148,8 +148,8 @@ def test_random_diagrams(wiring: Wiring) -> None:
     check(wiring)
 
 
-# The same diagrams every time. Without `derandomize` it looks for new ones, by hand: what these show
-# goes to test_shrunk.py, where a known weak corner does not stop other work.
+# The same diagrams every time. Without `derandomize` it looks for new ones, by hand: what these
+# show goes to test_shrunk.py, where a known weak corner does not stop other work.
 @pytest.mark.slow
 @given(wirings())
 @settings(max_examples=400, deadline=None, derandomize=True, suppress_health_check=QUIET)
