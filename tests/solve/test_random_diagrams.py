@@ -7,6 +7,7 @@ exception, in NaN, or not at all.
 from __future__ import annotations
 
 import inspect
+import os
 import re
 from collections.abc import Iterable
 from typing import Any
@@ -148,10 +149,11 @@ def test_random_diagrams(wiring: Wiring) -> None:
     check(wiring)
 
 
-# The same diagrams every time. Without `derandomize` it looks for new ones, by hand: what these
-# show goes to test_shrunk.py, where a known weak corner does not stop other work.
+# What it finds differs from run to run, as weak corners are known that it may hit; a find goes to
+# test_shrunk.py.
 @pytest.mark.slow
+@pytest.mark.skipif("EXPLORE" not in os.environ, reason="looks for new cases: EXPLORE=1 make test")
 @given(wirings())
-@settings(max_examples=400, deadline=None, derandomize=True, suppress_health_check=QUIET)
+@settings(max_examples=400, deadline=None, suppress_health_check=QUIET)
 def test_many_random_diagrams(wiring: Wiring) -> None:
     check(wiring)
