@@ -130,7 +130,7 @@ def test_derivatives_are_those_of_the_exact_solution() -> None:
         ],
         axis=1,
     )
-    (matrix,) = criterion.derivatives(z)
+    (matrix,) = criterion.residuals_and_derivatives(z)[1]
     assert matrix / criterion.scales == pytest.approx(exact, abs=1e-7)
 
 
@@ -150,7 +150,7 @@ def test_differences_stand_in_where_sensitivities_fail(
     monkeypatch.setattr(criterion_module, "simulate", failing)
     whole = criterion_of(LINE_MODEL, series(T))
     criterion = Criterion(LINE_MODEL, whole.segments, [Unknown("a", value, 0.0, 1.0)], {"b": 0.0})
-    (matrix,) = criterion.derivatives(criterion.begin())
+    (matrix,) = criterion.residuals_and_derivatives(criterion.begin())[1]
     assert matrix[:, 0] == pytest.approx(T, abs=1e-6)
     assert all(0 <= a <= 1 for a in tried)  # they stay inside the bounds
 
@@ -163,7 +163,7 @@ def test_gain_delay_and_offset_of_a_sensor_and_their_derivatives() -> None:
     criterion = criterion_of(LINE_MODEL, series(shown, sensors={"x": sensor}))
     z = at(criterion, a=1, b=0)
     assert criterion.residuals(z)[0] == pytest.approx(np.zeros((121, 1)), abs=1e-9)
-    (matrix,) = criterion.derivatives(z)
+    (matrix,) = criterion.residuals_and_derivatives(z)[1]
     names = [u.name for u in criterion.unknowns]
     columns = dict(zip(names, (matrix / criterion.scales).T, strict=True))
     late = T > 0.25
@@ -239,7 +239,7 @@ def test_a_free_start_touches_its_own_segment_only() -> None:
     criterion = criterion_of(model, *measured)
     z = criterion.begin()
     assert len(z) == 2 + 2
-    matrices = criterion.derivatives(z)
+    matrices = criterion.residuals_and_derivatives(z)[1]
     # the solution is linear in its start: d x / d x0 is the free oscillation itself
     named, _ = criterion.split(z)
     own = oscillation(T, k=named["k"], c=named["c"])
@@ -281,4 +281,4 @@ blocks: {x: {type: integrator, of: r, start: 1}, r: {type: expression, formula: 
     assert "x" in str(criterion.failure)
     assert failed > criterion.value(at(criterion, a=0.1)) > 0
     z = at(criterion, a=1)
-    assert np.isfinite(criterion.derivatives(z)[0]).all()
+    assert np.isfinite(criterion.residuals_and_derivatives(z)[1][0]).all()

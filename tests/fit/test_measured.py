@@ -82,12 +82,6 @@ def test_a_window_cuts_signals_and_not_inputs(file: Path) -> None:
     assert run.inputs["drive"][0].tolist() == [0.0, 0.5, 1.0, 1.5]
 
 
-def test_part_gives_rows_of_every_signal(file: Path) -> None:
-    (run,) = load_measured(model_of(file, PLAIN))
-    assert run.part(slice(1, 3))["theta"] == pytest.approx([math.pi / 2, math.pi])
-    assert run.part(np.array([3]))["theta"] == pytest.approx([-math.pi / 2])
-
-
 def test_start_values_follow_the_preset_of_the_series(file: Path) -> None:
     more = ", start: {theta: start}, preset: high}\n"
     first, second = load_measured(

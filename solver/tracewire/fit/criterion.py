@@ -198,10 +198,6 @@ class Criterion:
             matrices.append(matrix)
         return residuals, matrices
 
-    def derivatives(self, z: Vector) -> list[Matrix]:
-        """d residuals/d scaled unknowns, for each segment (N*signals, n)."""
-        return self.residuals_and_derivatives(z)[1]
-
     def outputs(
         self, segment: Segment, named: Mapping[str, float], start: Mapping[str, float]
     ) -> Vector:

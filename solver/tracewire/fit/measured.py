@@ -71,10 +71,6 @@ class Measured:
         """The sensor of a signal; without offset, gain and delay where nothing is said of it."""
         return self.sensors.get(signal, PLAIN)
 
-    def part(self, rows: slice | NDArray[np.intp]) -> dict[str, Vector]:
-        """The measured values of some rows, by signal."""
-        return {name: values[rows] for name, values in self.values.items()}
-
 
 PLAIN = Sensor()
 

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.errors import SimulationError
 from tracewire.fit.criterion import Criterion, half_square
 from tracewire.fit.optimset import OptimValues, Options
 from tracewire.fit.result import Comparison, Improvement
@@ -224,11 +223,6 @@ class Search:
     def _save(self, last: bool) -> None:
         if self._kept is not None:
             self._kept(self, last)
-
-    @property
-    def failure(self) -> SimulationError | None:
-        """The last run that failed."""
-        return self.criterion.failure
 
 
 def _without_answer(function: Callable[..., object]) -> Callable[..., object]:

@@ -101,7 +101,7 @@ def simulate_many(
     task = Task(model, table, observers, options)
     with until_interrupted() as halt:
         task.halt = halt
-        threads = min(workers or _cores(), max(1, len(table)))
+        threads = min(workers or cores(), max(1, len(table)))
         began, told = time.perf_counter(), -1.0
         for number, outcome in _each(task, threads):
             if isinstance(outcome, Outcome):
@@ -195,7 +195,7 @@ def _observers(observe: Observer | Sequence[Observer]) -> list[Observer]:
     return several  # type: ignore[return-value]
 
 
-def _cores() -> int:
+def cores() -> int:
     """The cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 
 from tracewire.fit.criterion import Criterion
 from tracewire.fit.search import Search
+from tracewire.solve.many import cores
 
 Vector = NDArray[np.float64]
 
@@ -32,7 +32,7 @@ def values_at(
         own = whole.on(whole.segments)
         return own, own.value(z)
 
-    with ThreadPoolExecutor(max(1, min(_cores(), len(part)))) as pool:
+    with ThreadPoolExecutor(max(1, min(cores(), len(part)))) as pool:
         try:
             for number, (z, (own, value)) in enumerate(
                 zip(part, pool.map(valued, part), strict=True), 1
@@ -49,8 +49,3 @@ def values_at(
             raise
     if len(part) < len(points):
         search.refuse_more()
-
-
-def _cores() -> int:
-    """The cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
