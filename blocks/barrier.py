@@ -1,6 +1,6 @@
 """Elastic barriers: every block outputs what acts ON the body while it is beyond a limit."""
 
-from tracewire.library import Block, Input, Output, Parameter
+from tracewire.library import Block, Effect, Input, Output, Parameter, Shape
 
 PAPER = (
     "Semiempirical identification of nonlinear dynamics of a two-degree-of-freedom real torsion"
@@ -42,4 +42,76 @@ voigt_barrier = Block(
         ),
     ),
     source=f"{PAPER}, Eq 4 and Eq 15.",
+)
+
+OF = Input("of", doc="the coordinate of the body: rad, or m")
+STIFFNESS = Parameter("k", doc="N m/rad, or N/m", low=0.0)
+GAP = Parameter("gap", doc="where it begins: rad, or m", low=0.0)
+GAPS = Shape((0.3, 0.45, 0.6, 0.75, 0.85), of="Q")
+
+barrier = Block(
+    name="barrier",
+    doc="A spring beyond a gap on either side.",
+    inputs=(OF,),
+    parameters=(STIFFNESS, GAP),
+    outputs=(
+        Output(
+            "force",
+            "-k*(of - gap if of >= gap else (of + gap if of <= -gap else 0))",
+            doc="acts on the body",
+        ),
+    ),
+    effect=Effect("k", {"of": "q"}, sign=1, shapes={"gap": GAPS}),
+)
+
+barrier_hi = Block(
+    name="barrier_hi",
+    doc="A spring above a gap, on the side of positive coordinates.",
+    inputs=(OF,),
+    parameters=(STIFFNESS, GAP),
+    outputs=(Output("force", "-k*(of - gap if of >= gap else 0)", doc="acts on the body"),),
+    effect=Effect("k", {"of": "q"}, sign=1, shapes={"gap": GAPS}),
+)
+
+barrier_lo = Block(
+    name="barrier_lo",
+    doc="A spring below a gap, on the side of negative coordinates.",
+    inputs=(OF,),
+    parameters=(STIFFNESS, GAP),
+    outputs=(Output("force", "-k*(of + gap if of <= -gap else 0)", doc="acts on the body"),),
+    effect=Effect("k", {"of": "q"}, sign=1, shapes={"gap": GAPS}),
+)
+
+hunt_crossley = Block(
+    name="hunt_crossley",
+    doc="Contact of a round body with a wall, harder the deeper it goes in, with loss on the way.",
+    inputs=(OF, Input("rate", doc="its rate: rad/s, or m/s")),
+    parameters=(
+        Parameter("k", doc="N m/rad^n, or N/m^n, with the exponent n", low=0.0),
+        Parameter("wall", doc="rad, or m; above it where it is positive, else below"),
+        Parameter(
+            "speed", doc="of the body that doubles the force: rad/s, or m/s; high: no loss", low=0.0
+        ),
+        Parameter("exponent", doc="1.5 for spheres (Hertz)", default=1.5, low=1.0),
+    ),
+    # max(): the wall never pulls
+    outputs=(
+        Output(
+            "force",
+            "(-k*(of - wall)**exponent*max(0, 1 + rate/speed) if of >= wall else 0) if wall >= 0"
+            " else (k*(wall - of)**exponent*max(0, 1 - rate/speed) if of <= wall else 0)",
+            doc="acts on the body",
+        ),
+    ),
+    effect=Effect(
+        "k",
+        {"of": "q", "rate": "v"},
+        sign=1,
+        shapes={
+            "wall": Shape((0.3, 0.6, 0.85, -0.3, -0.6, -0.85), of="Q", low=-1e9),
+            "speed": Shape((1.0, 10.0), of="V", low=1e-12),
+        },
+    ),
+    source="K. H. Hunt, F. R. E. Crossley, Coefficient of restitution interpreted as damping in"
+    " vibroimpact, J. Appl. Mech. 42 (1975) 440.",
 )

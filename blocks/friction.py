@@ -13,6 +13,7 @@ PAPER = (
 
 RATE = Input("rate", doc="of the body, against what it rubs on")
 
+
 viscous = Block(
     name="viscous",
     doc="Friction in proportion to the rate.",
@@ -22,24 +23,13 @@ viscous = Block(
     effect=Effect("c", {"rate": "v"}, sign=1),
 )
 
-coulomb = Block(
-    name="coulomb",
-    doc="Dry friction of one level, which holds the body at rest up to that level.",
+cubic_damping = Block(
+    name="cubic_damping",
+    doc="Friction in proportion to the third power of the rate.",
     inputs=(RATE,),
-    parameters=(Parameter("level", doc="N m, or N", low=0.0),),
-    outputs=(Output("force", "-level*sign(rate)", doc="acts on the body"),),
-    effect=Effect("level", {"rate": "v"}, sign=1),
-)
-
-dry_friction = Block(
-    name="dry_friction",
-    doc="Dry friction with one level while slipping and another up to which it sticks.",
-    inputs=(RATE,),
-    parameters=(
-        Parameter("slip", doc="level while slipping: N m, or N", low=0.0),
-        Parameter("stick", doc="level at which it breaks away", default="slip", low=0.0),
-    ),
-    outputs=(Output("force", "-dry(rate, slip, stick)", doc="acts on the body"),),
+    parameters=(Parameter("c", doc="N m s^3/rad^3, or N s^3/m^3", low=0.0),),
+    outputs=(Output("force", "-c*rate**3", doc="acts on the body"),),
+    effect=Effect("c", {"rate": "v"}, sign=1),
 )
 
 quad_drag = Block(
@@ -73,18 +63,6 @@ asymmetric_viscous = Block(
     ),
     outputs=(Output("force", "-c_l*rate if rate >= 0 else -c_r*rate", doc="acts on the body"),),
     source=f"{PAPER}, the first term of Eq 22.",
-)
-
-asymmetric_coulomb = Block(
-    name="asymmetric_coulomb",
-    doc="Dry friction with a level for each direction, which holds the body at rest between them.",
-    inputs=(RATE,),
-    parameters=(
-        Parameter("level_l", doc="while rate > 0: N m, or N", low=0.0),
-        Parameter("level_r", doc="while rate < 0", low=0.0),
-    ),
-    # one relation and no sign(): the formula is then affine in its mode, also while it sticks
-    outputs=(Output("force", "-level_l if rate >= 0 else level_r", doc="acts on the body"),),
 )
 
 asymmetric_arctan = Block(
@@ -131,4 +109,24 @@ smoothed_stribeck = Block(
     ),
     source=f"{PAPER}, Eq 24: T_s2/(1 + T_02*|v|)*(1 + beta/cosh(alpha*v))*tanh(alpha*v)"
     " with level = T_s2 and decay = T_02; the print gives beta in N m, but it is a number.",
+)
+
+asym_viscous = Block(
+    name="asym_viscous",
+    doc="What viscous friction has more in one direction than in the other.",
+    inputs=(RATE,),
+    parameters=(
+        Parameter("c", doc="half the difference of the coefficients: N m s/rad, or N s/m"),
+    ),
+    outputs=(Output("force", "-c*abs(rate)", doc="acts on the body"),),
+    effect=Effect("c", {"rate": "v"}),
+)
+
+viscous_drift = Block(
+    name="viscous_drift",
+    doc="Viscous friction that grows with the time of the run, as in a bearing that cools down.",
+    inputs=(RATE,),
+    parameters=(Parameter("c", doc="growth in a second: N m/rad, or N/m"),),
+    outputs=(Output("force", "-c*t*rate", doc="acts on the body"),),
+    effect=Effect("c", {"rate": "v"}),
 )

@@ -26,8 +26,8 @@ relay = Block(
     outputs=(Output("y", {"released": "off_value", "operated": "on_value"}, doc="jumps"),),
 )
 
-backlash = Block(
-    name="backlash",
+play_operator = Block(
+    name="play_operator",
     doc="Play between a driving part and one that it pushes at either end of the gap.",
     inputs=(
         Input("of", doc="the position of the driving part, without jumps"),

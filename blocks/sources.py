@@ -1,6 +1,8 @@
 """Sources: signals that depend on nothing but the time."""
 
-from tracewire.library import Block, Effect, Input, Output, Parameter
+from tracewire.library import Block, Effect, Input, Output, Parameter, Shape
+
+QUARTER = 1.5707963267948966  # rad, of a wave: pi/2
 
 constant = Block(
     name="constant",
@@ -15,6 +17,26 @@ bias = Block(
     parameters=(Parameter("level", doc="the torque or force, of either sign"),),
     outputs=(Output("force", "level", doc="acts on the body"),),
     effect=Effect("level"),
+)
+
+harmonic = Block(
+    name="harmonic",
+    doc="A torque or force of one frequency that nothing else explains, as of a motor nearby.",
+    parameters=(
+        Parameter("amplitude", doc="the torque or force"),
+        Parameter("period", "s", "of a wave, 1/frequency", low=0.0),
+        Parameter("phase", "rad", default=0.0),
+    ),
+    outputs=(Output("force", "amplitude*sin(2*pi*t/period + phase)", doc="acts on the body"),),
+    # Whole numbers of waves in the record, so that no frequency up to 60/T is missed. The phase is
+    # that at t = 0: series that begin anywhere in the wave give it under their `parameters`.
+    effect=Effect(
+        "amplitude",
+        shapes={
+            "period": Shape(tuple(1 / n for n in range(1, 61)), of="T", low=1e-9),
+            "phase": Shape((0.0, QUARTER), low=-4 * QUARTER),  # sine and cosine
+        },
+    ),
 )
 
 time = Block(

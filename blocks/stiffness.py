@@ -4,7 +4,9 @@ A deflection is in rad and the output a torque in N m, or m and a force in N. Le
 the two sides: l where the signal that decides is zero or positive, r where it is negative.
 """
 
-from tracewire.library import Block, Effect, Input, Output, Parameter
+from tracewire.library import Block, Effect, Input, Output, Parameter, Shape
+
+QUARTER = 1.5707963267948966  # rad, of a wave: pi/2
 
 PAPER = (
     "Semiempirical identification of nonlinear dynamics of a two-degree-of-freedom real torsion"
@@ -12,13 +14,29 @@ PAPER = (
 )
 
 OF = Input("of", doc="the deflection")
+# whole numbers of waves in the record, or on the way that is gone: what lies between two of them
+# is at most half a wave off at either end, so that no frequency is missed
+PERIODS = Shape(tuple(1 / n for n in range(1, 61)), of="T", low=1e-9)
+PITCHES = Shape(tuple(2 / n for n in range(1, 25)), of="Q", low=1e-12)
+# sine and cosine; the sign of the amplitude does the other half of the circle
+PHASES = Shape((0.0, QUARTER), low=-4 * QUARTER)
 
-linear_stiffness = Block(
-    name="linear_stiffness",
+stiffness = Block(
+    name="stiffness",
     doc="A spring in proportion to the deflection.",
     inputs=(OF,),
     parameters=(Parameter("k", doc="N m/rad, or N/m"),),
     outputs=(Output("force", "-k*of", doc="acts on the body"),),
+    effect=Effect("k", {"of": "q"}),
+)
+
+quad_stiffness = Block(
+    name="quad_stiffness",
+    doc="A spring in proportion to the square of the deflection, harder on one side.",
+    inputs=(OF,),
+    parameters=(Parameter("k", doc="N m/rad^2, or N/m^2"),),
+    outputs=(Output("force", "-k*of**2", doc="acts on the body"),),
+    effect=Effect("k", {"of": "q"}),
 )
 
 cubic_stiffness = Block(
@@ -28,6 +46,97 @@ cubic_stiffness = Block(
     parameters=(Parameter("k", doc="N m/rad^3, or N/m^3; negative: softening"),),
     outputs=(Output("force", "-k*of**3", doc="acts on the body"),),
     effect=Effect("k", {"of": "q"}),
+)
+
+asym_stiffness = Block(
+    name="asym_stiffness",
+    doc="What a spring has more on one side than on the other.",
+    inputs=(OF,),
+    parameters=(Parameter("k", doc="half the difference of the stiffnesses: N m/rad, or N/m"),),
+    outputs=(Output("force", "-k*abs(of)", doc="acts on the body"),),
+    effect=Effect("k", {"of": "q"}),
+)
+
+backlash = Block(
+    name="backlash",
+    doc="What takes a spring of the same stiffness away inside of a gap.",
+    inputs=(OF,),
+    parameters=(
+        Parameter("k", doc="that of the spring: N m/rad, or N/m", low=0.0),
+        Parameter("gap", doc="half of the way that is free: rad, or m", low=0.0),
+    ),
+    outputs=(
+        Output(
+            "force", "k*(gap if of >= gap else (-gap if of <= -gap else of))", doc="on the body"
+        ),
+    ),
+    effect=Effect("k", {"of": "q"}, sign=1, shapes={"gap": Shape((0.1, 0.25, 0.5), of="Q")}),
+)
+
+stiffness_drift = Block(
+    name="stiffness_drift",
+    doc="A spring that grows stiffer with the time of the run, or softer where k is negative.",
+    inputs=(OF,),
+    parameters=(Parameter("k", doc="growth in a second: N m/rad/s, or N/m/s"),),
+    outputs=(Output("force", "-k*t*of", doc="acts on the body"),),
+    effect=Effect("k", {"of": "q"}),
+)
+
+parametric = Block(
+    name="parametric",
+    doc="A spring whose stiffness goes up and down with the time, as of a shaft that is not round.",
+    inputs=(OF,),
+    parameters=(
+        Parameter("amplitude", doc="of the stiffness: N m/rad, or N/m"),
+        Parameter("period", "s", "of a wave", low=0.0),
+        Parameter("phase", "rad", default=0.0),
+    ),
+    outputs=(Output("force", "-amplitude*sin(2*pi*t/period + phase)*of", doc="acts on the body"),),
+    effect=Effect(
+        "amplitude",
+        {"of": "q"},
+        shapes={"period": PERIODS, "phase": PHASES},
+    ),
+)
+
+cogging = Block(
+    name="cogging",
+    doc="A force that comes back with every tooth, slot or magnet along the way.",
+    inputs=(OF,),
+    parameters=(
+        Parameter("amplitude", doc="N m, or N"),
+        Parameter("pitch", doc="from one to the next: rad, or m; 2*pi/n for n on a turn", low=0.0),
+        Parameter("phase", "rad", default=0.0),
+    ),
+    outputs=(Output("force", "amplitude*sin(2*pi*of/pitch + phase)", doc="acts on the body"),),
+    effect=Effect("amplitude", {"of": "q"}, shapes={"pitch": PITCHES, "phase": PHASES}),
+)
+
+coupling_q = Block(
+    name="coupling_q",
+    doc="A spring between a body and the coordinate of another one, as the body feels it.",
+    inputs=(Input("other", doc="the coordinate of the other body: rad, or m"),),
+    parameters=(Parameter("k", doc="N m/rad, or N/m"),),
+    outputs=(Output("force", "-k*other", doc="acts on the body"),),
+    effect=Effect("k", {"other": "other_q"}),
+)
+
+coupling_v = Block(
+    name="coupling_v",
+    doc="A damper between a body and the rate of another one, as the body feels it.",
+    inputs=(Input("other", doc="the rate of the other body: rad/s, or m/s"),),
+    parameters=(Parameter("c", doc="N m s/rad, or N s/m"),),
+    outputs=(Output("force", "-c*other", doc="acts on the body"),),
+    effect=Effect("c", {"other": "other_v"}),
+)
+
+inertia = Block(
+    name="inertia",
+    doc="Mass that moves with the body and that the diagram leaves out.",
+    inputs=(Input("of", doc="the acceleration of the body: rad/s^2, or m/s^2"),),
+    parameters=(Parameter("m", doc="kg m^2, or kg; negative where too much is declared"),),
+    outputs=(Output("force", "-m*of", doc="acts on the body"),),
+    effect=Effect("m", {"of": "a"}),
 )
 
 asymmetric_stiffness = Block(

@@ -95,6 +95,12 @@ class DataError(TracewireError):
     """Measured data that cannot be read or used."""
 
 
+class DownloadError(TracewireError):
+    """A file that could not be fetched: no network, a missing package, or another content."""
+
+    exit_code = 1
+
+
 class OptionError(TracewireError):
     """An argument of a function or a command that does not exist or has no meaning."""
 

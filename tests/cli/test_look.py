@@ -125,9 +125,10 @@ def test_show_as_json(call: Any, swing: Path) -> None:
     data = call("show", swing, "--json").data
     assert data["parameters"]["k"]["fit"] == [1e-3, 1e-2]
     assert data["parameters"]["slip"]["fit"] == [None, None]  # infinite bounds are no JSON
-    assert data["places"] == [
-        {"name": "torque", "definition": "torque", "v": "omega", "q": "theta"}
-    ]
+    torque, sensor = data["places"]
+    assert (torque["name"], torque["kind"]) == ("torque", "sum")
+    assert (torque["q"], torque["v"], torque["a"]) == ("theta", "omega", "alpha")
+    assert (sensor["name"], sensor["kind"]) == ("sensor.theta", "sensor")
     assert data["states"][0] == {"name": "theta", "unit": "rad", "start": "phi", "rate": "omega"}
     assert "source" not in data
 

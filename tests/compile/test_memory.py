@@ -88,7 +88,7 @@ BACKLASH = """
 blocks:
   u: {type: integrator, of: w}
   w: {type: integrator, of: u}
-  play: {type: backlash, of: u, rate: w, width: 1}
+  play: {type: play_operator, of: u, rate: w, width: 1}
 """
 
 

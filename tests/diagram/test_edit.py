@@ -11,11 +11,12 @@ from tracewire.diagram import (
     Diagram,
     Value,
     add_addend,
-    add_offset,
+    add_sensor,
     difference,
     find_parameter,
     read_text,
     remove_addend,
+    set_sensors,
     set_values,
 )
 from tracewire.errors import DiagramError, OptionError
@@ -301,7 +302,7 @@ measured:
 def test_an_offset_is_added_to_each_series(tmp_path: Path) -> None:
     (tmp_path / "run.csv").write_text("")
     old = made(SERIES, tmp_path / "d.yaml")
-    new = add_offset(old, "theta", math.pi / 180, (-math.pi / 18, math.pi / 18))
+    new = add_sensor(old, "theta", "offset", math.pi / 180, (-math.pi / 18, math.pi / 18))
     assert "signals: {theta: {column: angle, offset: {value: 0.0174533, fit: [" in new.text
     assert "{column: angle, unit: deg, offset: {value: 1, fit: [-10, 10]}}}}\n" in new.text
     assert "        column: angle   # of the disc\n        offset: {value: 0.0174533, fit: [" in (
@@ -311,13 +312,39 @@ def test_an_offset_is_added_to_each_series(tmp_path: Path) -> None:
         offset = series.channels["theta"].offset
         assert si(offset) == pytest.approx(math.pi / 180, rel=1e-5)
         assert offset.fit == pytest.approx((-math.pi / 18, math.pi / 18))
-    assert "fit" not in add_offset(old, "theta", 0.1).text.partition("one:")[2].partition("two:")[0]
     assert (
-        "offset: {value: 0, fit: free}" in add_offset(old, "theta", 0, (-math.inf, math.inf)).text
+        "fit"
+        not in add_sensor(old, "theta", "offset", 0.1)
+        .text.partition("one:")[2]
+        .partition("two:")[0]
     )
-    assert ", fit: [0, inf]}" in add_offset(old, "theta", 0.1, (0, math.inf)).text
+    assert (
+        "offset: {value: 0, fit: free}"
+        in add_sensor(old, "theta", "offset", 0, (-math.inf, math.inf)).text
+    )
+    assert ", fit: [0, inf]}" in add_sensor(old, "theta", "offset", 0.1, (0, math.inf)).text
     with pytest.raises(OptionError, match="unknown measured signal 'omega'; there are: theta"):
-        add_offset(old, "omega", 0.1)
+        add_sensor(old, "omega", "offset", 0.1)
+
+
+def test_numbers_of_sensors_are_added_in_the_unit_of_the_column(tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text("")
+    old = made(SERIES, tmp_path / "d.yaml")
+    new = old
+    for kind, value in {"gain": 1.02, "delay": 0.004, "quad": 0.5, "drift": 0.01}.items():
+        new = add_sensor(new, "theta", kind, value, (0, 2 * value))
+        for series in new.measured.values():
+            added = getattr(series.channels["theta"], kind)
+            assert si(added) == pytest.approx(value, rel=1e-5)
+            assert added.fit == pytest.approx((0, 2 * value))
+    assert "delay: {value: 0.004, fit: [0, 0.008]}" in new.text
+    assert "drift: {value: 0.572958, fit: [0, 1.145" in new.text  # deg/s
+    changed = set_sensors(new, {"quad.theta": 0.6, "drift.theta": 0.015})
+    for series in changed.measured.values():
+        assert si(series.channels["theta"].quad) == pytest.approx(0.6, rel=1e-5)
+        assert si(series.channels["theta"].drift) == pytest.approx(0.015, rel=1e-5)
+    with pytest.raises(OptionError, match="unknown number of a sensor 'quat'; there are: "):
+        add_sensor(old, "theta", "quat", 1.0)
 
 
 def test_write_leaves_other_files_alone(tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from diagram.small_library import made, refused
-from tracewire.diagram import Series, add_offset
+from tracewire.diagram import Series, add_sensor
 
 TOP = """
 inputs: {drive: {unit: N m, default: 0}}
@@ -310,5 +310,5 @@ def test_a_signal_that_a_step_made_can_be_used_by_the_next(file: Path) -> None:
 def test_an_offset_is_written_in_the_unit_of_the_header(file: Path) -> None:
     (file.parent / "run.csv").write_text("t,angle [deg]\n0,1\n1,2\n")
     text = TOP + "  run: {file: run.csv, time: t, signals: {theta: angle}}\n"
-    edited = add_offset(made(text, file), "theta", math.radians(2.0))
+    edited = add_sensor(made(text, file), "theta", "offset", math.radians(2.0))
     assert "signals: {theta: {column: angle, offset: {value: 2}}}" in edited.text

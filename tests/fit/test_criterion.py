@@ -175,6 +175,56 @@ def test_gain_delay_and_offset_of_a_sensor_and_their_derivatives() -> None:
     assert columns["delay.x"][T < 0.15] == pytest.approx(0.0)
 
 
+def test_a_square_and_a_drift_of_a_sensor_and_their_derivatives() -> None:
+    """Of x = a t + b it shows 1.5 z + 0.2 z^2 + 0.1 (t - 1) from t = 1 on, z = x(t - 0.2)."""
+    t = T + 1.0
+    free = {"quad": (-1.0, 1.0), "drift": (-1.0, 1.0), "delay": (-1.0, 1.0), "gain": (0.5, 2.0)}
+    sensor = Sensor(gain=1.5, delay=0.2, quad=0.2, drift=0.1, free=free)
+    z = t - 0.2
+    shown = 1.5 * z + 0.2 * z**2 + 0.1 * (t - 1)
+    criterion = criterion_of(LINE_MODEL, series(shown, t=t, sensors={"x": sensor}))
+    at_truth = at(criterion, a=1, b=0)
+    assert criterion.residuals(at_truth)[0] == pytest.approx(np.zeros((121, 1)), abs=1e-9)
+    (matrix,) = criterion.residuals_and_derivatives(at_truth)[1]
+    columns = dict(
+        zip((u.name for u in criterion.unknowns), (matrix / criterion.scales).T, strict=True)
+    )
+    assert columns["quad.x"] == pytest.approx(z**2)
+    assert columns["drift.x"] == pytest.approx(t - 1)
+    assert columns["gain.x"] == pytest.approx(z)
+    assert columns["delay.x"] == pytest.approx(-(1.5 + 0.4 * z), rel=1e-6)
+    assert columns["a"] == pytest.approx((1.5 + 0.4 * z) * z)
+    assert columns["b"] == pytest.approx(1.5 + 0.4 * z)
+
+
+def test_a_drift_may_count_from_another_time() -> None:
+    criterion = criterion_of(
+        LINE_MODEL,
+        series(T + 0.1 * (T + 2), sensors={"x": Sensor(drift=0.1)}, drift_from=-2.0),
+    )
+    assert criterion.value(at(criterion, a=1, b=0)) == pytest.approx(0, abs=1e-18)
+
+
+@given(
+    st.floats(-2, 2).filter(lambda gain: abs(gain) > 0.1),
+    st.floats(-0.02, 0.02),
+    st.floats(-1, 1),
+    st.floats(-1, 1),
+)
+def test_the_signal_of_a_sensor_is_found_from_what_it_shows(
+    gain: float, quad: float, offset: float, drift: float
+) -> None:
+    sensor = Sensor(offset=offset, gain=gain, quad=quad, drift=drift)
+    signal = np.linspace(-2, 2, 50)
+    since = np.linspace(0, 3, 50)
+    assert sensor.signal(sensor.shown(signal, since), since) == pytest.approx(signal, abs=1e-9)
+
+
+def test_what_no_signal_can_show_is_the_nearest_that_one_can() -> None:
+    """z - z^2/4 is at most 1, at z = 2."""
+    assert Sensor(quad=-0.25).signal(np.array([5.0]), np.zeros(1)) == pytest.approx(2.0)
+
+
 def test_a_signal_with_a_period_is_compared_the_shortest_way_around() -> None:
     turned = T + 2 * np.pi * np.round(T)
     criterion = criterion_of(LINE_MODEL, series(turned, periods={"x": 2 * np.pi}))

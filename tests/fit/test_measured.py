@@ -260,6 +260,28 @@ def test_sizes_are_in_the_unit_of_the_header_where_none_is_declared(file: Path) 
     assert run.steps == ("theta: from deg to rad, as the header says",)
 
 
+@pytest.mark.parametrize("where", ["diagram", "header"])
+def test_a_square_and_a_drift_are_in_the_unit_of_the_column(file: Path, where: str) -> None:
+    """y_deg^2/100 in degrees is 1.8/pi y^2 in radians."""
+    wave(file, "t,angle [deg],u" if where == "header" else "t,angle,u")
+    unit = "unit: deg, " if where == "diagram" else ""
+    numbers = "quad: {value: 0.01, fit: [-1, 1]}, drift: {value: 2, fit: [-3, 3]}"
+    sensor = one(file, "time: t", f"{{column: angle, {unit}{numbers}}}").sensor("theta")
+    assert sensor.quad == pytest.approx(1.8 / math.pi)
+    assert sensor.drift == pytest.approx(math.radians(2))
+    assert sensor.free["quad"] == pytest.approx((-180 / math.pi, 180 / math.pi))
+    assert sensor.free["drift"] == pytest.approx((math.radians(-3), math.radians(3)))
+
+
+def test_a_drift_goes_on_over_the_windows_of_a_record(file: Path) -> None:
+    wave(file)
+    use = "{gate: [1, 1.5], train: [0.5, 1]}"
+    text = f"  run: {{file: run.csv, time: t, use: {use}, signals: {{theta: angle}}}}"
+    gate, train = load_measured(model_of(file, text))
+    assert gate.t[0] == 1.0
+    assert gate.zero == train.zero == 0.5
+
+
 def test_an_offset_that_reads_parameters_is_in_si(file: Path) -> None:
     wave(file, "t,angle [deg],u")
     assert one(file, "time: t", "{column: angle, offset: start}").sensor("theta").offset == 0.5

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from tracewire.errors import BlockError
 from tracewire.formula import Call, Name, Number
-from tracewire.library import Block, Effect, Input, Output, Parameter, State
+from tracewire.library import Block, Effect, Input, Output, Parameter, Shape, State
 
 GOOD: dict[str, Any] = {
     "name": "damper",
@@ -64,6 +64,12 @@ def parameters(*given: Parameter) -> dict[str, Any]:
 def effect(given: Effect, *ports: Input, **more: Any) -> dict[str, Any]:
     parts = {"inputs": ports, "parameters": (Parameter("c", default=0.0),), "states": ()}
     return parts | {"outputs": (Output("y", "c"),), "effect": given} | more
+
+
+def shaped(shape: Shape, name: str = "width") -> dict[str, Any]:
+    default = None if name == "width" else 0.0
+    both = (Parameter("c", default=0.0), Parameter("width", default=default, low=0.0))
+    return effect(Effect("c", shapes={name: shape}), parameters=both)
 
 
 PLAIN = Parameter("c")
@@ -126,19 +132,60 @@ COMPLAINTS: dict[str, tuple[dict[str, Any], str]] = {
     "effect with a loose port": (
         effect(Effect("c"), Input("rate"), Input("of"), Input("u", default="t")),
         "the effect leaves the inputs rate, of unconnected."
-        " Say which local signal each reads: q or v.",
+        " Say which local signal each reads: q, v, a, u, other_q, other_v.",
     ),
     "effect of another signal": (
         effect(Effect("c", {"rate": "w"}), Input("rate")),  # type: ignore[dict-item]
-        "the effect wires 'rate' to 'w'; there are: q, v. Say which",
+        "the effect wires 'rate' to 'w'; there are: q, v, a, u, other_q, other_v. Say which",
     ),
     "effect that needs a value": (
         effect(Effect("c"), parameters=(PLAIN, Parameter("eps"), Parameter("n", default=1.0))),
-        "the effect leaves the parameters eps without a value. Give each a default.",
+        "the effect leaves the parameters eps without a value. Give each a default, or a shape.",
     ),
     "effect with two outputs": (
         effect(Effect("c"), outputs=(Output("y", "c"), Output("z", "c"))),
         "an effect has one output, and this block has 2. Declare the others in a block",
+    ),
+    "effect of a third sign": (
+        effect(Effect("c", sign=-1)),  # type: ignore[arg-type]
+        "the sign of an effect is -1; there are: 0, 1. 1: only positive coefficients",
+    ),
+    "effect elsewhere": (
+        effect(Effect("c", place="sensor")),  # type: ignore[arg-type]
+        "unknown place of an effect 'sensor'; there are: drive, sum.",
+    ),
+    "effect at the drive of the rate": (
+        effect(Effect("c", {"rate": "v"}, place="drive"), Input("rate")),
+        "the effect acts on the drive and wires 'rate' to 'v'; there are: u. An effect at the",
+    ),
+    "shape of nothing": (
+        shaped(Shape((1.0,)), name="s"),
+        "unknown parameter 's'; there are: c, width. It is a shape.",
+    ),
+    "shape of the coefficient": (
+        shaped(Shape((1.0,)), name="c"),
+        "'c' is the coefficient of the effect, and not one of its shapes. For a coefficient in",
+    ),
+    "shape of an unknown size": (
+        shaped(Shape((1.0,), of="W")),  # type: ignore[arg-type]
+        "unknown scale 'W'; there are: Q, T, U, V, dt. It is of the shape 'width'.",
+    ),
+    "shape without values": (
+        shaped(Shape(())),
+        "the shape 'width' needs numbers to try. Say where it is tried first, such as 0.1 and 0.3.",
+    ),
+    "shape that is not finite": (shaped(Shape((float("inf"),))), "'width' needs numbers to try"),
+    "shape below its parameter": (
+        shaped(Shape((1.0,), low=-1.0)),
+        "the shape 'width' may fall to -1, and the parameter only to 0. Give a 'low' that the",
+    ),
+    "shape tried outside": (
+        shaped(Shape((1.0, 0.0), of="V", low=0.1)),
+        "the shape 'width' is tried at 0, which its bounds exclude. Change the values or the",
+    ),
+    "coefficient tried at zero": (
+        effect(Effect("c", at=Shape((0.0, 2.0), of="dt"))),
+        "'c' is tried at 0. The effect vanishes there: give other values.",
     ),
 }
 

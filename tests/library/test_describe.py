@@ -83,6 +83,17 @@ def test_an_effect_says_what_a_trace_may_do_with_it() -> None:
     assert viscous in describe(library(), "viscous")
     assert "tries: coefficient level, of either sign." in describe(library(), "bias")
     assert "An effect" not in describe(library(), "gain")
+    assert (
+        "of reads the coordinate of the place;"
+        " shape gap first 0.1, 0.25, 0.5 times the largest |q| of the place."
+    ) in describe(library(), "backlash")
+    assert (
+        "tries at the drive: coefficient tau, positive only, first 2, 6 times the sample interval;"
+    ) in describe(library(), "drive_lag")
+    assert (
+        "shape period first 1, 0.5, ..., 0.0167 (60 values) times the duration of the longest"
+        " series; shape phase first 0, 1.57."
+    ) in describe(library(), "harmonic")
 
 
 def test_an_expression_depends_on_what_its_formula_reads() -> None:
@@ -105,7 +116,20 @@ def test_a_program_is_told_the_same() -> None:
         },
     ]
     effect = describe_json(library(), "viscous")["effect"]
-    assert effect == {"coefficient": "c", "inputs": {"rate": "v"}, "sign": 1}
+    assert effect == {
+        "coefficient": "c",
+        "inputs": {"rate": "v"},
+        "sign": 1,
+        "shapes": {},
+        "place": "sum",
+        "at": None,
+    }
+    effect = describe_json(library(), "backlash")["effect"]
+    assert isinstance(effect, dict)
+    assert effect["shapes"] == {"gap": {"at": (0.1, 0.25, 0.5), "of": "Q", "low": 0.0}}
+    effect = describe_json(library(), "drive_lag")["effect"]
+    assert isinstance(effect, dict)
+    assert (effect["place"], effect["at"]["of"]) == ("drive", "dt")
 
 
 @pytest.mark.parametrize("tell", [describe, describe_json])

@@ -4,42 +4,15 @@ from __future__ import annotations
 
 import base64
 import html.parser
-from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
-from show.fits import MODEL, TEXT, compared
-from tracewire.diagram import read_text
+from show.fits import MODEL
 from tracewire.errors import OptionError
 from tracewire.show import Report, report
 from tracewire.show.document import Figure, Section
-from tracewire.show.report import trace_text
 from tracewire.show.summary import Table
 from tracewire.solve import simulate
-from tracewire.trace import Found, FoundEffect
-from tracewire.trace.found import HeldOut, Ranked
-
-RUN = compared()
-FOUND = Found(
-    verdict="effect",
-    effects=(FoundEffect("coulomb", "a", {"level": 0.25}, ("bias @ a",)),),
-    dropped=("c",),
-    values={"k": 4.5, "coulomb.level": 0.25},
-    declared={"k": 4.0},
-    rmse_before=0.2,
-    rmse_after=0.1,
-    sigma={"x": 0.05},
-    s2_before=16.0,
-    s2_after=4.0,
-    fitted_before=0.2,
-    fitted_after=0.1,
-    ranking=(Ranked("coulomb @ a", -120.0, 4.0, "gate: accepted"),),
-    held_out=(HeldOut("run", "x", "rad", RUN.t, RUN.measured, RUN.before, RUN.after),),
-    words=("the last sixth of 'run' is held back",),
-    original=MODEL.diagram,
-    diagram=read_text(TEXT.replace("value: 4,", "value: 4.5,")),
-)
 
 
 class Outline(html.parser.HTMLParser):
@@ -161,41 +134,3 @@ def test_a_run_as_a_report(tmp_path: Path) -> None:
     assert text.startswith("# Swing & rest\n")
     assert "From 0 to 2 s, 1001 samples. Events: none." in text
     assert (tmp_path / "run.png").is_file()
-
-
-def test_a_trace_as_a_report(tmp_path: Path) -> None:
-    text = report(FOUND).write(tmp_path / "trace.md").read_text(encoding="utf-8")
-    assert text.startswith("# Trace of Swing & rest\n")
-    for words in (
-        "At a: coulomb with level 0.25 (SI). Went to zero: c.",
-        "the error goes from 0.2 to 0.1",
-        "these effects are not the whole truth",
-        "The last sixth of 'run' is held back.",
-        "| coulomb | a | level = 0.25 | bias @ a |",
-        "| k | 4 | 4.5 |",
-        "BIC is relative to the diagram before them",
-        "| coulomb @ a | -120 | 4 | gate: accepted |",
-        "+  k: {value: 4.5,",
-        "(held_out.png)",
-        "(residual.png)",
-    ):
-        assert words in text
-    assert (tmp_path / "held_out.png").is_file()
-    assert (tmp_path / "residual.png").is_file()
-
-
-@pytest.mark.parametrize(
-    ("verdict", "said"),
-    [
-        ("null", "Nothing is missing beyond the noise of the data."),
-        ("unexplained", "Something is missing, and no effect of the library explains it."),
-    ],
-)
-def test_a_verdict_without_effects(verdict: Any, said: str) -> None:
-    found = replace(
-        FOUND, verdict=verdict, effects=(), dropped=(), ranking=(), diagram=FOUND.original
-    )
-    assert trace_text(found)[0] == said
-    assert "whole truth" not in " ".join(trace_text(found))
-    headings = [section.heading for section in report(found).sections]
-    assert headings == ["Verdict"]

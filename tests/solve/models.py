@@ -15,7 +15,7 @@ span: [0, 30]
 blocks:
   x: {type: integrator, of: v, start: 1.05}
   v: {type: integrator, of: a}
-  spring: {type: linear_stiffness, of: x, k: 1}
+  spring: {type: stiffness, of: x, k: 1}
   friction: {type: coulomb, rate: v, level: 0.1}
   a: {type: sum, of: [spring, friction]}
 """

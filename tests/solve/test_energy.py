@@ -150,7 +150,7 @@ blocks:
   air: {{type: quad_drag, rate: v, c: {drag}}}
   oil: {{type: asymmetric_viscous, rate: w, c_l: {drag}, c_r: 0.1}}
   spring: {{type: cubic_stiffness, of: x, k: 0.7}}
-  tie: {{type: linear_stiffness, of: y, k: 1.3}}
+  tie: {{type: stiffness, of: y, k: 1.3}}
   a: {{type: sum, of: [spring, between, air]}}
   b: {{type: sum, of: [tie, -between, ground, oil]}}
   work: {{type: integrator, of: power}}
@@ -207,7 +207,7 @@ blocks:
   stop:
     {{type: voigt_barrier, of: x, rate: v, high: 0.5, low: -0.8, k: {k}, c_l: {c},
       adhesive: {adhesive}}}
-  spring: {{type: linear_stiffness, of: x, k: {soft}}}
+  spring: {{type: stiffness, of: x, k: {soft}}}
   a: {{type: sum, of: [stop, spring]}}
   work: {{type: integrator, of: power}}
   power: {{type: product, of: [a, v]}}
@@ -236,7 +236,7 @@ blocks:
   v: {type: integrator, of: a}
   well: {type: expression, formula: x - x**3}
   wall: {type: dead_zone, of: x, low: -100, high: 0.9}
-  push: {type: linear_stiffness, of: wall, k: 5e3}
+  push: {type: stiffness, of: wall, k: 5e3}
   a: {type: sum, of: [well, push]}
 """
     result = run(text, method=method, rtol=1e-10, limits=LIMITS)
@@ -271,7 +271,7 @@ blocks:
   body:
     {{type: hard_stop, mass: 2, high: 0.6, low: -0.5, restitution: {e}, start_rate: {rate},
       force: force}}
-  spring: {{type: linear_stiffness, of: body.x, k: 5}}
+  spring: {{type: stiffness, of: body.x, k: 5}}
   rub: {{type: dry_friction, rate: body.v, slip: {slip}, stick: {stick}}}
   force: {{type: sum, of: [spring, rub]}}
 """

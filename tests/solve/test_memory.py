@@ -50,7 +50,7 @@ span: [0, 12]
 blocks:
   u: {type: sine, amplitude: 2, omega: 1}
   w: {type: sine, amplitude: 2, omega: 1, phase: pi/2}
-  play: {type: backlash, of: u, rate: w, width: 1}
+  play: {type: play_operator, of: u, rate: w, width: 1}
 record: [play]
 """
 

@@ -39,7 +39,7 @@ parameters: {level: 0.1, k: 1, begin: 1.05}
 blocks:
   x: {type: integrator, of: v, start: begin}
   v: {type: integrator, of: a}
-  spring: {type: linear_stiffness, of: x, k: k}
+  spring: {type: stiffness, of: x, k: k}
   friction: {type: coulomb, rate: v, level: level}
   a: {type: sum, of: [spring, friction]}
 """

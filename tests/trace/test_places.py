@@ -23,10 +23,10 @@ def test_a_sum_behind_gains_is_a_place_with_its_coordinate_and_rate() -> None:
           v: {type: integrator, of: a}
           a: {type: gain, of: force, k: 2}
           force: {type: sum, of: [spring]}
-          spring: {type: linear_stiffness, of: x, k: 1}
+          spring: {type: stiffness, of: x, k: 1}
         """
     )
-    assert found == [Place("force", "force", "v", "x")]
+    assert found == [Place("force", "sum", "force", "x", "v", "a")]
 
 
 def test_a_sum_that_only_feeds_another_sum_is_left_out() -> None:
@@ -37,7 +37,7 @@ def test_a_sum_that_only_feeds_another_sum_is_left_out() -> None:
           v: {type: integrator, of: total}
           total: {type: sum, of: [spring, losses]}
           losses: {type: sum, of: [-v]}
-          spring: {type: linear_stiffness, of: x, k: 1}
+          spring: {type: stiffness, of: x, k: 1}
         """
     )
     assert [place.name for place in found] == ["total"]
@@ -63,14 +63,19 @@ def test_a_state_without_coordinate_has_none() -> None:
           a: {type: sum, of: [-v]}
         """
     )
-    assert found == [Place("a", "a", "v", "")]
+    assert found == [Place("a", "sum", "a", "", "v", "a")]
 
 
 def test_the_diagram_can_say_which_sum_is_the_place() -> None:
-    found = find_places(compile(read(PENDULUM)))
-    assert found == [
-        Place("column", "column", "phi1_dot", "phi1"),
-        Place("contact", "contact", "phi2_dot", "phi2"),
+    column, contact, *others = find_places(compile(read(PENDULUM)))
+    bodies = ("phi1", "phi1_dot"), ("phi2", "phi2_dot")
+    drives = ("f_e",)
+    one, two = bodies
+    assert column == Place("column", "sum", "column", *one, "phi1_ddot", (two,), drives)
+    assert contact == Place("contact", "sum", "contact", *two, "phi2_ddot", (one,), drives)
+    assert [(place.name, place.kind) for place in others] == [
+        ("drive.f_e", "drive"),
+        ("sensor.phi2", "sensor"),
     ]
 
 
@@ -82,7 +87,7 @@ def test_a_sum_of_vectors_is_no_place() -> None:
           v: {type: integrator, of: force}
           force: {type: sum, of: [spring, same], place: {q: x, v: v}}
           same: {type: sum, of: [spring]}
-          spring: {type: linear_stiffness, of: x, k: 1}
+          spring: {type: stiffness, of: x, k: 1}
         """
     )
     assert found == []
@@ -96,9 +101,108 @@ def test_a_sum_in_an_algebraic_loop_is_a_place() -> None:
           v: {type: integrator, of: total}
           total: {type: sum, of: [spring, back, outer]}
           back: {type: gain, of: total, k: -0.5}
-          spring: {type: linear_stiffness, of: x, k: 1}
+          spring: {type: stiffness, of: x, k: 1}
           outer: {type: sum, of: [ring]}
           ring: {type: gain, of: outer, k: -2}
         """
     )
     assert {place.name for place in found} == {"total", "outer"}
+
+
+DRIVEN = """
+inputs: {u: {default: 0}, unused: {default: 0}}
+blocks:
+  x: {type: integrator, of: v}
+  v: {type: integrator, of: force}
+  force: {type: sum, of: [u, motor, hum, level, clock, wired, ripple]}
+  motor: {type: sine, amplitude: 2, omega: 3}
+  hum: {type: expression, formula: "0.1*sin(50*t)"}
+  idle: {type: square, amplitude: 1, frequency: 2}
+  level: {type: constant, value: 1}
+  clock: {type: time}
+  ripple: {type: harmonic, amplitude: 1, period: 0.1}
+  wired: {type: expression, formula: "u*t"}
+measured:
+  run:
+    file: run.csv
+    use: train
+    time: t
+    signals: {x: {column: x}, v: {column: v}}
+    inputs: {u: {column: u}}
+"""
+
+
+def test_drives_are_inputs_and_sources_that_something_reads(tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text("t,x,v,u\n0,0,0,0\n1,0,0,0\n")
+    found = find_places(compile(read_text(DRIVEN, tmp_path / "driven.yaml")))
+    assert [place.name for place in found] == [
+        "force",
+        "drive.u",
+        "drive.motor",
+        "drive.hum",
+        "sensor.x",
+        "sensor.v",
+    ]
+    assert found[0].drive == ("u", "motor", "hum")
+    assert found[1].drive == ("u",)
+
+
+def test_a_sum_of_a_drive_and_an_effect_at_it_is_the_drive() -> None:
+    found = places(
+        """
+        inputs: {u: {default: 0}}
+        blocks:
+          x: {type: integrator, of: v}
+          v: {type: integrator, of: force}
+          force: {type: sum, of: [u_seen, -x]}
+          u_seen: {type: sum, of: [u, more]}
+          more: {type: drive_gain, of: u, gain: 0.1}
+          also: {type: gain, of: u_seen, k: 2}
+        """
+    )
+    assert [place.name for place in found] == ["force", "drive.u"]
+
+
+def test_a_signal_inside_a_subsystem_counts_where_a_port_carries_it() -> None:
+    found = places(
+        """
+        blocks:
+          force: {type: sum, of: [-body.position]}
+          body: {type: mass, force: force}
+          hidden: {type: sum, of: [-body.position]}
+          other: {type: closed, force: hidden}
+        subsystems:
+          mass:
+            inputs: [force]
+            outputs: {position: x, speed: v}
+            blocks: {x: {type: integrator, of: v}, v: {type: integrator, of: force}}
+          closed:
+            inputs: [force]
+            outputs: {y: doubled}
+            blocks:
+              x: {type: integrator, of: v}
+              v: {type: integrator, of: force}
+              doubled: {type: gain, of: x, k: 2}
+        """
+    )
+    assert found == [
+        Place("force", "sum", "force", "body.position", "body.speed", "force"),
+        Place("hidden", "sum", "hidden", "", "", "hidden", (("body.position", "body.speed"),)),
+    ]
+
+
+def test_a_sum_inside_a_subsystem_is_no_place_even_where_it_says_so() -> None:
+    found = places(
+        """
+        blocks:
+          body: {type: mass}
+        subsystems:
+          mass:
+            outputs: {x: x}
+            blocks:
+              x: {type: integrator, of: v}
+              v: {type: integrator, of: force}
+              force: {type: sum, of: [-x], place: {q: x, v: v}}
+        """
+    )
+    assert found == []

@@ -1,4 +1,4 @@
-"""Real measurements of a multi-arm pendulum, where they are at hand."""
+"""Traces of real measurements, where they are at hand: what the pages in diagrams/real say."""
 
 from __future__ import annotations
 
@@ -9,53 +9,61 @@ from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.trace import Found, trace
 
-DATA = Path(__file__).parents[3] / "shared/data/multiarm_pendulum"
+ROOT = Path(__file__).parents[2]
+REAL = ROOT / "diagrams/real"
+DATA = ROOT.parent / "shared/data"
 pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(not DATA.is_dir(), reason="the measured series are not here"),
 ]
-DIAGRAM = """
-title: Multi-arm pendulum, one arm, free swing
-span: [0, {end}]
-parameters:
-  w0_squared: {{value: 64.219, unit: 1/s^2, fit: [50, 80]}}
-  c: {{value: 0.0672, unit: 1/s, fit: [0, 1]}}
-blocks:
-  theta: {{type: integrator, of: omega, unit: rad}}
-  omega: {{type: integrator, of: acceleration, unit: rad/s}}
-  height: {{type: sin, of: theta}}
-  gravity: {{type: gain, of: height, k: -w0_squared}}
-  friction: {{type: viscous, rate: omega, c: c}}
-  acceleration: {{type: sum, of: [gravity, friction]}}
-measured:
-  swing:
-    file: {file}
-    time: t_s
-    signals: {{theta: {{column: theta_from_hanging_rad}}}}
-    start: {{theta: free, omega: free}}
-"""
+FILES = {
+    "data/drops.csv": "falling_balls/derived_drops.csv",
+    "data/bicycle": "bicycle_wheel_pendulum/bicycle",
+    "data/swing_small.csv": "multiarm_pendulum/derived_freeswing_small_200Hz.csv",
+    "time: t\n": "time: t_s\n",
+    "theta: theta}": "theta: theta_from_hanging_rad}",
+}
 
 
-def traced(name: str, end: float) -> Found:
-    text = DIAGRAM.format(file=DATA / f"derived_freeswing_{name}_200Hz.csv", end=end)
+def traced(path: str) -> Found:
+    text = (REAL / path).read_text()
+    small = path.startswith("multiarm")
+    for old, new in FILES.items():
+        if old.startswith("data/"):
+            text = text.replace(old, str(DATA / new))
+        elif small:
+            text = text.replace(old, new)
     return trace(compile(read_text(text)))
 
 
-def test_the_large_swing_needs_coulomb_friction_and_quadratic_drag() -> None:
-    found = traced("large", 55.0)
+@pytest.mark.parametrize("ball", ["golf_ball", "bowling_ball"])
+def test_a_heavy_ball_stays_clean(ball: str) -> None:
+    found = traced(f"falling_balls/{ball}.yaml")
+    assert found.verdict == "null"
+    assert not found.effects
+
+
+@pytest.mark.parametrize(("ball", "after"), [("whiffle_ball", 0.115), ("tennis_ball", 0.27)])
+def test_a_light_ball_is_slowed_in_proportion_to_its_speed(ball: str, after: float) -> None:
+    found = traced(f"falling_balls/{ball}.yaml")
     assert found.verdict == "effect"
-    assert {effect.name for effect in found.effects} == {"coulomb", "quad_drag"}
-    params = {effect.name: effect.params for effect in found.effects}
-    assert params["coulomb"]["level"] == pytest.approx(0.164, rel=0.1)
-    assert params["quad_drag"]["c"] == pytest.approx(0.00403, rel=0.1)
-    assert found.dropped == ("c",), "the declared viscous friction goes to zero"
-    assert found.rmse_after < 0.010 < 0.015 < found.rmse_before
+    assert [effect.name for effect in found.effects] == ["viscous"]
+    assert found.rmse_after == pytest.approx(after, rel=0.05), "of the second drop"
+    assert found.rmse_before > 4 * found.rmse_after
 
 
-def test_the_small_swing_needs_coulomb_friction_only() -> None:
-    found = traced("small", 10.0)
-    assert [effect.name for effect in found.effects] == ["coulomb"]
-    assert found.effects[0].params["level"] == pytest.approx(0.163, rel=0.1)
-    assert found.fitted_before == pytest.approx(3.97e-3, rel=0.05)
-    assert found.fitted_after < 1.15e-3
-    assert found.rmse_after < 1.15e-3
+def test_a_gyro_does_not_show_zero_at_rest() -> None:
+    found = traced("bicycle_wheel_pendulum/axial.yaml")
+    assert found.verdict == "effect"
+    (effect,) = found.effects
+    assert (effect.name, effect.place) == ("sensor_offset", "sensor.omega")
+    assert effect.params["offset"] == pytest.approx(-0.0306, rel=0.05)
+
+
+def test_a_small_swing_sticks() -> None:
+    found = traced("multiarm_pendulum/small.yaml")
+    assert found.verdict == "effect"
+    (effect,) = found.effects
+    assert effect.name in {"coulomb", "lugre", "dahl", "hysteresis"}, "dry friction that sticks"
+    assert effect.params["level"] == pytest.approx(0.163, rel=0.05)
+    assert found.rmse_after < 0.3 * found.rmse_before

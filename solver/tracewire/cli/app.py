@@ -13,10 +13,12 @@ from typer.main import get_command
 
 from tracewire.cli.blocks import blocks
 from tracewire.cli.check import check
+from tracewire.cli.data import data
 from tracewire.cli.demo import demo
 from tracewire.cli.fit import fit
 from tracewire.cli.output import INTERRUPTED, Cut, print_problems
 from tracewire.cli.run import run
+from tracewire.cli.several import Several
 from tracewire.cli.show import show
 from tracewire.cli.trace import trace
 from tracewire.errors import Problem, TracewireError
@@ -54,9 +56,10 @@ app.command()(check)
 app.command()(show)
 app.command()(run)
 app.command()(fit)
-app.command()(trace)
+app.command(cls=Several)(trace)
 app.command()(blocks)
 app.command()(demo)
+app.add_typer(data, name="data")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -1,4 +1,4 @@
-"""`tracewire demo`: the main job on the shipped examples, from a diagram to a named effect."""
+"""`tracewire demo`: the main job, from a declared diagram to the effects that it lacks."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import Annotated
 import typer
 
 from tracewire.cli.check import check
-from tracewire.cli.fit import fit
 from tracewire.cli.options import Debug
 from tracewire.cli.output import print_text, writing
 from tracewire.cli.run import run
@@ -22,7 +21,10 @@ def demo(
     ] = "out",
     debug: Debug = False,
 ) -> None:
-    """Check, run and fit the double torsion pendulum; trace what a pendulum's diagram lacks.
+    """Check and run the double torsion pendulum as first declared, and trace what it lacks.
+
+    The friction and the spring of the record differ between their two sides; the diagram does not
+    say so.
 
     \b
     Example:
@@ -31,24 +33,17 @@ def demo(
     from tracewire.shipped import shipped
 
     began = time.perf_counter()
-    diagrams, folder = shipped("diagrams"), Path(output)
+    folder = Path(output)
     with writing(output):
-        for part in (folder / "fit", folder / "trace"):
-            part.mkdir(parents=True, exist_ok=True)
-    torsion = str(diagrams / "papers" / "a_torsion" / "pendulum.yaml")
-    pendulum = str(diagrams / "lessons" / "pendulum.yaml")
-    print_text("--- 1. check the double torsion pendulum")
-    check(torsion)
+        (folder / "trace").mkdir(parents=True, exist_ok=True)
+    pendulum = str(shipped("diagrams") / "demo" / "pendulum.yaml")
+    print_text("--- 1. check the double torsion pendulum as it was first declared")
+    check(pendulum)
     print_text("\n--- 2. run it")
-    run(torsion, figure=str(folder / "torsion.png"))
-    print_text("\n--- 3. fit the nine parameters of the paper's appendix, as it does")
-    fit(torsion, max_iter=150)
-    print_text("\n--- 4. hold the two that the data do not determine, and fit by least squares")
-    report = str(folder / "fit" / "report.html")
-    fit(torsion, method="least_squares", fix=["alpha", "beta"], report=report)
-    print_text("\n--- 5. trace what the diagram of a swinging pendulum lacks")
+    run(pendulum, preset="as_in_the_paper", figure=str(folder / "torsion.png"))
+    print_text("\n--- 3. trace what it lacks to explain five records")
     patch = str(folder / "pendulum.patch")
-    trace(pendulum, report=str(folder / "trace" / "report.md"), output=patch)
+    trace(pendulum, report=str(folder / "trace" / "report.md"), patch=patch)
     print_text(
         f"\ndone in {time.perf_counter() - began:.0f} s; figures and reports are in {folder}/"
     )

@@ -121,13 +121,13 @@ def telling(text: str, show: Callable[[str], None]) -> Callable[[float, float], 
 
     def tell(part: float, left: float) -> None:
         if time.monotonic() - began > SOON:
-            rest = f", {_clock(left)} left" if math.isfinite(left) else ""
+            rest = f", {clock(left)} left" if math.isfinite(left) else ""
             show(f"{text}: {100 * part:.0f} %{rest}")
 
     return tell
 
 
-def _clock(seconds: float) -> str:
+def clock(seconds: float) -> str:
     """A time in s, in min and s, or in h and min."""
     whole = math.ceil(seconds)
     if whole < 60:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tracewire.cli.output import check_target, working, writing
+from tracewire.cli.output import check_target, note, working, writing
+from tracewire.errors import OptionError
 
 if TYPE_CHECKING:
+    from tracewire.compile import Model
     from tracewire.diagram import Diagram
     from tracewire.fit import Fit, Profile
     from tracewire.trace import Found
@@ -22,6 +25,23 @@ ReportFile = Annotated[
     ),
 ]
 Apply = Annotated[bool, typer.Option("--apply", help="Edit the diagram's file; comments are kept.")]
+PatchFile = Annotated[
+    str | None,
+    typer.Option(
+        "--patch",
+        metavar="FILE",
+        help="Write the change of the diagram, for `git apply` or `patch -p1` in this folder.",
+    ),
+]
+TableFile = Annotated[
+    str | None,
+    typer.Option(
+        "--table",
+        metavar="FILE",
+        help="Write what is missing, where nothing explains it, to this .csv for a `table` block; "
+        "an edited diagram then has that block.",
+    ),
+]
 Output = Annotated[
     str | None,
     typer.Option(
@@ -30,10 +50,14 @@ Output = Annotated[
 ]
 
 
-def check_targets(report: str | None, output: str | None) -> None:
+def check_targets(
+    report: str | None, output: str | None, patch: str | None = None, table: str | None = None
+) -> None:
     """Refuse, before the work, files that could not be written after it."""
     check_target(report, (".md", ".html"), "report")
     check_target(output, (".yaml", ".yml", ".patch"), "edited diagram")
+    check_target(patch, (".patch", ".diff"), "patch")
+    check_target(table, (".csv",), "table")
 
 
 def check_home(diagram: Diagram, output: str | None) -> None:
@@ -57,22 +81,83 @@ def write_report(
     return [path]
 
 
-def store(
-    diagram: Diagram, edited: Callable[[], Diagram], apply: bool, output: str | None
-) -> list[str]:
-    """Write an edited diagram, or its patch, as asked; the paths that were written."""
-    if output is None and not apply:
+def write_table(found: Found, path: str | None) -> list[str]:
+    """Write what is missing as a table where that is asked for; the paths that were written."""
+    if path is None:
         return []
+    if found.missing is None:
+        note(f"nothing is missing that a table could hold: '{path}' was not written")
+        return []
+    from tracewire.trace.missing import missing_table
+
+    try:
+        text = missing_table(found.missing)
+    except OptionError as error:
+        note(f"'{path}' was not written: {error.problems[0]}")
+        return []
+    with writing(path):
+        Path(path).write_text(text, encoding="utf-8")
+    return [path]
+
+
+def with_table(model: Model, found: Found, path: str, folder: Path) -> Diagram | None:
+    """The diagram, fitted as it is, with a `table` block that reads what is missing from a file.
+
+    `folder` is that of the diagram that will name the file. None, and a note, where a block cannot
+    do that.
+    """
+    from tracewire.diagram import set_sensors, set_values
+    from tracewire.trace.missing import add_table
+    from tracewire.trace.places import find_places
+
+    missing = found.missing
+    assert missing is not None
+    places = {place.name: place for place in find_places(model)}
+    own = {n: v for n, v in found.declared.items() if n in model.flat.parameters}
+    sensors = {n: v for n, v in found.declared.items() if n not in own}
+    file = Path(os.path.relpath(path, folder)).as_posix()
+    try:
+        fitted = set_sensors(set_values(found.original, own), sensors)
+        return add_table(fitted, places[missing.place], missing, file)
+    except OptionError as error:
+        note(f"the diagram gets no table: {error.problems[0]}")
+        return None
+
+
+def patch_of(old: Diagram, new: Diagram) -> str:
+    """The change of a diagram as a patch of its file, named from the current folder on."""
     from tracewire.diagram import difference
 
+    lines = difference(old, new).splitlines(keepends=True)
+    if not lines:
+        return ""
+    path = os.path.relpath(old.file)
+    name = old.file.name if path.startswith("..") else Path(path).as_posix()
+    return "".join((f"--- a/{name}\n", f"+++ b/{name}\n", *lines[2:]))
+
+
+def store(
+    diagram: Diagram,
+    edited: Callable[[], Diagram],
+    apply: bool,
+    output: str | None,
+    patch: str | None = None,
+) -> list[str]:
+    """Write an edited diagram, or its patch, as asked; the paths that were written."""
+    if output is None and patch is None and not apply:
+        return []
     new = edited()
-    written = []
-    if output is not None and output.endswith(".patch"):
-        with writing(output):
-            Path(output).write_text(difference(diagram, new), encoding="utf-8")
-        written.append(output)
-    elif output is not None:
-        written.append(str(new.write(output, overwrite=True)))
+    if output is not None and not output.endswith(".patch"):
+        written = [str(new.write(output, overwrite=True))]
+        patches = [patch]
+    else:
+        written = []
+        patches = [output, patch]
+    for path in patches:
+        if path is not None:
+            with writing(path):
+                Path(path).write_text(patch_of(diagram, new), encoding="utf-8")
+            written.append(path)
     if apply:
         written.append(str(new.write(diagram.file, overwrite=True)))
     return written

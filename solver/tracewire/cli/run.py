@@ -32,7 +32,7 @@ OUTPUTS = (".csv", ".npz")
 FIGURES = (".png", ".svg", ".pdf")
 
 _Inputs = dict[str, tuple["ArrayLike", "ArrayLike"]]
-_Series = tuple[_Inputs, dict[str, float], str, tuple[float, float] | None]
+_Series = tuple[_Inputs, dict[str, float], str, tuple[float, float] | None, dict[str, float]]
 
 
 def run(
@@ -69,7 +69,7 @@ def run(
     series: Annotated[
         str,
         typer.Option(
-            metavar="NAME", help="Run as this measured series: its inputs, start, preset and time."
+            metavar="NAME", help="Run as this measured series: its inputs, start, values and time."
         ),
     ] = "",
     method: Annotated[str, typer.Option(help="auto, dormand_prince or rosenbrock.")] = "auto",
@@ -117,11 +117,11 @@ def run(
     with working(f"simulating {diagram}") as show:
         from tracewire.solve import Interrupted, simulate
 
-        inputs, series_start, series_preset, series_span = _series(model, series)
+        inputs, series_start, series_preset, series_span, own = _series(model, series)
         try:
             result = simulate(
                 model,
-                parameters=parameters,
+                parameters=own | parameters,
                 start=series_start | starts,
                 span=span or series_span,
                 method=method,
@@ -173,7 +173,7 @@ def _kept(error: Interrupted, path: str) -> Interrupted:
 def _series(model: Model, name: str) -> _Series:
     """What a run takes from a measured series; nothing where no series is named."""
     if not name:
-        return {}, {}, "", None
+        return {}, {}, "", None, {}
     if name not in model.diagram.measured:
         raise OptionError([unknown("measured series", name, model.diagram.measured)])
     from tracewire.fit import load_measured
@@ -183,4 +183,4 @@ def _series(model: Model, name: str) -> _Series:
     start = {state: value for state, value in measured.start.items() if value is not None}
     # a series with start values begins at its first sample, one without at the diagram's start
     span = (float(measured.t[0]), float(measured.t[-1])) if measured.start else None
-    return dict(measured.inputs), start, measured.preset, span
+    return dict(measured.inputs), start, measured.preset, span, dict(measured.parameters)

@@ -1,6 +1,7 @@
 """Measured data: columns of files, records and the steps that clean them, what is odd in them."""
 
 from tracewire.data.checks import signal_remarks, time_remarks
+from tracewire.data.headings import Headings, read_headings
 from tracewire.data.read import Columns, column_unit, read_columns, read_record
 from tracewire.data.record import Record
 from tracewire.data.steps import STEPS, Option
@@ -8,10 +9,12 @@ from tracewire.data.steps import STEPS, Option
 __all__ = [
     "STEPS",
     "Columns",
+    "Headings",
     "Option",
     "Record",
     "column_unit",
     "read_columns",
+    "read_headings",
     "read_record",
     "signal_remarks",
     "time_remarks",

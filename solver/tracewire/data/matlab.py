@@ -68,6 +68,11 @@ def columns_of_matlab(content: bytes, path: Path, request: Request, place: Place
     return found
 
 
+def names_in_matlab(content: bytes, path: Path, place: Place) -> list[str]:
+    """The vectors of a .mat file by their names, the longest first. Raises DataError."""
+    return _addresses(_variables(content, path, place))
+
+
 def _variables(content: bytes, path: Path, place: Place) -> Mapping[str, Value]:
     """Every variable of the file by name."""
     try:

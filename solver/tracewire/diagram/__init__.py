@@ -1,5 +1,6 @@
 """Diagrams: from a YAML file to a checked description, and edits of its text."""
 
+from tracewire.diagram.channels import SENSOR, sensor_factor
 from tracewire.diagram.diagram import (
     Array,
     BlockUse,
@@ -20,12 +21,21 @@ from tracewire.diagram.diagram import (
 )
 from tracewire.diagram.edit import (
     add_addend,
-    add_offset,
     difference,
     remove_addend,
-    set_sensors,
     set_values,
 )
+from tracewire.diagram.edit_own import add_own
+from tracewire.diagram.edit_sensors import add_sensor, sensor_numbers, set_sensors
+from tracewire.diagram.edit_series import (
+    mapping_text,
+    path_text,
+    quoted,
+    replace_series,
+    series_parts,
+    with_series_of,
+)
+from tracewire.diagram.effects import EffectType, effects_of
 from tracewire.diagram.loops import cycles, shown_cycle
 from tracewire.diagram.names import (
     element_name,
@@ -41,6 +51,7 @@ from tracewire.diagram.names import (
 from tracewire.diagram.read import read, read_text
 
 __all__ = [
+    "SENSOR",
     "Array",
     "BlockUse",
     "Channel",
@@ -49,6 +60,7 @@ __all__ = [
     "Condition",
     "Crosses",
     "Diagram",
+    "EffectType",
     "Event",
     "Format",
     "InputPort",
@@ -58,17 +70,26 @@ __all__ = [
     "Value",
     "Wire",
     "add_addend",
-    "add_offset",
+    "add_own",
+    "add_sensor",
     "cycles",
     "difference",
+    "effects_of",
     "element_name",
     "find_parameter",
     "find_recorded",
     "find_signal",
     "find_state",
+    "mapping_text",
+    "path_text",
+    "quoted",
     "read",
     "read_text",
     "remove_addend",
+    "replace_series",
+    "sensor_factor",
+    "sensor_numbers",
+    "series_parts",
     "set_sensors",
     "set_values",
     "shown_cycle",
@@ -76,4 +97,5 @@ __all__ = [
     "split_index",
     "state_names",
     "states",
+    "with_series_of",
 ]

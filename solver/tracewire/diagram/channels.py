@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 from tracewire.diagram.body import Body
@@ -13,7 +14,8 @@ from tracewire.diagram.strict import Entries, Node, Scalar
 from tracewire.diagram.values import read_bounds, read_value
 from tracewire.formula import Number, Unit
 
-SENSOR = {"offset": 0.0, "gain": 1.0, "delay": 0.0}
+SENSOR = {"offset": 0.0, "gain": 1.0, "delay": 0.0, "quad": 0.0, "drift": 0.0}
+"""What a sensor may do to its signal, and the value of each that does nothing."""
 OF_A_SIGNAL = ("sigma", "weight", "modulo", *SENSOR)
 NO_UNIT = Unit("", 1.0)
 
@@ -86,7 +88,13 @@ def _channel(
         name: None if (number := numbers.get(name)) is None else number * unit.factor
         for name in ("sigma", "modulo")
     }
-    units = {"offset": unit, "gain": NO_UNIT, "delay": SECOND}
+    units = {
+        "offset": unit,
+        "gain": NO_UNIT,
+        "delay": SECOND,
+        "quad": _derived(unit, "1/{}", sensor_factor("quad", unit.factor)),
+        "drift": _derived(unit, "{}/s", sensor_factor("drift", unit.factor)),
+    }
     sensor = {
         name: _of_sensor(name, values[name], body, units[name]) for name in SENSOR if name in values
     }
@@ -105,12 +113,25 @@ def _channel(
         delay=sensor.get("delay"),
         weight=numbers.get("weight") or 1.0,
         modulo=scaled["modulo"],
+        quad=sensor.get("quad"),
+        drift=sensor.get("drift"),
     )
 
 
+def sensor_factor(kind: str, factor: float) -> float:
+    """The factor to SI of a number of a sensor, in units of a column with this factor to SI."""
+    return {"offset": factor, "drift": factor, "quad": 1 / factor}.get(kind, 1.0)
+
+
+def _derived(unit: Unit, text: str, factor: float) -> Unit:
+    """The unit of a number that goes with that of the column; none where the column has none."""
+    plain = unit.text if re.fullmatch(r"\w*", unit.text) else f"({unit.text})"
+    return Unit(text.format(plain), factor) if unit.text else Unit("", factor)
+
+
 def _of_sensor(name: str, node: Node, body: Body, unit: Unit) -> Value | None:
-    """Offset, gain or delay; where only bounds are given it is 0, 1 or 0 at first."""
-    if isinstance(node, Entries) and "unit" in node.values and name != "offset":
+    """A number of a sensor; where only bounds are given it does nothing at first."""
+    if isinstance(node, Entries) and "unit" in node.values and name in ("gain", "delay"):
         read_unit_like(node.values["unit"], body, unit.text)
     if isinstance(node, Entries) and "value" not in node.keys and "fit" in node.keys:
         return _free(name, node, body, unit)

@@ -9,7 +9,7 @@ from typing import Literal
 
 from tracewire.errors import OptionError, Place
 from tracewire.formula import Expression
-from tracewire.library import Library
+from tracewire.library import Effect, Library
 
 Use = Literal["train", "gate", "validate"]
 Crosses = Literal["up", "down", "both"]
@@ -112,9 +112,10 @@ class Channel:
 
     `declared` is the unit as the diagram writes it; None: it names none, and the header of the file
     may. `factor` puts numbers of the column into SI, `unit` is the text of that. sigma and modulo,
-    and the numbers of offset, are in SI where a unit is declared, else in the unit of the column.
-    A column has gain*signal(t - delay) + offset. `weight` counts the signal in a criterion, and it
-    is compared modulo `modulo`. A channel without a column is made by a step of `clean`.
+    and the numbers of offset, quad and drift, are in SI where a unit is declared, else in the unit
+    of the column. A column has gain*z + offset + quad*z^2 + drift*(t - t0), z = signal(t - delay),
+    t0 the first sample. `weight` counts the signal in a criterion, and it is compared modulo
+    `modulo`. A channel without a column is made by a step of `clean`.
     """
 
     signal: str
@@ -129,6 +130,8 @@ class Channel:
     delay: Value | None = None
     weight: float = 1.0
     modulo: float | None = None
+    quad: Value | None = None
+    drift: Value | None = None
 
 
 @dataclass(frozen=True)
@@ -170,7 +173,8 @@ class Format:
 class Series:
     """A measured record: file, use, columns of time, signals and inputs, start, and the window.
 
-    `start` gives start values of this record by state; None there is a free start value. `begin`
+    `start` gives start values of this record by state; None there is a free start value.
+    `parameters` gives parameters of the diagram a value of their own in this record. `begin`
     and `end` cut the record, and so do `windows`, one for each use that the record has; all are in
     the file's own time in s. `where` names the rows by the values in other columns. `burn_in` is
     the time in s after the begin in which samples do not count. `clean` is done in its order.
@@ -193,6 +197,7 @@ class Series:
     weight: float = 1.0
     clean: tuple[Cleaning, ...] = ()
     format: Format = Format()
+    parameters: Mapping[str, Value] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -208,7 +213,8 @@ class Diagram:
     """A diagram, or a subsystem of one, with everything that its file says.
 
     `file` and `text` are those of the file the diagram was read from; an edit of the diagram is an
-    edit of that text. `library` holds the blocks that it may use.
+    edit of that text. `library` holds the blocks that it may use. `effect`: a subsystem that may be
+    tried as a missing effect, and how.
     """
 
     name: str
@@ -229,6 +235,7 @@ class Diagram:
     presets: Mapping[str, Mapping[str, Value]] = field(default_factory=dict)
     measured: Mapping[str, Series] = field(default_factory=dict)
     place: Place = Place()
+    effect: Effect | None = None
 
     def write(self, path: str | Path, overwrite: bool = False) -> Path:
         """Write the diagram's text to a file, and return its path.

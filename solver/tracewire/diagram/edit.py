@@ -11,14 +11,10 @@ import difflib
 import math
 from collections.abc import Mapping
 
-from tracewire.data import column_unit
-from tracewire.diagram.diagram import BlockUse, Diagram, Series, Value
-from tracewire.diagram.names import find_recorded
+from tracewire.diagram.diagram import BlockUse, Diagram
 from tracewire.diagram.outline import Outline
-from tracewire.diagram.read import read_text
+from tracewire.diagram.rewrite import digits, reread
 from tracewire.diagram.splice import (
-    Change,
-    changed,
     end_of,
     entry_after,
     entry_last,
@@ -28,29 +24,31 @@ from tracewire.diagram.splice import (
     without_items,
 )
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
-from tracewire.errors import DiagramError, FormulaError, OptionError, unknown
-from tracewire.formula import read_unit
-from tracewire.formula.text import number_text
+from tracewire.errors import DiagramError, OptionError, unknown
 
 
-def add_addend(diagram: Diagram, sum_name: str, block_name: str, block_line: str) -> Diagram:
+def add_addend(
+    diagram: Diagram, sum_name: str, block_name: str, block_line: str, negative: bool = False
+) -> Diagram:
     """The diagram with a new block, on a line behind the sum's, and its output in the sum.
 
     sum_name: the sum by its definition: `torque` at the top, `bearing.total` for the sum `total` in
     the definition of the subsystem `bearing`.
     block_line: what stands behind the name, such as `{type: viscous, rate: omega, c: 0}`.
+    negative: the sum takes the output away.
     """
     outline = Outline(diagram)
     inside, blocks, name = outline.block(sum_name)
     port, node = _addends(inside.blocks[name], inside, blocks)
     line = block_line.strip().removeprefix(f"{block_name}:").strip()
     text = diagram.text
+    wire = f"-{block_name}" if negative else block_name
     if isinstance(node, Items):
-        wired = item_last(text, node, block_name)
+        wired = item_last(text, node, wire)
     else:
         assert isinstance(node, Scalar)
-        wired = replaced(node, f"[{text[node.start : node.end]}, {block_name}]")
-    new = _reread(diagram, [entry_after(text, blocks, name, block_name, line), wired])
+        wired = replaced(node, f"[{text[node.start : node.end]}, {wire}]")
+    new = reread(diagram, [entry_after(text, blocks, name, block_name, line), wired])
     _expect(new, sum_name, port, [*_signals(inside.blocks[name], port), block_name])
     return new
 
@@ -75,10 +73,10 @@ def remove_addend(diagram: Diagram, sum_name: str, addend: str) -> Diagram:
         wires = [replaced(node, "[]")]
     kept = [signal for i, signal in enumerate(before) if i not in taken]
     block = before[taken[0]].partition(".")[0]
-    new = _reread(diagram, wires)
+    new = reread(diagram, wires)
     if block in blocks.keys:
         with contextlib.suppress(DiagramError):  # it stays where something else reads it
-            new = _reread(diagram, [*wires, without_entry(diagram.text, blocks, block)])
+            new = reread(diagram, [*wires, without_entry(diagram.text, blocks, block)])
     _expect(new, sum_name, port, kept)
     return new
 
@@ -98,7 +96,7 @@ def set_values(diagram: Diagram, values: Mapping[str, float]) -> Diagram:
             raise OptionError.one(f"parameter '{path}' cannot become {value}")
         spot = outline.parameter(path)
         low, high = spot.value.fit or (-math.inf, math.inf)
-        number = _digits(value / spot.factor, low / spot.factor, high / spot.factor)
+        number = digits(value / spot.factor, low / spot.factor, high / spot.factor)
         node = spot.node
         if spot.into is not None:  # the definition is shared: a copy of its value goes to the use
             copy = _copy(diagram.text, node, number)
@@ -106,68 +104,7 @@ def set_values(diagram: Diagram, values: Mapping[str, float]) -> Diagram:
         else:
             scalar = node.values["value"] if isinstance(node, Entries) else node
             changes.append(replaced(scalar, number))
-    return _reread(diagram, changes)
-
-
-def add_offset(
-    diagram: Diagram, signal: str, value: float, fit: tuple[float, float] | None = None
-) -> Diagram:
-    """The diagram with an offset of a measured signal, in every series that has the signal.
-
-    value, fit: the offset and its bounds in SI; the text gets them in the unit of the column.
-    """
-    full = find_recorded(diagram, signal)
-    having = {
-        name: series
-        for name, series in diagram.measured.items()
-        if full in series.channels and series.channels[str(full)].column
-    }
-    if not having:
-        measured = {name for series in diagram.measured.values() for name in series.channels}
-        raise OptionError([unknown("measured signal", signal, measured)])
-    root = Outline(diagram).root
-    changes = [_offset(diagram, root, series, str(full), value, fit) for series in having.values()]
-    return _reread(diagram, changes)
-
-
-def set_sensors(diagram: Diagram, values: Mapping[str, float]) -> Diagram:
-    """The diagram with other offsets, gains and delays of sensors that are free in a fit.
-
-    `values` has them by `offset.SIGNAL`, `gain.SIGNAL`, `delay.SIGNAL` in SI; every series in which
-    one is free gets it, in the unit that its text has.
-    """
-    root = Outline(diagram).root
-    changes = []
-    for path, value in values.items():
-        kind, _, signal = path.partition(".")
-        for series in diagram.measured.values():
-            channel = series.channels.get(signal)
-            known: Value | None = getattr(channel, kind, None)
-            if channel is None or known is None or known.fit is None:
-                continue
-            node = _channel(diagram, root, series, signal)
-            assert isinstance(node, Entries)
-            entry = node.values[kind]
-            assert isinstance(entry, Entries)
-            bare = kind == "offset" and not known.unit
-            factor = known.factor * (_factor(series, signal) if bare else 1.0)
-            low, high = (end / factor for end in known.fit)
-            number = _digits(value / factor, low, high)
-            if "value" in entry.values:
-                changes.append(replaced(entry.values["value"], number))
-            else:
-                changes.append(entry_last(diagram.text, entry, "value", number))
-    return _reread(diagram, changes)
-
-
-def _channel(diagram: Diagram, root: Entries, series: Series, signal: str) -> Node:
-    """The text of a measured signal in its series."""
-    node: Node = root
-    for key in ("measured", series.name, "signals"):
-        assert isinstance(node, Entries)
-        node = node.values[key]
-    assert isinstance(node, Entries)
-    return next(n for name, _, n in node if find_recorded(diagram, name) == signal)
+    return reread(diagram, changes)
 
 
 def _copy(text: str, node: Node, number: str) -> str:
@@ -179,45 +116,6 @@ def _copy(text: str, node: Node, number: str) -> str:
     return "{" + ", ".join(f"{name}: {part}" for name, part in parts.items()) + "}"
 
 
-def _offset(
-    diagram: Diagram,
-    root: Entries,
-    series: Series,
-    signal: str,
-    value: float,
-    fit: tuple[float, float] | None,
-) -> Change:
-    given = _channel(diagram, root, series, signal)
-    factor = _factor(series, signal)
-    ends = fit or (-math.inf, math.inf)
-    low, high = (end / factor for end in ends)
-    text = f"{{value: {_digits(value / factor, low, high)}"
-    if fit == (-math.inf, math.inf):
-        text += ", fit: free"
-    elif fit is not None:
-        text += f", fit: [{_bound(low)}, {_bound(high)}]"
-    text += "}"
-    if isinstance(given, Scalar):
-        column = diagram.text[given.start : given.end]
-        return replaced(given, f"{{column: {column}, offset: {text}}}")
-    assert isinstance(given, Entries)
-    if "offset" in given.values:
-        return replaced(given.values["offset"], text)
-    return entry_last(diagram.text, given, "offset", text)
-
-
-def _factor(series: Series, signal: str) -> float:
-    """The factor to SI of a channel's offset: by its unit, else by that of the file's header."""
-    channel = series.channels[signal]
-    calibrated = {step.options.get("signal") for step in series.clean if step.step == "calibrate"}
-    if channel.declared is not None or signal in calibrated:
-        return channel.factor
-    try:
-        return read_unit(column_unit(series.file, channel.column, series.format.delimiter)).factor
-    except FormulaError:  # brackets in the header that hold no unit
-        return 1.0
-
-
 def difference(old: Diagram, new: Diagram) -> str:
     """The lines in which the texts of two diagrams differ, as a unified diff; '' where none."""
     lines = difflib.unified_diff(
@@ -227,12 +125,8 @@ def difference(old: Diagram, new: Diagram) -> str:
         str(new.file),
         n=1,
     )
-    return "".join(line if line.endswith("\n") else f"{line}\n" for line in lines)
-
-
-def _reread(diagram: Diagram, changes: list[Change]) -> Diagram:
-    text = changed(diagram.text, changes)
-    return read_text(text, diagram.file, library=diagram.library)
+    unended = "\n\\ No newline at end of file\n"  # as `diff` says it, so that a patch applies
+    return "".join(line if line.endswith("\n") else f"{line}{unended}" for line in lines)
 
 
 def _addends(use: BlockUse, inside: Diagram, blocks: Entries) -> tuple[str, Node]:
@@ -258,16 +152,3 @@ def _expect(diagram: Diagram, sum_name: str, port: str, signals: list[str]) -> N
     if _signals(use, port) != signals:
         what = "the list of addends is laid out in a way that cannot be edited by program"
         raise DiagramError.one(what, use.place, hint="Write it like [a, b].")
-
-
-def _digits(value: float, low: float, high: float) -> str:
-    """The value with six digits, or as many more as it takes to stay within its bounds."""
-    for digits in (6, 9, 12, 15):
-        rounded = float(f"{value:.{digits}g}")
-        if low <= rounded <= high:
-            return number_text(rounded)
-    return number_text(value)
-
-
-def _bound(value: float) -> str:
-    return number_text(float(f"{value:.12g}")) if math.isfinite(value) else str(value)

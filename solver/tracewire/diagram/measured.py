@@ -13,13 +13,14 @@ from tracewire.diagram.files import problem_of
 from tracewire.diagram.names import find_state, states
 from tracewire.diagram.problems import clip
 from tracewire.diagram.quantities import read_above_zero, read_time, read_unit_like
+from tracewire.diagram.settings import read_settings
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.diagram.values import read_value
 
 EXAMPLE = "{file: run.csv, time: t, signals: {theta: angle}}"
 KEYS = (
     *("file", "format", "where", "use", "time", "from", "to", "burn_in", "weight"),
-    *("signals", "inputs", "clean", "start", "preset"),
+    *("signals", "inputs", "clean", "start", "preset", "parameters"),
 )
 USES: dict[str, Use] = {word: word for word in get_args(Use)}
 
@@ -89,6 +90,7 @@ class _Series:
             weight=weight,
             clean=clean,
             format=form,
+            parameters=self.parameters(),
         )
 
     def file(self) -> Path | None:
@@ -250,6 +252,14 @@ class _Series:
             presets = self.diagram.presets
             self.body.problems.unknown("preset", name, presets, self.body.place(node))
         return name
+
+    def parameters(self) -> dict[str, Value]:
+        """`parameters`: values that hold in this series alone; those with `fit` are free in it."""
+        node = self.entries.values.get("parameters")
+        if node is None:
+            return {}
+        what = f"'parameters' of {self.what}"
+        return read_settings(node, self.body, self.diagram, what, fit=True)
 
     def start(self) -> dict[str, Value | None]:
         node = self.entries.values.get("start")

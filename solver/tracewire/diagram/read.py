@@ -13,6 +13,7 @@ from tracewire.diagram.files import load
 from tracewire.diagram.loops import check_parameters
 from tracewire.diagram.measured import read_measured
 from tracewire.diagram.problems import Problems, clip
+from tracewire.diagram.read_effect import read_effect
 from tracewire.diagram.sections import (
     read_events,
     read_inputs,
@@ -35,7 +36,9 @@ from tracewire.library import Block, Library, load_library
 
 MOST_LEVELS = 30
 MOST_BLOCKS = 100_000
-INSIDE = ("title", "inputs", "outputs", "parameters", "blocks", "subsystems", "events")
+INSIDE = (
+    *("title", "inputs", "outputs", "parameters", "blocks", "subsystems", "events", "effect"),
+)
 TOP = (
     *("title", "span", "every", "record", "inputs", "parameters", "blocks", "subsystems"),
     *("include", "events", "require", "presets", "measured"),
@@ -119,8 +122,11 @@ class _Reader:
         entries = body.entries(root, "a diagram", "'blocks: {column: {type: gain, ...}}'")
         if entries is None:
             return None
-        elsewhere = "It belongs to a subsystem; 'record' names what is kept of a run."
-        hint = elsewhere if "outputs" in entries.keys else ""
+        hint = ""
+        if "outputs" in entries.keys:
+            hint = "It belongs to a subsystem; 'record' names what is kept of a run."
+        elif "effect" in entries.keys:
+            hint = "It belongs to a subsystem, which a trace may then add to the diagram."
         body.check_keys(entries, TOP, "section", hint=hint)
         body.required(entries, "blocks", "a diagram")
         scope = _Scope(file, text)
@@ -237,6 +243,9 @@ class _Reader:
             scope.definitions = self.define(entries, scope)
             place = body.place(definition.key)
             diagram = self.common(entries, body, scope, definition.name, place)
+            if "effect" in entries.values:
+                effect = read_effect(entries.values["effect"], body, diagram)
+                diagram = replace(diagram, effect=effect)
             self.finish(diagram, body)
             definition.diagram = diagram
         definition.is_read = True

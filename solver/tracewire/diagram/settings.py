@@ -77,16 +77,22 @@ def read_presets(node: Node, body: Body, diagram: Diagram) -> dict[str, dict[str
     """`presets`: a mapping of names to values of parameters, by their path."""
     found: dict[str, dict[str, Value]] = {}
     for preset, _, given in body.entries(node, "'presets'", "{as_printed: {k: 2}}") or ():
-        found[preset] = values = {}
-        for path, key, value_node in (
-            body.entries(given, f"preset '{clip(preset)}'", "{k: 2}") or ()
-        ):
-            declared = find_parameter(diagram, path)
-            value = read_value(value_node, body, fit=False)
-            if declared is None:
-                _explain(diagram, path, body.place(key), body)
-            elif value is not None:
-                values[path] = in_unit_of(value, declared)
+        found[preset] = read_settings(given, body, diagram, f"preset '{clip(preset)}'")
+    return found
+
+
+def read_settings(
+    node: Node, body: Body, diagram: Diagram, what: str, fit: bool = False
+) -> dict[str, Value]:
+    """Values of parameters of a diagram by their path. fit: whether they may have bounds."""
+    found: dict[str, Value] = {}
+    for path, key, given in body.entries(node, what, "{k: 2}") or ():
+        declared = find_parameter(diagram, path)
+        value = read_value(given, body, fit=fit)
+        if declared is None:
+            _explain(diagram, path, body.place(key), body)
+        elif value is not None:
+            found[path] = in_unit_of(value, declared)
     return found
 
 

@@ -3,14 +3,16 @@
 from tracewire.fit.criterion import Criterion
 from tracewire.fit.descent import Descent, descend
 from tracewire.fit.diagnostics import Diagnosis, diagnose
+from tracewire.fit.files import series_from_files
 from tracewire.fit.fit import fit
 from tracewire.fit.fminsearch import Minimum, fminsearch
-from tracewire.fit.measured import Measured, Sensor, load_measured
+from tracewire.fit.measured import Measured, load_measured
 from tracewire.fit.optimset import Options, optimset
 from tracewire.fit.profile import Profile, profile
 from tracewire.fit.result import Comparison, Fit
 from tracewire.fit.search import Progress
 from tracewire.fit.segment import Segment, Unknown
+from tracewire.fit.sensor import Sensor
 from tracewire.fit.uncertainty import Uncertainty
 
 __all__ = [
@@ -35,4 +37,5 @@ __all__ = [
     "load_measured",
     "optimset",
     "profile",
+    "series_from_files",
 ]

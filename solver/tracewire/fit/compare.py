@@ -14,6 +14,7 @@ from tracewire.fit.descent import descend
 from tracewire.fit.measured import Measured
 from tracewire.fit.result import Comparison
 from tracewire.fit.segment import Segment
+from tracewire.fit.unknowns import own_unknowns
 
 Vector = NDArray[np.float64]
 
@@ -22,7 +23,7 @@ def shown_by_series(
     criterion: Criterion, z: Vector, others: Sequence[Segment] = ()
 ) -> dict[str, Vector]:
     """What the sensors show (N, signals) by series, with samples that do not count; NaN where no
-    segment is. `others` get free start values of their own.
+    segment is. `others` get free start values, and free parameters, of their own.
 
     Raises SimulationError where a run fails.
     """
@@ -32,11 +33,13 @@ def shown_by_series(
         _fill(found, criterion, segment, named, start)
     for segment in others:
         own: Mapping[str, float] = {}
-        if segment.free:
-            fixed = {**criterion.parameters, **named}
-            alone = Criterion(criterion.model, [segment], [], fixed, criterion.rtol)
-            (own,) = alone.split(descend(alone, alone.begin()).z)[1]
-        _fill(found, criterion, segment, named, own)
+        fixed = {**criterion.parameters, **named}
+        free = [u for u in own_unknowns([segment.measured]) if u.name not in fixed]
+        if segment.free or free:
+            alone = Criterion(criterion.model, [segment], free, fixed, criterion.rtol)
+            numbers, (own,) = alone.split(descend(alone, alone.begin()).z)
+            fixed |= numbers
+        _fill(found, criterion, segment, fixed, own)
     return found
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -14,7 +14,7 @@ from tracewire.compile import Model
 from tracewire.errors import DataError, OptionError, Problem, SimulationError, unknown
 from tracewire.fit.loss import LOSSES
 from tracewire.fit.measured import LARGEST
-from tracewire.fit.segment import SENSED, Segment, Unknown, of_diagram
+from tracewire.fit.segment import Segment, Unknown, of_diagram, parameter_in
 from tracewire.fit.sensing import Sensing
 from tracewire.solve import Interrupted, Limits, Run, simulate
 
@@ -24,6 +24,17 @@ Weighting = Literal["mean", "sum"]
 STEP = 1e-4
 PENALTY = 100.0
 LIMITS = Limits(steps=500_000, seconds=120.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Linearised:
+    """A segment near some unknowns: residuals (N, signals) in sigma, their derivatives `slopes`
+    (N*signals, unknowns + free starts) in SI, whether it `ran`, and the states where it ended."""
+
+    residual: Vector
+    slopes: Matrix
+    final: Mapping[str, float]
+    ran: bool = True
 
 
 class Criterion:
@@ -39,7 +50,7 @@ class Criterion:
     `weighting` is "mean", and rho the loss. So for one series and one signal it is
     mean(residual^2)/2, the objective of paper A's appendix; for several, Eq 5 of paper B.
     `parameters` holds what is fixed, by the names that unknowns have; `sigma` the noise of each
-    signal instead of the declared one.
+    signal instead of the declared one, `limits` what one run may cost.
 
     A segment whose run fails counts as 100 times the spread of its data, and is told in `failures`.
 
@@ -58,16 +69,18 @@ class Criterion:
         *,
         weighting: Weighting = "mean",
         loss: str = "linear",
+        limits: Limits = LIMITS,
     ) -> None:
         if loss not in LOSSES:
             raise OptionError([unknown("loss", loss, LOSSES)])
         self.model, self.unknowns = model, tuple(unknowns)
         self.segments = tuple(segments)
         self.parameters = dict(parameters)
-        self.rtol = rtol
+        self.rtol, self.limits = rtol, limits
         self.weighting, self.loss = weighting, loss
         self.sigma = _sigma_of(self.segments, sigma, needed=loss != "linear")
         self.evaluations = 0
+        self.runs, self.steps, self.budget = 0, 0, np.inf
         self.failure: SimulationError | None = None
         self.failures: Counter[str] = Counter()
         self.warnings: set[tuple[str, str]] = set()
@@ -83,11 +96,17 @@ class Criterion:
         """The same criterion on other segments, of the same series."""
         fresh = Criterion(
             self.model, segments, self.unknowns, self.parameters, self.rtol,
-            weighting=self.weighting,
+            weighting=self.weighting, limits=self.limits,
         )  # fmt: skip
         fresh.loss = self.loss
         fresh.sigma = {s.measured.name: self.sigma[s.measured.name] for s in segments}
         return fresh
+
+    def carry(self, n: int, states: Mapping[str, float]) -> None:
+        """Let segment n begin with these values of states that are not free."""
+        segment = self.segments[n]
+        moved = replace(segment, start={**segment.start, **states})
+        self.segments = (*self.segments[:n], moved, *self.segments[n + 1 :])
 
     # --- unknowns -----------------------------------------------------------------------------
 
@@ -191,12 +210,36 @@ class Criterion:
         for n, start in enumerate(starts):
             columns = [*range(len(self.unknowns)), *range(at, at + len(start))]
             at += len(start)
-            residual, moving = self._sensed(n, z, named, start, columns)
-            matrix = np.zeros((residual.size, len(z)))
-            matrix[:, columns] = moving * self.scales[columns]
-            residuals.append(residual)
+            near = self.linearised(n, named, start)
+            matrix = np.zeros((near.residual.size, len(z)))
+            matrix[:, columns] = near.slopes * self.scales[columns]
+            residuals.append(near.residual)
             matrices.append(matrix)
         return residuals, matrices
+
+    def linearised(
+        self, n: int, named: Mapping[str, float], start: Mapping[str, float]
+    ) -> Linearised:
+        """Segment n near these unknowns and this start, by the sensitivities of one run.
+
+        By differences where such a run fails.
+        """
+        segment = self.segments[n]
+        values = {**self.parameters, **named}
+        sensing = Sensing(segment, values, rates=self._rates)
+        moved = {name: parameter_in(name, segment.measured) for name in named}
+        moved |= {f"start.{state}": f"start.{state}" for state in start}
+        try:
+            run = self._run(sensing, values, start, [name for name in moved.values() if name])
+            shown = sensing.shown(run)
+            _refuse_huge(segment, shown)
+            self.warnings |= {(segment.measured.name, warning) for warning in run.warnings}
+        except SimulationError:
+            return self._differences(n, named, start)
+        sigma = self.sigma[segment.measured.name]
+        parts = [(sensing.derivative(run, name, of) / sigma).ravel() for name, of in moved.items()]
+        slopes = np.stack(parts, axis=1) if parts else np.zeros((shown.size, 0))
+        return Linearised(self.difference(n, shown), slopes, run.final)
 
     def outputs(
         self, segment: Segment, named: Mapping[str, float], start: Mapping[str, float]
@@ -214,21 +257,30 @@ class Criterion:
         sensitivities: Sequence[str] = (),
     ) -> Run:
         segment = sensing.segment
+        if self.steps > self.budget:
+            what = f"the model takes more than {self.budget:.0f} steps in all"
+            raise SimulationError([Problem(what, hint="Fit fewer or shorter segments.")])
+        self.runs += 1
         try:
-            return simulate(
+            run = simulate(
                 self.model,
-                parameters=of_diagram(values),
+                parameters=of_diagram(values, segment.measured),
                 start={**segment.start, **start},
                 span=(sensing.begin, sensing.end),
                 times=sensing.times,
                 rtol=self.rtol,
                 preset=segment.measured.preset,
                 inputs=segment.measured.inputs,
-                limits=LIMITS,
+                limits=self.limits,
                 sensitivities=sensitivities,
             )
         except Interrupted as error:  # no failed run: the whole search shall stop
             raise KeyboardInterrupt from error
+        except SimulationError:
+            self.steps += self.limits.steps
+            raise
+        self.steps += run.statistics.steps
+        return run
 
     def difference(self, n: int, shown: Vector) -> Vector:
         """Residuals of what is shown: shown - measured in sigma, the shortest way around."""
@@ -257,56 +309,26 @@ class Criterion:
         spread = PENALTY * np.maximum(np.std(self._samples[n], axis=0), sigma)
         return np.asarray(np.broadcast_to(spread / sigma, self._samples[n].shape))
 
-    def _sensed(
-        self,
-        n: int,
-        z: Vector,
-        named: Mapping[str, float],
-        start: Mapping[str, float],
-        columns: Sequence[int],
-    ) -> tuple[Vector, Matrix]:
-        """Residuals of a segment and their derivatives in the unknowns of `columns`, in SI."""
-        segment = self.segments[n]
-        values = {**self.parameters, **named}
-        sensing = Sensing(segment, values, rates=self._rates)
-        asked = [name for name in named if not name.startswith(SENSED)]
-        asked += [f"start.{state}" for state in start]
-        try:
-            run = self._run(sensing, values, start, asked)
-            shown = sensing.shown(run)
-            _refuse_huge(segment, shown)
-            self.warnings |= {(segment.measured.name, warning) for warning in run.warnings}
-        except SimulationError:
-            return self._differences(n, z, named, start, columns)
-        sigma = self.sigma[segment.measured.name]
-        names = [*named, *(f"start.{state}" for state in start)]
-        parts = [
-            (sensing.derivative(run, name, name if name in asked else "") / sigma).ravel()
-            for name in names
-        ]
-        matrix = np.stack(parts, axis=1) if parts else np.zeros((shown.size, 0))
-        return self.difference(n, shown), matrix
-
     def _differences(
-        self,
-        n: int,
-        z: Vector,
-        named: Mapping[str, float],
-        start: Mapping[str, float],
-        columns: Sequence[int],
-    ) -> tuple[Vector, Matrix]:
-        """The same by differences to one side, away from a bound."""
+        self, n: int, named: Mapping[str, float], start: Mapping[str, float]
+    ) -> Linearised:
+        """The same by differences to one side, away from a bound; none where the run fails."""
+        failures = self.failures.total()
         at = self._residual(n, named, start)
-        _, high = self.bounds()
+        if self.failures.total() > failures:
+            return Linearised(at, np.zeros((at.size, len(named) + len(start))), {}, False)
         parts = []
-        for j in columns:
-            h = STEP * max(1.0, abs(z[j]))
-            moved = z.copy()
-            moved[j] += -h if z[j] + h > high[j] else h
-            values, starts = self.split(moved)
-            there = self._residual(n, values, starts[n])
-            parts.append(((there - at) / ((moved[j] - z[j]) * self.scales[j])).ravel())
-        return at, np.stack(parts, axis=1) if parts else np.zeros((at.size, 0))
+        for u, scale in zip(self.unknowns, self.scales.tolist(), strict=False):
+            h = STEP * max(scale, abs(named[u.name]))
+            h = -h if named[u.name] + h > u.high else h
+            there = self._residual(n, {**named, u.name: named[u.name] + h}, start)
+            parts.append(((there - at) / h).ravel())
+        for state, value in start.items():
+            h = STEP * max(self.segments[n].start_scale(state), abs(value))
+            there = self._residual(n, named, {**start, state: value + h})
+            parts.append(((there - at) / h).ravel())
+        slopes = np.stack(parts, axis=1) if parts else np.zeros((at.size, 0))
+        return Linearised(at, slopes, {})
 
 
 def half_square(vector: Vector) -> float:

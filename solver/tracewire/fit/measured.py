@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import cast
 
 import numpy as np
@@ -12,27 +13,16 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.data import STEPS, Record, read_record
-from tracewire.diagram import Channel, Diagram, Series, Value
+from tracewire.diagram import SENSOR, Channel, Diagram, Series
 from tracewire.errors import DataError, OptionError, Place, Problem, TracewireError
+from tracewire.fit.inputs import smoothed
 from tracewire.fit.remarks import check_quantities, remarks_on
-from tracewire.formula import CONSTANTS, evaluate, names_of
+from tracewire.fit.sensor import PLAIN, Sensor, read_sensor
+from tracewire.formula import evaluate
 from tracewire.solve import parameter_values
 
 Vector = NDArray[np.float64]
 LARGEST = 1e100  # its square, and sums of such squares, are numbers still
-
-
-@dataclass(frozen=True)
-class Sensor:
-    """What a channel shows of a signal y(t): gain*y(t - delay) + offset; offset in SI, delay in s.
-
-    `free` holds the bounds of those of `offset`, `gain` and `delay` that a fit may change.
-    """
-
-    offset: float = 0.0
-    gain: float = 1.0
-    delay: float = 0.0
-    free: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,13 +30,16 @@ class Measured:
     """One measured series in SI: times `t` (N,) in s, and `values` (N,) of each measured signal.
 
     `sigma` is the standard deviation of the noise by signal (None: not known), `sensors` what
-    channels with an offset, a gain or a delay have of these, `periods` the period of signals that
-    are compared modulo it (2 pi for an angle). `weight` counts the whole series in the criterion,
-    `weights` single signals. Samples before `counts_from` (s) do not count. `inputs` maps a named
-    input to its times and values. `start` holds start values of this series by state, None where
-    free; without any, a run begins at the start of the diagram's span. `series` is its name in
-    the diagram, which is not `name` where it has several windows. `steps` tells what was done to
-    the data since they were read, `remarks` what is odd about them.
+    channels with an offset, gain, delay, quad or drift have of these, `periods` the period of
+    signals that are compared modulo it (2 pi for an angle). `weight` counts the whole series in the
+    criterion, `weights` single signals. A drift counts from `drift_from` (s), the first sample
+    unless given. Samples before `counts_from` (s) do not count. `inputs` maps a named input to its
+    times and values, a smooth one (`tracewire.fit.inputs`) to points of a spline. `start` holds
+    start values of this series by state, None where free; without any, a run begins at the start of
+    the diagram's span. `parameters` are those of the diagram that have a value of their own in this
+    series, `free` the bounds of those that a fit may change. `series` is its name in the diagram,
+    which is not `name` where it has several windows. `steps` tells what was done to the data since
+    they were read, `remarks` what is odd about them.
     """
 
     name: str
@@ -61,18 +54,33 @@ class Measured:
     counts_from: float = -math.inf
     inputs: Mapping[str, tuple[Vector, Vector]] = field(default_factory=dict)
     start: Mapping[str, float | None] = field(default_factory=dict)
+    parameters: Mapping[str, float] = field(default_factory=dict)
+    free: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     preset: str = ""
     file: str = ""
     series: str = ""
     steps: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
+    drift_from: float | None = None
+
+    @property
+    def zero(self) -> float:
+        """The time t0 in s from which the drift of a sensor counts."""
+        return float(self.t[0]) if self.drift_from is None else self.drift_from
+
+    @cached_property
+    def spreads(self) -> Mapping[str, float]:
+        """The standard deviation of each measured signal."""
+        return {name: float(np.std(values)) for name, values in self.values.items()}
+
+    @cached_property
+    def fastest(self) -> float:
+        """The largest standard deviation of a measured signal's rate."""
+        return max(float(np.std(np.gradient(v, self.t))) for v in self.values.values())
 
     def sensor(self, signal: str) -> Sensor:
-        """The sensor of a signal; without offset, gain and delay where nothing is said of it."""
+        """The sensor of a signal; it shows the signal itself where nothing is said of it."""
         return self.sensors.get(signal, PLAIN)
-
-
-PLAIN = Sensor()
 
 
 def measured_signals(diagram: Diagram) -> tuple[str, ...]:
@@ -138,7 +146,8 @@ def _measured(
 ) -> Measured:
     """The part of a record in a window, in the time of the diagram."""
     channels = series.channels
-    values = parameter_values(model, {}, series.preset)
+    own = series_parameters(model, series)
+    values = parameter_values(model, own, series.preset)
     rows = _window(series, record, ends)
     zero = series.time.zero * record.time_unit.factor
     if len(rows) < len(record.t):
@@ -147,6 +156,7 @@ def _measured(
         record = replace(record, steps=(*record.steps, used_up))
     steps = record.shift(zero).steps
     t = record.t - zero
+    inputs, told = _inputs(series, record, t)
     counts_from = t[rows[0]] + series.burn_in if series.burn_in else -math.inf
     if t[rows[-1]] < counts_from:
         what = f"the series '{series.name}' ends within its burn_in of {series.burn_in:g} s"
@@ -169,9 +179,9 @@ def _measured(
             for name, channel in channels.items()
         },
         sensors={
-            name: _sensor(channel, values, factors[name])
+            name: read_sensor(channel, values, factors[name])
             for name, channel in channels.items()
-            if not channel.offset is channel.gain is channel.delay is None
+            if any(getattr(channel, kind) is not None for kind in SENSOR)
         },
         periods={
             name: channel.modulo * factors[name]
@@ -181,16 +191,43 @@ def _measured(
         weight=series.weight,
         weights={name: c.weight for name, c in channels.items() if c.weight != 1.0},
         counts_from=counts_from,
-        inputs={name: (t, record.columns[f"input {name}"]) for name in series.inputs},
+        inputs=inputs,
         start={
             name: None if value is None else evaluate(value.formula, values) * value.factor
             for name, value in series.start.items()
         },
+        drift_from=float(t[_window(series, record, _whole(series))[0]]),
+        parameters=own,
+        free={name: v.fit for name, v in series.parameters.items() if v.fit is not None},
         preset=series.preset,
         file=str(series.file),
-        steps=steps,
+        steps=(*steps, *told),
         remarks=remarks_on(model, series, replace(seen, remarks=read.remarks), values, zero),
     )
+
+
+def _inputs(
+    series: Series, record: Record, t: Vector
+) -> tuple[dict[str, tuple[Vector, Vector]], list[str]]:
+    """The inputs of a record by name, to be joined by straight lines, and what was done to them."""
+    found: dict[str, tuple[Vector, Vector]] = {}
+    told = []
+    for name in series.inputs:
+        values = record.columns[f"input {name}"]
+        points = smoothed(t, values)
+        found[name] = (t, values) if points is None else points
+        if points is not None:
+            told.append(f"input '{name}' is smooth: a cubic spline, in {len(points[0])} points")
+    return found, told
+
+
+def series_parameters(model: Model, series: Series) -> dict[str, float]:
+    """The values in SI that a series gives to parameters of the diagram."""
+    known = parameter_values(model, {}, series.preset)
+    return {
+        name: evaluate(value.formula, known) * value.factor
+        for name, value in series.parameters.items()
+    }
 
 
 def _read(series: Series) -> Record:
@@ -248,22 +285,6 @@ def _cleaned(series: Series, record: Record) -> Record:
     return record
 
 
-def _sensor(channel: Channel, values: Mapping[str, float], factor: float) -> Sensor:
-    """What a channel's sensor does; `factor` puts an offset in the unit of the header into SI."""
-    free, numbers = {}, {}
-    for name in ("offset", "gain", "delay"):
-        given: Value | None = getattr(channel, name)
-        if given is None:
-            continue
-        own = factor if name == "offset" and not given.unit else 1.0
-        plain = all(symbol in CONSTANTS for symbol in names_of(given.formula))
-        value = evaluate(given.formula, values) * given.factor
-        numbers[name] = value * own if plain else value
-        if given.fit is not None:
-            free[name] = (given.fit[0] * own, given.fit[1] * own)
-    return Sensor(**numbers, free=free)
-
-
 def _check_size(series: Series, record: Record) -> None:
     problems = []
     for name, channel in series.channels.items():
@@ -291,6 +312,12 @@ def _window(series: Series, record: Record, ends: tuple[float, float]) -> NDArra
         hint = "Correct the windows of `use`." if series.windows else "Correct `from` and `to`."
         raise DataError([Problem(what, series.place, (), hint)])
     return rows
+
+
+def _whole(series: Series) -> tuple[float, float]:
+    """From the begin of the first window, or of the series, on: a drift goes on over windows."""
+    begin = min((low for low, _ in series.windows.values()), default=_or(series.begin, -math.inf))
+    return begin, math.inf
 
 
 def _or(value: float | None, default: float) -> float:

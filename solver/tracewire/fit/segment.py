@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 from tracewire.fit.measured import Measured
 
 Vector = NDArray[np.float64]
-SENSED = ("offset.", "gain.", "delay.")
+SENSED = ("offset.", "gain.", "delay.", "quad.", "drift.")
 """What the names of a sensor's unknowns begin with; all other names are the diagram's."""
+OWN = "@"
+"""Stands between a parameter and the series that has it of its own: `harmonic.phase@run_1`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,12 +48,7 @@ class Segment:
 
     def start_scale(self, state: str) -> float:
         """The size of a free start value: what its signal, or the fastest rate of one, spreads."""
-        values = self.measured.values.get(state)
-        if values is not None:
-            spread = float(np.std(values))
-        else:
-            t = self.measured.t
-            spread = max(float(np.std(np.gradient(v, t))) for v in self.measured.values.values())
+        spread = self.measured.spreads.get(state, self.measured.fastest)
         return max(spread, abs(self.start[state]), 1e-12)
 
 
@@ -59,7 +56,8 @@ class Segment:
 class Unknown:
     """A number to be found: its name, value, bounds, and the size by which it is scaled.
 
-    The name is that of a parameter, or `offset.SIGNAL`, `gain.SIGNAL`, `delay.SIGNAL` of a sensor.
+    The name is that of a parameter, or of a sensor: `offset.SIGNAL`, `gain.SIGNAL`, `delay.SIGNAL`,
+    `quad.SIGNAL`, `drift.SIGNAL`; or that of a parameter in one series, `harmonic.phase@run_1`.
     """
 
     name: str
@@ -69,6 +67,31 @@ class Unknown:
     scale: float = 1.0
 
 
-def of_diagram(values: Mapping[str, float]) -> dict[str, float]:
-    """The parameters of the diagram among named unknowns: all but those of sensors."""
-    return {name: value for name, value in values.items() if not name.startswith(SENSED)}
+def of_diagram(values: Mapping[str, float], measured: Measured | None = None) -> dict[str, float]:
+    """The parameters of the diagram among named unknowns: all but those of sensors.
+
+    In a run of a series, those that it has of its own go before: as it gives them, and as an
+    unknown of that series (`harmonic.phase@run_1`) says. Unknowns of other series are left out.
+    """
+    known = {n: v for n, v in values.items() if not n.startswith(SENSED) and OWN not in n}
+    if measured is None:
+        return known
+    known |= measured.parameters
+    names = {name: own_name(name, measured) for name in measured.parameters}
+    return known | {name: values[own] for name, own in names.items() if own in values}
+
+
+def own_name(parameter: str, measured: Measured) -> str:
+    """The name of the unknown that a parameter is where a series has it of its own."""
+    return f"{parameter}{OWN}{measured.series or measured.name}"
+
+
+def parameter_in(unknown: str, measured: Measured) -> str:
+    """The parameter of the diagram that an unknown is in a run of a series; '' where it is none, as
+    of a sensor or another series, or where the series has a value of its own."""
+    if unknown.startswith(SENSED):
+        return ""
+    parameter, _, series = unknown.partition(OWN)
+    if not series:
+        return "" if parameter in measured.parameters else parameter
+    return parameter if own_name(parameter, measured) == unknown else ""

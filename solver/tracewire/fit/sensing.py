@@ -1,14 +1,19 @@
-"""From a run to what the sensors of a segment show, gain*y(t - delay) + offset, and derivatives."""
+"""From a run to what the sensors of a segment show, and its derivatives.
+
+A sensor shows gain*z + offset + quad*z^2 + drift*(t - t0) of its signal y, with z = y(t - delay).
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.fit.measured import Sensor
+from tracewire.diagram import SENSOR
 from tracewire.fit.segment import Segment
+from tracewire.fit.sensor import PLAIN, Sensor
 from tracewire.solve import Run
 
 Vector = NDArray[np.float64]
@@ -29,6 +34,7 @@ class Sensing:
         self.sensors = [_sensor(segment, signal, named) for signal in segment.signals]
         self.rates = rates
         t = segment.t
+        self.since = t - segment.measured.zero
         self.begin = min(segment.begin, float(t[0]))
         self.at: Sequence[slice | NDArray[np.intp]]
         if not rates and not any(sensor.delay for sensor in self.sensors):
@@ -50,7 +56,7 @@ class Sensing:
     def shown(self, run: Run) -> Vector:
         """What the sensors show, shape (N, signals)."""
         columns = [
-            sensor.gain * run[signal][at] + sensor.offset
+            sensor.shown(run[signal][at], self.since)
             for signal, sensor, at in zip(self.segment.signals, self.sensors, self.at, strict=False)
         ]
         return np.stack(columns, axis=1)
@@ -66,16 +72,26 @@ class Sensing:
         for column, (signal, sensor) in enumerate(
             zip(self.segment.signals, self.sensors, strict=True)
         ):
+            at = self.at[column]
             if sensitivity:
                 slope = run.sensitivities[sensitivity][signal]
-                found[:, column] = sensor.gain * slope[self.at[column]]
+                found[:, column] = self._slope(sensor, run[signal][at]) * slope[at]
             elif signal == of and kind == "offset":
                 found[:, column] = 1.0
             elif signal == of and kind == "gain":
-                found[:, column] = run[signal][self.at[column]]
+                found[:, column] = run[signal][at]
+            elif signal == of and kind == "quad":
+                found[:, column] = run[signal][at] ** 2
+            elif signal == of and kind == "drift":
+                found[:, column] = self.since
             elif signal == of and kind == "delay":
-                found[:, column] = -sensor.gain * self._rate(run, signal, column)
+                rate = self._rate(run, signal, column)
+                found[:, column] = -self._slope(sensor, run[signal][at]) * rate
         return found
+
+    def _slope(self, sensor: Sensor, delayed: Vector) -> Vector | float:
+        """d shown/d y(t - delay)."""
+        return sensor.gain + 2 * sensor.quad * delayed if sensor.quad else sensor.gain
 
     def _rate(self, run: Run, signal: str, column: int) -> Vector:
         count = len(self.segment.signals)
@@ -86,8 +102,5 @@ class Sensing:
 
 def _sensor(segment: Segment, signal: str, named: Mapping[str, float]) -> Sensor:
     own = segment.measured.sensor(signal)
-    return Sensor(
-        offset=named.get(f"offset.{signal}", own.offset),
-        gain=named.get(f"gain.{signal}", own.gain),
-        delay=named.get(f"delay.{signal}", own.delay),
-    )
+    numbers = {kind: named.get(f"{kind}.{signal}", getattr(own, kind)) for kind in SENSOR}
+    return replace(PLAIN, **numbers)

@@ -32,7 +32,7 @@ def start_from_data(model: Model, measured: Measured, row: int) -> dict[str, flo
         if name not in states:
             continue
         sensor = measured.sensor(name)
-        signal = (values[rows] - sensor.offset) / (sensor.gain or 1.0)
+        signal = sensor.signal(values[rows], measured.t[rows] - measured.zero)
         quartic = np.polynomial.Polynomial.fit((t - sensor.delay) / width, signal, degree)
         found[name] = float(quartic(0.0))
         rate = states[name].rate
@@ -51,7 +51,7 @@ def whole_segment(model: Model, measured: Measured) -> Segment:
     if problems:
         raise OptionError(problems)
     rows = np.flatnonzero(measured.t >= measured.counts_from)
-    values = parameter_values(model, {}, measured.preset)
+    values = parameter_values(model, measured.parameters, measured.preset)
     if not measured.start:
         begin = float(evaluate(model.flat.span[0], values))
         return Segment(measured, min(begin, float(measured.t[0])), rows)

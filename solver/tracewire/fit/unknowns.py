@@ -1,4 +1,4 @@
-"""What a fit may change: parameters with bounds, and offsets, gains and delays of sensors."""
+"""What a fit may change: parameters with bounds, and what sensors do to their signals."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.fit.measured import Measured
-from tracewire.fit.segment import Unknown
+from tracewire.fit.segment import Unknown, own_name
 
 TINY = 1e-6
 """Of the width between its bounds: a value closer to zero says nothing of its size."""
@@ -45,22 +45,47 @@ def free_unknowns(
 
 
 def sensor_unknowns(measured: Sequence[Measured]) -> list[Unknown]:
-    """The free offsets, gains and delays of sensors, one for each signal, named `offset.SIGNAL`.
+    """The free numbers of sensors, one for each signal, named `offset.SIGNAL`, `gain.SIGNAL` ...
 
     They begin at those of the first series that has them.
     """
     found: dict[str, Unknown] = {}
     for series in measured:
         for signal, sensor in series.sensors.items():
+            spread = max(float(np.std(series.values[signal])) * 0.1, 1e-12)
+            largest = float(np.max(np.abs(series.values[signal])))
             sizes = {
-                "offset": max(float(np.std(series.values[signal])) * 0.1, 1e-12),
+                "offset": spread,
                 "gain": max(abs(sensor.gain), 1e-3),
                 "delay": float(np.median(np.diff(series.t))),
+                "quad": spread / (largest**2 or 1.0),
+                "drift": spread / float(series.t[-1] - series.t[0]),
             }
             for kind, (low, high) in sensor.free.items():
                 name = f"{kind}.{signal}"
                 value = float(getattr(sensor, kind))
                 found.setdefault(name, Unknown(name, value, low, high, sizes[kind]))
+    return list(found.values())
+
+
+def own_unknowns(measured: Sequence[Measured]) -> list[Unknown]:
+    """The parameters that some series have of their own, with bounds: `harmonic.phase@run_1`.
+
+    Raises OptionError: a start outside the bounds.
+    """
+    found: dict[str, Unknown] = {}
+    problems = []
+    for series in measured:
+        for parameter, (low, high) in series.free.items():
+            name, value = own_name(parameter, series), series.parameters[parameter]
+            if not low <= value <= high:
+                what = f"'{name}' begins at {value:g}, outside its bounds {low:g} to {high:g} (SI)"
+                problems.append(Problem(what, hint="Begin inside them, or widen `fit:`."))
+            width = high - low if np.isfinite(high - low) else 0.0
+            size = max(abs(value), TINY * width) if value else 0.1 * (width or 1.0)
+            found.setdefault(name, Unknown(name, value, low, high, size))
+    if problems:
+        raise OptionError(problems)
     return list(found.values())
 
 
@@ -72,11 +97,11 @@ def chosen_unknowns(
     fixed: Sequence[str],
 ) -> list[Unknown]:
     """What a fit of some series may change: all that is free in the diagram, or what `free` names,
-    without what `fixed` names.
+    without what `fixed` names; with numbers of sensors and what single series have of their own.
 
     Raises OptionError: nothing is free, a name does not exist, a start outside the bounds.
     """
-    sensors = {u.name: u for u in sensor_unknowns(measured)}
+    sensors = {u.name: u for u in (*sensor_unknowns(measured), *own_unknowns(measured))}
     known = [*model.flat.parameters, *sensors]
     problems = [
         unknown("parameter", name, known)

@@ -1,8 +1,8 @@
 """Block declarations: what a block is, and how a folder of block files becomes a library."""
 
+from tracewire.library.check_effect import Face, check_effect
 from tracewire.library.declare import (
     Block,
-    Effect,
     Event,
     Input,
     Mode,
@@ -12,19 +12,26 @@ from tracewire.library.declare import (
     Transition,
 )
 from tracewire.library.describe import describe, describe_json, palette
+from tracewire.library.effect import SCALES, SYMBOLS, Effect, Shape, Tone
 from tracewire.library.load import Library, load_library
 
 __all__ = [
+    "SCALES",
+    "SYMBOLS",
     "Block",
     "Effect",
     "Event",
+    "Face",
     "Input",
     "Library",
     "Mode",
     "Output",
     "Parameter",
+    "Shape",
     "State",
+    "Tone",
     "Transition",
+    "check_effect",
     "describe",
     "describe_json",
     "load_library",

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import keyword
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from tracewire.errors import FormulaError, Place, Problem, unknown
+from tracewire.errors import FormulaError, Place, Problem
 from tracewire.formula import is_name, read_unit
+from tracewire.library.check_effect import Face, check_effect
 from tracewire.library.check_formula import Use, check_formula
 from tracewire.library.check_memory import check_by_mode, check_memory
 
 if TYPE_CHECKING:
-    from tracewire.library.declare import Block, Effect, Input, Output, Parameter, State
+    from tracewire.library.declare import Block, Input, Output, Parameter, State
 
 
 def check_block(block: Block) -> list[Problem]:
@@ -47,7 +49,7 @@ def check_block(block: Block) -> list[Problem]:
             problems += error.problems
     problems += check_memory(block, everything, numbers, place)
     if block.effect is not None:
-        problems += _check_effect(block, block.effect, place)
+        problems += check_effect(block.effect, _face(block), place)
     return problems
 
 
@@ -108,28 +110,14 @@ def _check_parameters(parameters: Sequence[Parameter], place: Place) -> list[Pro
     return problems
 
 
-def _check_effect(block: Block, effect: Effect, place: Place) -> list[Problem]:
-    parameters = {p.name for p in block.parameters if p.kind == "number"}
-    ports = {port.name for port in block.inputs}
-    problems = []
-    if effect.coefficient not in parameters:
-        problems.append(unknown("parameter", effect.coefficient, parameters, place))
-    strange = [name for name in effect.inputs if name not in ports]
-    problems += [unknown("input", name, ports, place) for name in strange]
-    missing = [p.name for p in block.inputs if p.default is None and p.name not in effect.inputs]
-    hint = "Say which local signal each reads: q or v."
-    if missing:
-        what = f"the effect leaves the inputs {', '.join(missing)} unconnected"
-        problems.append(Problem(what, place, (), hint))
-    for name, symbol in effect.inputs.items():
-        if symbol not in ("q", "v"):
-            what = f"the effect wires '{name}' to '{symbol}'"
-            problems.append(Problem(what, place, ("q", "v"), hint))
-    unset = [p.name for p in block.parameters if p.default is None and p.name != effect.coefficient]
-    if unset:
-        what = f"the effect leaves the parameters {', '.join(unset)} without a value"
-        problems.append(Problem(what, place, (), "Give each a default."))
-    if len(block.outputs) > 1:
-        what = f"an effect has one output, and this block has {len(block.outputs)}"
-        problems.append(Problem(what, place, (), "Declare the others in a block of their own."))
-    return problems
+def _face(block: Block) -> Face:
+    return Face(
+        ports={port.name: port.default is not None for port in block.inputs},
+        parameters={p.name: p.default is not None for p in block.parameters},
+        bounds={
+            p.name: (-math.inf if p.low is None else p.low, math.inf if p.high is None else p.high)
+            for p in block.parameters
+            if p.kind == "number"
+        },
+        outputs=len(block.outputs),
+    )

@@ -12,9 +12,9 @@ from typing import Literal
 from tracewire.errors import BlockError, Place
 from tracewire.formula import Call, Expression, Name, Number, names_of, parse, parse_condition
 from tracewire.library.check import check_block
+from tracewire.library.effect import Effect
 
 Kind = Literal["number", "points", "formula"]
-Symbol = Literal["q", "v"]
 Crosses = Literal["up", "down", "both"]
 ByMode = str | Mapping[str, str]
 """A formula; or, in a block with modes, a formula for each mode by its name."""
@@ -125,20 +125,6 @@ class Event:
     def guards(self) -> tuple[str, ...]:
         """The formulas whose crossing it is; none for a clock."""
         return (self.when,) if isinstance(self.when, str) else self.when
-
-
-@dataclass(frozen=True)
-class Effect:
-    """Says that a block may be tried as a missing effect, and how.
-
-    `inputs` tells which local signal of the place each port reads: `q` the coordinate, `v` its
-    rate. `coefficient` is the parameter in which the output is linear; the effect vanishes where it
-    is zero. `sign` is 1 where physics allows only positive coefficients, 0 where it allows both.
-    """
-
-    coefficient: str
-    inputs: Mapping[str, Symbol] = field(default_factory=dict, hash=False)
-    sign: Literal[0, 1] = 0
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,10 @@ from tracewire.library.declare import (
     Parameter,
     Transition,
 )
+from tracewire.library.effect import SCALES, SYMBOLS, Effect, Shape
 from tracewire.library.load import Library
+
+MOST_VALUES = 8
 
 
 def palette(library: Library) -> str:
@@ -61,7 +64,6 @@ def describe_json(library: Library, name: str) -> dict[str, object]:
     """
     block = _find(library, name)
     feedthrough = {o.name: _feedthrough(block, o.name) for o in block.outputs}
-    effect = block.effect
     return {
         "name": block.name,
         "family": library.families.get(name, ""),
@@ -73,13 +75,7 @@ def describe_json(library: Library, name: str) -> dict[str, object]:
         "transitions": [asdict(transition) for transition in block.transitions],
         "events": [asdict(event) | {"when": list(event.guards)} for event in block.events],
         "outputs": [asdict(o) | {"feedthrough": feedthrough[o.name]} for o in block.outputs],
-        "effect": None
-        if effect is None
-        else {
-            "coefficient": effect.coefficient,
-            "inputs": dict(effect.inputs),
-            "sign": effect.sign,
-        },
+        "effect": None if block.effect is None else _effect_json(block.effect),
         "source": block.source,
         "place": {"file": block.place.file, "line": block.place.line},
     }
@@ -126,13 +122,34 @@ def _range(parameter: Parameter) -> str:
 def _effect(block: Block) -> str:
     effect = block.effect
     assert effect is not None
-    symbols = {"q": "the coordinate", "v": "the rate"}
-    wires = [
-        f"{port} reads {symbols[symbol]} of the place" for port, symbol in effect.inputs.items()
-    ]
     sign = "positive only" if effect.sign else "of either sign"
-    text = "; ".join([f"coefficient {effect.coefficient}, {sign}", *wires])
-    return f"An effect that a trace tries: {text}."
+    where = " at the drive" if effect.place == "drive" else ""
+    parts = [f"coefficient {effect.coefficient}, {sign}"]
+    if effect.at is not None:
+        parts[0] += f", first {_tried(effect.at)}"
+    parts += [f"{port} reads {SYMBOLS[symbol]}" for port, symbol in effect.inputs.items()]
+    parts += [f"shape {name} first {_tried(shape)}" for name, shape in effect.shapes.items()]
+    parts += [f"{name} is the {of} of the drive in each series" for name, of in effect.tone.items()]
+    return f"An effect that a trace tries{where}: {'; '.join(parts)}."
+
+
+def _tried(shape: Shape) -> str:
+    """The values of a shape; of a long grid its ends."""
+    values = [f"{value:.3g}" for value in shape.at]
+    if len(values) > MOST_VALUES:
+        values = [*values[:2], "...", f"{values[-1]} ({len(values)} values)"]
+    return ", ".join(values) + (f" times {SCALES[shape.of]}" if shape.of else "")
+
+
+def _effect_json(effect: Effect) -> dict[str, object]:
+    return {
+        "coefficient": effect.coefficient,
+        "inputs": dict(effect.inputs),
+        "sign": effect.sign,
+        "shapes": {name: asdict(shape) for name, shape in effect.shapes.items()},
+        "place": effect.place,
+        "at": None if effect.at is None else asdict(effect.at),
+    }
 
 
 def _told(formula: ByMode) -> str:

@@ -259,7 +259,13 @@ def _signals_table(fit: Fit) -> Table:
 def _sensor_text(series: Measured, signal: str) -> str:
     sensor, plain = series.sensor(signal), Sensor()
     parts = []
-    for kind, unit in (("offset", ""), ("gain", ""), ("delay", " s")):
+    for kind, unit in (
+        ("offset", ""),
+        ("gain", ""),
+        ("delay", " s"),
+        ("quad", ""),
+        ("drift", " 1/s"),
+    ):
         value = getattr(sensor, kind)
         if kind in sensor.free:
             parts.append(f"{kind} fitted")

@@ -21,7 +21,7 @@ def fit_tables(fit: Fit) -> tuple[Table, ...]:
 
 
 def fit_table(fit: Fit) -> Table:
-    """Fitted parameters, offsets, gains and delays with standard errors and 95 % intervals."""
+    """Fitted parameters, and numbers of sensors, with standard errors and 95 % intervals."""
     rows = []
     for name, value in fit.values.items():
         error = fit.errors.get(name, math.nan)
@@ -54,12 +54,19 @@ def rounded(value: float, error: float, least: int = 6) -> str:
 
 
 def unit_of(fit: Fit, name: str) -> str:
-    """The unit of a fitted value: of a parameter, or of a sensor's offset, gain or delay."""
+    """The unit of a fitted value: of a parameter, or of what a sensor does to its signal."""
     flat = fit.model.flat
     if name in flat.parameters:
         return flat.parameters[name].unit
     kind, _, signal = name.partition(".")
-    return {"offset": flat.units.get(signal, ""), "delay": "s"}.get(kind, "")
+    unit = flat.units.get(signal, "")
+    known = {
+        "offset": unit,
+        "delay": "s",
+        "drift": f"{unit or 1}/s",
+        "quad": unit and f"1/({unit})",
+    }
+    return known.get(kind, "")
 
 
 def _remark(fit: Fit, name: str) -> str:

@@ -76,7 +76,8 @@ def places_table(model: Model) -> Table:
     """Places where an effect may be tried: the sum, its coordinate q and rate v."""
     from tracewire.trace.places import find_places
 
-    rows = tuple((place.name, place.v, place.q) for place in find_places(model))
+    sums = (place for place in find_places(model) if place.kind == "sum")
+    rows = tuple((place.name, place.v, place.q) for place in sums)
     return Table("places", ("sum", "rate v", "coordinate q"), rows)
 
 

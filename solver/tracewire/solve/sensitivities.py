@@ -54,7 +54,8 @@ def follow(
     if not asked:
         return {}
     reads = {name: formulas.keys() & names_of(formula) for name, formula in formulas.items()}
-    columns = [_followers(formulas, reads, values, name, given) for name in asked]
+    reads = {name: read for name, read in reads.items() if read and name not in given}
+    columns = [_followers(formulas, reads, values, name) for name in asked]
     moving = [name for name in formulas if any(column.get(name) for column in columns)]
     return {name: np.array([column.get(name, 0.0) for column in columns]) for name in moving}
 
@@ -64,14 +65,14 @@ def _followers(
     reads: Mapping[str, Set[str]],
     values: Mapping[str, float],
     leader: str,
-    given: Mapping[str, float],
 ) -> dict[str, float]:
-    """d parameter / d leader of all parameters that follow it."""
+    """d parameter / d leader of all parameters that follow it; `reads` has those that follow any,
+    and what they read."""
     found = {leader: 1.0} if leader in formulas else {}
 
     def rate(name: str) -> float:
         if name not in found:
-            inner = {read: rate(read) for read in reads[name]} if name not in given else {}
+            inner = {read: rate(read) for read in reads.get(name, ())}
             found[name] = sum(
                 _partial(formulas[name], values, read) * inner[read]
                 for read in inner
@@ -79,7 +80,7 @@ def _followers(
             )
         return found[name]
 
-    for name in formulas if found else ():
+    for name in reads if found else ():
         rate(name)
     return found
 
@@ -104,43 +105,33 @@ def new_sensitivity(
     asked: tuple[str, ...],
     rates: Mapping[str, Vector],
     start: Mapping[str, float],
+    values: Mapping[str, float],
 ) -> Sensitivity:
     """The sensitivities of a run that has not begun.
 
     `rates` are those of the parameters in what is asked for, `start` the start values that are set
-    and so follow no parameter.
+    and so follow no parameter, `values` those of the parameters.
     """
     n, modes, q = len(progress.x), len(flow.bound), len(asked)
     moving = [name for name in rates if name in model.read_parameters]
     a = len(moving)
-    chain = np.array([rates[name] for name in moving]).reshape(a, q)
     w = n + 1 + a if q else 0
     names = [*model.states, "t", *moving]
     functions = [model.derivative(of, names) for of in DERIVATIVES] if q else []
     address = [model.compiled_address(name) for name in functions]
-    s = np.zeros((n, q))
-    if a:
-        rows, nothing = np.zeros((n, w)), np.zeros(1)
-        invoke_at(address[OF_STARTS], 0.0, nothing, flow.m, flow.c, flow.k, rows.reshape(-1))
-        s += rows[:, n + 1 :] @ chain
-        s[[state in start for state in model.states]] = 0.0
-    for j, name in enumerate(asked):
-        if name not in model.flat.parameters:
-            s[:, j] = 0.0
-            s[model.states.index(name.removeprefix(START)), j] = 1.0
-    return Sensitivity(
+    sensitivity = Sensitivity(
         address=np.array(address, dtype=np.int64),
-        chain=chain,
-        s=s,
+        chain=np.zeros((a, q)),
+        s=np.zeros((n, q)),
         moved=np.zeros(q),
-        peak=np.abs(s),
+        peak=np.zeros((n, q)),
         nodes=np.zeros((4 * n, w)),
         samples=np.zeros((len(progress.times), len(model.recorded) * q)),
         times=np.zeros((len(progress.log), q)),
         push=np.zeros((modes, n * a)),
         flags=np.zeros((FLAGS, 2), dtype=np.int64),
         flag_times=np.zeros(FLAGS),
-        now=np.array([progress.now[0], 0.0, 0.0, 0.0, 0.0]),
+        now=np.zeros(5),
         instants=np.zeros((modes, q)),
         bound=flow.bound.copy(),
         change=np.zeros((3 * n, q)),
@@ -149,6 +140,39 @@ def new_sensitivity(
         real_pivots=np.zeros(n, dtype=np.int64),
         order=np.zeros(n + 1, dtype=np.int64),
     )
+    set_sensitivity(model, flow, progress, sensitivity, asked, rates, start, values)
+    return sensitivity
+
+
+def set_sensitivity(
+    model: Model,
+    flow: Flow,
+    progress: Progress,
+    sensitivity: Sensitivity,
+    asked: tuple[str, ...],
+    rates: Mapping[str, Vector],
+    start: Mapping[str, float],
+    values: Mapping[str, float],
+) -> None:
+    """Let the sensitivities of a run that has not begun be those of this one."""
+    n, s = len(progress.x), sensitivity.s
+    moving = [name for name in rates if name in model.read_parameters]
+    if moving:
+        sensitivity.chain[:] = [rates[name] for name in moving]
+        rows, nothing = np.zeros((n, n + 1 + len(moving))), np.zeros(1)
+        address = sensitivity.address[OF_STARTS]
+        invoke_at(address, 0.0, nothing, flow.m, flow.c, flow.k, rows.reshape(-1))
+        s[:] = rows[:, n + 1 :] @ sensitivity.chain
+        s[[state in start for state in model.states]] = 0.0
+    for j, name in enumerate(asked):
+        if name not in model.flat.parameters:
+            s[:, j] = 0.0
+            s[model.states.index(name.removeprefix(START)), j] = 1.0
+    # a change that all of a parameter's value moves a state less than its tolerance need not be
+    # followed closely: exp(-(rate/speed)^2) has such derivatives far from rest
+    sizes = np.array([abs(values.get(name, 0.0)) or 1.0 for name in asked])
+    sensitivity.peak[:] = np.maximum(np.abs(s), progress.atol[:, None] / sizes)
+    sensitivity.now[0] = progress.now[0]
 
 
 def by_name(

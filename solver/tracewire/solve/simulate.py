@@ -19,7 +19,13 @@ from tracewire.solve.failures import place_of
 from tracewire.solve.interrupt import Interrupted
 from tracewire.solve.limits import Limits
 from tracewire.solve.run import EventLog, Run
-from tracewire.solve.sensitivities import by_name, checked, follow, new_sensitivity
+from tracewire.solve.sensitivities import (
+    by_name,
+    checked,
+    follow,
+    new_sensitivity,
+    set_sensitivity,
+)
 from tracewire.solve.setup import (
     Table,
     Tolerance,
@@ -85,24 +91,30 @@ def simulate(
     tolerance = tolerance_of(model, rtol, atol, method, step, end - begin)
     vector = np.array([*values.values(), 0.0])  # never empty
     tables = packed(tables_of(model, values, inputs or {}))
-    key = len(samples), len(tables)
-    space = None if asked else take(model, key)
+    moved = tuple(sorted((*(parameters or {}), *(start or {})))) if asked else ()
+    key = len(samples), len(tables), asked, moved, preset
+    space = take(model, key)
     if space is not None:
         arrays, flow, state = space.arrays, space.arrays.flow, space.arrays.progress
         flow.k[:] = tables
         prepare(model, flow, vector)
         x = start_of(model, flow, start or {})
         set_up(state, x, (begin, end), samples, method, tolerance)
+        if asked:
+            chain = follow(model.parameter_formulas(preset), values, asked, parameters or {})
+            sensitivity = arrays.sensitivity
+            set_sensitivity(model, flow, state, sensitivity, asked, chain, start or {}, values)
     else:
         flow = new_flow(model, vector, tables)
         x = start_of(model, flow, start or {})
         state = new_progress(model, x, (begin, end), samples, method, tolerance)
         chain = follow(model.parameter_formulas(preset), values, asked, parameters or {})
-        sensitivity = new_sensitivity(model, flow, state, asked, chain, start or {})
+        sensitivity = new_sensitivity(model, flow, state, asked, chain, start or {}, values)
         arrays = new_arrays(flow, kept_plan(model), state, sensitivity)
-        space = None if asked else Space(key, arrays)
-    table = None if space is None else space.table
-    execution = Execution(model, arrays, limits or Limits(), begin, progress, None, asked, table)
+        space = Space(key, arrays)
+    execution = Execution(
+        model, arrays, limits or Limits(), begin, progress, None, asked, space.table
+    )
     try:
         execution.run()
     except Interrupted as error:
@@ -110,8 +122,7 @@ def simulate(
         raise
     refuse_nan(model, state.samples, samples)
     run = run_of(execution, values, x, samples)
-    if space is not None:
-        give_back(model, space)
+    give_back(model, space)
     return run
 
 

@@ -11,17 +11,18 @@ from tracewire.compile import Model
 from tracewire.solve.core.arrays import Arrays, table_of
 
 Vector = NDArray[np.float64]
-Key = tuple[int, int]
-MOST = 8  # spaces that a model keeps
+Key = tuple[int, int, tuple[str, ...], tuple[str, ...], str]
+MOST = 16  # kinds of spaces that a model keeps
 MOST_NUMBERS = 500_000  # of samples and tables; larger arrays are not kept
-ONLY_WRITTEN = ("address", "log", "stiff")
+ONLY_WRITTEN = ("address", "log", "stiff", "times")
 """What a run does not read before it has written it."""
 
 
 class Space:
-    """The arrays of one run without sensitivities, and their table for the core.
+    """The arrays of one run, and their table for the core.
 
-    `key` says which runs they fit: the number of samples and the numbers in their tables.
+    `key` says which runs they fit: the number of samples and the numbers in their tables, the
+    sensitivities, and with these the names that are set and the preset.
     """
 
     def __init__(self, key: Key, arrays: Arrays) -> None:
@@ -50,7 +51,9 @@ def give_back(model: Model, space: Space) -> None:
     """Let the next run have a space; nobody may look into its arrays any more."""
     kept = _kept(model)
     progress = space.arrays.progress
-    if progress.samples.size + space.key[1] > MOST_NUMBERS:
+    sensitivity = space.arrays.sensitivity
+    size = progress.samples.size + sensitivity.samples.size
+    if size + space.key[1] > MOST_NUMBERS:
         return
     if space.key not in kept and len(kept) >= MOST:
         kept.clear()

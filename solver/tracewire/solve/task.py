@@ -200,7 +200,7 @@ class Task:
         columns, width = len(model.recorded), len(self.plan.direct)
         if width > columns:
             state = state._replace(samples=np.full((len(every), width), np.nan))
-        nothing = new_sensitivity(model, flow, state, (), {}, {})
+        nothing = new_sensitivity(model, flow, state, (), {}, {}, {})
         arrays = new_arrays(flow, self.plan, state, nothing)
         execution = Execution(model, arrays, self.limits, begin, halt=self.halt)
         execution.run()

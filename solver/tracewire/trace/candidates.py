@@ -1,123 +1,204 @@
-"""Candidates: an effect at a place, and the diagram that has it."""
+"""Candidates: an effect at a place, wired to the signals that are there."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
 
 from tracewire.compile import Model
-from tracewire.diagram import Diagram, add_addend, add_offset
-from tracewire.fit.segment import Unknown
-from tracewire.formula import evaluate
-from tracewire.library import Block
+from tracewire.diagram import SENSOR, Diagram, EffectType, effects_of
+from tracewire.library import Effect, Shape
+from tracewire.trace.candidate import Candidate, is_default, unknowns_of
+from tracewire.trace.effects import bounds_of, scale_of
+from tracewire.trace.extend import extend
+from tracewire.trace.levels import Levels
 from tracewire.trace.places import Place
+from tracewire.trace.tones import Sine, own_values
 
-SENSOR_OFFSET = "sensor_offset"
+__all__ = ["Candidate", "extend", "find_candidates", "is_default", "unknowns_of"]
 
-
-@dataclass(frozen=True)
-class Candidate:
-    """An effect that may be missing: a block at a sum, or the offset of a measured channel.
-
-    `unknown` is the name of its coefficient in the extended model, `sign` 1 where only positive
-    coefficients make sense.
-    """
-
-    effect: str
-    place: str
-    unknown: str
-    sign: int
-    block: Block | None = None
-    at: Place | None = None
-
-    def __str__(self) -> str:
-        return f"{self.effect} @ {self.place}"
-
-    def parameter(self) -> str:
-        """The name of the coefficient in the block."""
-        return self.unknown.rpartition(".")[2] if self.block is not None else "offset"
-
-    def as_unknown(self, value: float, scale: float) -> Unknown:
-        """The coefficient as an unknown of a fit."""
-        return Unknown(self.unknown, value, 0.0 if self.sign else -math.inf, math.inf, scale)
+WIDE = 10.0
+"""The upper bound of a shape, in units of the largest value that is tried first."""
+NARROW = 0.5
+"""The lower bound of a shape that may not be zero, in units of the smallest one."""
 
 
 def find_candidates(
-    model: Model, places: Sequence[Place], taken: Sequence[Candidate] = ()
+    model: Model,
+    places: Sequence[Place],
+    levels: Levels,
+    taken: Sequence[Candidate] = (),
+    tones: Mapping[str, Mapping[str, Sine]] | None = None,
 ) -> list[Candidate]:
-    """Every effect of the library at every place whose signals it needs, and sensor offsets.
+    """Every effect at every place that has the signals it needs.
 
-    `taken` are effects that the model has already got from the trace.
+    Effects are blocks of the library and subsystems of the diagram that say so; one that reads
+    another body is tried for each. `taken` are effects that the model has already got from the
+    trace. An offset, gain ... of a sensor that the diagram gives, free or not, is no candidate. An
+    effect whose shapes are sizes of a signal that is always zero is left out, and so is one that
+    follows the tone of its drive where that has none in `tones` (by drive and series).
     """
+    diagram = model.diagram
     found: list[Candidate] = []
-    have = {(c.effect, c.place) for c in taken}
-    names = set(model.diagram.blocks) | set(model.diagram.parameters)
+    have = {(c.effect, c.place.name, c.of) for c in taken}
+    names = set().union(diagram.blocks, diagram.parameters, diagram.inputs, diagram.subsystems)
+    kinds = effects_of(diagram)
+    several = {kind: sum(p.kind == kind for p in places) > 1 for kind in ("sum", "drive")}
     for place in places:
-        for block in model.diagram.library.effects():
-            effect = block.effect
-            if effect is None or (block.name, place.name) in have:
-                continue
-            if "q" in effect.inputs.values() and not place.q:
-                continue
-            name = block.name
-            number = 2
-            while name in names:
-                name, number = f"{block.name}_{number}", number + 1
-            names.add(name)
-            unknown = f"{name}.{effect.coefficient}"
-            found.append(Candidate(block.name, place.name, unknown, effect.sign, block, place))
-    for series in model.diagram.measured.values():
-        for signal, channel in series.channels.items():
-            place_name = f"sensor.{signal}"
-            free = channel.offset is not None and channel.offset.fit is not None
-            if channel.column and not free and (SENSOR_OFFSET, place_name) not in have:
-                have.add((SENSOR_OFFSET, place_name))
-                found.append(Candidate(SENSOR_OFFSET, place_name, f"offset.{signal}", 0))
-    return found
-
-
-def extend(diagram: Diagram, chosen: Sequence[tuple[Candidate, float]]) -> Diagram:
-    """The diagram with effects added, each with its coefficient: an edit of the text."""
-    for candidate, value in chosen:
-        if candidate.block is None or candidate.block.effect is None or candidate.at is None:
-            signal = candidate.unknown.removeprefix("offset.")
-            high = _above(value)
-            diagram = add_offset(diagram, signal, value, (-high, high))
+        if place.kind == "sensor":
+            found += _sensor_candidates(diagram, place, levels)
             continue
-        name, _, coefficient = candidate.unknown.partition(".")
-        signals = {"q": candidate.at.q, "v": candidate.at.v}
-        ports = [f"{p}: {signals[s]}" for p, s in candidate.block.effect.inputs.items()]
-        high = _above(value)
-        low = 0.0 if candidate.sign else -high
-        setting = f"{coefficient}: {{value: {value:.6g}, fit: [{low:g}, {high:g}]}}"
-        line = f"{{type: {candidate.effect}, {', '.join([*ports, setting])}}}"
-        diagram = add_addend(diagram, candidate.at.definition, name, line)
-    return diagram
+        for kind in kinds:
+            name = kind.name
+            if kind.effect.place != place.kind:
+                continue
+            wanted = f"{name}_{place.name.rpartition('.')[2]}" if several[place.kind] else name
+            for of, signals in _wirings(kind.effect, place, places):
+                block = free_name(f"{wanted}_{of}" if of else wanted, names)
+                candidate = _candidate(kind, place, block, of, signals, levels, tones or {})
+                if candidate is not None:
+                    names.add(block)
+                    found.append(candidate)
+    return [c for c in found if (c.effect, c.place.name, c.of) not in have]
 
 
-def _above(value: float) -> float:
-    """A round bound well above a value."""
-    if value == 0.0:
-        return 1.0
-    return float(10.0 ** math.ceil(math.log10(abs(value)) + 1.0))
+def free_name(wanted: str, taken: set[str]) -> str:
+    """The name, with a number behind it where it is taken."""
+    name, number = wanted, 2
+    while name in taken:
+        name, number = f"{wanted}_{number}", number + 1
+    return name
 
 
-def coefficient_scale(candidate: Candidate, levels: Mapping[str, float]) -> float:
-    """The coefficient at which an effect is as large as the sum at its place.
+def _wirings(
+    effect: Effect, place: Place, places: Sequence[Place]
+) -> Iterator[tuple[str, dict[str, str]]]:
+    """The signals by port for each other body or drive that the effect may read, and its name."""
+    symbols = set(effect.inputs.values())
+    own = {"q": place.q, "v": place.v, "a": place.a}
+    rooms: list[tuple[str, dict[str, str]]] = [("", own)]
+    if symbols & {"other_q", "other_v"}:
+        named = {other.v: other.definition for other in places if other.kind == "sum"}
+        rooms = [(named.get(v, v), {**own, "other_q": q, "other_v": v}) for q, v in place.others]
+    if "u" in symbols:
+        many = len(place.drive) > 1
+        rooms = [
+            ("_".join(part for part in (of, drive if many else "") if part), {**room, "u": drive})
+            for of, room in rooms
+            for drive in place.drive
+        ]
+    for of, room in rooms:
+        signals = {port: room[symbol] for port, symbol in effect.inputs.items()}
+        if all(signals.values()):
+            yield of, signals
 
-    `levels` holds the root mean square of signals on the trajectory.
-    """
-    block, at = candidate.block, candidate.at
-    if block is None or at is None or block.effect is None:
-        return max(levels[candidate.unknown.removeprefix("offset.")], 1e-12)
-    inputs = {
-        port: levels[at.q if symbol == "q" else at.v]
-        for port, symbol in block.effect.inputs.items()
+
+def _candidate(
+    kind: EffectType,
+    place: Place,
+    block: str,
+    of: str,
+    signals: dict[str, str],
+    levels: Levels,
+    tones: Mapping[str, Mapping[str, Sine]],
+) -> Candidate | None:
+    effect = kind.effect
+    own = own_values(effect.tone, tones.get(place.definition)) if effect.tone else {}
+    if effect.tone and not own:
+        return None
+    sizes = _sizes(effect, signals, place, levels)
+    shapes: dict[str, tuple[float, ...]] = {}
+    limits: dict[str, tuple[float, float]] = {}
+    for parameter, shape in effect.shapes.items():
+        grid = _grid(shape, sizes)
+        if grid is None:
+            return None
+        shapes[parameter] = grid
+        limits[parameter] = _limits(shape, grid, bounds_of(kind, parameter))
+    at = 1.0
+    if effect.at is not None:
+        values = _grid(effect.at, sizes)
+        if values is None:
+            return None
+        at = values[0]
+    low, high = bounds_of(kind, effect.coefficient)
+    limits[effect.coefficient] = max(low, 0.0) if effect.sign else low, high
+    base = levels.of(place.definition if place.kind == "drive" else place.name).rms
+    inputs = {port: levels.of(signal) for port, signal in signals.items()}
+    scale = scale_of(kind, inputs, shapes, base, at)
+    return Candidate(
+        kind.name,
+        place,
+        block,
+        signals,
+        f"{block}.{effect.coefficient}",
+        effect.sign,
+        shapes,
+        scale,
+        at,
+        of=of,
+        limits=limits,
+        own=own,
+        each=effect.each,
+    )
+
+
+def _sizes(
+    effect: Effect, signals: Mapping[str, str], place: Place, levels: Levels
+) -> dict[str, float]:
+    """What the shapes of an effect are multiples of."""
+    read = {symbol: signals[port] for port, symbol in effect.inputs.items()}
+    return {
+        "": 1.0,
+        "Q": levels.of(read.get("q") or read.get("other_q") or place.q).max,
+        "V": levels.of(read.get("v") or read.get("other_v") or place.v).rms,
+        "U": levels.of(read.get("u") or "".join(place.drive[:1])).max,
+        "T": levels.duration,
+        "dt": levels.interval,
     }
-    defaults = {
-        p.name: float(p.default) for p in block.parameters if isinstance(p.default, int | float)
+
+
+def _grid(shape: Shape, sizes: Mapping[str, float]) -> tuple[float, ...] | None:
+    """The values of a shape that are tried first; None where they are sizes of nothing."""
+    size = sizes[shape.of]
+    return tuple(at * size for at in shape.at) if size > 0 else None
+
+
+def _limits(
+    shape: Shape, grid: Sequence[float], bounds: tuple[float, float]
+) -> tuple[float, float]:
+    """Wide but finite bounds of a shape."""
+    wide = WIDE * max(map(abs, grid))
+    low, high = max(shape.low, bounds[0], -wide), min(bounds[1], wide)
+    if low >= 0.0 and min(grid) > 0:
+        low = max(low, NARROW * min(grid))
+    return low, max(high, *grid)
+
+
+def _sensor_candidates(diagram: Diagram, place: Place, levels: Levels) -> Iterator[Candidate]:
+    signal = place.definition
+    level = levels.of(signal)
+    scales = {
+        "offset": level.rms,
+        "gain": 1.0,
+        "delay": levels.interval,
+        "quad": 1 / level.max if level.max > 0 else 1.0,
+        "drift": level.rms / levels.duration,
     }
-    given = defaults | inputs | {block.effect.coefficient: 1.0, "t": 0.0}
-    size = abs(evaluate(next(iter(block.formulas.values())), given))
-    return max(levels[at.name] / max(size, 1e-300), 1e-300)
+    channels = [s.channels[signal] for s in diagram.measured.values() if signal in s.channels]
+    for kind in SENSOR:
+        values = [getattr(channel, kind) for channel in channels]
+        if any(value is not None for value in values):
+            continue
+        low = 0.0 if kind in ("delay", "gain") else -math.inf
+        yield Candidate(
+            f"sensor_{kind}",
+            place,
+            "",
+            {"y": signal},
+            f"{kind}.{signal}",
+            int(kind == "delay"),
+            scale=max(scales[kind], 1e-300),
+            neutral=float(kind == "gain"),
+            limits={kind: (low, math.inf)},
+        )

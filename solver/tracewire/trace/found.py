@@ -1,9 +1,9 @@
-"""The result of a trace: verdict, effects, error before and after, and the edited diagram."""
+"""The result of a trace: verdict, effects, what was tried, errors before and after, the diagram."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import numpy as np
@@ -12,42 +12,192 @@ from numpy.typing import NDArray
 from tracewire.diagram import Diagram, difference
 
 Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
 Verdict = Literal["null", "effect", "unexplained"]
 
 
 @dataclass(frozen=True)
+class Tie:
+    """An effect that these data cannot tell from one that was found: the correlation of the two on
+    the data, its refitted parameters in SI, and its BIC relative to the one found."""
+
+    name: str
+    place: str
+    likeness: float
+    params: Mapping[str, float] = field(default_factory=dict)
+    rise: float = float("nan")
+
+    def __str__(self) -> str:
+        return f"{self.name} @ {self.place}"
+
+
+@dataclass(frozen=True)
 class FoundEffect:
-    """An effect that the data ask for: its name, its place (a sum, or `sensor.SIGNAL`), its
-    parameters in SI, and the effects that cannot be told from it on these data."""
+    """An effect that the data ask for.
+
+    `place` is a sum, `sensor.SIGNAL` or `drive.INPUT`, `block` the block that was added ('' for a
+    sensor's). `params` are its parameters in SI, `coefficient` the one that it is linear in,
+    `intervals` 95 % intervals. `gain` is half the fall of BIC that it brought, `masked` the part of
+    it that the declared parameters had imitated, `weight` its share among what was tried beside it.
+    """
 
     name: str
     place: str
     params: Mapping[str, float]
-    ties: tuple[str, ...] = ()
+    ties: tuple[Tie, ...] = ()
+    block: str = ""
+    coefficient: str = ""
+    intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    gain: float = float("nan")
+    masked: float = float("nan")
+    weight: float = float("nan")
+
+    def __str__(self) -> str:
+        return f"{self.name} @ {self.place}"
 
 
 @dataclass(frozen=True)
 class Ranked:
-    """A row of the ranking: what was added, its BIC relative to the declared model, its RMSE on the
-    train windows in sigma, and what became of it."""
+    """Effects that were tried in a step: the half fall of BIC that the screen promised and that the
+    refit gave (nan where there was none), their share of the weight, the part that declared
+    parameters imitate, the squared residual per degree of freedom after, and what became of them.
+    """
 
     effects: str
-    bic: float
-    s2: float
+    promised: float
+    gain: float = float("nan")
+    weight: float = float("nan")
+    masked: float = float("nan")
+    s2: float = float("nan")
     remark: str = ""
 
 
-@dataclass(frozen=True, eq=False)
-class HeldOut:
-    """One measured signal on a stretch that played no part in fitting or choosing, in SI."""
+@dataclass(frozen=True)
+class StepTold:
+    """A step of the search: window length in s, squared residual per degree of freedom before, the
+    probability that noise alone promises as much, what was tried, and the outcome in words."""
+
+    window: float
+    s2: float
+    chance: float
+    tried: tuple[Ranked, ...]
+    words: str
+
+
+@dataclass(frozen=True)
+class Moved:
+    """A declared parameter without and with the effects, in SI, and its standard error with."""
+
+    name: str
+    unit: str
+    before: float
+    after: float
+    error: float
+
+    @property
+    def significant(self) -> bool:
+        """Whether it moved by more than two standard errors."""
+        return abs(self.after - self.before) > 2 * self.error
+
+
+@dataclass(frozen=True)
+class ChannelError:
+    """Root mean square errors of a signal in a series in SI, before and after; `kind` is windowed
+    (starts of short windows fitted) or free run (one run, its start fitted on the first part)."""
 
     series: str
+    use: str
+    signal: str
+    unit: str
+    kind: Literal["windowed", "free run"]
+    before: float
+    after: float
+    sigma: float
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A measured signal of a series with the free runs before and after, in SI. `edges` are the
+    times where windows begin, `windowed_before/after` the residuals in sigma within windows at each
+    of `t`, nan where there is none; empty where the series was not cut. `spans` are stretches of
+    the series that are used in different ways: (from, to, use)."""
+
+    series: str
+    use: str
     signal: str
     unit: str
     t: Vector
     measured: Vector
     before: Vector
     after: Vector
+    edges: Vector
+    windowed_before: Vector
+    windowed_after: Vector
+    spans: tuple[tuple[float, float, str], ...] = ()
+
+
+@dataclass(frozen=True)
+class Power:
+    """The smallest coefficient of an effect that these data would show (5 standard errors), SI."""
+
+    name: str
+    place: str
+    coefficient: str
+    smallest: float
+
+
+@dataclass(frozen=True)
+class Dependence:
+    """What a missing torque at a place depends on: variables, and the cross-validated share of the
+    excess squared residual that a smooth function of them explains."""
+
+    place: str
+    variables: tuple[str, ...]
+    share: float
+
+
+@dataclass(frozen=True, eq=False)
+class Missing:
+    """The torque that is missing at a place, as a smooth function of one or two variables, in SI.
+
+    `grid` has the grid points of each variable, `torque` the values, shape (n,) or (n, m), and
+    `density` how many samples lie near each.
+    """
+
+    place: str
+    variables: tuple[str, ...]
+    share: float
+    grid: tuple[Vector, ...]
+    torque: Matrix
+    density: Matrix
+
+
+@dataclass(frozen=True, eq=False)
+class Experiment:
+    """The experiment that would separate an effect from a tie: settings, and by how many sigma it
+    does; `map` has what was searched: rows of settings with their separation."""
+
+    one: str
+    other: str
+    settings: Mapping[str, float]
+    separation: float
+    words: str
+    map: tuple[Mapping[str, float], ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Force:
+    """What is needed at a place over its coordinate and rate: torque histories (N,) that the
+    data ask for beside the refitted declared terms, and those of the fitted effects; for the
+    restoring picture.
+    `names` are the signals that q and v are."""
+
+    place: str
+    q: Vector
+    v: Vector
+    needed: Vector
+    fitted: Vector
+    names: tuple[str, str] = ("q", "v")
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,12 +205,16 @@ class Found:
     """What a trace found.
 
     `verdict`: `null` (nothing is missing beyond the noise), `effect` (named in `effects`), or
-    `unexplained` (something is missing, and no effect of the library explains it). `rmse_before`
-    and `rmse_after` are root mean square errors in SI of free runs on the stretch that played no
-    part, over all measured signals; `sigma` is the noise of each. `fitted_before` and
-    `fitted_after` are the same on the stretches that were fitted, and `s2_...` their squared
-    residual per degree of freedom in units of the noise. `dropped` are declared parameters
-    that went to zero, `values` the refitted parameters. `diagram` is the edited diagram.
+    `unexplained` (something is missing, and no effect of the library explains it; `effects` are
+    then partial approximations). `rmse_before` and `rmse_after` are root mean square errors in SI
+    of free runs on data that played no part, over all measured signals; `sigma` is the noise of
+    each.
+    `s2_before` and `s2_after` are squared residuals per degree of freedom in units of the noise, on
+    the fitted windows. `dropped` are declared parameters that went to zero, `values` the refitted
+    and `declared` the fitted parameters of the diagram as it was. `paragraph` says it all in plain
+    words. `diagram` is the edited diagram. `units` are the SI units of signals and parameters by
+    name, also of those that were added ('coulomb.level', 'offset.theta'). `interrupted`: the user
+    stopped the trace, and this is what was known by then.
     """
 
     verdict: Verdict
@@ -73,13 +227,27 @@ class Found:
     sigma: Mapping[str, float]
     s2_before: float
     s2_after: float
-    fitted_before: float
-    fitted_after: float
-    ranking: tuple[Ranked, ...]
-    held_out: tuple[HeldOut, ...]
+    moved: tuple[Moved, ...]
+    errors: tuple[ChannelError, ...]
+    steps: tuple[StepTold, ...]
+    power: tuple[Power, ...]
+    dependences: tuple[Dependence, ...]
+    missing: Missing | None
+    experiments: tuple[Experiment, ...]
+    confusable: tuple[tuple[str, ...], Matrix]
+    curves: tuple[Curve, ...]
+    forces: tuple[Force, ...]
+    paragraph: str
     words: tuple[str, ...]
     original: Diagram
     diagram: Diagram
+    units: Mapping[str, str] = field(default_factory=dict)
+    interrupted: bool = False
+
+    @property
+    def depends_on(self) -> tuple[str, ...]:
+        """The variables on which a missing torque depends; () where nothing is unexplained."""
+        return () if self.missing is None else self.missing.variables
 
     @property
     def patch(self) -> str:
@@ -96,25 +264,67 @@ class Found:
         """The result as plain data."""
         return {
             "verdict": self.verdict,
+            "interrupted": self.interrupted,
             "effects": [
                 {
                     "name": effect.name,
                     "place": effect.place,
                     "params": dict(effect.params),
-                    "ties": list(effect.ties),
+                    "ties": [str(tie) for tie in effect.ties],
+                    "tied": [vars(tie) for tie in effect.ties],
+                    "block": effect.block,
+                    "intervals": {name: list(ends) for name, ends in effect.intervals.items()},
+                    "gain": effect.gain,
+                    "masked": effect.masked,
+                    "weight": effect.weight,
                 }
                 for effect in self.effects
             ],
             "dropped": list(self.dropped),
+            "depends_on": list(self.depends_on),
+            "missing": None
+            if self.missing is None
+            else {
+                "place": self.missing.place,
+                "variables": list(self.missing.variables),
+                "share": self.missing.share,
+                "grid": [axis.tolist() for axis in self.missing.grid],
+                "torque": self.missing.torque.tolist(),
+            },
             "rmse_before": self.rmse_before,
             "rmse_after": self.rmse_after,
             "sigma": dict(self.sigma),
             "s2_before": self.s2_before,
             "s2_after": self.s2_after,
-            "fitted_before": self.fitted_before,
-            "fitted_after": self.fitted_after,
             "parameters": dict(self.values),
             "declared": dict(self.declared),
-            "ranking": [vars(row) for row in self.ranking],
+            "moved": [vars(moved) for moved in self.moved],
+            "errors": [vars(error) for error in self.errors],
+            "steps": [
+                {
+                    "window": step.window,
+                    "s2": step.s2,
+                    "chance": step.chance,
+                    "tried": [vars(row) for row in step.tried],
+                    "words": step.words,
+                }
+                for step in self.steps
+            ],
+            "power": [vars(power) for power in self.power],
+            "where_what": [
+                {"place": d.place, "variables": list(d.variables), "share": d.share}
+                for d in self.dependences
+            ],
+            "experiments": [
+                {
+                    "one": e.one,
+                    "other": e.other,
+                    "settings": dict(e.settings),
+                    "separation": e.separation,
+                    "words": e.words,
+                }
+                for e in self.experiments
+            ],
+            "paragraph": self.paragraph,
             "words": list(self.words),
         }

@@ -1,64 +1,60 @@
-"""Judging trials: the gate on unseen data, and what is superfluous beside the others."""
+"""Judging trials: the gate on data that no fit saw, and which of several is the best."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tracewire.fit.segment import Segment
-from tracewire.trace.statistics import bic
 from tracewire.trace.trial import Bench, Trial
 
+Vector = NDArray[np.float64]
+LEAST_DROP = 0.02
 AT_NOISE = 1.5
 MATERIAL = 1 / 3
-LEAST_DROP = 0.02
-CHEAP = 6.0
-PIECES = 8
+DECISIVE = 100.0
+"""A fall of BIC that needs less support from the gate."""
 
 
-def gate(bench: Bench, now: Trial, trial: Trial, segments: Sequence[Segment]) -> tuple[bool, str]:
-    """Whether a trial is better than another on segments that no fit saw, and why in words.
+@dataclass(frozen=True)
+class Verdict:
+    """What the gate says of a trial: whether it passes, by how much the squared error falls there,
+    the paired z over windows, the part of windows that improve, and that in words."""
 
-    Where it reaches the noise its squared error must be 2 % smaller there; far above the noise,
-    where everything is significant, it must be a third smaller.
+    passed: bool
+    drop: float
+    z: float
+    improved: float
+    words: str
+
+
+def gate(
+    bench: Bench, now: Trial, trial: Trial, windows: Sequence[Segment], fall: float
+) -> Verdict:
+    """Whether a trial does better than another on windows that no fit saw.
+
+    Its squared error must be 2 % smaller there (a third, where it stays far above the noise, where
+    everything is significant), and either the paired z over windows exceeds 2, or
+    more than three of four windows improve; where BIC has fallen by more than 100, z above 1 is
+    enough. `fall` is that fall of BIC.
     """
-    old, new = bench.elsewhere(now, segments), bench.elsewhere(trial, segments)
-    if len(segments) < PIECES // 2:  # too few to pair: compare pieces of them
-        old = [piece for r in old for piece in np.array_split(r, PIECES)]
-        new = [piece for r in new for piece in np.array_split(r, PIECES)]
-    before = np.array([np.sum(r**2) for r in old])
-    after = np.array([np.sum(r**2) for r in new])
+    old, new = bench.on(now, windows), bench.on(trial, windows)
+    before = np.array([float(np.sum(r**2)) for r in old])
+    after = np.array([float(np.sum(r**2)) for r in new])
     if not before.sum() > 0:
-        return False, "gate: nothing to improve"
+        return Verdict(False, 0.0, 0.0, 0.0, "gate: nothing to improve")
     drop = float(1 - after.sum() / before.sum())
     change = before - after
-    spread = float(np.std(change, ddof=1)) if len(change) > 1 else np.inf
-    z = float(np.mean(change)) / (spread / len(change) ** 0.5) if spread > 0 else 0.0
-    least = LEAST_DROP if trial.s2 <= AT_NOISE else MATERIAL
-    passed = drop > least and (z > 2 or float(np.mean(change > 0)) > 0.75 or drop > 0.5)
+    spread = float(np.std(change, ddof=1)) if len(change) > 1 else 0.0
+    mean = float(np.mean(change))
+    z = mean / (spread / len(change) ** 0.5) if spread > 0 else np.copysign(np.inf, mean)
+    improved = float(np.mean(change > 0))
+    supported = z > 2 or improved > 0.75 or (fall > DECISIVE and z > 1)
+    passed = drop > (LEAST_DROP if trial.s2 <= AT_NOISE else MATERIAL) and supported
     words = f"gate: squared error {'falls' if drop > 0 else 'rises'} by {abs(drop):.0%}"
-    return passed, words + (", accepted" if passed else ", refused")
-
-
-def prune(bench: Bench, trial: Trial, tell: Callable[[str], None]) -> tuple[Trial, tuple[str, ...]]:
-    """The trial without effects and declared terms that the others made superfluous; their names.
-
-    At the noise BIC decides. Far above it a term stays only if it matters, by a third of the
-    squared error. Declared terms are tried where zero is their lower bound.
-    """
-    removed: list[str] = []
-    added = {effect.unknown for effect in trial.effects}
-    lows = {u.name: u.low for u in trial.criterion.unknowns}
-    names = [n for n in lows if n in added]
-    names += [n for n, low in lows.items() if low == 0.0 and n not in added]
-    for name in names:
-        tell(f"trying without {name}")
-        smaller = bench.without(trial, name)
-        loss = bic(smaller.rss, trial.count, trial.part, smaller.unknowns)
-        loss -= bic(trial.rss, trial.count, trial.part, trial.unknowns)
-        immaterial = trial.s2 > AT_NOISE and trial.rss > (1 - MATERIAL) * smaller.rss
-        if loss < CHEAP or immaterial:
-            removed.append(name)
-            trial = smaller
-    return trial, tuple(removed)
+    return Verdict(
+        passed, drop, float(z), improved, words + (", passed" if passed else ", refused")
+    )

@@ -1,13 +1,14 @@
-"""Places: the sums of a diagram that feed a rate, where a missing force or torque would enter."""
+"""Places: where in a diagram something may be missing: sums, drives and measured channels."""
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Literal
 
-from tracewire.compile import Flat, Model
-from tracewire.diagram import split_index
+from tracewire.compile import Flat, FlatBlock, FlatState, Model
+from tracewire.diagram import find_signal, split_index
 from tracewire.formula import Name, names_of
 
 PASSED = ("sum", "gain", "divide")
@@ -15,29 +16,55 @@ PASSED = ("sum", "gain", "divide")
 
 @dataclass(frozen=True)
 class Place:
-    """A sum that feeds a rate: its name, the rate `v` and the coordinate `q` at it ('' if none).
+    """A place: a sum that feeds a rate, a measured channel, or a drive.
 
-    `definition` is the sum's name in the text of the diagram.
+    name: that of the sum, `sensor.SIGNAL`, or `drive.NAME`; `definition` is the sum's name in the
+    text of the diagram, the measured signal, or the input or source block. Signals of a sum: the
+    rate `v`, the coordinate `q` whose rate that is, the acceleration `a` that v is the integral of
+    ('' where there is none), and `others`, (q, v) of the sums of other rates. `drive` holds the
+    drives of the diagram, at a drive itself only that.
     """
 
     name: str
+    kind: Literal["sum", "sensor", "drive"]
     definition: str
-    v: str
     q: str = ""
+    v: str = ""
+    a: str = ""
+    others: tuple[tuple[str, str], ...] = ()
+    drive: tuple[str, ...] = ()
 
 
 def find_places(model: Model) -> list[Place]:
-    """The places of a model.
+    """The places of a model: sums, then drives, then sensors.
 
-    From each state the search goes back through gains, divisions, sums and the ports of
+    Sums: from each state the search goes back through gains, divisions, sums and the ports of
     subsystems; the sums that it meets are places of the nearest state. A sum that only feeds
     another place of the same state says nothing new and is left out. Where the diagram itself says
     which sum is the place of a rate (`place: {q: ..., v: ...}`), that sum is the only one. Sums
-    inside subsystems are not tried: what the subsystem puts out enters a sum further up; nor are
-    sums of vectors.
+    inside subsystems are not tried: what the subsystem puts out enters a sum further up (where
+    nothing but a subsystem feeds the rate, give it a sum of its own); nor are sums of vectors.
+
+    Drives: the named inputs that something reads, and the blocks whose output depends on nothing
+    but the time (sine, square, step, ramp, table, a formula of t) and that something reads.
+
+    A signal inside a subsystem counts where an output of that carries it: blocks at the top cannot
+    be wired to others.
+
+    Sensors: the signals that a series measures in a column of its own; but not an input.
     """
-    flat = model.flat
+    drives = tuple(_drives(model))
+    sums = [place for place in _sums(model.flat, drives) if not _is_drive(model, place, drives)]
+    return [
+        *(_seen_from_outside(model, place) for place in sums),
+        *(Place(f"drive.{name}", "drive", name, drive=(name,)) for name in drives),
+        *(Place(f"sensor.{name}", "sensor", name) for name in _sensors(model)),
+    ]
+
+
+def _sums(flat: Flat, drives: tuple[str, ...]) -> list[Place]:
     coordinates = {s.rate.name: s.name for s in flat.states if isinstance(s.rate, Name)}
+    states = {state.name: state for state in flat.states}
     nearest: dict[str, tuple[int, str]] = {}
     for state in flat.states:
         if split_index(state.name)[1]:
@@ -48,19 +75,95 @@ def find_places(model: Model) -> list[Place]:
     told = {
         name: block
         for name, block in flat.blocks.items()
-        if block.type == "sum" and "v" in block.local and not split_index(name)[1]
+        if block.type == "sum" and "v" in block.local and _at_top(name, block)
     }
     taken = {block.local["v"] for block in told.values()}
-    places = [
-        Place(name, block.definition, block.local["v"], block.local.get("q", ""))
-        for name, block in told.items()
-    ]
+    rates = {name: (block.local["v"], block.local.get("q", "")) for name, block in told.items()}
     for name, (_, fed) in nearest.items():
-        block = flat.blocks[name]
-        if fed in taken or "." in block.definition or _only_feeds(flat, name, fed, nearest):
+        if fed in taken or not _at_top(name, flat.blocks[name]):
             continue
-        places.append(Place(name, block.definition, fed, coordinates.get(fed, "")))
-    return places
+        if not _only_feeds(flat, name, fed, nearest):
+            rates[name] = fed, coordinates.get(fed, "")
+    bodies = list(dict.fromkeys((q, v) for v, q in rates.values()))
+    return [
+        Place(
+            name,
+            "sum",
+            flat.blocks[name].definition,
+            q,
+            v,
+            _acceleration(v, states),
+            tuple(body for body in bodies if body[1] != v),
+            drives,
+        )
+        for name, (v, q) in rates.items()
+    ]
+
+
+def _seen_from_outside(model: Model, place: Place) -> Place:
+    """The place with signals as the diagram may name them; '' where they stay in a subsystem."""
+
+    def visible(name: str) -> str:
+        if not name or find_signal(model.diagram, name) == name:
+            return name
+        same = (other for other, formula in model.flat.signals.items() if formula == Name(name))
+        return next((other for other in same if find_signal(model.diagram, other) == other), "")
+
+    others = tuple((visible(q), visible(v)) for q, v in place.others)
+    q, v, a = visible(place.q), visible(place.v), visible(place.a)
+    return replace(place, q=q, v=v, a=a, others=tuple(body for body in others if any(body)))
+
+
+def _at_top(name: str, block: FlatBlock) -> bool:
+    """Whether a block stands in the diagram itself, and puts out a number."""
+    return "." not in block.definition and not split_index(name)[1]
+
+
+def _acceleration(v: str, states: Mapping[str, FlatState]) -> str:
+    """The signal that a rate is the integral of; '' where it is another formula."""
+    rate = states[v].rate if v in states else None
+    return rate.name if isinstance(rate, Name) else ""
+
+
+def _drives(model: Model) -> Iterator[str]:
+    flat = model.flat
+    formulas = [*flat.signals.values(), *(state.rate for state in flat.states)]
+    formulas += [event.when for event in flat.events]
+    formulas += [formula for event in flat.events for formula in event.set.values()]
+    read = {name for formula in formulas for name in names_of(formula)}
+    yield from (name for name in flat.inputs if name in read)
+    moving = {state.name for state in flat.states} | set(flat.signals) | set(flat.inputs)
+    moving |= {memory.name for memory in flat.memories}
+    for name, formula in flat.signals.items():
+        block = flat.blocks.get(name)
+        if block is None or name not in read or not _at_top(name, block):
+            continue
+        effect = model.diagram.library[block.type].effect is not None
+        needs = set(names_of(formula))
+        if "t" in needs and formula != Name("t") and not needs & moving and not effect:
+            yield name
+
+
+def _is_drive(model: Model, place: Place, drives: tuple[str, ...]) -> bool:
+    """Whether a sum holds a drive and effects at it only: its readers see the drive through it."""
+    blocks, library = model.diagram.blocks, model.diagram.library
+    wires = [wire.signal for wires in blocks[place.definition].inputs.values() for wire in wires]
+    effects = {
+        name: library[use.type].effect
+        for name, use in blocks.items()
+        if use.subsystem is None and name in wires
+    }
+    acting = [name for name, effect in effects.items() if effect and effect.place == "drive"]
+    return bool(acting) and set(wires) - set(acting) <= set(drives)
+
+
+def _sensors(model: Model) -> list[str]:
+    found: dict[str, None] = {}
+    for series in model.diagram.measured.values():
+        for signal, channel in series.channels.items():
+            if channel.column and signal not in model.flat.inputs:
+                found.setdefault(signal)
+    return list(found)
 
 
 def _sums_behind(flat: Flat, names: tuple[str, ...]) -> Iterator[tuple[str, int]]:

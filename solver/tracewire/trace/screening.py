@@ -2,110 +2,249 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
+from numpy.typing import NDArray
 
-from tracewire.compile import compile
-from tracewire.fit.criterion import Criterion
-from tracewire.fit.segment import of_diagram
-from tracewire.solve import simulate
-from tracewire.trace.candidates import Candidate, coefficient_scale, extend
-from tracewire.trace.places import Place
-from tracewire.trace.statistics import Screen
-from tracewire.trace.trial import Bench, Trial
+from tracewire.fit.segment import Unknown
+from tracewire.trace.candidates import Candidate, is_default
+from tracewire.trace.histories import Variant, histories
+from tracewire.trace.statistics import Columns
+from tracewire.trace.tangent import Tangent
+from tracewire.trace.trial import Added, Trial
+from tracewire.trace.windows import eliminated, projection
 
-SINGLES = 4
-PAIRS = 4
-PROMISING = 0.2
-MORE_THAN_PARTS = 5.0
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+PHASE = "phase"
+"""A shape of this name turns a sine into a cosine: the two together span all phases."""
+NEAR = 1e-6
+QUADRATURE = (0.0, math.pi / 2)
+PAIRED = 24
+"""How many single effects are paired with each other."""
+TRUST = 0.7
+"""The part of an expected coefficient at which a refit begins."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
+class Row:
+    """A variant of a candidate in the screen: its columns (two where a phase is free), the fall of
+    the sum of squares that it promises, that fall as half a fall of BIC, and the values to begin
+    with."""
+
+    candidate: Candidate
+    shapes: Mapping[str, float]
+    columns: tuple[int, ...]
+    fall: float
+    gain: float
+    values: Mapping[str, float]
+    masked: float
+    possible: bool
+    series: tuple[str, ...] = ()
+    """Those that have a phase of their own: there is a column for each, and each quadrature."""
+
+    @property
+    def added(self) -> Added:
+        """The effect as a refit begins it."""
+        return Added(self.candidate, self.values)
+
+
+@dataclass(frozen=True, eq=False)
 class Proposal:
-    """Effects to try together, and the coefficients that the screen expects of them."""
+    """Effects to try together, and what they promise."""
 
-    effects: tuple[Candidate, ...]
-    expected: tuple[float, ...]
+    rows: tuple[Row, ...]
     gain: float
 
 
-def screen_candidates(
-    bench: Bench, now: Trial, places: Sequence[Place], candidates: Sequence[Candidate]
-) -> tuple[Screen, dict[str, float]]:
-    """The score test of all candidates, and the size of each coefficient that would matter.
+@dataclass(frozen=True, eq=False)
+class Screen:
+    """All variants of all candidates, scored on one linearisation."""
 
-    The columns come from one model that has them all, with coefficient zero.
-    """
-    added = [(c, 0.0) for c in candidates if c.block is not None]
-    model = bench.compiled(extend(now.model.diagram, added))
-    levels = _levels(bench, now, places)
-    scales = {c.unknown: coefficient_scale(c, levels) for c in candidates}
-    unknowns = now.criterion.moved(now.descent.z)[0]
-    extra = [replace(c.as_unknown(0.0, 0.1 * scales[c.unknown]), low=-np.inf) for c in candidates]
-    fixed = now.criterion.parameters
-    criterion = Criterion(model, now.segments, [*unknowns, *extra], fixed, bench.rtol, bench.sigma)
-    residuals, derivatives = criterion.residuals_and_derivatives(criterion.begin())
-    jacobian = np.concatenate(derivatives)
-    first, last = len(unknowns), len(unknowns) + len(extra)
-    columns = {
-        c.unknown: jacobian[:, first + n] / criterion.scales[first + n]
-        for n, c in enumerate(candidates)
-    }
-    kept = np.concatenate((jacobian[:, :first], jacobian[:, last:]), axis=1)
-    residual = np.concatenate([r.ravel() for r in residuals])
-    return Screen(residual, kept, columns, now.part), scales
+    columns: Columns
+    rows: tuple[Row, ...]
+
+    def best(self) -> list[Row]:
+        """The best possible variant of each candidate, the most promising first."""
+        found: dict[str, Row] = {}
+        for row in self.rows:
+            known = found.get(str(row.candidate))
+            if row.possible and (known is None or row.gain > known.gain):
+                found[str(row.candidate)] = row
+        return sorted(found.values(), key=lambda row: -row.gain)
+
+    def chance(self) -> float:
+        """The probability that noise alone looks as good as the best row does."""
+        rows = [row for row in self.rows if row.possible]
+        if not rows:
+            return 1.0
+        best = max(row.fall for row in rows)
+        groups = [row.columns for row in self.rows]
+        return self.columns.chance(groups, [row.candidate.sign for row in self.rows], best)
+
+    def pairs(self) -> list[Proposal]:
+        """Pairs of candidates with possible signs, the most promising first."""
+        singles = self.best()[:PAIRED]
+        found = []
+        for one, other in combinations(singles, 2):
+            fall, values = self.columns.score((*one.columns, *other.columns))
+            split = len(one.columns)
+            parts = (one, values[:split]), (other, values[split:])
+            if all(_possible(row.candidate, part) for row, part in parts):
+                rows = tuple(_scored(row, part) for row, part in parts)
+                count = sum(_count(row.candidate, row.shapes, row.series) for row in (one, other))
+                found.append(Proposal(rows, self.columns.gain(fall, count)))
+        return sorted(found, key=lambda proposal: -proposal.gain)
 
 
-def shortlist(
-    screen: Screen, candidates: Sequence[Candidate], room: int, least: float
-) -> list[Proposal]:
-    """What is worth a refit: the best single effects, and pairs that promise more than their parts.
-
-    Every proposal gains at least `least`, has possible signs, and either belongs to the two best
-    single effects or promises a fifth of the best gain. `room` is how many effects may be added.
-    """
-    singles = _proposals(screen, candidates, 1, least)
-    alone = {proposal.effects[0]: proposal.gain for proposal in singles}
-    pairs = [
-        proposal
-        for proposal in (_proposals(screen, candidates, 2, least) if room > 1 else ())
-        if proposal.gain > MORE_THAN_PARTS + max(alone.get(e, 0.0) for e in proposal.effects)
+def screened(tangent: Tangent, trial: Trial, candidates: Sequence[Candidate]) -> Screen:
+    """The score test of every variant of every candidate, at coefficient zero."""
+    matrix, variants = _matrix(tangent, candidates)
+    windows = tangent.windows
+    views = [projection(windows, n) for n in range(len(windows.near))]
+    unknowns, residual = eliminated(windows, views)
+    # a value that sits on its bound cannot give way to an effect
+    unknowns = unknowns[
+        :, [not _on_bound(u, windows.values[u.name]) for u in windows.criterion.unknowns]
     ]
-    enough = PROMISING * max((p.gain for p in (*singles, *pairs)), default=0.0)
-    kept = [p for n, p in enumerate(singles[:SINGLES]) if n < 2 or p.gain > enough]
-    return kept + [p for p in pairs[:PAIRS] if p.gain > enough]
-
-
-def _proposals(
-    screen: Screen, candidates: Sequence[Candidate], size: int, least: float
-) -> list[Proposal]:
-    """All combinations of a size whose coefficients have possible signs, the best first."""
-    found = []
-    for effects in combinations(candidates, size):
-        score = screen.score([c.unknown for c in effects])
-        signs = zip(effects, score.values, strict=True)
-        if score.gain > least and all(c.sign == 0 or value > 0 for c, value in signs):
-            found.append(Proposal(effects, score.values, score.gain))
-    return sorted(found, key=lambda proposal: -proposal.gain)
-
-
-def _levels(bench: Bench, now: Trial, places: Sequence[Place]) -> dict[str, float]:
-    """Root mean squares of the signals at the places and of the sensors, on the first segment."""
-    names = {name for p in places for name in (p.name, p.v, p.q) if name}
-    names |= {signal for m in bench.measured for signal in m.values}
-    model = compile(now.model.diagram, record=sorted(names))
-    segment = now.segments[0]
-    run = simulate(
-        model,
-        parameters={**now.criterion.parameters, **of_diagram(now.values)},
-        start=segment.start,
-        span=(min(segment.begin, float(segment.t[0])), float(segment.t[-1])),
-        times=segment.t,
-        rtol=bench.rtol,
-        preset=segment.measured.preset,
-        inputs=segment.measured.inputs,
+    sizes = [near.residual.size for near in windows.near]
+    parts = np.split(matrix, np.cumsum(sizes)[:-1])
+    reduced = np.concatenate([view.off(part) for view, part in zip(views, parts, strict=True)])
+    seen = np.sum(reduced**2, axis=0)
+    basis = _basis(unknowns)
+    left = reduced - basis @ (basis.T @ reduced)
+    masked = 1 - np.sum(left**2, axis=0) / np.maximum(seen, 1e-300)
+    visible = seen > 1e-18 * max(float(seen.max(initial=0.0)), 1e-300)
+    masked = np.where(visible, np.clip(masked, 0.0, 1.0), 1.0)
+    columns = Columns(
+        residual - basis @ (basis.T @ residual), left, masked, trial.part, trial.freedom
     )
-    return {name: max(float(np.sqrt(np.mean(run[name] ** 2))), 1e-12) for name in names}
+    names = tuple(run.series for run in tangent.trajectories)
+    rows = [_row(columns, group, names) for group in _groups(variants)]
+    return Screen(columns, tuple(rows))
+
+
+def _matrix(tangent: Tangent, candidates: Sequence[Candidate]) -> tuple[Matrix, list[Variant]]:
+    """The columns of all variants, d residual/d coefficient in sigma."""
+    wired = [c for c in candidates if c.place.kind != "sensor"]
+    known = histories(tangent.windows.criterion.model, wired, tangent.trajectories)
+    by_place: dict[str, list[Variant]] = {}
+    for variant in known:
+        by_place.setdefault(variant.candidate.place.name, []).append(variant)
+    given = {
+        name: [
+            np.stack([known[v][n] for v in group], axis=1) for n in range(len(tangent.trajectories))
+        ]
+        for name, group in by_place.items()
+    }
+    variants = [variant for group in by_place.values() for variant in group]
+    matrix = tangent.answer(given) if variants else np.zeros((tangent.size, 0))
+    sensors = [c for c in candidates if c.place.kind == "sensor"]
+    shown = [tangent.sensed(c.effect, c.place.definition) for c in sensors]
+    matrix, variants = _by_series(tangent, matrix, variants)
+    variants += [Variant(c, ()) for c in sensors]
+    return np.column_stack([matrix, *shown]) if shown else matrix, variants
+
+
+def _by_series(
+    tangent: Tangent, matrix: Matrix, variants: list[Variant]
+) -> tuple[Matrix, list[Variant]]:
+    """The columns with one for each series, zero in the others, where a phase is its own there."""
+    count = len(tangent.trajectories)
+    if count < 2 or not any(variant.candidate.each for variant in variants):
+        return matrix, variants
+    sizes = [near.residual.size for near in tangent.windows.near]
+    of = np.repeat(tangent.series, sizes)
+    columns: list[Vector] = []
+    found: list[Variant] = []
+    for number, variant in enumerate(variants):
+        column = matrix[:, number]
+        own = bool(variant.candidate.each)
+        parts = [np.where(of == n, column, 0.0) for n in range(count)] if own else [column]
+        columns += parts
+        found += [variant] * len(parts)
+    return np.stack(columns, axis=1), found
+
+
+def _groups(variants: Sequence[Variant]) -> Iterator[list[tuple[int, Variant]]]:
+    """Variants with their columns; those that differ only in phase stand together."""
+    groups: dict[tuple[str, tuple[tuple[str, float], ...]], list[tuple[int, Variant]]] = {}
+    for number, variant in enumerate(variants):
+        phases = variant.candidate.shapes.get(PHASE, ())
+        joint = len(phases) == 2 and bool(np.allclose(phases, QUADRATURE, atol=1e-3))
+        key = tuple((n, x) for n, x in variant.shapes if n != PHASE or not joint)
+        groups.setdefault((str(variant.candidate), key), []).append((number, variant))
+    yield from groups.values()
+
+
+def _row(columns: Columns, group: Sequence[tuple[int, Variant]], names: tuple[str, ...]) -> Row:
+    """One row: the score of a variant."""
+    indices = tuple(number for number, _ in group)
+    candidate = group[0][1].candidate
+    fall, values = columns.score(indices)
+    shapes = dict(group[0][1].shapes)
+    series = names if candidate.each and len(names) > 1 else ()
+    row = Row(
+        candidate=candidate,
+        shapes=shapes,
+        columns=indices,
+        fall=fall,
+        gain=columns.gain(fall, _count(candidate, shapes, series)),
+        values={},
+        masked=float(np.max(columns.masked[list(indices)])),
+        possible=fall > 0 and _possible(candidate, values),
+        series=series,
+    )
+    return _scored(row, values)
+
+
+def _scored(row: Row, values: Vector) -> Row:
+    """The row with the values at which a refit begins."""
+    shapes = dict(row.shapes)
+    count = len(row.series)
+    if count and len(values) == 2 * count:  # one amplitude, and a phase in each series
+        sines, cosines = values[:count], values[count:]
+        del shapes[PHASE]
+        phases = np.arctan2(cosines, sines).tolist()
+        shapes |= {f"{PHASE}@{name}": p for name, p in zip(row.series, phases, strict=True)}
+        values = np.array([np.mean(np.hypot(sines, cosines))])
+    elif len(values) == 2:  # sin(x + phase) = cos(phase) sin(x) + sin(phase) cos(x)
+        shapes[PHASE] = math.atan2(values[1], values[0]) + shapes.get(PHASE, 0.0)
+    size = float(np.hypot(*values)) if len(values) == 2 else float(values[0])
+    neutral = row.candidate.neutral
+    begun = {row.candidate.parameter: neutral + TRUST * size, **shapes}
+    return Row(
+        row.candidate, row.shapes, row.columns, row.fall, row.gain, begun, row.masked, row.possible,
+        row.series,
+    )  # fmt: skip
+
+
+def _on_bound(unknown: Unknown, value: float) -> bool:
+    """Whether a fitted value sits on a bound."""
+    near = NEAR * unknown.scale
+    return value - unknown.low < near or unknown.high - value < near
+
+
+def _possible(candidate: Candidate, values: Vector) -> bool:
+    """Whether a coefficient has a physical sign."""
+    return candidate.sign == 0 or len(values) > 1 or float(values[0]) * candidate.sign > 0
+
+
+def _count(candidate: Candidate, shapes: Mapping[str, float], series: Sequence[str]) -> int:
+    """How many numbers an effect takes: a shape that keeps its default is none. The screen takes an
+    amplitude and a phase in each series that has a phase of its own."""
+    more = 2 * (len(series) - 1) if series else 0
+    return 1 + more + sum(not is_default(candidate, name, value) for name, value in shapes.items())
+
+
+def _basis(matrix: Matrix) -> Matrix:
+    """An orthonormal basis of the columns of a matrix, without its negligible directions."""
+    if matrix.shape[1] == 0:
+        return np.zeros((matrix.shape[0], 0))
+    scaled = matrix / np.maximum(np.linalg.norm(matrix, axis=0), 1e-300)
+    left, singular, _ = np.linalg.svd(scaled, full_matrices=False)
+    return np.asarray(left[:, singular > 1e-8 * max(float(singular[0]), 1e-300)])

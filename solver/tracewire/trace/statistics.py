@@ -1,18 +1,24 @@
-"""The numbers by which effects are judged: effective sample size, BIC, scores."""
+"""The numbers by which effects are judged: effective sample size, BIC, scores, chance."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import gumbel_r
 
 Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+DRAWS = 200
+SEED = 20
+HIDDEN = 1e-6
+"""The part of a column's square beyond which the unknowns that are there imitate it completely."""
 
 
 def effective_part(residuals: Sequence[Vector]) -> float:
-    """N_eff/N = 2 arccos(rho)/pi, rho the lag-1 correlation of residuals inside segments.
+    """N_eff/N = 2 arccos(rho)/pi, rho the lag-1 correlation of residuals inside windows.
 
     For white residuals it is 1. For a smooth, oscillating residual it is twice its number of sign
     changes per sample (Rice), which does not depend on how finely the residual is sampled.
@@ -29,60 +35,74 @@ def bic(rss: float, count: int, part: float, unknowns: int) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class Score:
-    """What one or more added coefficients promise without a refit.
+class Columns:
+    """Candidate columns beside what is there already: d residual/d coefficient, without what
+    start values and unknowns can imitate.
 
-    `gain` is the fall of BIC/2, `values` the expected coefficients, `masked` the share of each
-    column that the unknowns already there can imitate.
+    residual (M,), matrix (M, K), `masked` (K,) the part of each column's square that the unknowns
+    imitate (that beyond the start values: 1 = completely), `part` N_eff/N of the residual,
+    `freedom` its degrees of freedom.
     """
 
-    gain: float
-    values: tuple[float, ...]
-    masked: tuple[float, ...]
+    residual: Vector
+    matrix: Matrix
+    masked: Vector
+    part: float
+    freedom: int
 
+    @property
+    def rss(self) -> float:
+        """The sum of squared residuals."""
+        return float(self.residual @ self.residual)
 
-class Screen:
-    """The score test: columns of candidates beside the unknowns that are already there.
+    def score(self, indices: Sequence[int]) -> tuple[float, Vector]:
+        """By how much columns taken together lower the sum of squares, and their coefficients."""
+        chosen = self.matrix[:, list(indices)]
+        if min(1 - self.masked[list(indices)]) < HIDDEN:
+            return 0.0, np.zeros(len(indices))
+        values = np.asarray(np.linalg.lstsq(chosen, -self.residual, rcond=1e-8)[0])
+        left = self.residual + chosen @ values
+        return max(self.rss - float(left @ left), 0.0), values
 
-    residual (N,), jacobian (N, unknowns), columns (N, candidates): d residual / d coefficient.
-    """
+    def gain(self, fall: float, count: int) -> float:
+        """What a fall of the sum of squares is worth: half the fall of BIC, for `count` numbers."""
+        rows = len(self.residual)
+        left = max(self.rss - fall, 1e-12 * self.rss, 1e-300)
+        size = 0.5 * rows * self.part * float(np.log(self.rss / left))
+        return size - 0.5 * count * float(np.log(rows))
 
-    def __init__(
-        self, residual: Vector, jacobian: Vector, columns: Mapping[str, Vector], part: float
-    ) -> None:
-        basis = _basis(jacobian)
-        self.residual = residual - basis @ (basis.T @ residual)
-        self.columns = {name: z - basis @ (basis.T @ z) for name, z in columns.items()}
-        self.sizes = {name: float(z @ z) for name, z in columns.items()}
-        self.rss = float(self.residual @ self.residual)
-        self.count, self.part = len(residual), part
+    def likeness(self, one: Sequence[int], other: Sequence[int]) -> float:
+        """The canonical correlation of two groups of columns: 1 where no data tell them apart."""
+        bases = []
+        for indices in (one, other):
+            left, singular, _ = np.linalg.svd(self.matrix[:, list(indices)], full_matrices=False)
+            bases.append(left[:, singular > 1e-8 * max(float(singular[0]), 1e-300)])
+        return (
+            float(np.linalg.norm(bases[0].T @ bases[1], 2)) if all(b.size for b in bases) else 0.0
+        )
 
-    def score(self, names: Sequence[str]) -> Score:
-        """The score of coefficients taken together."""
-        matrix = np.stack([self.columns[name] for name in names], axis=1)
-        kept = [
-            float(z @ z) / max(self.sizes[name], 1e-300)
-            for name, z in zip(names, matrix.T, strict=True)
-        ]
-        if min(kept) < 1e-9:  # the unknowns that are there imitate it completely
-            return Score(-np.inf, (0.0,) * len(names), tuple(1 - k for k in kept))
-        values, *_ = np.linalg.lstsq(matrix, -self.residual, rcond=1e-10)
-        left = self.residual + matrix @ values
-        rss = max(float(left @ left), 1e-300)
-        gain = 0.5 * self.count * self.part * float(np.log(self.rss / rss))
-        gain -= 0.5 * len(names) * float(np.log(self.count))
-        return Score(gain, tuple(map(float, values)), tuple(1 - k for k in kept))
+    def chance(self, groups: Sequence[Sequence[int]], signs: Sequence[int], best: float) -> float:
+        """The probability that noise alone gives some group a fall of `best` or more.
 
-    def likeness(self, one: str, other: str) -> float:
-        """The correlation of two projected columns: 1 where the data cannot tell them apart."""
-        a, b = self.columns[one], self.columns[other]
-        return abs(float(a @ b)) / max(float(np.linalg.norm(a) * np.linalg.norm(b)), 1e-300)
-
-
-def _basis(matrix: Vector) -> Vector:
-    """An orthonormal basis of the columns of a matrix, without its negligible directions."""
-    if matrix.shape[1] == 0:
-        return np.zeros((matrix.shape[0], 0))
-    scaled = matrix / np.maximum(np.linalg.norm(matrix, axis=0), 1e-300)
-    left, singular, _ = np.linalg.svd(scaled, full_matrices=False)
-    return np.asarray(left[:, singular > 1e-10 * singular[0]])
+        200 draws of white noise are scored as the residual is, all groups at once, and a Gumbel
+        distribution is fitted to the largest scores; so correlations between columns count, and no
+        run is needed. `best` is a fall in the noise's variance, counted by N_eff.
+        """
+        rng = np.random.default_rng(SEED)
+        noise = rng.standard_normal((len(self.residual), DRAWS))
+        largest = np.zeros(DRAWS)
+        single = [n for n, group in enumerate(groups) if len(group) == 1]
+        columns = [groups[n][0] for n in single]
+        sizes = np.linalg.norm(self.matrix[:, columns], axis=0)
+        scores = (self.matrix[:, columns] / np.maximum(sizes, 1e-300)).T @ noise
+        sided = np.array([signs[n] for n in single])[:, None]
+        scores = np.where((sided == 0) | (scores * sided < 0), scores, 0.0)
+        if len(scores):
+            largest = np.max(scores**2, axis=0)
+        for group in groups:
+            if len(group) > 1:
+                basis, _ = np.linalg.qr(self.matrix[:, list(group)])
+                largest = np.maximum(largest, np.sum((basis.T @ noise) ** 2, axis=0))
+        place, scale = gumbel_r.fit(largest)
+        variance = (self.rss - best) / max(self.freedom, 1)
+        return float(gumbel_r.sf(best * self.part / max(variance, 1e-300), place, scale))

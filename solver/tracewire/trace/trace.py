@@ -2,32 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracewire.compile import Model
-from tracewire.diagram import Diagram, set_values
-from tracewire.errors import FitError
+from tracewire.errors import TracewireError
 from tracewire.fit.fit import with_measured_signals
 from tracewire.fit.measured import Measured, load_measured
 from tracewire.fit.noise import channel_noise
 from tracewire.fit.result import Fit
-from tracewire.trace.candidates import Candidate, extend, find_candidates
-from tracewire.trace.found import Found, FoundEffect, HeldOut, Ranked, Verdict
-from tracewire.trace.judge import AT_NOISE, gate, prune
+from tracewire.trace.account import compared, moved, rmse
+from tracewire.trace.dependence import where_what
+from tracewire.trace.experiment import separating
+from tracewire.trace.finish import Final, finished
+from tracewire.trace.force import forces
+from tracewire.trace.found import Dependence, Experiment, Force, Found, Missing
+from tracewire.trace.mistakes import refuse_mistakes
 from tracewire.trace.places import find_places
-from tracewire.trace.screening import Proposal, screen_candidates, shortlist
-from tracewire.trace.statistics import Screen, bic
-from tracewire.trace.stretches import can_be_cut, share_out
+from tracewire.trace.power import powers
+from tracewire.trace.refusals import check_series, remarks
+from tracewire.trace.search import Search, shortest_window
+from tracewire.trace.stretches import share_out
+from tracewire.trace.tangent import Tangent
+from tracewire.trace.telling import paragraph_of
+from tracewire.trace.told import (
+    confusable,
+    edited,
+    told_effects,
+    told_steps,
+    verdict_of,
+)
 from tracewire.trace.trial import Bench, Trial
 
-Vector = NDArray[np.float64]
-MOST_EFFECTS = 3
-LEAST_GAIN = 5.0
-LIKE = 0.985
+EXPERIMENTS = 2
+SUSPICIOUS = 3.0
 
 
 def trace(
@@ -39,216 +49,157 @@ def trace(
 ) -> Found:
     """Trace the residual of a diagram on its measured series to an effect that it lacks.
 
-    Every effect of the library is tried at every sum that feeds a rate, and an offset at every
-    measured channel: first by a score test on one linearisation, then the best, and pairs of them,
-    by a refit in the loop, ranked by BIC. It is accepted only if it improves stretches that the fit
-    did not see; the errors reported come from a third stretch.
+    Every effect of the library is tried at every place, first by a score test on one linearisation,
+    then the best, and pairs of them, by a refit in the loop, ranked by BIC. It is accepted only if
+    it improves stretches that the fit did not see; the errors reported come from a third stretch.
+    Ctrl-C ends it with what was found so far.
 
     Raises DataError where the series cannot be used, FitError where the model does not run.
     """
-    return _Tracing(subject, measured, rtol, progress or (lambda text: None)).found()
+    tell = progress or (lambda text: None)
+    search = begun(subject, measured, rtol, tell)
+    interrupted = False
+    try:
+        declared = search.declared()
+        search.run(declared)
+        final = finished(search, *search.standing)
+        _refuse_mistakes(search, declared, final)
+    except KeyboardInterrupt:
+        if search.best is None:
+            raise
+        interrupted = True
+        final = Final(*search.standing, {}, ())
+    return _found(search, final, interrupted)
 
 
-class _Tracing:
-    def __init__(
-        self,
-        subject: Model | Fit,
-        measured: Sequence[Measured] | None,
-        rtol: float,
-        progress: Callable[[str], None],
-    ) -> None:
-        self.begun: dict[str, float] = {}
-        if isinstance(subject, Fit):
-            self.begun = dict(subject.values)
-            measured = subject.measured if measured is None else measured
-            subject = subject.model
-        model = with_measured_signals(subject, measured)
-        self.model, self.tell = model, progress
-        self.places = find_places(model)
-        series = tuple(load_measured(model) if measured is None else measured)
-        sigma = channel_noise([m for m in series if m.use != "validate"])
-        self.bench = Bench(model, series, sigma, rtol)
-        self.stretches = share_out(model, series)
-        self.words: list[str] = []
-        self.ranking: list[Ranked] = []
-        if not self.places:
-            self.words.append("no sum of the diagram feeds a rate: only sensor offsets were tried")
+def _refuse_mistakes(search: Search, declared: Trial, final: Final) -> None:
+    """Refuse records that a mistake explains better than what was found.
 
-    def found(self) -> Found:
-        declared = self.declared_fit()
-        best = declared
-        screen: Screen | None = None
-        while len(best.effects) < MOST_EFFECTS:
-            step = self.step(best)
-            if step is None:
-                break
-            best, screen = step
-        if not best.effects:
-            return self.report(declared, declared, (), None)
-        self.tell("refitting on long runs")
-        long, removed = prune(self.bench, self.lengthened(best), self.tell)
-        self.words += [f"'{name}' is not needed beside the others" for name in removed]
-        dropped = tuple(name for name in removed if name in self.model.flat.parameters)
-        return self.report(self.lengthened(declared), long, dropped, screen)
-
-    def declared_fit(self) -> Trial:
-        """The diagram as it is, fitted; cut into windows where one run does not reach the noise."""
-        self.tell("fitting the declared model")
-        bench = self.bench
-        trial = bench.grown(self.model, (), self.stretches.train, self.begun)
-        cut = any(s.free for s in self.stretches.train)
-        if trial.s2 > AT_NOISE and not cut and can_be_cut(self.model, bench.measured):
-            self.stretches = share_out(self.model, bench.measured, cut=True)
-            trial = bench.grown(self.model, (), self.stretches.train, trial.values)
-        self.words += self.stretches.words
-        return trial
-
-    def lengthened(self, trial: Trial) -> Trial:
-        """The trial refitted on long runs, which determine coefficients better than windows do."""
-        starts = {(s.measured.name, s.begin): s.start for s in trial.segments}
-        runs = [
-            replace(run, start=starts.get((run.measured.name, run.begin), run.start))
-            for run in self.stretches.runs()
-        ]
-        scales = {u.name: u.scale for u in trial.criterion.unknowns}
-        return self.bench.grown(trial.model, trial.effects, runs, trial.values, scales)
-
-    def step(self, now: Trial) -> tuple[Trial, Screen] | None:
-        """One more effect, or a pair: screened, refitted, ranked, and passed by the gate."""
-        self.tell("screening effects")
-        candidates = find_candidates(now.model, self.places, now.effects)
-        screen, scales = screen_candidates(self.bench, now, self.places, candidates)
-        # far from the noise the residual is so correlated that a score proves nothing: try the best
-        least = LEAST_GAIN if now.s2 <= AT_NOISE else -np.inf
-        proposals = shortlist(screen, candidates, MOST_EFFECTS - len(now.effects), least)
-        trials = [t for p in proposals if (t := self.extended(now, p, scales)) is not None]
-        if not trials:
-            return None
-        part = min(trials, key=lambda trial: trial.rss).part
-
-        def quality(trial: Trial) -> float:
-            return bic(trial.rss, now.count, part, trial.unknowns)
-
-        trials.sort(key=quality)
-        winner: Trial | None = None
-        for trial in trials:
-            rise = quality(trial) - quality(now)
-            remark = ""
-            if winner is None:
-                passed, remark = self.judged(now, trial, trials, rise)
-                winner = trial if passed else None
-            names = " + ".join(map(str, trial.effects[len(now.effects) :]))
-            self.ranking.append(Ranked(names, rise, trial.s2, remark))
-        return None if winner is None else (winner, screen)
-
-    def judged(
-        self, now: Trial, trial: Trial, trials: Sequence[Trial], rise: float
-    ) -> tuple[bool, str]:
-        """Whether a trial passes: in BIC, at the gate, and a pair at the gate beside each of it."""
-        if rise > -2 * LEAST_GAIN:
-            return False, "no better than before"
-        passed, remark = gate(self.bench, now, trial, self.stretches.gate)
-        for single in trials:
-            if passed and set(single.effects) < set(trial.effects):
-                passed, remark = gate(self.bench, single, trial, self.stretches.gate)
-                remark += f" (beside {single.effects[-1]} alone)"
-        return passed, remark
-
-    def extended(self, now: Trial, proposal: Proposal, scales: Mapping[str, float]) -> Trial | None:
-        """The model with more effects, refitted from where it stood; None if it does not run."""
-        self.tell("refitting with " + " and ".join(map(str, proposal.effects)))
-        added = [(c, 0.0) for c in proposal.effects if c.block is not None]
-        model = self.bench.compiled(extend(now.model.diagram, added))
-        pairs = list(zip(proposal.effects, proposal.expected, strict=True))
-        values = now.values | {c.unknown: 0.7 * value for c, value in pairs}
-        sizes = dict(scales) | {
-            c.unknown: max(abs(value), 1e-6 * scales[c.unknown]) for c, value in pairs
-        }
-        effects = (*now.effects, *proposal.effects)
-        try:
-            return self.bench.refit(model, effects, now.segments, values, sizes)
-        except FitError:
-            self.words.append(f"with {' and '.join(map(str, proposal.effects))} it does not run")
-            return None
-
-    def report(
-        self, declared: Trial, best: Trial, dropped: tuple[str, ...], screen: Screen | None
-    ) -> Found:
-        self.tell("checking on the stretch that played no part")
-        bench, segments = self.bench, self.stretches.validate
-        if any(s.free for s in segments):
-            self.words.append(
-                "on the stretch that played no part only its start states were fitted"
-            )
-        before = bench.in_units(segments, bench.elsewhere(declared, segments))
-        after = bench.in_units(segments, bench.elsewhere(best, segments))
-        values = best.values | dict.fromkeys(dropped, 0.0)
-        return Found(
-            verdict=_verdict(best),
-            effects=tuple(self.effect(e, values, screen) for e in best.effects),
-            dropped=dropped,
-            values=values,
-            declared=declared.values,
-            rmse_before=_rmse(before),
-            rmse_after=_rmse(after),
-            sigma=bench.sigma,
-            s2_before=declared.s2,
-            s2_after=best.s2,
-            fitted_before=_rmse(bench.in_units(declared.segments, declared.residuals())),
-            fitted_after=_rmse(bench.in_units(best.segments, best.residuals())),
-            ranking=tuple(self.ranking),
-            held_out=tuple(self.held_out(before, after)),
-            words=tuple(self.words),
-            original=self.model.diagram,
-            diagram=self.edited(best, values),
+    Only where the noise is not reached, or where what was found may itself be a mistake: a sensor
+    or a drive.
+    """
+    suspicious = any(e.candidate.place.kind != "sum" for e in final.best.effects)
+    if suspicious or final.best.s2 > SUSPICIOUS:
+        search.tell("looking for mistakes in the records")
+        refuse_mistakes(
+            search.bench.declared, search.bench.measured, declared.s2, search.bench.rtol
         )
 
-    def held_out(self, before: Sequence[Vector], after: Sequence[Vector]) -> Iterable[HeldOut]:
-        """Measured and simulated signals of the stretches that played no part."""
-        for segment, b, a in zip(self.stretches.validate, before, after, strict=True):
-            for n, signal in enumerate(segment.signals):
-                measured = segment.measured.values[signal][segment.rows]
-                yield HeldOut(
-                    series=segment.measured.name,
-                    signal=signal,
-                    unit=self.model.flat.units.get(signal, ""),
-                    t=segment.t,
-                    measured=measured,
-                    before=measured + b[:, n],
-                    after=measured + a[:, n],
+
+def begun(
+    subject: Model | Fit,
+    measured: Sequence[Measured] | None,
+    rtol: float,
+    progress: Callable[[str], None],
+) -> Search:
+    """The search on a subject, ready to run."""
+    values: dict[str, float] = {}
+    if isinstance(subject, Fit):
+        values = dict(subject.values)
+        measured = subject.measured if measured is None else measured
+        subject = subject.model
+    model = with_measured_signals(subject, measured)
+    series = tuple(load_measured(model) if measured is None else measured)
+    check_series(model, series)
+    sigma = channel_noise([m for m in series if m.use != "validate"])
+    bench = Bench(model, series, sigma, rtol)
+    stretches = share_out(series)
+    words = [*remarks(series), *stretches.words]
+    return Search(
+        bench, stretches, find_places(model), shortest_window(stretches), values, progress, words
+    )
+
+
+def _found(search: Search, final: Final, interrupted: bool) -> Found:
+    """The result of a search."""
+    search.tell("checking on what played no part")
+    bench, declared, best = search.bench, final.declared, final.best
+    gate = _gate(search, best)
+    dependences: tuple[Dependence, ...] = ()
+    missing: Missing | None = None
+    before = verdict_of(declared, best, gate, (), returns=search.returns)
+    if before == "unexplained" or best.s2 > 2:
+        search.tell("where and on what the missing torque depends")
+        dependences, missing = _dependence(search, declared)
+        left, _ = _dependence(search, best) if best.effects else (dependences, None)
+    else:
+        left = ()
+    verdict = verdict_of(declared, best, gate, left, returns=search.returns)
+    parts = compared(search, declared, best)
+    claimed = [part for part in parts if part.use == "validate"]
+    values = {**best.values, **dict.fromkeys(final.dropped, 0.0)}
+    sigma = dict(bench.sigma)
+    units = dict(best.model.flat.units)
+    units |= {name: p.unit for name, p in best.model.flat.parameters.items()}
+    interval = float(np.median([np.median(np.diff(m.t)) for m in bench.measured]))
+    found = Found(
+        verdict=verdict,
+        effects=told_effects(search, final),
+        dropped=final.dropped,
+        values=values,
+        declared=declared.values,
+        rmse_before=rmse(claimed, 0),
+        rmse_after=rmse(claimed, 1),
+        sigma=sigma,
+        s2_before=declared.s2,
+        s2_after=best.s2,
+        moved=tuple(moved(bench, declared, best, values)) if best.effects else (),
+        errors=tuple(error for part in parts for error in part.errors(sigma, units)),
+        steps=told_steps(search, interval),
+        power=powers(search.steps[-1].screen) if search.steps else (),
+        dependences=dependences,
+        missing=missing if verdict == "unexplained" else None,
+        experiments=() if interrupted else _experiments(search, final),
+        confusable=confusable(search),
+        curves=tuple(curve for part in parts for curve in part.curves(sigma, units)),
+        forces=_forces(search, best),
+        paragraph="",
+        words=tuple(search.words),
+        original=bench.declared.diagram,
+        diagram=edited(bench.declared, best, values),
+        units=units,
+        interrupted=interrupted,
+    )
+    return replace(found, paragraph=paragraph_of(found))
+
+
+def _gate(search: Search, best: Trial) -> float:
+    """The squared residual per residual on windows that no fit saw, their starts counted."""
+    windows = search.windows(search.stretches.gate, search.short)
+    residuals = search.bench.on(best, windows)
+    count = sum(r.size for r in residuals) - sum(len(w.free) for w in windows)
+    return sum(float(np.sum(r**2)) for r in residuals) / max(count, 1)
+
+
+def _dependence(search: Search, trial: Trial) -> tuple[tuple[Dependence, ...], Missing | None]:
+    """The where/what map of a trial in short windows."""
+    length = search.short
+    short = search.bench.again(trial, search.windows(search.stretches.train, length), length)
+    tangent = Tangent(short.diagram, short.windows, search.places, search.bench.rtol)
+    return where_what(tangent, short, search.places)
+
+
+def _experiments(search: Search, final: Final) -> tuple[Experiment, ...]:
+    """What would separate the effects from their closest ties."""
+    found = []
+    for effect in final.best.effects:
+        tied = [rival for rival in final.rivals.get(str(effect), ()) if rival.tied]
+        for rival in tied[:EXPERIMENTS]:
+            search.tell(f"an experiment to tell {effect} from {rival.added}")
+            try:
+                found.append(
+                    separating(search.bench, final.best, rival.trial, str(effect), str(rival.added))
                 )
-
-    def effect(
-        self, candidate: Candidate, values: Mapping[str, float], screen: Screen | None
-    ) -> FoundEffect:
-        """An effect of the result, with the candidates that these data cannot tell from it."""
-        ties: list[str] = []
-        if screen is not None and candidate.unknown in screen.columns:
-            ties = [
-                str(other)
-                for other in find_candidates(self.model, self.places)
-                if other.unknown != candidate.unknown
-                and other.unknown in screen.columns
-                and screen.likeness(candidate.unknown, other.unknown) > LIKE
-            ]
-        params = {candidate.parameter(): values[candidate.unknown]}
-        return FoundEffect(candidate.effect, candidate.place, params, tuple(ties))
-
-    def edited(self, best: Trial, values: Mapping[str, float]) -> Diagram:
-        """The original text with the effects and the refitted parameters."""
-        if not best.effects:
-            return self.model.diagram
-        diagram = extend(self.model.diagram, [(e, values[e.unknown]) for e in best.effects])
-        own = {n: v for n, v in values.items() if n in self.model.flat.parameters}
-        return set_values(diagram, own)
+            except TracewireError as error:
+                search.words.append(error.problems[0].what)
+    return tuple(found)
 
 
-def _verdict(best: Trial) -> Verdict:
-    if best.effects:
-        return "effect"
-    return "null" if best.s2 <= AT_NOISE else "unexplained"
-
-
-def _rmse(residuals: Iterable[Vector]) -> float:
-    joined = np.concatenate([r.ravel() for r in residuals])
-    return float(np.sqrt(np.mean(joined**2)))
+def _forces(search: Search, best: Trial) -> tuple[Force, ...]:
+    """The restoring-force picture of the places that got an effect."""
+    if not any(effect.candidate.block for effect in best.effects) or not search.steps:
+        return ()
+    bench = search.bench
+    windows = bench.settled(best, search.windows(search.stretches.train, search.short))
+    tangent = Tangent(best.diagram, windows, search.places, bench.rtol)
+    return forces(tangent, best, bench.rtol)

@@ -1,9 +1,10 @@
-"""A trial: a model with some effects added, fitted to stretches of data; how trials are made."""
+"""A trial: a diagram with some effects added, fitted to windows; how trials are made."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,156 +13,243 @@ from tracewire.compile import Model, compile
 from tracewire.diagram import Diagram
 from tracewire.errors import FitError
 from tracewire.fit.criterion import Criterion
-from tracewire.fit.descent import Descent, descend
-from tracewire.fit.measured import Measured, measured_signals
-from tracewire.fit.segment import Segment, Unknown, of_diagram
+from tracewire.fit.measured import Measured
+from tracewire.fit.segment import Segment, Unknown
 from tracewire.fit.unknowns import free_unknowns, sensor_unknowns
-from tracewire.solve import parameter_values
-from tracewire.trace.candidates import Candidate
-from tracewire.trace.statistics import effective_part
+from tracewire.solve import Limits, parameter_values
+from tracewire.trace.candidates import Candidate, extend, unknowns_of
+from tracewire.trace.statistics import bic, effective_part
+from tracewire.trace.tones import Sine, tones_of
+from tracewire.trace.windows import Windows, descended, opened, settled
 
 Vector = NDArray[np.float64]
-GROWING = (0.3, 0.6, 1.0)
-FEWEST = 8
-TOLERANCE = 1e-4
+LEAST_STEPS, STEPS, EVENTS, SECONDS = 500, 15, 5, 1.0
+"""What a run may cost: steps, steps a sample, events a sample, seconds. An effect that makes a
+model as slow as that is a failure, not a candidate to wait for."""
+
+PHASE_STEPS = 8
+
+
+@dataclass(frozen=True)
+class Added:
+    """An effect in a diagram: the candidate, and the values of its parameters by their names in
+    its block; a shape that is not among them keeps its default."""
+
+    candidate: Candidate
+    values: Mapping[str, float]
+
+    def __str__(self) -> str:
+        return str(self.candidate)
+
+    def unknown(self, parameter: str) -> str:
+        """The name of a parameter among the unknowns of a fit."""
+        candidate = self.candidate
+        own = parameter == candidate.parameter
+        return candidate.coefficient if own else f"{candidate.block}.{parameter}"
+
+    @property
+    def own_series(self) -> set[str]:
+        """The series in which a shape has a value of its own."""
+        return {key.partition("@")[2] for key in self.values if "@" in key}
+
+    def own_in(self, series: str) -> dict[str, float]:
+        """The values of its own that a series has, by path."""
+        ends = f"@{series}"
+        own = dict(self.candidate.own.get(series, {}))
+        own |= {key.removesuffix(ends): v for key, v in self.values.items() if key.endswith(ends)}
+        return {f"{self.candidate.block}.{name}": value for name, value in own.items()}
+
+    @property
+    def coefficient(self) -> float:
+        """The value of the coefficient."""
+        return self.values[self.candidate.parameter]
+
+    def at(self, named: Mapping[str, float]) -> Added:
+        """The effect with the values that the unknowns of a fit have."""
+        values = {n: named.get(self.unknown(n), value) for n, value in self.values.items()}
+        return replace(self, values=values)
 
 
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """A model with some effects added, fitted to the segments of its criterion.
+    """A diagram with effects, fitted to windows of about `length` samples."""
 
-    `part` is N_eff/N of its residuals.
-    """
-
+    diagram: Diagram
     model: Model
-    effects: tuple[Candidate, ...]
-    criterion: Criterion
-    descent: Descent
-    part: float
+    effects: tuple[Added, ...]
+    windows: Windows
+    length: int
+    converged: bool
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The fitted parameters and sensor values by name."""
+        return dict(self.windows.values)
 
     @property
     def rss(self) -> float:
         """The sum of squared residuals in sigma."""
-        return 2 * self.descent.after
+        return self.windows.rss
 
     @property
     def count(self) -> int:
         """The number of residuals."""
-        return len(self.descent.residual)
+        return sum(r.size for r in self.windows.residuals)
 
     @property
     def unknowns(self) -> int:
-        """How many numbers were fitted."""
-        return len(self.descent.z)
+        """How many numbers were fitted, start values included."""
+        return len(self.windows.values) + sum(len(s) for s in self.windows.starts)
 
     @property
-    def values(self) -> dict[str, float]:
-        """The fitted parameters and offsets by name."""
-        return self.criterion.split(self.descent.z)[0]
-
-    @property
-    def segments(self) -> list[Segment]:
-        """The segments with their fitted starts."""
-        return self.criterion.moved(self.descent.z)[1]
+    def freedom(self) -> int:
+        """Degrees of freedom of the residual."""
+        return max(self.count - self.unknowns, 1)
 
     @property
     def s2(self) -> float:
         """RSS per degree of freedom; 1 is at the noise."""
-        return self.rss / max(self.count - self.unknowns, 1)
+        return self.rss / self.freedom
 
-    def residuals(self) -> list[Vector]:
-        """The residuals in sigma, by segment, shape (N, signals)."""
-        return self.criterion.residuals(self.descent.z)
+    @property
+    def cost(self) -> float:
+        """The steps that a run takes on average."""
+        criterion = self.windows.criterion
+        return criterion.steps / max(criterion.runs, 1)
+
+    @property
+    def part(self) -> float:
+        """N_eff/N of the residuals."""
+        return effective_part(self.windows.residuals)
+
+    def quality(self, part: float) -> float:
+        """BIC, of residuals of which this part is independent."""
+        return bic(self.rss, self.count, part, self.unknowns)
 
 
 @dataclass(frozen=True, eq=False)
 class Bench:
-    """What the trials of a trace share: declared model, series, their noise, tolerance."""
+    """What the trials of a trace share: the declared model, series, their noise, tolerance."""
 
     declared: Model
     measured: tuple[Measured, ...]
     sigma: Mapping[str, float]
     rtol: float
 
+    @cached_property
+    def tones(self) -> dict[str, dict[str, Sine]]:
+        """The sine that each measured drive is, by drive and series."""
+        return tones_of(self.measured)
+
+    @property
+    def signals(self) -> tuple[str, ...]:
+        """What is measured."""
+        return tuple(dict.fromkeys(name for m in self.measured for name in m.values))
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """The states that are free where a window begins: those of the declared diagram."""
+        return self.declared.states
+
     def compiled(self, diagram: Diagram) -> Model:
         """A diagram as a model that records what is measured."""
-        return compile(diagram, record=measured_signals(diagram))
+        return compile(diagram, record=self.signals)
 
-    def refit(
+    def fitted(
         self,
-        model: Model,
-        effects: Sequence[Candidate],
+        effects: Sequence[Added],
         segments: Sequence[Segment],
+        length: int,
         values: Mapping[str, float],
-        scales: Mapping[str, float] | None = None,
+        *,
+        fixed: Mapping[str, float] | None = None,
         steps: int = 20,
+        budget: float = np.inf,
     ) -> Trial:
-        """A model with effects, fitted from the values given.
+        """The declared diagram with effects fitted to windows, from the values given.
 
-        Raises FitError where the model cannot be simulated.
+        `fixed` are parameters that are not fitted, `budget` the steps of all runs together. Raises
+        FitError where the model cannot be simulated, DiagramError where an effect cannot be wired.
         """
-        unknowns = self._unknowns(model, effects, values, scales or {})
-        criterion = self._criterion(model, segments, unknowns, {})
-        return self._descended(model, effects, criterion, steps)
+        added = [(effect.candidate, effect.values) for effect in effects]
+        diagram = extend(self.declared.diagram, added) if added else self.declared.diagram
+        model = self.compiled(diagram) if added else self.declared
+        fixed = fixed or {}
+        unknowns = [u for u in self._unknowns(effects, values) if u.name not in fixed]
+        criterion = self._criterion(model, self.with_own(segments, effects), unknowns, fixed)
+        criterion.budget = budget
+        windows = opened(criterion)
+        _refuse_failed(criterion, windows)
+        windows, converged = descended(windows, steps)
+        _refuse_failed(criterion, windows)
+        now = tuple(effect.at(windows.values) for effect in effects)
+        return Trial(diagram, model, now, windows, length, converged)
 
-    def grown(
-        self,
-        model: Model,
-        effects: Sequence[Candidate],
-        segments: Sequence[Segment],
-        values: Mapping[str, float],
-        scales: Mapping[str, float] | None = None,
-    ) -> Trial:
-        """Refitted over a growing part of each segment: a long run leads astray from afar."""
-        trial = None
-        for part in GROWING:
-            shorter = [
-                replace(s, rows=s.rows[: max(int(len(s.rows) * part), FEWEST)]) for s in segments
-            ]
-            trial = self.refit(model, effects, shorter, values, scales)
-            values = trial.values
-            segments = [
-                replace(s, start=m.start) for s, m in zip(segments, trial.segments, strict=True)
-            ]
-        if trial is None:
-            raise AssertionError("GROWING is not empty")
-        return trial
+    def again(self, trial: Trial, segments: Sequence[Segment], length: int) -> Trial:
+        """A trial fitted to other windows, from where it stands."""
+        fixed = trial.windows.criterion.parameters
+        effects = self.met(trial, segments)
+        return self.fitted(effects, segments, length, trial.values, fixed=fixed)
 
-    def without(self, trial: Trial, name: str) -> Trial:
-        """The trial refitted with one coefficient fixed at zero."""
-        unknowns, segments = trial.criterion.moved(trial.descent.z)
-        kept = [u for u in unknowns if u.name != name]
-        fixed = dict(trial.criterion.parameters)
-        if not name.startswith("offset."):
-            fixed[name] = 0.0
-        criterion = self._criterion(trial.model, segments, kept, fixed)
-        effects = [e for e in trial.effects if e.unknown != name]
-        return self._descended(trial.model, effects, criterion, 12)
+    def on(self, trial: Trial, segments: Sequence[Segment]) -> list[Vector]:
+        """The residuals in sigma of a trial on other windows, where only starts are fitted."""
+        return self.settled(trial, segments).residuals
 
-    def elsewhere(self, trial: Trial, segments: Sequence[Segment]) -> list[Vector]:
-        """Residuals in sigma on other segments, where only their free starts are fitted."""
-        fixed = dict(trial.criterion.parameters)
-        fixed |= of_diagram(trial.values)
-        offsets = {
-            n.removeprefix("offset."): v for n, v in trial.values.items() if n.startswith("offset.")
-        }
-        found = []
+    def settled(self, trial: Trial, segments: Sequence[Segment]) -> Windows:
+        """A trial on other windows, where only starts are fitted."""
+        return settled(opened(self.criterion(trial, segments)))
+
+    def criterion(self, trial: Trial, segments: Sequence[Segment]) -> Criterion:
+        """The criterion of a trial on other windows, with its values fixed."""
+        segments = self.with_own(segments, self.met(trial, segments))
+        return self._criterion(trial.model, segments, [], self.all_values(trial))
+
+    def met(self, trial: Trial, segments: Sequence[Segment]) -> tuple[Added, ...]:
+        """The effects of a trial with what each series of other windows has of its own: a series
+        that the trial did not see gets the phase that fits it best, from four of them."""
+        effects = list(trial.effects)
+        for number, effect in enumerate(effects):
+            seen = effect.own_series
+            new: dict[str, list[Segment]] = {}
+            for segment in segments if seen else ():
+                name = segment.measured.series or segment.measured.name
+                if name not in seen:
+                    new.setdefault(name, []).append(segment)
+            for name, mine in new.items():
+                best: Windows | None = None
+                for begin in (0.0, 0.5 * np.pi, np.pi, -0.5 * np.pi):
+                    own = {f"{shape}@{name}": begin for shape in effect.candidate.each}
+                    tried = replace(effects[number], values={**effects[number].values, **own})
+                    unknowns = unknowns_of(tried.candidate, tried.values)
+                    unknowns = [u for u in unknowns if u.name.endswith(f"@{name}")]
+                    those = self.with_own(mine, [*effects[:number], tried, *effects[number + 1 :]])
+                    criterion = self._criterion(
+                        trial.model, those, unknowns, self.all_values(trial)
+                    )
+                    windows, _ = descended(opened(criterion), PHASE_STEPS)
+                    if best is None or windows.rss < best.rss:
+                        best, found = windows, tried
+                if best is not None:
+                    effects[number] = found.at(best.values)
+        return tuple(effects)
+
+    def with_own(self, segments: Sequence[Segment], effects: Sequence[Added]) -> list[Segment]:
+        """Windows whose series have what effects need of each series, and nothing of others: the
+        tone of its drive, a phase of its own."""
+        declared = {measured.name: measured.parameters for measured in self.measured}
+        known: dict[int, Measured] = {}
         for segment in segments:
             measured = segment.measured
-            sensors = {n: replace(measured.sensor(n), offset=v) for n, v in offsets.items()}
-            shifted = replace(measured, sensors={**measured.sensors, **sensors})
-            alone = [replace(segment, measured=shifted)]
-            criterion = self._criterion(trial.model, alone, [], fixed)
-            z = criterion.begin()
-            if segment.free:
-                z = descend(criterion, z, steps=12, tolerance=TOLERANCE).z
-            found.append(criterion.residuals(z)[0])
-        return found
+            own = dict(declared.get(measured.name, {}))
+            for effect in effects:
+                own |= effect.own_in(measured.series or measured.name)
+            if own != measured.parameters:
+                known.setdefault(id(measured), replace(measured, parameters=own))
+        return [replace(s, measured=known.get(id(s.measured), s.measured)) for s in segments]
 
-    def in_units(self, segments: Sequence[Segment], residuals: Sequence[Vector]) -> list[Vector]:
-        """Residuals in SI."""
-        pairs = zip(segments, residuals, strict=True)
-        return [r * np.array([self.sigma[n] for n in s.signals]) for s, r in pairs]
+    def all_values(self, trial: Trial) -> dict[str, float]:
+        """The values of all that was fitted or fixed in a trial."""
+        return {**trial.windows.criterion.parameters, **trial.values}
 
     def _criterion(
         self,
@@ -171,35 +259,33 @@ class Bench:
         fixed: Mapping[str, float],
     ) -> Criterion:
         """The sum of squares in sigma, which is what a likelihood needs."""
-        return Criterion(model, segments, unknowns, fixed, self.rtol, self.sigma, weighting="sum")
+        longest = max(int(np.sum(s.measured.t[: s.rows[-1] + 1] >= s.begin)) for s in segments)
+        return Criterion(
+            model,
+            segments,
+            unknowns,
+            fixed,
+            self.rtol,
+            self.sigma,
+            weighting="sum",
+            limits=Limits(LEAST_STEPS + STEPS * longest, SECONDS, EVENTS * (longest + 10)),
+        )
 
-    def _descended(
-        self, model: Model, effects: Sequence[Candidate], criterion: Criterion, steps: int
-    ) -> Trial:
-        descent = descend(criterion, criterion.begin(), steps=steps, tolerance=TOLERANCE)
-        criterion.failure = None  # a trial step may fail; where the descent ends it must run
-        part = effective_part(criterion.residuals(descent.z))
-        if criterion.failure is not None:
-            raise FitError(criterion.failure.problems)
-        return Trial(model, tuple(effects), criterion, descent, part)
-
-    def _unknowns(
-        self,
-        model: Model,
-        effects: Sequence[Candidate],
-        values: Mapping[str, float],
-        scales: Mapping[str, float],
-    ) -> list[Unknown]:
-        given = parameter_values(model, {})
+    def _unknowns(self, effects: Sequence[Added], values: Mapping[str, float]) -> list[Unknown]:
+        given = parameter_values(self.declared, {})
         names = [n for n, p in self.declared.flat.parameters.items() if p.fit is not None]
-        free = free_unknowns(model, names, given) if names else []
+        free = free_unknowns(self.declared, names, given) if names else []
         free += sensor_unknowns([m for m in self.measured if m.use == "train"])
+        free = [replace(u, value=values.get(u.name, u.value)) for u in free]
         known = {u.name for u in free}
-        free += [
-            e.as_unknown(values.get(e.unknown, 0.0), scales.get(e.unknown, 1.0))
-            for e in effects
-            if e.unknown not in known
-        ]
-        return [
-            replace(u, value=min(max(values.get(u.name, u.value), u.low), u.high)) for u in free
-        ]
+        for effect in effects:
+            own = unknowns_of(effect.candidate, effect.values)
+            free += [u for u in own if u.name not in known]
+        return [replace(u, value=min(max(u.value, u.low), u.high)) for u in free]
+
+
+def _refuse_failed(criterion: Criterion, windows: Windows) -> None:
+    """Raises FitError where a window does not run."""
+    failed = any(not near.ran for near in windows.near)
+    if failed and criterion.failure is not None:
+        raise FitError(criterion.failure.problems)

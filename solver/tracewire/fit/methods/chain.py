@@ -13,7 +13,7 @@ from tracewire.errors import SimulationError
 from tracewire.fit.criterion import LIMITS, Criterion
 from tracewire.fit.loss import LOSSES
 from tracewire.fit.methods.cutting import cut
-from tracewire.fit.segment import SENSED, Segment, of_diagram
+from tracewire.fit.segment import Segment, of_diagram, parameter_in
 from tracewire.fit.sensing import Sensing
 from tracewire.solve import Interrupted, Run, simulate
 
@@ -105,18 +105,15 @@ class Chain:
         criterion.evaluations += 1 + self.parameters + max((len(s) for s in starts), default=0)
         share = np.sqrt(weight / max(sum(self.follows), 1))
         for n in range(len(self.segments)):
-            asked = [name for name in named if not name.startswith(SENSED)]
-            asked += [f"start.{state}" for state in starts[n]]
-            run, sensing = self._run(n, named, starts, asked)
+            measured = self.segments[n].measured
+            answers = {name: parameter_in(name, measured) for name in named}
+            answers |= {f"start.{state}": f"start.{state}" for state in starts[n]}
+            run, sensing = self._run(n, named, starts, [name for name in answers.values() if name])
             lost = LOSSES[criterion.loss](criterion.difference(n, sensing.shown(run)))
             weights = criterion.weights(n)
             own = [*range(self.parameters), *range(self.offsets[n], self.offsets[n + 1])]
-            names = [*named, *(f"start.{state}" for state in starts[n])]
-            sigma = criterion.sigma[self.segments[n].measured.name]
-            slopes = [
-                sensing.derivative(run, name, name if name in asked else "") / sigma
-                for name in names
-            ]
+            sigma = criterion.sigma[measured.name]
+            slopes = [sensing.derivative(run, name, of) / sigma for name, of in answers.items()]
             rows = [(lost.residual * weights).ravel()]
             columns = [*own]
             parts = [np.stack([(s * lost.slope * weights).ravel() for s in slopes], axis=1)]
@@ -125,8 +122,8 @@ class Chain:
                 columns += following
                 rows.append(share * self._gap(n, run, starts))
                 ends = np.zeros((len(self.states), len(own)))
-                for j, name in enumerate(names):
-                    if name in asked:
+                for j, name in enumerate(answers.values()):
+                    if name:
                         ends[:, j] = [run.sensitivities[name][x][-1] for x in self.states]
                 parts[0] = np.hstack([parts[0], np.zeros((len(parts[0]), len(following)))])
                 moved = np.hstack([ends, -np.eye(len(self.states))])
@@ -162,7 +159,7 @@ class Chain:
         try:
             run = simulate(
                 criterion.model,
-                parameters=of_diagram(values),
+                parameters=of_diagram(values, segment.measured),
                 start={**segment.start, **starts[n]},
                 span=(sensing.begin, float(times[-1])),
                 times=times,

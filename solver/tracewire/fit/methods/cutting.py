@@ -88,7 +88,7 @@ def _begin(
     model: Model, values: dict[str, float], segment: Segment, own: dict[str, float]
 ) -> dict[str, float]:
     """The states at the begin of a segment."""
-    known = parameter_values(model, of_diagram(values), segment.measured.preset)
+    known = parameter_values(model, of_diagram(values, segment.measured), segment.measured.preset)
     there = {s.name: evaluate(s.start, known, s.place) for s in model.flat.states}
     return {**there, **segment.start, **own}
 
@@ -114,7 +114,7 @@ def _run(
     try:
         return simulate(
             model,
-            parameters=of_diagram(values),
+            parameters=of_diagram(values, part.measured),
             start=start,
             span=(sensing.begin, sensing.end),
             times=sensing.times,

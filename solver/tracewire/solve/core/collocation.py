@@ -11,7 +11,8 @@ import math
 import numpy as np
 
 from tracewire.solve.core import methods
-from tracewire.solve.core.arrays import Ints, Matrix, sensitivity_of, trial_of
+from tracewire.solve.core.arrays import Ints, Matrix, flow_of, sensitivity_of, trial_of
+from tracewire.solve.core.flow import RESTING, SLIDING
 from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.linear import factor, substitute_all
 from tracewire.solve.core.variation import field
@@ -27,7 +28,11 @@ RADAU = np.array(
 )
 ERROR = np.array([-(13 + 7 * ROOT) / 3, (-13 + 7 * ROOT) / 3, -1 / 3])
 REAL = 30.0 / (6.0 + 81 ** (1 / 3) - 9 ** (1 / 3))  # the real eigenvalue of the inverse of RADAU
-ROUNDING = 1e-10
+NOTHING = 1e-7
+"""Of the largest part of a column of S: what is smaller is rounding where a slide holds it."""
+STILL = 1e-10
+"""A column of S that is this small while something is held: what holds it cancels what moves it,
+and what is left is rounding, which no shorter interval makes less."""
 TIME, INTERVAL, KNOWN, UNCHECKED, LONGEST = range(5)  # places in Sensitivity.now
 
 
@@ -217,13 +222,16 @@ def _error(core: int, h: float) -> float:
     if factor(real, sensitivity.real_pivots) == 0.0:
         return np.nan
     substitute_all(real, sensitivity.real_pivots, error)
-    worst = 0.0
+    worst, counts = 0.0, flow_of(core).counts
+    some_held = counts[SLIDING] + counts[RESTING] > 0
     for j in range(q):
         largest = 0.0
         for i in range(n):
             largest = max(largest, peak[i, j], abs(change[2 * n + i, j]))
+        if some_held and largest < STILL:
+            continue
         for i in range(n):
-            size = max(peak[i, j], abs(s[i, j] + change[2 * n + i, j])) + ROUNDING * largest
+            size = max(peak[i, j], abs(s[i, j] + change[2 * n + i, j])) + NOTHING * largest
             if abs(error[i, j]) > worst * size:
                 worst = abs(error[i, j]) / size
             elif not abs(error[i, j]) < np.inf:

@@ -1,0 +1,114 @@
+"""One case: make its files, trace the diagram, simulate what was found, put it all in one row."""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+import traceback
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from tracewire.fit.measured import series_parameters
+
+from benchmarks.tracing.cases import Case
+from benchmarks.tracing.make import make
+from benchmarks.tracing.plants import PLANTS, Plant
+from benchmarks.tracing.score import judge
+
+Row = dict[str, Any]
+
+
+def work(case: Case, folder: Path) -> Row:
+    """The row of a case: truth, answer, judgement, seconds (CPU and wall) of the trace."""
+    import tracewire as tw
+
+    row: Row = {"case": case.name, "group": case.group, "system": case.system}
+    path = make(case, folder)
+    truth = json.loads((path.parent / "truth.json").read_text())
+    row["truth"] = truth["hidden"]
+    wall, cpu = time.perf_counter(), time.process_time()
+    found: Any = None
+    try:
+        model = tw.compile(tw.read(path))
+        found = tw.trace(model)
+        row["answer"] = found.as_json()
+    except tw.TracewireError as error:
+        row["answer"] = {"verdict": "message", "error": str(error)}
+    except Exception as error:
+        lines = "".join(traceback.format_tb(error.__traceback__, -6))
+        text = f"{type(error).__name__}: {str(error)[:300]}"
+        row["answer"] = {"verdict": "crash", "error": f"{lines}{text}"}
+    row["wall"], row["cpu"] = time.perf_counter() - wall, time.process_time() - cpu
+    if found is not None and not case.bad:
+        try:
+            row["free"] = _free_runs(found, truth, PLANTS[case.system])
+        except tw.TracewireError as error:
+            row["free"] = {"error": str(error)}
+    row["judged"] = judge(case, row, _coefficients())
+    return row
+
+
+def _coefficients() -> dict[str, str]:
+    """The coefficient of every effect of the library, by its name."""
+    from tracewire.library import load_library
+
+    return {b.name: b.effect.coefficient for b in load_library().effects() if b.effect}
+
+
+def _free_runs(found: Any, truth: Mapping[str, Any], plant: Plant) -> dict[str, float]:
+    """Errors of the declared and of the found diagram on the validation record, in sigma.
+
+    Simulated here from the true start state, so that they depend on no number of the report; the
+    noise of a measurement counts (1 is the best there is).
+    """
+    import tracewire as tw
+
+    given = truth["validate"]
+    names = (*plant.coordinates, *plant.rates)
+    t = np.array(given["t"])
+    fine = np.linspace(t[0], t[-1], 20 * len(t))  # straight lines between samples would be an error
+    inputs = {plant.drive: (fine, CubicSpline(t, given["u"])(fine))} if plant.drive else None
+    errors = {}
+    for which, diagram in (("before", found.original), ("after", found.diagram)):
+        model = tw.compile(diagram)
+        own = found.declared if which == "before" else found.values
+        values = {n: v for n, v in own.items() if n in model.flat.parameters}
+        if "validate" in diagram.measured:  # what the series has of its own
+            values |= series_parameters(model, diagram.measured["validate"])
+        run = tw.simulate(
+            model,
+            parameters=values,
+            start=dict(zip(names, given["start"], strict=True)),
+            times=t,
+            inputs=inputs,
+            rtol=1e-8,
+        )
+        squares = []
+        for name, shown in given["shown"].items():
+            y = np.asarray(run[name])
+            if which == "after":
+                y = _shown(found.as_json()["effects"], name, t, y)
+            squares.append(((y - np.array(shown)) / truth["sigma"][name]) ** 2)
+        errors[which] = math.sqrt(float(np.mean(squares)) + 1.0)
+    return errors
+
+
+def _shown(effects: list[Row], name: str, t: Any, y: Any) -> Any:
+    """What a sensor with the effects of the answer shows: gain*y(t - delay) + offset + ..."""
+    mine = {
+        e["name"]: next(iter(e["params"].values()))
+        for e in effects
+        if e["place"] == f"sensor.{name}" and e["params"]
+    }
+    z = np.interp(t - mine.get("sensor_delay", 0.0), t, y)
+    gain = mine.get("sensor_gain", 1.0)
+    return (
+        gain * z
+        + mine.get("sensor_offset", 0.0)
+        + mine.get("sensor_quad", 0.0) * y**2
+        + mine.get("sensor_drift", 0.0) * (t - t[0])
+    )

@@ -1,0 +1,62 @@
+"""Edits of what measured series have of their own: values of parameters in one series."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from tracewire.diagram.diagram import Diagram
+from tracewire.diagram.names import find_parameter, parameters
+from tracewire.diagram.outline import Outline
+from tracewire.diagram.rewrite import bounds, digits, reread
+from tracewire.diagram.splice import entry_last
+from tracewire.diagram.strict import Entries
+from tracewire.errors import OptionError, unknown
+
+
+def add_own(
+    diagram: Diagram,
+    values: Mapping[str, Mapping[str, float]],
+    fit: Mapping[str, tuple[float, float]] | None = None,
+) -> Diagram:
+    """The diagram with values of parameters that hold in single series: series -> path -> value.
+
+    Each is written under `parameters` of its series, in the unit that the diagram has for it, with
+    six digits, and those in `fit` with their bounds in SI; none may have a value there yet. Raises
+    OptionError: a series does not exist.
+    """
+    changes = []
+    root = Outline(diagram).root
+    for series, own in values.items():
+        if series not in diagram.measured:
+            raise OptionError([unknown("measured series", series, diagram.measured)])
+        node = root
+        for key in ("measured", series):
+            inner = node.values[key]
+            assert isinstance(inner, Entries)
+            node = inner
+        parts = {
+            path: _text(value, _factor(diagram, path), (fit or {}).get(path))
+            for path, value in own.items()
+        }
+        text = ", ".join(f"{path}: {number}" for path, number in parts.items())
+        given = node.values.get("parameters")
+        if isinstance(given, Entries) and given.keys:
+            changes += [entry_last(diagram.text, given, path, n) for path, n in parts.items()]
+        else:
+            changes.append(entry_last(diagram.text, node, "parameters", f"{{{text}}}"))
+    return reread(diagram, changes)
+
+
+def _text(value: float, factor: float, fit: tuple[float, float] | None) -> str:
+    if fit is None:
+        return digits(value / factor)
+    low, high = fit[0] / factor, fit[1] / factor
+    return f"{{value: {digits(value / factor, low, high)}, fit: {bounds((low, high))}}}"
+
+
+def _factor(diagram: Diagram, path: str) -> float:
+    """The factor to SI of a number without a unit for a parameter."""
+    known = find_parameter(diagram, path)
+    if known is None:
+        raise OptionError([unknown("parameter", path, parameters(diagram))])
+    return known.factor

@@ -1,0 +1,172 @@
+"""Edits of what the sensors of measured signals do: changes of the text that keep its layout."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from tracewire.data import column_unit
+from tracewire.diagram.channels import SENSOR, sensor_factor
+from tracewire.diagram.diagram import Diagram, Series, Value
+from tracewire.diagram.names import find_recorded
+from tracewire.diagram.outline import Outline
+from tracewire.diagram.rewrite import bounds, digits, reread
+from tracewire.diagram.splice import Change, entry_last, replaced
+from tracewire.diagram.strict import Entries, Node, Scalar
+from tracewire.errors import FormulaError, OptionError, unknown
+from tracewire.formula import Number, read_unit
+
+
+def add_sensor(
+    diagram: Diagram,
+    signal: str,
+    kind: str,
+    value: float,
+    fit: tuple[float, float] | None = None,
+) -> Diagram:
+    """The diagram with an offset, gain, delay, quad or drift of a measured signal.
+
+    Every series in which the signal is a column gets it. value, fit: the number and its bounds in
+    SI; the text gets them in the unit of the column (a delay in s). Raises OptionError: there is no
+    such measured signal, or no such kind.
+    """
+    if kind not in SENSOR:
+        raise OptionError([unknown("number of a sensor", kind, SENSOR)])
+    full = find_recorded(diagram, signal)
+    having = [
+        series
+        for series in diagram.measured.values()
+        if full in series.channels and series.channels[str(full)].column
+    ]
+    if full is None or not having:
+        measured = {name for series in diagram.measured.values() for name in series.channels}
+        raise OptionError([unknown("measured signal", signal, measured)])
+    root = Outline(diagram).root
+    changes = []
+    for series in having:
+        node = _channel(diagram, root, series, full)
+        text = _value_text(value, fit, sensor_factor(kind, _factor(series, full)))
+        changes.append(_with_number(diagram.text, node, kind, text))
+    return reread(diagram, changes)
+
+
+def set_sensors(diagram: Diagram, values: Mapping[str, float]) -> Diagram:
+    """The diagram with other numbers of sensors, and of series, that are free in a fit.
+
+    `values` has them by `offset.SIGNAL`, `gain.SIGNAL` ... in SI; every series in which one is free
+    gets it, in the unit that its text has. `harmonic.phase@run_1` is the value of a parameter in
+    one series, under its `parameters`.
+    """
+    root = Outline(diagram).root
+    changes = []
+    for path, value in values.items():
+        parameter, of_series, name = path.partition("@")
+        if of_series:
+            changes.append(_own(diagram, root, parameter, name, value))
+            continue
+        kind, _, signal = path.partition(".")
+        for series in diagram.measured.values():
+            channel = series.channels.get(signal)
+            known: Value | None = getattr(channel, kind, None)
+            if channel is None or known is None or known.fit is None:
+                continue
+            node = _channel(diagram, root, series, signal)
+            assert isinstance(node, Entries)
+            entry = node.values[kind]
+            assert isinstance(entry, Entries)
+            factor = _factor_of(known, kind, series, signal)
+            low, high = (end / known.factor for end in known.fit)  # as the text has them
+            number = digits(value / factor, low, high)
+            if "value" in entry.values:
+                changes.append(replaced(entry.values["value"], number))
+            else:
+                changes.append(entry_last(diagram.text, entry, "value", number))
+    return reread(diagram, changes)
+
+
+def _own(diagram: Diagram, root: Entries, parameter: str, series: str, value: float) -> Change:
+    """The text of a parameter's value in one series."""
+    if series not in diagram.measured:
+        raise OptionError([unknown("measured series", series, diagram.measured)])
+    given = diagram.measured[series].parameters
+    if parameter not in given:
+        raise OptionError([unknown(f"parameter of the series '{series}'", parameter, given)])
+    known, node = given[parameter], root
+    for key in ("measured", series, "parameters"):
+        inner = node.values[key]
+        assert isinstance(inner, Entries)
+        node = inner
+    written = node.values[parameter]
+    low, high = known.fit or (-math.inf, math.inf)
+    number = digits(value / known.factor, low / known.factor, high / known.factor)
+    return replaced(written.values["value"] if isinstance(written, Entries) else written, number)
+
+
+def sensor_numbers(
+    diagram: Diagram,
+) -> dict[str, tuple[float, tuple[float, float] | None]]:
+    """The numbers of sensors in the series of a diagram, each with its bounds: by `offset.SIGNAL`.
+
+    In SI, of the first series that has one; without those that are formulas over parameters.
+    """
+    found: dict[str, tuple[float, tuple[float, float] | None]] = {}
+    for series in diagram.measured.values():
+        for signal, channel in series.channels.items():
+            for kind in SENSOR:
+                known: Value | None = getattr(channel, kind)
+                if known is None or not isinstance(known.formula, Number):
+                    continue
+                own = _factor_of(known, kind, series, signal)
+                bounds = None
+                if known.fit is not None:
+                    low, high = (end * own / known.factor for end in known.fit)
+                    bounds = (low, high)
+                found.setdefault(f"{kind}.{signal}", (known.formula.value * own, bounds))
+    return found
+
+
+def _factor_of(known: Value, kind: str, series: Series, signal: str) -> float:
+    """The factor to SI of a number of a sensor as it stands in the text."""
+    if known.unit or series.channels[signal].declared is not None:
+        return known.factor
+    return known.factor * sensor_factor(kind, _factor(series, signal))
+
+
+def _channel(diagram: Diagram, root: Entries, series: Series, signal: str) -> Node:
+    """The text of a measured signal in its series."""
+    node: Node = root
+    for key in ("measured", series.name, "signals"):
+        assert isinstance(node, Entries)
+        node = node.values[key]
+    assert isinstance(node, Entries)
+    return next(n for name, _, n in node if find_recorded(diagram, name) == signal)
+
+
+def _value_text(value: float, fit: tuple[float, float] | None, factor: float) -> str:
+    if fit is None:
+        return f"{{value: {digits(value / factor)}}}"
+    low, high = (end / factor for end in fit)
+    return f"{{value: {digits(value / factor, low, high)}, fit: {bounds((low, high))}}}"
+
+
+def _with_number(text: str, channel: Node, kind: str, number: str) -> Change:
+    """The text of a channel with a number of its sensor."""
+    if isinstance(channel, Scalar):
+        column = text[channel.start : channel.end]
+        return replaced(channel, f"{{column: {column}, {kind}: {number}}}")
+    assert isinstance(channel, Entries)
+    if kind in channel.values:
+        return replaced(channel.values[kind], number)
+    return entry_last(text, channel, kind, number)
+
+
+def _factor(series: Series, signal: str) -> float:
+    """The factor to SI of a column: by its unit, else by that of the file's header."""
+    channel = series.channels[signal]
+    calibrated = {step.options.get("signal") for step in series.clean if step.step == "calibrate"}
+    if channel.declared is not None or signal in calibrated:
+        return channel.factor
+    try:
+        return read_unit(column_unit(series.file, channel.column, series.format.delimiter)).factor
+    except FormulaError:  # brackets in the header that hold no unit
+        return 1.0

@@ -1,0 +1,66 @@
+"""Measured inputs between their samples: smooth ones follow a cubic spline."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+from scipy.linalg import solveh_banded
+
+Vector = NDArray[np.float64]
+LEAST_SAMPLES = 9
+BETTER = 0.3
+"""The largest error of the spline, in units of that of straight lines, where an input is smooth."""
+VISIBLE = 1e-6
+"""Of the range of an input: an error of straight lines that is smaller is no concern."""
+FINE = 1e-3
+"""The same for what may be left between the points."""
+FINEST = 8
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(3)
+
+
+def smoothed(t: Vector, u: Vector) -> tuple[Vector, Vector] | None:
+    """The points of a smooth input with samples u (N,) at times t (N,); None for others.
+
+    A run joins points by straight lines. Joined so, samples of a sine lose (omega*dt)^2/12 of its
+    amplitude, which is more than the noise of a good record. Whether an input is smooth is asked of
+    the record itself: every second sample is predicted from the others, by a cubic spline and by
+    straight lines. Where the largest error of the spline is below 0.3 of that of the lines, the
+    input is the spline through all samples. A step, a corner or noise is predicted no better by a
+    spline, and stays as it is.
+
+    The points are those whose straight lines come closest to the spline in the mean square (the L2
+    projection on linear splines). What is left changes its sign twice from point to point, so that
+    a mechanism integrates it away; it is at most about a thousandth of the input's range, for which
+    there are up to 8 points for each sample: a run takes as much longer as there are more.
+    """
+    if len(t) < LEAST_SAMPLES or not np.all(np.diff(t) > 0):
+        return None
+    kept, left = slice(0, None, 2), slice(1, len(t) - 1, 2)
+    predicted = CubicSpline(t[kept], u[kept])(t[left])
+    error = float(np.max(np.abs(predicted - u[left])))
+    lines = float(np.max(np.abs(np.interp(t[left], t[kept], u[kept]) - u[left])))
+    size = float(np.ptp(u))
+    if not lines > VISIBLE * size or not error < BETTER * lines:
+        return None
+    # lines err by the square of the interval: a quarter of `lines` on all samples
+    factor = int(np.clip(np.ceil(np.sqrt(lines / (4 * FINE * size))), 1, FINEST))
+    count = (len(t) - 1) * factor + 1
+    times = np.interp(np.arange(count) / factor, np.arange(len(t)), t)
+    return times, projected(CubicSpline(t, u), times)
+
+
+def projected(spline: CubicSpline, times: Vector) -> Vector:
+    """The values at `times` (N,) whose straight lines are closest to a cubic spline, which is a
+    cubic between any two of them."""
+    h = np.diff(times)
+    share = (1 + NODES) / 2
+    values = spline(times[:-1, None] + h[:, None] * share) * (h[:, None] * WEIGHTS / 2)
+    moments = np.zeros(len(times))
+    moments[:-1] += values @ (1 - share)
+    moments[1:] += values @ share
+    banded = np.zeros((2, len(times)))
+    banded[0, 1:] = h / 6
+    banded[1, :-1] += h / 3
+    banded[1, 1:] += h / 3
+    return np.asarray(solveh_banded(banded, moments))

@@ -1,0 +1,69 @@
+"""What lets a block be tried as a missing effect: its coefficient, its wiring, its shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+Symbol = Literal["q", "v", "a", "u", "other_q", "other_v"]
+Scale = Literal["", "Q", "V", "U", "T", "dt"]
+Where = Literal["sum", "drive"]
+Tone = Literal["amplitude", "period", "phase"]
+
+SYMBOLS: dict[Symbol, str] = {
+    "q": "the coordinate of the place",
+    "v": "the rate of the place",
+    "a": "the acceleration of the place",
+    "u": "the drive",
+    "other_q": "the coordinate of another body",
+    "other_v": "the rate of another body",
+}
+SCALES: dict[Scale, str] = {
+    "": "",
+    "Q": "the largest |q| of the place",
+    "V": "the root mean square of v at the place",
+    "U": "the largest |u| of the drive",
+    "T": "the duration of the longest series",
+    "dt": "the sample interval",
+}
+
+
+@dataclass(frozen=True)
+class Shape:
+    """Where a trace first tries a parameter that sets the shape of an effect.
+
+    at: multiples of `of`; with an empty `of` the values themselves, in SI. low: the least value
+    that the parameter may take in a refit, in SI.
+    """
+
+    at: tuple[float, ...]
+    of: Scale = ""
+    low: float = 0.0
+
+
+@dataclass(frozen=True)
+class Effect:
+    """Says that a block may be tried as a missing effect, and how.
+
+    `inputs` tells which local signal each port reads (see SYMBOLS). `coefficient` is the parameter
+    in which the output is linear; the effect vanishes where it is zero. `sign` is 1 where physics
+    allows only positive coefficients, 0 where it allows both. `shapes` are the parameters that a
+    refit may change beside the coefficient, and where it begins.
+
+    place: `sum`, the output is one more addend of a sum that feeds a rate; `drive`, it is added to
+    the drive signal before all that reads it. at: where the output is not linear in the
+    coefficient, the values of the coefficient at which it is first tried; None: at 1. tone:
+    parameters that every series has of its own: amplitude, period (s) and phase (rad, at t = 0) of
+    the sine that its measured drive is. Where a drive is no sine, the effect is not tried.
+    each: shapes that every series has of its own, as the phase of a wave that no record follows.
+    """
+
+    coefficient: str
+    inputs: Mapping[str, Symbol] = field(default_factory=dict, hash=False)
+    sign: Literal[0, 1] = 0
+    shapes: Mapping[str, Shape] = field(default_factory=dict, hash=False)
+    place: Where = "sum"
+    at: Shape | None = None
+    tone: Mapping[str, Tone] = field(default_factory=dict, hash=False)
+    each: tuple[str, ...] = ()

@@ -1,0 +1,232 @@
+"""Figures of a trace: residuals within windows, free runs, candidates, the restoring torque."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.fit import Comparison
+from tracewire.show.comparison_figures import plot_comparisons
+from tracewire.show.style import (
+    AFTER,
+    BEFORE,
+    MEASURED,
+    QUIET,
+    UNCOUNTED,
+    USES,
+    align_ylabels,
+    cut,
+    fit_time,
+    panels,
+    save,
+    shortened,
+    styled,
+    with_unit,
+)
+from tracewire.trace import Found
+from tracewire.trace.found import Curve, Force, Ranked
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Vector = NDArray[np.float64]
+
+MOST_CURVES = 8
+MOST_CANDIDATES = 10
+MOST_FORCES = 3
+MOST_DOTS = 4000
+BINS, LEAST_IN_BIN = 16, 8
+UNLIKE = 8.0
+"""Residuals that differ by more than this are drawn on an axis that is logarithmic far from 0."""
+LINEAR = 3.0
+"""Up to this many sigma that axis is linear."""
+
+
+def plot_residuals(found: Found, path: Path) -> Path:
+    """Residuals in units of the noise within windows, before and after, with the windows' edges."""
+    chosen = [c for c in found.curves if len(c.windowed_before) == len(c.t)]
+    title = shortened("Residual within windows", len(chosen), MOST_CURVES, "signals")
+    chosen = chosen[:MOST_CURVES]
+    with styled():
+        figure, axes = panels([1.9] * len(chosen), title, sharex=False)
+        for panel, curve in zip(axes, chosen, strict=True):
+            _draw_residual(panel, curve, bool(found.effects))
+        axes[-1].set_xlabel("t [s]")
+        align_ylabels(axes)
+        return save(figure, path)
+
+
+def plot_free_runs(found: Found, path: Path) -> Path:
+    """Measured against simulated in free runs before and after: first what played no part."""
+    order = {"validate": 0, "gate": 1, "train": 2}
+    curves = sorted(found.curves, key=lambda c: order.get(c.use, 3))
+    unseen = [c for c in curves if c.use == "validate"] or curves
+    compared = [
+        Comparison(
+            c.series, c.use, c.signal, c.unit, c.t, c.measured, c.before, c.after,
+            np.isfinite(c.measured), 0.0, found.sigma.get(c.signal),
+        )
+        for c in unseen
+    ]  # fmt: skip
+    return plot_comparisons(path, compared, "Free runs")
+
+
+def plot_candidates(found: Found, path: Path) -> Path:
+    """What each effect promised and gave, beside the part that declared parameters imitate."""
+    steps = [(n, s) for n, s in enumerate(found.steps, start=1) if s.tried]
+    refitted = [(n, s) for n, s in steps if any(math.isfinite(row.gain) for row in s.tried)]
+    steps = refitted or steps[:1]  # where nothing stands out, nothing is seen
+    heights = [0.75 + 0.27 * min(len(step.tried), MOST_CANDIDATES) for _, step in steps]
+    with styled():
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=(9.0, sum(heights) + 0.6), layout="constrained")
+        grid = figure.subplots(
+            len(steps), 2, squeeze=False, width_ratios=[2.4, 1], height_ratios=heights
+        )
+        for (left, right), (number, step) in zip(grid, steps, strict=True):
+            _draw_candidates(left, right, step.tried[:MOST_CANDIDATES])
+            text = f"step {number}: {step.words}"
+            left.set_title(cut(text, 100), loc="left", fontsize=9.5)
+        _explain_candidates(grid[0, 0])
+        grid[-1, 0].set_xlabel("gain: half the fall of BIC")
+        grid[-1, 1].set_xlabel("masked [%]")
+        return save(figure, path)
+
+
+def plot_forces(found: Found, path: Path) -> Path:
+    """What is needed at each place over its coordinate and its rate, with the fitted law on top."""
+    from matplotlib.figure import Figure
+
+    chosen = found.forces[:MOST_FORCES]
+    with styled():
+        figure = Figure(figsize=(9.0, 3.3 * len(chosen) + 0.5), layout="constrained")
+        grid = figure.subplots(len(chosen), 2, squeeze=False, sharey="row")
+        for (left, right), force in zip(grid, chosen, strict=True):
+            _draw_force(left, right, force, found)
+        lines, labels = grid[0, 0].get_legend_handles_labels()
+        figure.legend(lines, labels, loc="outside upper right", ncols=3, markerscale=1.5)
+        return save(figure, path)
+
+
+def _draw_residual(panel: Axes, curve: Curve, changed: bool) -> None:
+    before, after = curve.windowed_before, curve.windowed_after
+    for begin, end, use in curve.spans or ((float(curve.t[0]), float(curve.t[-1]), curve.use),):
+        color = USES.get(use, UNCOUNTED)
+        panel.axvspan(begin, end, color=color, alpha=0.45, linewidth=0, zorder=0)
+    for edge in curve.edges:
+        panel.axvline(edge, color="white", linewidth=1.3, zorder=0.5)
+    panel.axhspan(-2, 2, color="white", alpha=0.75, linewidth=0, zorder=0.3)
+    if changed:
+        panel.plot(curve.t, before, color=BEFORE, linewidth=0.9, label="before")
+        panel.plot(curve.t, after, color=AFTER, linewidth=0.8, label="after")
+    else:
+        panel.plot(curve.t, after, color=AFTER, linewidth=0.8, label="declared model")
+    panel.axhline(0.0, color=QUIET, linewidth=0.7)
+    for level in (-2, 2):
+        label = "±2 σ" if level > 0 else None
+        panel.axhline(level, color=MEASURED, linewidth=0.7, linestyle=":", zorder=3, label=label)
+    largest = [float(np.nanmax(np.abs(x), initial=0.0)) for x in (before, after)]
+    if changed and largest[0] > UNLIKE * max(largest[1], 1.0):
+        panel.set_yscale("symlog", linthresh=LINEAR, linscale=1.2)
+        panel.yaxis.set_major_formatter(lambda y, _: f"{y:g}".replace("-", "−"))
+    panel.set_ylabel("residual [σ]")
+    words = f"rms {_rms(before):.3g} σ before, {_rms(after):.3g} σ after"
+    told = words if changed else f"rms {_rms(after):.3g} σ"
+    panel.set_title(
+        f"{curve.use}: {cut(curve.series, 40)}, {cut(curve.signal)}: {told}",
+        loc="left", fontsize=9.5,
+    )  # fmt: skip
+    fit_time(panel, curve.t)
+    panel.grid(False, axis="x")
+    panel.legend(loc="lower right", bbox_to_anchor=(1, 0.98), ncols=3, borderpad=0)
+
+
+def _draw_candidates(left: Axes, right: Axes, rows: Sequence[Ranked]) -> None:
+    places = np.arange(len(rows))[::-1]
+    for at, row in zip(places, rows, strict=True):
+        accepted = "accepted" in row.remark or "passed" in row.remark
+        if math.isfinite(row.gain):
+            left.barh(at, row.gain, height=0.6, color=AFTER if accepted else "#9DB8CC")
+        if math.isfinite(row.promised):
+            left.plot([row.promised] * 2, [at - 0.38, at + 0.38], color=BEFORE, linewidth=2.2)
+        if math.isfinite(row.masked):
+            right.barh(at, 100 * row.masked, height=0.6, color=QUIET)
+    left.set_yticks(places, [cut(row.effects, 44) for row in rows])
+    left.axvline(0, color=QUIET, linewidth=0.7)
+    right.set_yticks(places, [""] * len(rows))
+    right.set_xlim(0, 100)
+    for panel in (left, right):
+        panel.set_ylim(-0.6, len(rows) - 0.4)
+        panel.grid(False, axis="y")
+        panel.tick_params(axis="y", length=0)
+
+
+def _explain_candidates(panel: Axes) -> None:
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    handles = [
+        Line2D([], [], color=BEFORE, linewidth=2.2, label="promised by the screen"),
+        Patch(color=AFTER, label="refitted, passed the gate"),
+        Patch(color="#9DB8CC", label="refitted"),
+    ]
+    panel.legend(handles=handles, loc="lower right", fontsize=8)
+
+
+def _draw_force(left: Axes, right: Axes, force: Force, found: Found) -> None:
+    every = max(1, math.ceil(len(force.q) / MOST_DOTS))
+    size = float(np.clip(70 / np.sqrt(max(len(force.q) / every, 1)), 1.5, 5))
+    dots: dict[str, Any] = {"linestyle": "", "marker": ".", "markersize": size, "rasterized": True}
+    for panel, values, name in (
+        (left, force.q, force.names[0]),
+        (right, force.v, force.names[1]),
+    ):
+        panel.plot(values[::every], force.needed[::every], color=MEASURED, alpha=0.35,
+                   label="needed by the data", **dots)  # fmt: skip
+        middles, means, errors = _binned(values, force.needed)
+        panel.errorbar(middles, means, 2 * errors, color=MEASURED, linestyle="", marker="o",
+                       markersize=4.5, markerfacecolor="white", zorder=5,
+                       label="its mean, ±2 standard errors")  # fmt: skip
+        if np.any(force.fitted):
+            panel.plot(values[::every], force.fitted[::every], color=AFTER, label="fitted effect",
+                       zorder=4, **dots)  # fmt: skip
+        panel.axhline(0.0, color=QUIET, linewidth=0.7)
+        panel.set_xlabel(with_unit(name, found.units.get(name, "")))
+    left.set_ylabel(with_unit(f"missing at {cut(force.place)}", found.units.get(force.place, "")))
+    left.set_ylim(*_limits(force))
+
+
+def _binned(values: Vector, needed: Vector) -> tuple[Vector, Vector, Vector]:
+    """Middles of bins with equally many samples, the mean there and its standard error.
+
+    What is needed has spikes where windows begin and end: the outermost twentieth on either side
+    is taken as far as the rest reaches.
+    """
+    known = np.isfinite(values) & np.isfinite(needed)
+    order = np.argsort(values[known], kind="stable")
+    parts = np.array_split(order, min(BINS, max(len(order) // LEAST_IN_BIN, 1)))
+    x, y = values[known], np.clip(needed[known], *np.quantile(needed[known], [0.05, 0.95]))
+    middles = np.array([np.median(x[part]) for part in parts])
+    means = np.array([np.mean(y[part]) for part in parts])
+    errors = np.array([np.std(y[part]) / math.sqrt(len(part)) for part in parts])
+    return middles, means, errors
+
+
+def _limits(force: Force) -> tuple[float, float]:
+    """Limits that hold the law and nearly all of what is needed: noise has spikes."""
+    needed = force.needed[np.isfinite(force.needed)]
+    shown = [*np.quantile(needed, [0.02, 0.98]), force.fitted.min(), force.fitted.max(), 0.0]
+    low, high = float(min(shown)), float(max(shown))
+    margin = 0.08 * (high - low or 1.0)
+    return low - margin, high + margin
+
+
+def _rms(values: Vector) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.sqrt(np.mean(known**2))) if len(known) else math.nan

@@ -1,0 +1,172 @@
+"""A trace in tables: effects, ties, errors, steps, what moved, what would have been seen."""
+
+from __future__ import annotations
+
+import math
+
+from tracewire.show.summary import Table, shown
+from tracewire.trace import Found
+from tracewire.trace.found import Ranked
+from tracewire.trace.telling import (
+    coefficient_of,
+    common_powers,
+    percent,
+    stood_in,
+    unit_of,
+)
+
+MOST_POWERS, MOST_WHERE = 12, 8
+ALL = 10_000
+
+
+def trace_tables(found: Found) -> tuple[Table, ...]:
+    """The tables of a trace that a terminal shows, without those that are empty.
+
+    A report has what is left out: effects that were only screened, and how small an effect would
+    have been seen where one was found.
+    """
+    tables = (
+        effects_table(found),
+        ties_table(found),
+        errors_table(found),
+        moved_table(found),
+        where_table(found, MOST_WHERE),
+        experiments_table(found),
+        tried_table(found, screened=False),
+        *([power_table(found, MOST_POWERS)] if found.verdict == "null" else []),
+    )
+    return tuple(table for table in tables if table.rows)
+
+
+def effects_table(found: Found) -> Table:
+    """The parameters of the effects that were found, in SI, with 95 % intervals."""
+    rows = []
+    for effect in found.effects:
+        first = effect.name, effect.place
+        last = _number(effect.gain, ".4g"), percent(effect.masked), _number(effect.weight, ".2f")
+        for name, value in effect.params.items():
+            low, high = effect.intervals.get(name, (math.nan, math.nan))
+            known = math.isfinite(low) and math.isfinite(high)
+            interval = f"{low:.4g} to {high:.4g}" if known else ""
+            rows.append(
+                (*first, name, f"{value:.5g}", interval, unit_of(found, effect, name), *last)
+            )
+            first, last = ("", ""), ("", "", "")
+    header = ("effect", "place", "parameter", "value", "95 % interval", "unit", "gain", "masked",
+              "weight")  # fmt: skip
+    title = "effects that were found" if found.verdict == "effect" else "best approximations"
+    return Table(title, header, tuple(rows), frozenset({3, 4, 6, 7, 8}))
+
+
+def ties_table(found: Found) -> Table:
+    """What these data cannot tell from an effect, with how alike the two are on the data."""
+    rows = tuple(
+        (str(effect), str(tie), f"{tie.likeness:.3f}",
+         ", ".join(f"{name} = {value:.4g}" for name, value in tie.params.items()),
+         _number(tie.rise, "+.3g"))
+        for effect in found.effects
+        for tie in effect.ties
+    )  # fmt: skip
+    header = ("effect", "cannot be told from", "likeness", "its parameters, refitted", "BIC")
+    return Table("ties", header, rows, frozenset({2, 4}))
+
+
+def errors_table(found: Found) -> Table:
+    """Root mean square errors before and after, by kind, series and signal, in SI and in sigma."""
+    kinds = sorted(found.errors, key=lambda e: (e.kind != "free run", e.use != "validate"))
+    rows = tuple(
+        (e.kind, e.use, e.series, e.signal, e.unit, _number(e.before, ".4g"),
+         _number(e.after, ".4g"), _in_sigma(e.before, e.sigma), _in_sigma(e.after, e.sigma))
+        for e in kinds
+    )  # fmt: skip
+    header = ("kind", "use", "series", "signal", "unit", "rmse before", "rmse after",
+              "before in σ", "after in σ")  # fmt: skip
+    return Table("errors", header, rows, frozenset({5, 6, 7, 8}))
+
+
+def moved_table(found: Found) -> Table:
+    """The declared parameters without and with the effects, in SI; what moved far is marked."""
+    rows = tuple(
+        (m.name, shown(m.before), shown(m.after), _change(m.before, m.after),
+         _number(m.error, ".2g"), m.unit,
+         "had stood in for what was missing" if stood_in(m) else "")
+        for m in found.moved
+    )  # fmt: skip
+    header = (
+        "parameter",
+        "without the effects",
+        "with them",
+        "change",
+        "standard error",
+        "unit",
+        "",
+    )
+    return Table("declared parameters", header, rows, frozenset({1, 2, 3, 4}))
+
+
+def tried_table(found: Found, screened: bool = True) -> Table:
+    """What was tried in each step, the best first; `screened`: also what was not refitted."""
+    rows = []
+    for number, step in enumerate(found.steps, start=1):
+        refitted = [row for row in step.tried if math.isfinite(row.gain)]
+        rows += [_tried(str(number), row) for row in (step.tried if screened else refitted)]
+    header = ("step", "effect", "promised", "gain", "weight", "masked", "s2", "")
+    return Table("what was tried", header, tuple(rows), frozenset({0, 2, 3, 4, 5, 6}))
+
+
+def power_table(found: Found, most: int = ALL) -> Table:
+    """The smallest coefficient of each effect that these data would have shown."""
+    rows = [
+        (p.name, p.place, coefficient_of(p), _number(p.smallest, ".3g"))
+        for p in common_powers(found)[:most]
+    ]
+    if len(found.power) > most:
+        rows.append((f"and {len(found.power) - most} more", "", "", ""))
+    header = ("effect", "place", "coefficient", "smallest that these data would show (SI)")
+    return Table("what would have been seen", header, tuple(rows), frozenset({3}))
+
+
+def where_table(found: Found, most: int = ALL) -> Table:
+    """What a missing torque depends on, at which place, the best explanation first."""
+    best = sorted(found.dependences, key=lambda d: -d.share)[:most]
+    rows = tuple((d.place, ", ".join(d.variables), percent(max(d.share, 0.0))) for d in best)
+    header = ("place", "depends on", "share of the excess that this explains")
+    return Table("where, and on what", header, rows, frozenset({2}))
+
+
+def experiments_table(found: Found) -> Table:
+    """The experiments that would separate effects that these data do not."""
+    rows = tuple(
+        (f"{e.one} or {e.other}",
+         ", ".join(f"{name} = {value:.4g}" for name, value in e.settings.items()),
+         _number(e.separation, ".3g"))
+        for e in found.experiments
+    )  # fmt: skip
+    header = ("to tell apart", "experiment", "separation in σ")
+    return Table("experiments that would separate them", header, rows, frozenset({2}))
+
+
+def _tried(step: str, row: Ranked) -> tuple[str, ...]:
+    return (
+        step,
+        row.effects,
+        _number(row.promised, ".4g"),
+        _number(row.gain, ".4g"),
+        _number(row.weight, ".2f"),
+        percent(row.masked),
+        _number(row.s2, ".4g"),
+        row.remark,
+    )
+
+
+def _number(value: float, form: str) -> str:
+    return format(value, form) if math.isfinite(value) else ""
+
+
+def _in_sigma(value: float, sigma: float) -> str:
+    return _number(value / sigma, ".3g") if sigma > 0 else ""
+
+
+def _change(before: float, after: float) -> str:
+    change = after / before - 1 if before else math.nan
+    return f"{100 * change:+.2g} %" if abs(change) < 10 else ""

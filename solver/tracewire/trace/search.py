@@ -1,0 +1,344 @@
+"""The search: from the declared model to the effects that it lacks, one step after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from tracewire.errors import DiagramError, FitError
+from tracewire.fit.segment import Segment
+from tracewire.trace.candidates import find_candidates
+from tracewire.trace.judge import Verdict, gate
+from tracewire.trace.levels import levels_of
+from tracewire.trace.places import Place
+from tracewire.trace.repeated import comes_back, visible
+from tracewire.trace.screening import Proposal, Row, Screen, screened
+from tracewire.trace.stretches import SHORTEST, Stretches
+from tracewire.trace.tangent import Tangent
+from tracewire.trace.trial import Added, Bench, Trial
+from tracewire.trace.windows import Section
+
+MOST_EFFECTS = 3
+LEAST_GAIN = 5.0
+CHANCE = 1e-3
+FAR = 30.0
+"""Longer windows than those that leave this many times the noise's variance say little: there the
+residual does not depend linearly any more on what is missing."""
+LENGTHENED, NEAR = 0.2, 3.0
+LONGEST = 1000
+"""Samples of a section: a search on longer ones takes too long, as contacts do in such runs."""
+LONGER = 3
+SINGLES, PAIRS = 6, 3
+MANY = 10
+"""Single effects that are refitted far from the noise, where the screen's promises are poor."""
+COPY = 1 - 1e-6
+KEPT = 3
+SLOWER = 6.0
+"""How many times the cost of the model before an effect may take, in steps of a run."""
+WITHIN = 2.0
+FIRST_STEPS, FEW = 5, 30
+"""Steps of the first round of refits, and about how many windows it takes."""
+AT_NOISE = 1.3
+
+
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """Effects that were refitted: how much BIC rose, and what became of them."""
+
+    trial: Trial
+    proposal: Proposal
+    rise: float
+    weight: float
+    remark: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """One step of the search: where it stood, what the screen promised, what was tried."""
+
+    before: Trial
+    screen: Screen
+    chance: float
+    tried: tuple[Tried, ...]
+    after: Trial | None
+    words: str
+
+
+@dataclass
+class Search:
+    """What the steps of a search share."""
+
+    bench: Bench
+    stretches: Stretches
+    places: Sequence[Place]
+    shortest: int
+    values: Mapping[str, float]
+    tell: Callable[[str], None]
+    words: list[str]
+    steps: list[Step] = field(default_factory=list)
+    first: Trial | None = None
+    best: Trial | None = None
+    returns: bool = True
+    """Whether a body comes back to where it was: else much looks the same."""
+
+    @property
+    def standing(self) -> tuple[Trial, Trial]:
+        """The declared fit, and the best that was found so far."""
+        if self.first is None or self.best is None:
+            raise AssertionError("the declared model comes first")
+        return self.first, self.best
+
+    @property
+    def free(self) -> tuple[str, ...]:
+        """The states that are free where a window begins: none where the motion is prescribed, so
+        that no place moves a state and each series begins as it says."""
+        moved = any(place.a for place in self.places) or not any(p.v for p in self.places)
+        begun = any(value is None for m in self.bench.measured for value in m.start.values())
+        return self.bench.states if moved or begun else ()
+
+    @property
+    def lengths(self) -> list[int]:
+        """The window lengths in samples, from the shortest to whole sections."""
+        longest = self.stretches.longest
+        if not self.free:
+            return [longest]
+        lengths = [min(self.shortest, longest)]
+        while lengths[-1] * LONGER < 0.75 * longest:
+            lengths.append(lengths[-1] * LONGER)
+        return lengths if lengths[-1] == longest else [*lengths, longest]
+
+    @property
+    def short(self) -> int:
+        """The second of the window lengths: short, and not many windows."""
+        return self.lengths[min(1, len(self.lengths) - 1)]
+
+    def windows(self, sections: Sequence[Section], length: int) -> list[Segment]:
+        """The windows of some sections."""
+        return self.stretches.windows(self.bench.declared, sections, length, self.free)
+
+    def declared(self) -> Trial:
+        """The diagram as it is, fitted to the shortest windows."""
+        self.tell("fitting the declared model")
+        length = self.lengths[0]
+        windows = self.windows(self.stretches.train, length)
+        return self.bench.fitted((), windows, length, self.values)
+
+    def climbed(
+        self, trial: Trial, sections: Sequence[Section] | None = None, far: float = FAR
+    ) -> Trial:
+        """A trial refitted on longer and longer windows, as far as its residual stays small."""
+        sections = self.stretches.train if sections is None else sections
+        longest = max(section.end - section.first for section in sections)
+        lengths = [n for n in self.lengths if trial.length < n < 0.75 * longest]
+        for length in [*lengths, *([longest] if trial.length < longest else [])]:
+            if trial.s2 > far:
+                break
+            self.tell(f"refitting on windows of {length} samples")
+            try:
+                longer = self.bench.again(trial, self.windows(sections, length), length)
+            except FitError:
+                break
+            if not longer.converged or longer.s2 > far:
+                break
+            trial = longer
+        return trial
+
+    def run(self, declared: Trial) -> None:
+        """One effect after the other, from the declared fit."""
+        self.first = self.best = self.climbed(declared)
+        self._stepped()
+        if self.first.s2 > FAR and self.best.s2 > NEAR and self.free:
+            self._lengthened()
+
+    def _stepped(self) -> None:
+        """Effects from the best model on, until none passes."""
+        while self.best is not None and len(self.best.effects) < MOST_EFFECTS:
+            found = self.step(self.best)
+            if found is None:
+                break
+            self.best = self.climbed(found)
+
+    def _lengthened(self) -> None:
+        """The search once more on whole sections, where short windows stay far above the noise.
+
+        What no effect explains at every sample then rules short windows, while what is missing adds
+        up in long ones. What is found there counts where it explains the greater part.
+        """
+        known = self.first, self.best, len(self.steps)
+        length = self.lengths[-1]
+        if length > LONGEST:
+            return
+        self.tell("searching on whole sections")
+        try:
+            first = self.bench.fitted(
+                (), self.windows(self.stretches.train, length), length, self.values
+            )
+        except FitError:
+            return
+        self.first = self.best = first
+        self._stepped()
+        if self.best.effects and self.best.s2 < LENGTHENED * first.s2:
+            self.words.append("short windows stay far above the noise: searched on whole sections")
+            del self.steps[: known[2]]
+        else:
+            self.first, self.best = known[0], known[1]
+            del self.steps[known[2] :]
+
+    def step(self, now: Trial) -> Trial | None:
+        """One more effect, or a pair: screened, refitted, ranked, and passed by the gate."""
+        self.tell("screening effects")
+        tangent = Tangent(now.diagram, now.windows, self.places, self.bench.rtol)
+        taken = [effect.candidate for effect in now.effects]
+        levels = levels_of(tangent.trajectories)
+        candidates = find_candidates(
+            self.bench.declared, self.places, levels, taken, self.bench.tones
+        )
+        self.returns = comes_back(self.places, tangent.trajectories)
+        if not self.returns:
+            candidates = visible(self.bench.declared, candidates, tangent.trajectories)
+        screen = screened(tangent, now, candidates)
+        chance = screen.chance()
+        count = SINGLES if now.s2 < FAR else MANY
+        proposals = shortlist(screen, MOST_EFFECTS - len(now.effects), count)
+        if chance > CHANCE or not proposals:
+            words = f"nothing stands out (p = {chance:.2g})"
+            self.steps.append(Step(now, screen, chance, (), None, words))
+            return None
+        singles = [p for p in proposals if len(p.rows) == 1]
+        tried = self.refitted(now, singles)
+        if not any(one.trial.s2 < AT_NOISE for one in tried):  # a pair says nothing more there
+            pairs = [p for p in proposals if len(p.rows) > 1]
+            tried = self.ranked(now, [*tried, *self.refitted(now, pairs)])
+        winner, verdict = None, None
+        for number, one in enumerate(tried):
+            if (
+                one.rise > -2 * LEAST_GAIN
+                or number > 1
+                or len(one.trial.effects) == len(now.effects)
+            ):
+                break
+            verdict = self.judged(now, one, tried)
+            tried[number] = replace(one, remark=verdict.words)
+            if verdict.passed:
+                winner = one
+                break
+        words = "no effect passes" if winner is None else f"accepted: {_named(winner.trial, now)}"
+        after = None if winner is None else winner.trial
+        self.steps.append(Step(now, screen, chance, tuple(tried), after, words))
+        return after
+
+    def judged(self, now: Trial, one: Tried, tried: Sequence[Tried]) -> Verdict:
+        """What the gate says of a trial, of a pair also beside each effect alone."""
+        length = one.trial.length
+        windows = self.windows(self.stretches.gate, length)
+        verdict = gate(self.bench, now, one.trial, windows, -one.rise)
+        mine = {str(e) for e in one.trial.effects}
+        for other in tried:
+            if verdict.passed and {str(e) for e in other.trial.effects} < mine:
+                fall = other.rise - one.rise
+                verdict = gate(self.bench, other.trial, one.trial, windows, fall)
+        return verdict
+
+    def refitted(self, now: Trial, proposals: Sequence[Proposal]) -> list[Tried]:
+        """The proposals in the loop, the best first: a few steps each, then the best converged."""
+        few = _few(now.windows.segments)
+        begun = []
+        for number, proposal in enumerate(proposals, start=1):
+            names = " and ".join(str(row.candidate) for row in proposal.rows)
+            self.tell(f"refitting with {names} ({number} of {len(proposals)})")
+            trial = self.extended(now, [r.added for r in proposal.rows], few, FIRST_STEPS)
+            if trial is not None:
+                begun.append((trial, proposal))
+        begun.sort(key=lambda pair: pair[0].rss)
+        done = []
+        kept = KEPT if now.s2 < FAR else KEPT + 2
+        for number, (trial, proposal) in enumerate(begun):
+            if number < kept and trial.rss < WITHIN * begun[0][0].rss:
+                self.tell(f"refitting {_named(trial, now)} on all windows ({number + 1} of {kept})")
+                trial = self.extended(trial, (), now.windows.segments) or trial
+                done.append(Tried(trial, proposal, 0.0, 0.0))
+        return self.ranked(now, done)
+
+    def ranked(self, now: Trial, tried: Sequence[Tried]) -> list[Tried]:
+        """Trials on the same windows by BIC, the best first, with their weights."""
+        if not tried:
+            return []
+        part = min((one.trial for one in tried), key=lambda trial: trial.rss).part
+        rises = np.array([one.trial.quality(part) - now.quality(part) for one in tried])
+        weights = np.exp(-0.5 * (rises - rises.min()))
+        weights = weights / weights.sum()
+        rows = [
+            replace(one, rise=float(rise), weight=float(weight))
+            for one, rise, weight in zip(tried, rises, weights, strict=True)
+        ]
+        return sorted(rows, key=lambda one: one.rise)
+
+    def extended(
+        self, now: Trial, added: Sequence[Added], segments: Sequence[Segment], steps: int = 20
+    ) -> Trial | None:
+        """The model with more effects, refitted from where it stood; None if it does not run."""
+        try:
+            return self.bench.fitted(
+                (*now.effects, *added),
+                segments,
+                now.length,
+                now.values,
+                fixed=now.windows.criterion.parameters,
+                steps=steps,
+                budget=SLOWER * steps * len(segments) * now.cost,
+            )
+        except (FitError, DiagramError) as error:
+            names = " and ".join(map(str, added))
+            self.words.append(f"{names} was not tried: {error.problems[0].what}")
+            return None
+
+
+def _few(segments: Sequence[Segment]) -> list[Segment]:
+    """About 30 of the windows: the first ones of each series, as memories go on between them."""
+    names = list(dict.fromkeys(segment.measured.name for segment in segments))
+    most = -(-FEW // len(names))
+    return [
+        segment
+        for name in names
+        for segment in [s for s in segments if s.measured.name == name][:most]
+    ]
+
+
+def shortlist(screen: Screen, room: int, count: int = SINGLES) -> list[Proposal]:
+    """What is worth a refit: the best single effects, and pairs that promise more than their
+    parts."""
+    singles: list[Row] = []
+    for row in sorted(screen.best(), key=lambda row: (-round(row.gain, 3), not row.candidate.sign)):
+        # an exact copy, as of what is more in one direction where there is no other, has its name
+        same = (screen.columns.likeness(row.columns, other.columns) for other in singles)
+        if row.gain > LEAST_GAIN and (len(singles) >= MANY or all(x < COPY for x in same)):
+            singles.append(row)
+    found = [Proposal((row,), row.gain) for row in singles[:count]]
+    if room < 2:
+        return found
+    alone = {str(row.candidate): row.gain for row in screen.best()}
+    best = max(alone.values(), default=0.0)
+    pairs = [pair for pair in screen.pairs() if pair.gain > max(best, LEAST_GAIN) + LEAST_GAIN]
+    return found + pairs[:PAIRS]
+
+
+def shortest_window(stretches: Stretches) -> int:
+    """The samples of the shortest window: about a fifth of the slowest series' period, at least 16.
+
+    A series without a period, as of a falling body, has no phase that a long run could lose: it is
+    one window.
+    """
+    lengths = []
+    for section in stretches.train:
+        for values in section.measured.values.values():
+            y = values[section.first : section.end]
+            centred = y - np.mean(y)
+            crossings = int(np.sum(np.diff(np.signbit(centred))))
+            lengths.append(2 * len(y) / crossings if crossings > 1 else 5 * len(y))
+    return int(np.clip(np.median(lengths) / 5, SHORTEST, max(stretches.longest, SHORTEST)))
+
+
+def _named(trial: Trial, now: Trial) -> str:
+    return " and ".join(str(e) for e in trial.effects[len(now.effects) :])

@@ -1,0 +1,340 @@
+"""Windows: a series cut into short runs whose start states are free, and how they are fitted.
+
+A window begins at the last sample of the one before it, so that the end of one is a start for the
+next. Its start states are eliminated where it stands: what is left of the residual and of the
+derivatives when all that a start could explain is taken away (variable projection).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import lsq_linear
+
+from tracewire.compile import Model
+from tracewire.fit.criterion import Criterion, Linearised
+from tracewire.fit.measured import Measured
+from tracewire.fit.segment import Segment
+from tracewire.fit.starts import start_from_data, whole_segment
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+UNSEEN = 1e-7
+"""A direction of a window's start that moves its residual less than this part of the strongest."""
+SETTLING, RESCUING = 8, 2
+CONVERGED = 1e-4
+CREEPS = 5e-4
+"""A step that gains less than this part of the sum of squares is the last one."""
+SETTLED = 0.05
+"""What is still to gain, in units of the noise's variance, where a fit has converged."""
+FIRST_DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-9, 1e6
+MOST_FAILURES = 2
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """Samples `first` to `end` of a series, which are cut into windows."""
+
+    measured: Measured
+    first: int
+    end: int
+
+
+def cut(model: Model, section: Section, length: int, free: Sequence[str]) -> list[Segment]:
+    """A section as windows of about `length` samples, each with free starts of the states `free`.
+
+    A window that begins where the series does begins as the series says; where that start is
+    declared, it is not free. Where no state is free at all, as with a prescribed motion, there is
+    one window, whose run begins where the series does: what has a memory keeps it.
+    """
+    measured = section.measured
+    whole = whole_segment(model, measured)
+    first = max(section.first, int(whole.rows[0]))
+    if not free and not whole.free:
+        return [replace(whole, rows=np.arange(first, section.end))]
+    count = max(round((section.end - first) / length), 1)
+    edges = np.linspace(first, section.end, count + 1).astype(int).tolist()
+    windows = []
+    for a, b in pairwise(edges):
+        if a == int(whole.rows[0]):
+            start = {name: whole.start[name] for name in free if name in whole.start}
+            start |= {name: whole.start.get(name, 0.0) for name in whole.free}
+            windows.append(Segment(measured, whole.begin, np.arange(a, b), start, whole.free))
+            continue
+        told = start_from_data(model, measured, a - 1)
+        start = {**whole.start, **{name: told[name] for name in free if name in told}}
+        for name in free:
+            start.setdefault(name, 0.0)
+        begin = float(measured.t[a - 1])
+        windows.append(Segment(measured, begin, np.arange(a, b), start, tuple(free)))
+    return windows
+
+
+@dataclass(frozen=True, eq=False)
+class Windows:
+    """Windows at some values of the unknowns: their starts, and each of them linearised there."""
+
+    criterion: Criterion
+    values: Mapping[str, float]
+    starts: tuple[Mapping[str, float], ...]
+    near: tuple[Linearised, ...]
+
+    @property
+    def squares(self) -> Vector:
+        """The sum of squared residuals of each window, in sigma."""
+        return np.array([float(np.sum(near.residual**2)) for near in self.near])
+
+    @property
+    def rss(self) -> float:
+        """The sum of squared residuals."""
+        return float(np.sum(self.squares))
+
+    @property
+    def residuals(self) -> list[Vector]:
+        """The residuals in sigma by window, shape (N, signals)."""
+        return [near.residual for near in self.near]
+
+    @property
+    def segments(self) -> list[Segment]:
+        """The windows with their fitted starts."""
+        pairs = zip(self.criterion.segments, self.starts, strict=True)
+        return [replace(s, start={**s.start, **start}) for s, start in pairs]
+
+
+@dataclass(frozen=True, eq=False)
+class Projection:
+    """A window without what its start can explain: an orthonormal basis of that, (N*signals, r),
+    and the start's answer to a residual, (states, N*signals)."""
+
+    basis: Matrix
+    answer: Matrix
+
+    def off(self, columns: Matrix) -> Matrix:
+        """Columns without what the start can explain."""
+        return np.asarray(columns - self.basis @ (self.basis.T @ columns))
+
+
+def projection(windows: Windows, n: int) -> Projection:
+    """What the start of window n can explain."""
+    segment = windows.criterion.segments[n]
+    scales = np.array([segment.start_scale(name) for name in segment.free])
+    moved = windows.near[n].slopes[:, len(windows.values) :] * scales
+    if not moved.size:
+        return Projection(np.zeros((len(moved), 0)), np.zeros((0, len(moved))))
+    left, singular, right = np.linalg.svd(moved, full_matrices=False)
+    kept = singular > UNSEEN * max(float(singular[0]), 1e-300)
+    answer = (scales[:, None] * right[kept].T / singular[kept]) @ left[:, kept].T
+    return Projection(left[:, kept], answer)
+
+
+def opened(criterion: Criterion) -> Windows:
+    """The windows where their segments begin."""
+    values = {u.name: u.value for u in criterion.unknowns}
+    starts = [{name: s.start[name] for name in s.free} for s in criterion.segments]
+    near = [criterion.linearised(n, values, start) for n, start in enumerate(starts)]
+    return Windows(criterion, values, tuple(starts), tuple(near))
+
+
+def settled(windows: Windows) -> Windows:
+    """The starts alone fitted, each window for itself; the unknowns stay.
+
+    A window whose start is led astray (a start inside a stiff barrier kicks it away) is tried from
+    the end of the window before it.
+    """
+    starts: list[Mapping[str, float]] = list(windows.starts)
+    near = list(windows.near)
+    for n in range(len(near)):
+        near[n] = _carried(windows, near, n)
+        current = replace(windows, starts=tuple(starts), near=tuple(near))
+        starts[n], near[n] = _settled_one(current, n)
+        ends = current.near[n - 1].final if n and _follows(windows, n) else {}
+        expected = near[n].residual.size
+        if ends and float(np.sum(near[n].residual ** 2)) > 2 * expected:
+            start: Mapping[str, float] = {name: ends[name] for name in starts[n]}
+            other = windows.criterion.linearised(n, windows.values, start)
+            there = replace(
+                current,
+                starts=(*starts[:n], start, *starts[n + 1 :]),
+                near=(*near[:n], other, *near[n + 1 :]),
+            )
+            start, other = _settled_one(there, n)
+            if _square(other) < _square(near[n]):
+                starts[n], near[n] = start, other
+    return replace(windows, starts=tuple(starts), near=tuple(near))
+
+
+def carried(windows: Windows) -> Windows:
+    """The windows with memories that go on from one to the next.
+
+    A state that is not free, such as that of an effect with memory, begins where it ended before.
+    """
+    near = list(windows.near)
+    for n in range(len(near)):
+        near[n] = _carried(windows, near, n)
+    return replace(windows, near=tuple(near))
+
+
+def _carried(windows: Windows, near: Sequence[Linearised], n: int) -> Linearised:
+    """Window n with the memories that the one before it has left."""
+    segment = windows.criterion.segments[n]
+    if not n or not segment.free or not _follows(windows, n):
+        return near[n]
+    ends = {name: x for name, x in near[n - 1].final.items() if name not in segment.free}
+    if all(abs(x - segment.start.get(name, np.inf)) <= 0.0 for name, x in ends.items()):
+        return near[n]
+    windows.criterion.carry(n, ends)
+    return windows.criterion.linearised(n, windows.values, windows.starts[n])
+
+
+def _settled_one(
+    windows: Windows, n: int, steps: int = SETTLING
+) -> tuple[Mapping[str, float], Linearised]:
+    """The start of window n fitted by damped Gauss-Newton steps."""
+    start: Mapping[str, float] = windows.starts[n]
+    near, share = windows.near[n], 1.0
+    if not start:
+        return start, near
+    answer: Matrix | None = None
+    for _ in range(steps):
+        if answer is None:
+            now = replace(windows, near=(*windows.near[:n], near, *windows.near[n + 1 :]))
+            view = projection(now, n)
+            answer = -view.answer @ near.residual.ravel()
+            gain = float(np.sum((view.basis.T @ near.residual.ravel()) ** 2))
+            if gain < max(SETTLED, CONVERGED * _square(near)):
+                break
+        moved = dict(zip(start, np.array(list(start.values())) + share * answer, strict=True))
+        there = windows.criterion.linearised(n, windows.values, moved)
+        if not there.ran:
+            break
+        if _square(there) < _square(near):
+            start, near, share, answer = moved, there, min(2 * share, 1.0), None
+        else:
+            share /= 4
+    return start, near
+
+
+def descended(windows: Windows, steps: int = 20) -> tuple[Windows, bool]:
+    """The unknowns and all starts fitted by Levenberg and Marquardt; whether it converged.
+
+    Each step comes from the problem without the starts, within the bounds of the unknowns. Windows
+    that do worse than the step promised are settled for themselves before it is judged.
+    """
+    unknowns = windows.criterion.unknowns
+    low, high = np.array([u.low for u in unknowns]), np.array([u.high for u in unknowns])
+    scales = np.array([u.scale for u in unknowns])
+    damping, failures = FIRST_DAMPING, 0
+    windows = settled(windows)
+    if not len(unknowns):
+        return windows, True
+    for _ in range(steps):
+        views = [projection(windows, n) for n in range(len(windows.near))]
+        reduced, residual = eliminated(windows, views)
+        reduced = reduced * scales
+        values = np.array([windows.values[u.name] for u in unknowns])
+        room = (low - values) / scales, (high - values) / scales
+        while True:
+            step = _bounded(reduced, residual, damping, room)
+            left = residual + reduced @ step
+            promised = float(residual @ residual - left @ left)
+            start_gain = windows.rss - float(residual @ residual)
+            if promised + start_gain < max(SETTLED, CONVERGED * windows.rss):
+                return windows, True
+            there = _moved(windows, views, step * scales)
+            failures += there is None
+            if there is not None and there.rss < windows.rss:
+                gained = windows.rss - there.rss
+                windows, damping = carried(there), max(damping / 10, LEAST_DAMPING)
+                if gained < max(SETTLED, CREEPS * windows.rss):
+                    return windows, True
+                break
+            damping = max(damping * 10, FIRST_DAMPING)
+            if damping > MOST_DAMPING or failures > MOST_FAILURES:
+                return windows, False
+    return windows, False
+
+
+def eliminated(windows: Windows, views: Sequence[Projection]) -> tuple[Matrix, Vector]:
+    """Derivatives (M, unknowns) in SI and residuals (M,) without what the starts can explain."""
+    count = len(windows.values)
+    pairs = list(zip(views, windows.near, strict=True))
+    reduced = np.concatenate([view.off(near.slopes[:, :count]) for view, near in pairs])
+    residual = np.concatenate([view.off(near.residual.ravel()) for view, near in pairs])
+    return reduced, residual
+
+
+def _bounded(
+    reduced: Matrix, residual: Vector, damping: float, room: tuple[Vector, Vector]
+) -> Vector:
+    """The step that minimises the squares, damped by the sizes of its columns, within bounds."""
+    corner = np.asarray(np.linalg.qr(np.column_stack((reduced, residual)), mode="r"))
+    count = reduced.shape[1]
+    sizes = np.linalg.norm(reduced, axis=0)
+    damped = np.diag(np.sqrt(damping) * np.maximum(sizes, 1e-12 * max(sizes.max(), 1e-300)))
+    matrix = np.vstack((corner[:, :count], damped))
+    target = np.concatenate((-corner[:, count], np.zeros(count)))
+    low, high = np.minimum(room[0], 0.0), np.maximum(room[1], 0.0)
+    high = np.maximum(high, low + 1e-12)
+    sizes = np.maximum(np.linalg.norm(matrix, axis=0), 1e-300)
+    found = lsq_linear(matrix / sizes, target, (low * sizes, high * sizes), method="bvls")
+    return np.asarray(found.x / sizes)
+
+
+def _moved(windows: Windows, views: Sequence[Projection], step: Vector) -> Windows | None:
+    """The windows after a step of the unknowns, their starts following by the linear answer; None
+    where one does not run."""
+    count = len(windows.values)
+    names = windows.values
+    values = {name: windows.values[name] + float(d) for name, d in zip(names, step, strict=True)}
+    for u in windows.criterion.unknowns:
+        values[u.name] = min(max(values[u.name], u.low), u.high)
+    starts: list[Mapping[str, float]] = []
+    near: list[Linearised] = []
+    promised = []
+    for n, (view, old) in enumerate(zip(views, windows.near, strict=True)):
+        expected = old.residual.ravel() + old.slopes[:, :count] @ step
+        moved = np.array(list(windows.starts[n].values())) - view.answer @ expected
+        start = dict(zip(windows.starts[n], moved.tolist(), strict=True))
+        starts.append(start)
+        near.append(windows.criterion.linearised(n, values, start))
+        if not near[-1].ran and old.ran:
+            return None
+        promised.append(float(np.sum(view.off(expected) ** 2)))
+    there = replace(windows, values=values, starts=tuple(starts), near=tuple(near))
+    limits = 2 * np.array(promised) + 2 * np.array([x.residual.size for x in near])
+    for n in np.flatnonzero(there.squares > np.maximum(limits, windows.squares)).tolist():
+        near[n], starts[n] = _rescued(there, windows.starts[n], n)
+        there = replace(there, starts=tuple(starts), near=tuple(near))
+    return there
+
+
+def _rescued(
+    windows: Windows, before: Mapping[str, float], n: int
+) -> tuple[Linearised, Mapping[str, float]]:
+    """Window n from where it was, or from the end of the one before it, where that does better."""
+    tried = [(windows.near[n], windows.starts[n])]
+    ends = windows.near[n - 1].final if n and _follows(windows, n) else {}
+    for start in (before, {name: ends[name] for name in before} if ends else {}):
+        if start:
+            tried.append((windows.criterion.linearised(n, windows.values, start), start))
+    near, start = min(tried, key=lambda pair: _square(pair[0]))
+    there = replace(
+        windows,
+        starts=(*windows.starts[:n], start, *windows.starts[n + 1 :]),
+        near=(*windows.near[:n], near, *windows.near[n + 1 :]),
+    )
+    start, near = _settled_one(there, n, RESCUING)
+    return near, start
+
+
+def _follows(windows: Windows, n: int) -> bool:
+    one, other = windows.criterion.segments[n - 1], windows.criterion.segments[n]
+    return one.measured is other.measured and int(one.rows[-1]) + 1 == int(other.rows[0])
+
+
+def _square(near: Linearised) -> float:
+    return float(np.sum(near.residual**2))
