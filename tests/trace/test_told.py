@@ -29,8 +29,8 @@ def test_at_the_noise_it_is_what_was_found_there() -> None:
 
 
 def test_unseen_windows_must_reach_the_noise_too() -> None:
-    assert verdict(1.05, gate=4.0, before=1.05, effects=0) == "unexplained"
     assert verdict(1.05, gate=4.0, before=3.0) == "unexplained"
+    assert verdict(1.05, gate=4.0, before=1.05, effects=0) == "null", "nothing was fitted to choose"
 
 
 def test_above_the_noise_an_effect_is_named_where_it_takes_most_away() -> None:

@@ -33,7 +33,8 @@ def verdict_of(
     *,
     returns: bool = True,
 ) -> Verdict:
-    """`effect` or `null` where the model reaches the noise on fitted and on unseen windows.
+    """`null` where the declared model reaches the noise on all that is not held back for the final
+    claim, `effect` where one with effects does so on fitted and on unseen windows.
 
     `gate` is the squared residual per residual on unseen windows. Far above the noise effects are
     named still where they leave less than a fifth of the squared residual and what is left depends
@@ -42,8 +43,10 @@ def verdict_of(
     force: a residual that no effect explains, a few times the noise, is then no sign of one.
     """
     limit = max(AT_NOISE, 1 + 4 * (2 / best.freedom) ** 0.5)
+    if best.s2 < limit and not best.effects:
+        return "null"
     if best.s2 < limit and gate < limit**2:
-        return "effect" if best.effects else "null"
+        return "effect"
     if not returns and best.s2 < SLOW:
         return "effect" if best.effects else "null"
     structured = max((d.share for d in dependences), default=0.0) > STRUCTURED

@@ -176,6 +176,7 @@ class Bench:
         model = self.compiled(diagram) if added else self.declared
         fixed = fixed or {}
         unknowns = [u for u in self._unknowns(effects, values) if u.name not in fixed]
+        segments = [_without_strange(segment, model) for segment in segments]
         criterion = self._criterion(model, self.with_own(segments, effects), unknowns, fixed)
         criterion.budget = budget
         windows = opened(criterion)
@@ -289,3 +290,9 @@ def _refuse_failed(criterion: Criterion, windows: Windows) -> None:
     failed = any(not near.ran for near in windows.near)
     if failed and criterion.failure is not None:
         raise FitError(criterion.failure.problems)
+
+
+def _without_strange(segment: Segment, model: Model) -> Segment:
+    """The segment without starts of states that the model has not: another effect's memory."""
+    start = {name: value for name, value in segment.start.items() if name in model.states}
+    return segment if len(start) == len(segment.start) else replace(segment, start=start)
