@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import chain
 
 import numpy as np
@@ -130,14 +131,14 @@ def _units(model: Model, m: Measured) -> Iterator[Mistake]:
             yield Mistake(
                 f"if {shown} {verb} in {meaning}",
                 "Say the unit of the column: in its header, or in the diagram.",
-                lambda m, names=names, factor=factor: _scaled(m, names, factor),  # type: ignore[misc]
+                partial(_scaled, names=names, factor=factor),
             )
     for name in m.inputs:
         for factor, meaning in ((1e-3, "thousandths of"), (1e3, "thousands of")):
             yield Mistake(
                 f"if the input '{name}' is in {meaning} its unit",
                 "Say the unit of the column: in its header, or in the diagram.",
-                lambda m, name=name, factor=factor: _louder(m, name, factor),  # type: ignore[misc]
+                partial(_louder, name=name, factor=factor),
             )
 
 
@@ -193,7 +194,7 @@ def _shifts(
         yield Mistake(
             f"if its signals come {when}",
             "Are drive and signals from one clock? Put them to the same time.",
-            lambda m, lag=lag: shifted(m, lag),  # type: ignore[misc]
+            partial(shifted, lag=lag),
         )
 
 

@@ -62,7 +62,6 @@ def told_effects(search: Search, final: Final) -> tuple[FoundEffect, ...]:
     ends = intervals(final.best) if final.best.effects else {}
     found = []
     for effect in final.best.effects:
-        known = ends | {}
         gain, masked, weight = _standing(search, effect)
         rivals = [r for r in final.rivals.get(str(effect), ()) if r.tied]
         shown = _shown(effect, final.best)
@@ -75,9 +74,9 @@ def told_effects(search: Search, final: Final) -> tuple[FoundEffect, ...]:
                 block=effect.candidate.block,
                 coefficient=effect.candidate.parameter,
                 intervals={
-                    name: known[effect.unknown(name)]
+                    name: ends[effect.unknown(name)]
                     for name in shown
-                    if effect.unknown(name) in known
+                    if effect.unknown(name) in ends
                 },
                 gain=gain,
                 masked=masked,
