@@ -36,6 +36,7 @@ harmonic = Block(
             "period": Shape(tuple(1 / n for n in range(1, 61)), of="T", low=1e-9),
             "phase": Shape((0.0, QUARTER), low=-4 * QUARTER),  # sine and cosine
         },
+        each=("phase",),
     ),
 )
 

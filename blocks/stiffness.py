@@ -96,6 +96,7 @@ parametric = Block(
         "amplitude",
         {"of": "q"},
         shapes={"period": PERIODS, "phase": PHASES},
+        each=("phase",),
     ),
 )
 

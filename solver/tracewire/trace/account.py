@@ -105,11 +105,29 @@ def free_run(bench: Bench, trial: Trial, whole: Segment, shortest: int) -> Vecto
     A free start is fitted on the first fifth of the section alone.
     """
     if whole.free:
-        count = max(int(FIRST_PART * len(whole.rows)), min(2 * shortest, len(whole.rows)))
-        first = replace(whole, rows=whole.rows[:count])
-        begun = settled(opened(bench.criterion(trial, [first])))
+        begun = settled(opened(bench.criterion(trial, [_first_part(whole, shortest)])))
         whole = replace(begun.segments[0], rows=whole.rows)
     return opened(bench.criterion(trial, [whole])).residuals[0]
+
+
+def met(search: Search, trial: Trial) -> Trial:
+    """The trial whose effects have what series of their own need that no fit saw: the phase of a
+    wave, from the first fifth of each such series alone."""
+    if not any(effect.own_series for effect in trial.effects):
+        return trial
+    stretches = search.stretches
+    unseen = [*(s for s in stretches.gate if s.measured.use == "gate"), *stretches.validate]
+    firsts = [
+        _first_part(whole, search.shortest)
+        for section in unseen
+        for whole in search.windows([section], section.end - section.first)
+    ]
+    return replace(trial, effects=search.bench.met(trial, firsts))
+
+
+def _first_part(whole: Segment, shortest: int) -> Segment:
+    count = max(int(FIRST_PART * len(whole.rows)), min(2 * shortest, len(whole.rows)))
+    return replace(whole, rows=whole.rows[:count])
 
 
 def rmse(parts: Sequence[Compared], which: int) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 from tracewire.errors import DiagramError, FitError
 from tracewire.trace.candidates import is_default
 from tracewire.trace.judge import AT_NOISE, MATERIAL
-from tracewire.trace.search import MANY, Search
+from tracewire.trace.search import MANY, SLOWER, STEPS, Search
 from tracewire.trace.trial import Added, Trial
 
 CHEAP = 6.0
@@ -60,6 +60,7 @@ def finished(search: Search, declared: Trial, best: Trial) -> Final:
         best, found = _exchanged(search, best, number)
         rivals[str(best.effects[number])] = found
     best = _opened_shapes(search, best)
+    best = _common_phases(search, best)
     best = _pruned(search, best)
     best, dropped = _dropped(search, best)
     return Final(declared, best, rivals, dropped)
@@ -83,6 +84,8 @@ def _refitted(
             trial.length,
             trial.values,
             fixed=known if fixed is None else fixed,
+            steps=STEPS,
+            budget=SLOWER * STEPS * len(trial.windows.segments) * trial.cost,
         )
     except (FitError, DiagramError):
         return None
@@ -166,6 +169,24 @@ def _opened_shapes(search: Search, best: Trial) -> Trial:
             if trial is not None and trial.quality(best.part) < best.quality(best.part) - CHEAP:
                 best = trial
                 effect = best.effects[number]
+    return best
+
+
+def _common_phases(search: Search, best: Trial) -> Trial:
+    """The best model with one phase for all series where that is no worse: a clock of the rig, not
+    of the record."""
+    for number, effect in enumerate(best.effects):
+        if not effect.own_series:
+            continue
+        search.tell(f"{effect} with one phase in all series")
+        values = {name: value for name, value in effect.values.items() if "@" not in name}
+        for shape in effect.candidate.each:
+            own = [x for name, x in effect.values.items() if name.startswith(f"{shape}@")]
+            values[shape] = float(np.angle(np.mean(np.exp(1j * np.array(own)))))
+        effects = [*best.effects[:number], replace(effect, values=values)]
+        trial = _refitted(search, best, [*effects, *best.effects[number + 1 :]])
+        if trial is not None and trial.quality(best.part) < best.quality(best.part):
+            best = trial
     return best
 
 

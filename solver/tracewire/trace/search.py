@@ -10,7 +10,7 @@ import numpy as np
 from tracewire.errors import DiagramError, FitError
 from tracewire.fit.segment import Segment
 from tracewire.trace.candidates import find_candidates
-from tracewire.trace.judge import Verdict, gate
+from tracewire.trace.judge import MATERIAL, Verdict, gate
 from tracewire.trace.levels import levels_of
 from tracewire.trace.places import Place
 from tracewire.trace.repeated import comes_back, visible
@@ -38,9 +38,11 @@ KEPT = 3
 SLOWER = 6.0
 """How many times the cost of the model before an effect may take, in steps of a run."""
 WITHIN = 2.0
-FIRST_STEPS, FEW = 5, 30
-"""Steps of the first round of refits, and about how many windows it takes."""
+STEPS, FIRST_STEPS, FEW = 20, 5, 30
+"""Steps of a refit and of the first round of refits, and about how many windows that takes."""
 AT_NOISE = 1.3
+RUNNER_UP = 0.9
+"""The part of the fall of BIC of the best effect from which another one is a runner-up."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,12 +155,43 @@ class Search:
             self._lengthened()
 
     def _stepped(self) -> None:
+        """Effects from the best model on, until none passes; then from runners-up of the first
+        step, where that does not reach the noise: a stand-in may have been ahead of the truth."""
+        first = len(self.steps)
+        self._onward()
+        runners_up = self._runners_up(first)
+        for number, one in enumerate(runners_up, start=1):
+            if self.best is None or self.best.s2 < AT_NOISE:
+                break
+            self.tell(f"from the runner-up {one.trial.effects[-1]} ({number} of {len(runners_up)})")
+            known = self.best, self.steps[:]
+            step = self.steps[first]
+            words = f"accepted a runner-up: {_named(one.trial, step.before)}"
+            self.steps = [*self.steps[:first], replace(step, after=one.trial, words=words)]
+            self.best = self.climbed(one.trial)
+            self._onward()
+            shorter = self.best.length < known[0].length
+            if shorter or self.best.s2 > (1 - MATERIAL) * known[0].s2:
+                self.best, self.steps = known
+
+    def _onward(self) -> None:
         """Effects from the best model on, until none passes."""
         while self.best is not None and len(self.best.effects) < MOST_EFFECTS:
             found = self.step(self.best)
             if found is None:
                 break
             self.best = self.climbed(found)
+
+    def _runners_up(self, number: int) -> list[Tried]:
+        """Single effects that did nearly as well in a step as the one that was accepted."""
+        if number >= len(self.steps):
+            return []
+        step = self.steps[number]
+        winner = next((one for one in step.tried if one.trial is step.after), None)
+        if winner is None:
+            return []
+        near = [one for one in step.tried if one.rise < RUNNER_UP * winner.rise]
+        return [one for one in near if one is not winner and len(one.proposal.rows) == 1]
 
     def _lengthened(self) -> None:
         """The search once more on whole sections, where short windows stay far above the noise.
@@ -211,18 +244,12 @@ class Search:
         if not any(one.trial.s2 < AT_NOISE for one in tried):  # a pair says nothing more there
             pairs = [p for p in proposals if len(p.rows) > 1]
             tried = self.ranked(now, [*tried, *self.refitted(now, pairs)])
-        winner, verdict = None, None
-        for number, one in enumerate(tried):
-            if (
-                one.rise > -2 * LEAST_GAIN
-                or number > 1
-                or len(one.trial.effects) == len(now.effects)
-            ):
-                break
-            verdict = self.judged(now, one, tried)
-            tried[number] = replace(one, remark=verdict.words)
+        winner = None
+        for number in _worth_judging(tried, now):
+            verdict = self.judged(now, tried[number], tried)
+            tried[number] = replace(tried[number], remark=verdict.words)
             if verdict.passed:
-                winner = one
+                winner = tried[number]
                 break
         words = "no effect passes" if winner is None else f"accepted: {_named(winner.trial, now)}"
         after = None if winner is None else winner.trial
@@ -276,7 +303,7 @@ class Search:
         return sorted(rows, key=lambda one: one.rise)
 
     def extended(
-        self, now: Trial, added: Sequence[Added], segments: Sequence[Segment], steps: int = 20
+        self, now: Trial, added: Sequence[Added], segments: Sequence[Segment], steps: int = STEPS
     ) -> Trial | None:
         """The model with more effects, refitted from where it stood; None if it does not run."""
         try:
@@ -293,6 +320,14 @@ class Search:
             names = " and ".join(map(str, added))
             self.words.append(f"{names} was not tried: {error.problems[0].what}")
             return None
+
+
+def _worth_judging(tried: Sequence[Tried], now: Trial) -> list[int]:
+    """The two best, and the best single effect: where no pair is more than its parts."""
+    gains = [n for n, one in enumerate(tried) if one.rise < -2 * LEAST_GAIN]
+    gains = [n for n in gains if len(tried[n].trial.effects) > len(now.effects)]
+    singles = [n for n in gains if len(tried[n].trial.effects) == len(now.effects) + 1]
+    return sorted({*gains[:2], *singles[:1]})
 
 
 def _few(segments: Sequence[Segment]) -> list[Segment]:

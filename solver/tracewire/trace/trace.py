@@ -13,7 +13,7 @@ from tracewire.fit.fit import with_measured_signals
 from tracewire.fit.measured import Measured, load_measured
 from tracewire.fit.noise import channel_noise
 from tracewire.fit.result import Fit
-from tracewire.trace.account import compared, moved, rmse
+from tracewire.trace.account import compared, met, moved, rmse
 from tracewire.trace.dependence import where_what
 from tracewire.trace.experiment import separating
 from tracewire.trace.finish import Final, finished
@@ -113,6 +113,7 @@ def begun(
 def _found(search: Search, final: Final, interrupted: bool) -> Found:
     """The result of a search."""
     search.tell("checking on what played no part")
+    final = replace(final, best=met(search, final.best))
     bench, declared, best = search.bench, final.declared, final.best
     gate = _gate(search, best)
     dependences: tuple[Dependence, ...] = ()

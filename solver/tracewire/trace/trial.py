@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from tracewire.fit.segment import Segment, Unknown
 from tracewire.fit.unknowns import free_unknowns, sensor_unknowns
 from tracewire.solve import Limits, parameter_values
 from tracewire.trace.candidates import Candidate, extend, unknowns_of
+from tracewire.trace.phases import best_phase
 from tracewire.trace.statistics import bic, effective_part
 from tracewire.trace.tones import Sine, tones_of
 from tracewire.trace.windows import Windows, descended, opened, settled
@@ -26,8 +28,6 @@ Vector = NDArray[np.float64]
 LEAST_STEPS, STEPS, EVENTS, SECONDS = 500, 15, 5, 1.0
 """What a run may cost: steps, steps a sample, events a sample, seconds. An effect that makes a
 model as slow as that is a failure, not a candidate to wait for."""
-
-PHASE_STEPS = 8
 
 
 @dataclass(frozen=True)
@@ -58,6 +58,10 @@ class Added:
         own = dict(self.candidate.own.get(series, {}))
         own |= {key.removesuffix(ends): v for key, v in self.values.items() if key.endswith(ends)}
         return {f"{self.candidate.block}.{name}": value for name, value in own.items()}
+
+    def having(self, name: str, value: float) -> Added:
+        """The effect with one more value."""
+        return replace(self, values={**self.values, name: value})
 
     @property
     def coefficient(self) -> float:
@@ -207,8 +211,9 @@ class Bench:
 
     def met(self, trial: Trial, segments: Sequence[Segment]) -> tuple[Added, ...]:
         """The effects of a trial with what each series of other windows has of its own: a series
-        that the trial did not see gets the phase that fits it best, from four of them."""
+        that the trial did not see gets the phase that fits it best."""
         effects = list(trial.effects)
+        fixed = self.all_values(trial)
         for number, effect in enumerate(effects):
             seen = effect.own_series
             new: dict[str, list[Segment]] = {}
@@ -216,22 +221,17 @@ class Bench:
                 name = segment.measured.series or segment.measured.name
                 if name not in seen:
                     new.setdefault(name, []).append(segment)
-            for name, mine in new.items():
-                best: Windows | None = None
-                for begin in (0.0, 0.5 * np.pi, np.pi, -0.5 * np.pi):
-                    own = {f"{shape}@{name}": begin for shape in effect.candidate.each}
-                    tried = replace(effects[number], values={**effects[number].values, **own})
-                    unknowns = unknowns_of(tried.candidate, tried.values)
-                    unknowns = [u for u in unknowns if u.name.endswith(f"@{name}")]
+            for (name, mine), shape in product(new.items(), effect.candidate.each):
+                key = f"{shape}@{name}"
+
+                def criterion_at(phase: float, number: int = number, key: str = key,
+                                 mine: list[Segment] = mine) -> Criterion:  # fmt: skip
+                    tried = effects[number].having(key, phase)
+                    unknown = Unknown(tried.unknown(key), phase)
                     those = self.with_own(mine, [*effects[:number], tried, *effects[number + 1 :]])
-                    criterion = self._criterion(
-                        trial.model, those, unknowns, self.all_values(trial)
-                    )
-                    windows, _ = descended(opened(criterion), PHASE_STEPS)
-                    if best is None or windows.rss < best.rss:
-                        best, found = windows, tried
-                if best is not None:
-                    effects[number] = found.at(best.values)
+                    return self._criterion(trial.model, those, [unknown], fixed)
+
+                effects[number] = effects[number].having(key, best_phase(criterion_at))
         return tuple(effects)
 
     def with_own(self, segments: Sequence[Segment], effects: Sequence[Added]) -> list[Segment]:

@@ -289,7 +289,7 @@ def _attempt(core: int, rate: Vector, limit: float) -> int:
         ints[REJECTED] += 1
         finite = math.isfinite(error)
         now[H] = h * (max(0.1, 0.9 * error**power) if finite else 0.1)
-        if now[H] < smallest_step(core):
+        if not now[H] >= smallest_step(core):  # or no number, where the rates are none
             return UNDERFLOW if finite else UNDEFINED
 
 
@@ -353,7 +353,10 @@ def _crossed(core: int) -> int:
 
 @unit
 def _polish(core: int, theta: float, row: int) -> None:
-    """Make the trial end at the crossing: located on the polynomial, then on true steps."""
+    """Make the trial end at the crossing: located on the polynomial, then on true steps.
+
+    It ends at the far side of the guard, where the formula of the mode to come is defined.
+    """
     flow = flow_of(core)
     progress = progress_of(core)
     trial = trial_of(core)
@@ -369,7 +372,11 @@ def _polish(core: int, theta: float, row: int) -> None:
         evaluate(core, GUARDS, t + h, trial.x_end, guards)
         guard_rates(core, t + h, trial.x_end, along)
         change = -(guards[i] - watched.level[row]) / along[i] if along[i] != 0.0 else 0.0
-        if abs(change) <= 1e-14 * progress.now[LENGTH] or not 0 < h + change <= whole:
+        if not 0 < h + change <= whole:
+            return
+        if abs(change) <= 1e-14 * progress.now[LENGTH]:
+            if change > 0.0 and h + 2 * change <= whole:
+                methods.step(core, method, t, x, trial.rate, h + 2 * change)
             return
         if abs(change) > 0.1 * whole:
             return
