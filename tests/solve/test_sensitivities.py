@@ -292,7 +292,8 @@ def test_sensitivities_of_paper_a(preset: str) -> None:
     """Stiff contact, stick on the pin, Stribeck friction.
 
     Differences of two runs are noisy while the column lies on its pin and near impacts, by some
-    1e-4; there a run of other tolerances tells how exact the sensitivities are.
+    1e-4 at this step and more at smaller ones; there a run of other tolerances tells how exact the
+    sensitivities are.
     """
     model = tw.compile(tw.read(PENDULUM))
     names = ["T_s2_l", "beta", "k2", "c1", "B1", "phi1_s"]
@@ -302,7 +303,7 @@ def test_sensitivities_of_paper_a(preset: str) -> None:
     loose = simulate(model, sensitivities=names, **(options | {"rtol": 1e-8}))
     assert run.warnings == ()
     for name in names:
-        step = PART * run.parameters[name]
+        step = 1e-4 * run.parameters[name]
         up, down = (moved(model, run, name, by, **options) for by in (step, -step))
         for signal in ("phi1", "phi2"):
             differences = (up[signal] - down[signal]) / (2 * step)

@@ -72,7 +72,9 @@ def run(
             metavar="NAME", help="Run as this measured series: its inputs, start, values and time."
         ),
     ] = "",
-    method: Annotated[str, typer.Option(help="auto, dormand_prince or rosenbrock.")] = "auto",
+    method: Annotated[
+        str, typer.Option(help="auto, dormand_prince, dop853, rosenbrock or rk4.")
+    ] = "auto",
     rtol: Annotated[float, typer.Option(help="The relative tolerance.")] = 1e-6,
     atol: Annotated[
         float | None, typer.Option(help="The absolute tolerance; rtol/1000 unless given.")

@@ -15,17 +15,37 @@ from tracewire.fit.measured import Measured
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 ORDER = 6
+QUARTIC = 4
+STRETCHES, SHORTEST, FEWEST = 15, 12, 3
+"""How many stretches a period has, how many samples a stretch at least, how many a series."""
 
 
 def noise_level(values: Vector) -> float:
-    """The standard deviation of white noise on a smooth signal, shape (N,).
+    """The standard deviation of the noise on a smooth signal, shape (N,).
 
-    1.4826 times the median absolute sixth difference over the norm of the binomial weights.
+    1.4826 times the median absolute sixth difference over the norm of the binomial weights, which
+    is that of white noise; or what quartics leave in stretches of a fifteenth of the period, the
+    median over these, where that is more: of noise that a filter or an interpolation has smoothed.
     """
     weights = np.array([comb(ORDER, k) for k in range(ORDER + 1)], dtype=float)
     if len(values) <= ORDER + 1:
         return 0.0
-    return float(1.4826 * np.median(np.abs(np.diff(values, ORDER))) / np.linalg.norm(weights))
+    fine = 1.4826 * np.median(np.abs(np.diff(values, ORDER))) / np.linalg.norm(weights)
+    return max(float(fine), _beside_quartics(values))
+
+
+def _beside_quartics(values: Vector) -> float:
+    """The median over stretches of what a quartic leaves, per degree of freedom."""
+    crossings = int(np.sum(np.diff(np.signbit(values - np.mean(values)))))
+    length = max(int(2 * len(values) / max(crossings, 2) / STRETCHES), SHORTEST)
+    count = len(values) // length
+    if count < FEWEST:
+        return 0.0
+    powers = np.vander(np.linspace(-1, 1, length), QUARTIC + 1)
+    basis, _ = np.linalg.qr(powers)
+    rows = values[: count * length].reshape(count, length).T
+    left = rows - basis @ (basis.T @ rows)
+    return float(np.sqrt(np.median(np.sum(left**2, axis=0)) / (length - QUARTIC - 1)))
 
 
 def channel_noise(measured: Sequence[Measured]) -> dict[str, float]:

@@ -70,10 +70,11 @@ def simulate(
     before them. `span` is (from, to) in s, `times` (N,) the ascending sample times in s; without
     them the diagram's span and its `every`, or 1001 samples. `method` is
     `dormand_prince` (explicit, order 5), `dop853` (explicit, order 8), `rosenbrock` (stiff, order
-    5), `rk4` (fixed `step` in s, order 4), or `auto`: dormand_prince, and rosenbrock where a mode
-    combination turns out to be stiff. `atol` is rtol/1000 unless given, as a number or by state.
-    `inputs` gives measured inputs as (times, values), joined by straight lines. `progress` is told
-    about ten times a second the part of the span that is done, and the seconds that are left.
+    5), `rk4` (fixed `step` in s, order 4), or `auto`: dormand_prince, dop853 where rtol is
+    1e-8 or less, and rosenbrock where a mode combination turns out to be stiff. `atol` is rtol/1000
+    unless given, as a number or by state. `inputs` gives measured inputs as (times, values), joined
+    by straight lines. `progress` is told about ten times a second the part of the span that is
+    done, and the seconds that are left.
     `sensitivities` names parameters and start values (`start.theta`) whose forward sensitivities
     are wanted.
 

@@ -26,6 +26,8 @@ Matrix = NDArray[np.float64]
 UNSEEN = 1e-7
 """A direction of a window's start that moves its residual less than this part of the strongest."""
 SETTLING, RESCUING = 8, 2
+FAR_OFF = 100.0
+"""A start this many scales of its state away from the one that the data show."""
 CONVERGED = 1e-4
 CREEPS = 5e-4
 """A step that gains less than this part of the sum of squares is the last one."""
@@ -208,6 +210,8 @@ def _settled_one(
             if gain < max(SETTLED, CONVERGED * _square(near)):
                 break
         moved = dict(zip(start, np.array(list(start.values())) + share * answer, strict=True))
+        if _far_off(windows, n, moved):
+            break
         there = windows.criterion.linearised(n, windows.values, moved)
         if not there.ran:
             break
@@ -299,6 +303,8 @@ def _moved(windows: Windows, views: Sequence[Projection], step: Vector) -> Windo
         expected = old.residual.ravel() + old.slopes[:, :count] @ step
         moved = np.array(list(windows.starts[n].values())) - view.answer @ expected
         start = dict(zip(windows.starts[n], moved.tolist(), strict=True))
+        if _far_off(windows, n, start):
+            return None
         starts.append(start)
         near.append(windows.criterion.linearised(n, values, start))
         if not near[-1].ran and old.ran:
@@ -310,6 +316,15 @@ def _moved(windows: Windows, views: Sequence[Projection], step: Vector) -> Windo
         near[n], starts[n] = _rescued(there, windows.starts[n], n)
         there = replace(there, starts=tuple(starts), near=tuple(near))
     return there
+
+
+def _far_off(windows: Windows, n: int, start: Mapping[str, float]) -> bool:
+    """Whether a start is where no body of this record can be: no run is worth its time there."""
+    segment = windows.criterion.segments[n]
+    return any(
+        not abs(value - segment.start.get(name, 0.0)) < FAR_OFF * segment.start_scale(name)
+        for name, value in start.items()
+    )
 
 
 def _rescued(

@@ -57,13 +57,14 @@ from tracewire.solve.core.flow import (
 )
 from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.locate import AT_ONCE, NOTHING
-from tracewire.solve.core.methods import DORMAND_PRINCE, RK4, ROSENBROCK
+from tracewire.solve.core.methods import DOP853, DORMAND_PRINCE, RK4, ROSENBROCK
 from tracewire.solve.core.record import sample_end, sample_inside
 from tracewire.solve.core.saltation import begin_sensitivities
 from tracewire.solve.core.start import begin
 from tracewire.solve.core.transition import happen, no_crossings
 
-STIFF = 3.0  # h times the largest eigenvalue at the edge of stability of the explicit method
+STIFF, STIFF_HIGH = 3.0, 6.1  # h*eigenvalue at the edge of stability, of order 5 and 8 (Hairer)
+TIGHT = 1e-8  # where order 8 takes fewer steps, and its errors add up to less
 MANY_STIFF = 8
 MANY_CALM = 6
 POLISH = 3
@@ -183,7 +184,7 @@ def _choose(core: int) -> None:
     ints[CURRENT] = ints[METHOD]
     if ints[METHOD] >= 0:
         return
-    ints[CURRENT] = DORMAND_PRINCE
+    ints[CURRENT] = DOP853 if progress.now[RTOL] <= TIGHT else DORMAND_PRINCE
     if ints[STIFF_ROWS] == 0:
         return
     flow, stiff = flow_of(core), progress.stiff
@@ -207,7 +208,7 @@ def _watch_stiffness(core: int) -> bool:
     ints = progress.ints
     if ints[METHOD] >= 0 or ints[CURRENT] == ROSENBROCK:
         return False
-    if trial.ends[2] > STIFF:
+    if trial.ends[2] > (STIFF_HIGH if ints[CURRENT] == DOP853 else STIFF):
         ints[SUSPICIOUS] += 1
         ints[CALM] = 0
     else:
@@ -271,7 +272,10 @@ def _attempt(core: int, rate: Vector, limit: float) -> int:
     progress = progress_of(core)
     now, ints = progress.now, progress.ints
     method, power = ints[CURRENT], methods.exponent_of(ints[CURRENT])
-    fixed = method == RK4
+    fixed, safety = (
+        method == RK4,
+        0.85 if method == DOP853 else 0.9,
+    )  # to the power of 8: 0.27, 0.43
     while True:
         ints[STEPS] += 1
         h = min(now[H], now[FIXED]) if fixed else min(now[H], LARGEST_PART * now[LENGTH])
@@ -282,13 +286,13 @@ def _attempt(core: int, rate: Vector, limit: float) -> int:
         if error <= 1.0:
             if method == ROSENBROCK:
                 ints[STIFF_STEPS] += 1
-            now[RATIO] = min(6.0, max(0.2, 0.9 * max(error, 1e-10) ** power))
+            now[RATIO] = min(6.0, max(0.2, safety * max(error, 1e-10) ** power))
             if fixed:
                 now[RATIO] = now[FIXED] / h
             return FINISHED
         ints[REJECTED] += 1
         finite = math.isfinite(error)
-        now[H] = h * (max(0.1, 0.9 * error**power) if finite else 0.1)
+        now[H] = h * (max(0.1, safety * error**power) if finite else 0.1)
         if not now[H] >= smallest_step(core):  # or no number, where the rates are none
             return UNDERFLOW if finite else UNDEFINED
 

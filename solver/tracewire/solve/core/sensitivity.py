@@ -25,7 +25,7 @@ from tracewire.solve.core.arrays import (
     sensitivity_of,
     trial_of,
 )
-from tracewire.solve.core.codes import LOST, RTOL
+from tracewire.solve.core.codes import LOST, RTOL, STEPS
 from tracewire.solve.core.collocation import (
     INTERVAL,
     KNOWN,
@@ -38,7 +38,8 @@ from tracewire.solve.core.flow import OUTPUTS, RESTING, SLIDING, held, patterns
 from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.variation import OF_OUTPUTS, derive, derive_blended, held_parts
 
-SMALLEST = 1e-7  # of a step of the states
+SMALLEST = 1e-5  # of a step of the states
+MANY = 100  # intervals of a step: more of them count as steps, for which a run has a limit
 ROUNDING = 1e-14  # of the time: what a step must be to end later than it began
 FAR_WITHIN = 0.05  # then an interval may be longer by a half, and its error not looked at
 SURE = 3.0  # so often
@@ -61,7 +62,11 @@ def follow(core: int, method: int, end: float) -> None:
     now, whole = sensitivity.now, trial_of(core).ends[1]
     # the estimate is of order 4 in the interval, the error of order 6
     tolerance = progress_of(core).now[RTOL] ** (2.0 / 3.0)
+    intervals = 0
     while now[TIME] < end:
+        intervals += 1
+        if intervals > MANY:
+            progress_of(core).ints[STEPS] += 1
         left = end - now[TIME]
         least = max(SMALLEST * whole, ROUNDING * abs(now[TIME]))
         h = now[INTERVAL]
