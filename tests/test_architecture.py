@@ -14,7 +14,7 @@ BLOCKS = ROOT / "blocks"
 
 # a room may import itself and the rooms before it
 ROOMS = ["errors", "shipped", "formula", "library", "data", "diagram", "compile", "solve", "fit"]
-ROOMS += ["trace", "show", "cli"]
+ROOMS += ["trace", "analyse", "show", "paper", "cli"]
 FACADE = {"__init__", "__main__"}  # they stand above the rooms and may import each of them
 BLOCKS_MAY_IMPORT = {"__future__", "tracewire.library"}
 MOST_LINES = 500

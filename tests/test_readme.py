@@ -36,7 +36,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_the_readme_shows_every_kind_of_example() -> None:
     verbs = {shlex.split(command)[1] for command in COMMANDS}
-    assert verbs == {"blocks", "check", "show", "run", "fit", "trace"}
+    assert verbs == {"blocks", "check", "show", "run", "fit", "trace", "analyse", "sweep"}
     assert len(fenced("python")) == len(fenced("yaml")) == 1
 
 

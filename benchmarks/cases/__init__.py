@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 
 from benchmarks.cases import (
+    analyses,
     appendix,
     bifurcation,
     coverage,
@@ -24,6 +25,7 @@ CASES: Mapping[str, Case] = {
     "paper_a": paper_a.measure,
     "triple": triple.measure,
     "bifurcation": bifurcation.measure,
+    "analyses": analyses.measure,
     "networks": networks.measure,
     "sensitivities": sensitivities.measure,
     "many": many.measure,

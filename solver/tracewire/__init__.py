@@ -12,6 +12,22 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from tracewire.analyse import (
+        Plane,
+        bifurcation,
+        floquet,
+        growth_rate,
+        invariant_drift,
+        linearise,
+        lyapunov,
+        periodic_orbit,
+        scalogram,
+        section,
+        spectrum,
+        stability_chart,
+        steady_state,
+        sweep,
+    )
     from tracewire.compile import Model, compile
     from tracewire.diagram import Diagram, read, read_text
     from tracewire.errors import TracewireError
@@ -46,32 +62,48 @@ __all__ = [
     "Model",
     "Output",
     "Parameter",
+    "Plane",
     "Run",
     "Runs",
     "Section",
     "Sensor",
     "State",
     "TracewireError",
+    "bifurcation",
     "compile",
     "diagnose",
     "fit",
+    "floquet",
     "fminsearch",
+    "growth_rate",
+    "invariant_drift",
+    "linearise",
     "load_library",
     "load_measured",
+    "lyapunov",
     "optimplotfit",
     "optimplotfval",
     "optimplotx",
     "optimset",
+    "periodic_orbit",
     "profile",
     "read",
     "read_text",
     "report",
+    "scalogram",
+    "section",
     "simulate",
     "simulate_many",
+    "spectrum",
+    "stability_chart",
+    "steady_state",
+    "sweep",
     "trace",
 ]
 
 ROOM_OF = {
+    "analyse": "Plane bifurcation floquet growth_rate invariant_drift linearise lyapunov "
+    "periodic_orbit scalogram section spectrum stability_chart steady_state sweep",
     "compile": "compile Model",
     "diagram": "Diagram read read_text",
     "errors": "TracewireError",

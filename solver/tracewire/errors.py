@@ -115,3 +115,9 @@ class FitError(TracewireError):
     """A fit or a trace that could not be carried out on valid input."""
 
     exit_code = 1
+
+
+class AnalysisError(TracewireError):
+    """An analysis that could not be carried out on valid input."""
+
+    exit_code = 1

@@ -32,7 +32,7 @@ def traced(call: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
         changed = changed[: len(changed) - len(TEXT) + len(text)]  # as `text` ends
         result = replace(found, original=original, diagram=read_text(changed, file))
         module = import_module("tracewire.trace")
-        monkeypatch.setattr(module, "trace", lambda model, progress: result)
+        monkeypatch.setattr(module, "trace", lambda model, rtol, progress: result)
         return call("trace", file, *arguments)
 
     return command

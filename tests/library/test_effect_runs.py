@@ -185,7 +185,7 @@ def test_without_a_width_a_body_comes_to_rest_and_is_held_by_what_that_takes(law
     stuck = result.t > result.events[-1].time
     assert stuck.sum() > 20
     assert not result["v"][stuck].any()
-    assert np.ptp(result["x"][stuck]) < 1e-15
+    assert np.ptp(result["x"][stuck]) < 1e-13, "the rounding of rates inside of steps"
     assert result["friction"][stuck] == pytest.approx(result["x"][stuck], abs=1e-12)
 
 

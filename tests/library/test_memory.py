@@ -222,7 +222,7 @@ def test_modes_transitions_and_events_are_described() -> None:
         "",
         "events",
         "  bump  x - top or -x crosses zero up  x := halted: 0; moving: x",
-        "  tick  every T s, shifted by T/2      x := x - of",
+        "  tick  every T s, first at t = T/2    x := x - of",
         "",
     ]
     assert "  y = halted: x; moving: x + of" in told

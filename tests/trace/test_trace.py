@@ -44,6 +44,12 @@ def test_a_hidden_coulomb_friction_is_named_with_its_size(found: Found) -> None:
     assert found.rmse_after < 1.2e-3 < found.rmse_before
 
 
+def test_a_solver_as_coarse_as_the_noise_discovers_nothing(swing: Path) -> None:
+    with pytest.raises(FitError, match=r"with a tenth of rtol = 0.01 the residual moves by") as e:
+        trace(compile(read(swing)), rtol=1e-2)
+    assert "--rtol 1e-03" in str(e.value)
+
+
 def test_it_tells_what_was_tried_and_what_the_declared_parameters_did(found: Found) -> None:
     first = found.steps[0]
     assert first.chance < 1e-3 and first.words == "accepted: coulomb @ acceleration"

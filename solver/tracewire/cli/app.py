@@ -11,6 +11,7 @@ from typing import Annotated
 import typer
 from typer.main import get_command
 
+from tracewire.cli.analyse import analyse
 from tracewire.cli.blocks import blocks
 from tracewire.cli.check import check
 from tracewire.cli.data import data
@@ -20,6 +21,7 @@ from tracewire.cli.output import INTERRUPTED, Cut, print_problems
 from tracewire.cli.run import run
 from tracewire.cli.several import Several
 from tracewire.cli.show import show
+from tracewire.cli.sweep import sweep
 from tracewire.cli.trace import trace
 from tracewire.errors import Problem, TracewireError
 
@@ -44,6 +46,7 @@ def tracewire_(
       tracewire run pendulum.yaml --set "phi=13.6 deg" --output swing.csv
       tracewire fit pendulum.yaml --report fit.html
       tracewire trace pendulum.yaml --apply
+      tracewire analyse steady pendulum.yaml
       tracewire blocks dry_friction
     """
     if version:
@@ -57,8 +60,10 @@ app.command()(show)
 app.command()(run)
 app.command()(fit)
 app.command(cls=Several)(trace)
+app.command()(sweep)
 app.command()(blocks)
 app.command()(demo)
+app.add_typer(analyse, name="analyse")
 app.add_typer(data, name="data")
 
 

@@ -55,6 +55,7 @@ def trace(
     output: Output = None,
     patch: PatchFile = None,
     table: TableFile = None,
+    rtol: Annotated[float, typer.Option(help="The relative tolerance of runs.")] = 1e-6,
     library: Libraries = None,
     as_json: AsJson = False,
     debug: Debug = False,
@@ -90,7 +91,7 @@ def trace(
             tell(text)
             note(text)
 
-        found = trace_model(model, progress=stages(show))
+        found = trace_model(model, rtol=rtol, progress=stages(show))
     written = write_report(found, report)
 
     tables = write_table(found, table)

@@ -1,5 +1,6 @@
 """What a person looks at: tables, figures and reports; matplotlib is imported when drawn."""
 
+from tracewire.show.bifurcation_figures import plot_bifurcation, plot_section
 from tracewire.show.comparison_figures import plot_comparisons
 from tracewire.show.diagnostic_figures import plot_diagnostics, plot_profiles
 from tracewire.show.document import Report
@@ -7,21 +8,42 @@ from tracewire.show.figures import plot_run
 from tracewire.show.fit_figures import plot_fit, plot_residual
 from tracewire.show.live import optimplotfit, optimplotfval, optimplotx
 from tracewire.show.parameter_figures import plot_convergence, plot_correlation, plot_parameters
+from tracewire.show.plane_figures import plot_orbit, plot_polar, plot_portrait
 from tracewire.show.report import report
+from tracewire.show.signal_figures import (
+    plot_growth,
+    plot_invariants,
+    plot_lyapunov,
+    plot_scalogram,
+    plot_spectrum,
+)
+from tracewire.show.sweep_figures import plot_chart, plot_sweep
 
 __all__ = [
     "Report",
     "optimplotfit",
     "optimplotfval",
     "optimplotx",
+    "plot_bifurcation",
+    "plot_chart",
     "plot_comparisons",
     "plot_convergence",
     "plot_correlation",
     "plot_diagnostics",
     "plot_fit",
+    "plot_growth",
+    "plot_invariants",
+    "plot_lyapunov",
+    "plot_orbit",
     "plot_parameters",
+    "plot_polar",
+    "plot_portrait",
     "plot_profiles",
     "plot_residual",
     "plot_run",
+    "plot_scalogram",
+    "plot_section",
+    "plot_spectrum",
+    "plot_sweep",
     "report",
 ]

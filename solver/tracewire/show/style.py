@@ -135,6 +135,17 @@ def plain_numbers(*axes: Axis) -> None:
         axis.set_major_formatter(lambda x, _: f"{x:.10g}".replace("-", "−"))
 
 
+def plain_log(axis: Axis, low: float, high: float) -> None:
+    """Write the numbers of a logarithmic axis plainly, over less than two decades 2 and 5, too."""
+    from matplotlib.ticker import LogLocator, NullFormatter
+
+    decades = np.log10(high / low) if 0 < low < high else 0.0
+    if decades < 2:
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if decades > 0.7 else range(1, 10)))
+    axis.set_major_formatter(lambda x, _: f"{x:.4g}".replace("-", "−"))
+    axis.set_minor_formatter(NullFormatter())
+
+
 def with_unit(name: str, unit: str) -> str:
     """`name [unit]`, or the name alone."""
     return f"{name} [{unit}]" if unit else name

@@ -15,12 +15,20 @@ and the run restarts. The mode is stored, never derived again from a state that 
 surface. A guard that a reset carries over zero changes its mode, but fires no reset of its own; one
 that is zero and that the reset drives over it (a ball that lies at a wall and is struck) fires at
 the same instant, and reads what the first one wrote. Modes that do not stand still are an error.
+An event whose guard only jumps (a square wave, a relay, a counter, a sample: constant between other
+events) fires at the instant of the jump, when all other modes stand still there: up, where it jumps
+from below zero to zero or above, or from zero, where that was no arrival from below, to above; down
+likewise. Its reset reads what the other resets of that instant wrote. A start fires nothing. Of a
+guard that moves as well, such as a ramp minus a square wave, only the passages through zero fire.
 
 **Memory.** A block with memory has named modes that only its transitions change: while the memory
 is `source` and the condition of the transition holds, it becomes `target`, and its reset, if it has
 one, reads x⁻. Transitions are looked at when all other modes stand still; of several of one memory
-the first declared one fires. Transitions that lead back to where they began are an error. A clock
-(`every`) fires at offset + k*period, and at the start where that is such a time.
+the first declared one fires. Transitions that lead back to where they began are an error.
+
+**Clocks.** A clock (`every`) fires at offset + k*period, and at the start of a run where that is
+such a time. An offset above zero is the time of the first tick: there is none before it. Without
+one, and with one below zero, k is any whole number, however early the run begins.
 
 **Zero at the start, or after a reset.** The modes of all guards that are zero are decided together.
 A combination is consistent when the first non-zero derivative of each guard along the field of
@@ -81,6 +89,7 @@ from tracewire.solve.interrupt import Interrupted
 from tracewire.solve.limits import Limits
 from tracewire.solve.many import Runs, simulate_many
 from tracewire.solve.observers import Section
+from tracewire.solve.passage import Passage
 from tracewire.solve.run import Event, Run, Statistics
 from tracewire.solve.simulate import parameter_values, simulate
 
@@ -88,6 +97,7 @@ __all__ = [
     "Event",
     "Interrupted",
     "Limits",
+    "Passage",
     "Run",
     "Runs",
     "Section",

@@ -34,6 +34,7 @@ from tracewire.trace.told import (
     told_steps,
     verdict_of,
 )
+from tracewire.trace.tolerance import refuse_loose
 from tracewire.trace.trial import Bench, Trial
 
 EXPERIMENTS = 2
@@ -54,7 +55,8 @@ def trace(
     it improves stretches that the fit did not see; the errors reported come from a third stretch.
     Ctrl-C ends it with what was found so far.
 
-    Raises DataError where the series cannot be used, FitError where the model does not run.
+    Raises DataError where the series cannot be used, FitError where the model does not run, or
+    where `rtol` is too loose for such small noise.
     """
     tell = progress or (lambda text: None)
     search = begun(subject, measured, rtol, tell)
@@ -63,6 +65,8 @@ def trace(
         declared = search.declared()
         search.run(declared)
         final = finished(search, *search.standing)
+        if final.best.effects:
+            refuse_loose(search.bench, final.best)
         _refuse_mistakes(search, declared, final)
     except KeyboardInterrupt:
         if search.best is None:

@@ -1,0 +1,48 @@
+"""What a model does beyond one run: orbits, their stability, charts, exponents, spectra."""
+
+from tracewire.analyse.bifurcation import Bifurcation, Branch, bifurcation
+from tracewire.analyse.chart import StabilityChart, stability_chart
+from tracewire.analyse.floquet import Floquet, floquet
+from tracewire.analyse.growth import GrowthRate, growth_rate
+from tracewire.analyse.invariants import Drift, invariant_drift
+from tracewire.analyse.linearise import Linear, linearise
+from tracewire.analyse.lyapunov import Lyapunov, lyapunov
+from tracewire.analyse.orbit import PeriodicOrbit, periodic_orbit
+from tracewire.analyse.plane import Plane
+from tracewire.analyse.scalogram import Scalogram, scalogram
+from tracewire.analyse.section import PoincareSection, section
+from tracewire.analyse.spectrum import Line, Spectrum, spectrum
+from tracewire.analyse.steady_state import SteadyState, steady_state
+from tracewire.analyse.sweep import Sweep, sweep
+
+__all__ = [
+    "Bifurcation",
+    "Branch",
+    "Drift",
+    "Floquet",
+    "GrowthRate",
+    "Line",
+    "Linear",
+    "Lyapunov",
+    "PeriodicOrbit",
+    "Plane",
+    "PoincareSection",
+    "Scalogram",
+    "Spectrum",
+    "StabilityChart",
+    "SteadyState",
+    "Sweep",
+    "bifurcation",
+    "floquet",
+    "growth_rate",
+    "invariant_drift",
+    "linearise",
+    "lyapunov",
+    "periodic_orbit",
+    "scalogram",
+    "section",
+    "spectrum",
+    "stability_chart",
+    "steady_state",
+    "sweep",
+]

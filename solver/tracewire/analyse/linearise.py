@@ -1,0 +1,210 @@
+"""`linearise`: the matrices A, B, C, D of a model at a state."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.analyse import verdict
+from tracewire.compile import Model
+from tracewire.errors import AnalysisError, OptionError, Problem, unknown
+from tracewire.solve import Passage
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
+AT_ZERO = 1e-9  # of the size of the states: a guard that is nearer to its level is at it
+ALIKE = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Linear:
+    """A linear model dx' = A dx + B du, dy = C dx + D du around the states `x` (n,) at the time t.
+
+    A (n, n), B (n, p), C (q, n), D (q, p) in SI; `states`, `inputs` (p) and `outputs` (q) name the
+    rows and columns. `rates` (n,) are those at x: zero at a steady state.
+    """
+
+    states: tuple[str, ...]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    t: float
+    x: Vector
+    rates: Vector
+    A: Matrix
+    B: Matrix
+    C: Matrix
+    D: Matrix
+
+    @property
+    def eigenvalues(self) -> Complexes:
+        """The eigenvalues (n,) of A in 1/s, those of the largest real part first."""
+        found = np.linalg.eigvals(self.A).astype(np.complex128)
+        return found[np.lexsort((-found.imag, -found.real))]
+
+    @property
+    def verdict(self) -> verdict.Verdict:
+        """Whether the linear model is stable."""
+        return verdict.of_eigenvalues(self.eigenvalues)
+
+    def to_control(self) -> Any:
+        """The same as a StateSpace of python-control. Raises AnalysisError where it is missing."""
+        try:
+            control = import_module("control")
+        except ImportError:
+            what = "python-control is not installed"
+            raise AnalysisError([Problem(what, hint="Install it: pip install control.")]) from None
+        return control.ss(
+            self.A,
+            self.B,
+            self.C,
+            self.D,
+            states=list(self.states),
+            inputs=list(self.inputs),
+            outputs=list(self.outputs),
+        )
+
+
+def linearise(
+    model: Model,
+    *,
+    at: Mapping[str, float] | None = None,
+    t: float = 0.0,
+    inputs: Sequence[str] = (),
+    outputs: Sequence[str] | None = None,
+    parameters: Mapping[str, float] | None = None,
+    preset: str = "",
+) -> Linear:
+    """Linearise a model: exact derivatives of its rates and signals, from the tape.
+
+    `at` gives states by name in place of the start values, `t` in s is the time. `inputs` names
+    what B and D are about: parameters, measured inputs of the diagram, or signals, which are then
+    taken as given from outside. `outputs` names the rows of C and D, the recorded signals unless
+    given.
+
+    Raises AnalysisError at a nonsmooth point, with the guards that are at their level there;
+    OptionError for names that do not exist.
+    """
+    shown = with_outputs(model, outputs)
+    names = _inputs(model, inputs)
+    passage = Passage(model, length=1.0, begin=t, parameters=parameters, start=at, preset=preset)
+    refuse_nonsmooth(passage)
+    x, n = passage.x, len(model.states)
+    seen = Passage(shown, length=1.0, begin=t, parameters=parameters, start=at, preset=preset)
+    q = len(shown.recorded)
+
+    def slopes(of: str, by: Sequence[str], rows: int) -> Matrix:
+        if not (rows and by):
+            return np.zeros((rows, len(by)))
+        function = shown.derivative(of, by)
+        return seen.value(function, rows * len(by), x, t).reshape(rows, len(by))
+
+    found = Linear(
+        states=model.states,
+        inputs=names,
+        outputs=shown.recorded,
+        t=t,
+        x=x,
+        rates=passage.rates(),
+        A=slopes("rhs", model.states, n),
+        B=slopes("rhs", names, n),
+        C=slopes("outputs", model.states, q),
+        D=slopes("outputs", names, q),
+    )
+    for name in "ABCD":
+        if not np.isfinite(getattr(found, name)).all():
+            what = f"the matrix {name} is not finite at this state"
+            hint = "Look for a root or a division whose slope has no end there."
+            raise AnalysisError([Problem(what, hint=hint)])
+    return found
+
+
+def with_outputs(model: Model, outputs: Sequence[str] | None) -> Model:
+    """The model that records these signals, states or parameters. Raises OptionError."""
+    if outputs is None:
+        return model
+    flat = model.flat
+    known = {*model.states, *flat.signals, *flat.inputs}
+    wrong = [unknown("signal", name, known) for name in outputs if name not in known]
+    if wrong:
+        raise OptionError(wrong)
+    return replace(model, recorded=tuple(dict.fromkeys(outputs)))
+
+
+def _inputs(model: Model, inputs: Sequence[str]) -> tuple[str, ...]:
+    """The names of inputs, which may move freely. Raises OptionError."""
+    flat, low = model.flat, model.lowered
+    known = {*model.parameters, *flat.signals, *flat.inputs}
+    problems = [unknown("input", name, known) for name in inputs if name not in known]
+    for name in inputs:
+        if name in known and low.tape.leaves([low.entries[name]]) <= {"const"}:
+            what = f"the signal '{name}' is a constant, which the equations no longer name"
+            hint = "Make it a parameter, or an input of the diagram: inputs: {u: {default: 0}}."
+            problems.append(Problem(what, hint=hint))
+    if problems:
+        raise OptionError(problems)
+    return tuple(dict.fromkeys(inputs))
+
+
+def refuse_nonsmooth(passage: Passage) -> None:
+    """Raises AnalysisError where a guard is at its level and what lies beyond it differs."""
+    problems = [
+        Problem(
+            f"there are no slopes at t = {passage.t:g} s: {why}",
+            hint="Give states on one side of it (at=, --start), or a smooth law instead.",
+        )
+        for why in nonsmooth(passage)
+    ]
+    if problems:
+        raise AnalysisError(problems)
+
+
+def nonsmooth(passage: Passage) -> list[str]:
+    """In words, the guards that are at their level at a stop, where it makes a difference."""
+    model = passage.model
+    modes, x, t = model.modes, passage.x, passage.t
+    if not modes:
+        return []
+    n = len(x)
+    guards = passage.value("guards", len(modes), x, t)
+    slopes = passage.value("guard_gradients", len(modes) * n, x, t).reshape(len(modes), n)
+    reach = AT_ZERO * (1.0 + np.abs(x).max(initial=0.0)) * (1.0 + np.abs(slopes).sum(axis=1))
+    held, m = passage.held, passage.modes
+    found = []
+    for i, mode in enumerate(modes):
+        where = f"'{mode.text}' of {mode.signal or 'an event'}"
+        if i in held:
+            found.append(f"{where} is held at zero")
+            continue
+        if mode.kind == "memory":
+            continue
+        level = 0.0 if mode.kind == "sign" else np.round(guards[i])
+        if mode.kind == "segment" or abs(guards[i] - level) > reach[i]:
+            continue
+        if mode.timed is None and any(r.trigger == i for r in model.lowered.resets):
+            found.append(f"{where} is at zero, where an event fires")
+            continue
+        other = m.copy()
+        if mode.kind == "sign":
+            other[i] = 1.0 - m[i]
+        else:
+            other[i] = level - 1.0 if m[i] >= level else level
+        if _differs(passage, m, other, mode.timed is None):
+            found.append(f"{where} is at its level")
+    return found
+
+
+def _differs(passage: Passage, m: Vector, other: Vector, rates: bool) -> bool:
+    """Whether slopes differ in two mode combinations, or also the rates."""
+    x, t, n = passage.x, passage.t, len(passage.x)
+    pairs = [(passage.jacobian(modes=m), passage.jacobian(modes=other))]
+    if rates:
+        pairs.append((passage.value("rhs", n, x, t, m), passage.value("rhs", n, x, t, other)))
+    return any(
+        bool(np.any(np.abs(a - b) > ALIKE * (1.0 + np.abs(a) + np.abs(b)))) for a, b in pairs
+    )

@@ -1,0 +1,50 @@
+"""A recorded signal at even times, as spectra and growth rates want it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.errors import OptionError, Problem
+from tracewire.solve import Run
+
+Vector = NDArray[np.float64]
+EVEN = 1e-6  # of a step: what times may be off
+FEWEST = 16
+
+
+@dataclass(frozen=True, eq=False)
+class Signal:
+    """A signal: its name, unit, times (N,) in s and values (N,) in SI."""
+
+    name: str
+    unit: str
+    t: Vector
+    values: Vector
+
+    @property
+    def step(self) -> float:
+        """The time between two samples in s."""
+        return float((self.t[-1] - self.t[0]) / (len(self.t) - 1))
+
+
+def signal_of(
+    run: Run, name: str, since: float | None, until: float | None, even: bool = True
+) -> Signal:
+    """A recorded signal of a run between two times in s. Raises OptionError."""
+    values = run[name]
+    low, high = -np.inf if since is None else since, np.inf if until is None else until
+    chosen = (run.t >= low) & (run.t <= high)
+    if chosen.sum() < FEWEST:
+        what = f"'{name}' has {int(chosen.sum())} samples there, too few to say anything"
+        raise OptionError(
+            [Problem(what, hint=f"Take {FEWEST} at least: a longer time, or every=.")]
+        )
+    t = run.t[chosen]
+    steps = np.diff(t)
+    if even and np.any(np.abs(steps - steps.mean()) > EVEN * steps.mean()):
+        what = f"the samples of '{name}' are not at even times"
+        raise OptionError([Problem(what, hint="Simulate with `every`, or even times=.")])
+    return Signal(name, run.units.get(name, ""), t, values[chosen])

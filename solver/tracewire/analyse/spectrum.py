@@ -1,0 +1,124 @@
+"""`spectrum`: the amplitudes of the lines of a signal, in the signal's unit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+from scipy.signal import find_peaks, get_window
+
+from tracewire.analyse.signal import signal_of
+from tracewire.errors import OptionError, Problem, unknown
+from tracewire.solve import Run
+
+Vector = NDArray[np.float64]
+WINDOWS = ("hann", "flattop", "blackman", "boxcar")
+SHAPE = 1024  # points of a window that say how it looks
+WIDE = {"hann": 2.0, "flattop": 5.0, "blackman": 3.0, "boxcar": 1.0}  # half of a line, in bins
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A line of a spectrum: its frequency in Hz and its amplitude in the unit of the signal."""
+
+    frequency: float
+    amplitude: float
+
+
+@dataclass(frozen=True, eq=False)
+class Spectrum:
+    """Amplitudes over frequencies: a*cos(2 pi f t) gives a line of height a at f.
+
+    `frequency` (K,) in Hz, `amplitude` (K,) in `unit`; `resolution` in Hz is the distance of two
+    lines that are told apart; `lines` are the largest peaks, placed between the frequencies by the
+    shape of the window.
+    """
+
+    title: str
+    signal: str
+    unit: str
+    frequency: Vector
+    amplitude: Vector
+    resolution: float
+    lines: tuple[Line, ...]
+
+
+def spectrum(
+    run: Run,
+    signal: str,
+    *,
+    since: float | None = None,
+    until: float | None = None,
+    window: str = "hann",
+    lines: int = 8,
+) -> Spectrum:
+    """The one-sided amplitude spectrum of a recorded signal between two times in s.
+
+    The mean is taken off. `window` is "hann", "flattop" (amplitudes right to 0.1 % off the grid of
+    frequencies, wide lines), "blackman" or "boxcar" (none). `lines` is how many are told at most.
+    Raises OptionError: no such signal, too few or uneven samples, no such window.
+    """
+    if window not in WINDOWS:
+        raise OptionError([unknown("window", window, WINDOWS)])
+    if lines < 0:
+        raise OptionError([Problem(f"{lines} lines cannot be told", hint="Give 0 or more.")])
+    found = signal_of(run, signal, since, until)
+    count = len(found.values)
+    weights = get_window(window, count)
+    values = found.values - found.values.mean()
+    amplitude = np.abs(np.fft.rfft(values * weights)) * 2 / weights.sum()
+    if count % 2 == 0:
+        amplitude[-1] /= 2
+    frequency = np.asarray(np.fft.rfftfreq(count, found.step), dtype=float)
+    resolution = 2 * WIDE[window] / (count * found.step)
+    return Spectrum(
+        run.title,
+        signal,
+        found.unit,
+        frequency,
+        amplitude,
+        resolution,
+        _lines(frequency, amplitude, window, lines),
+    )
+
+
+def _lines(frequency: Vector, amplitude: Vector, window: str, most: int) -> tuple[Line, ...]:
+    """The largest peaks in the order of their height, above a thousandth of the largest."""
+    if not amplitude.max(initial=0.0) > 0:
+        return ()
+    apart = max(1, int(np.ceil(WIDE[window])))
+    peaks, _ = find_peaks(amplitude, distance=apart, height=1e-3 * amplitude.max())
+    peaks = peaks[np.argsort(-amplitude[peaks], kind="stable")][:most]
+    found = []
+    for k in peaks.tolist():
+        shift, height = _between(amplitude[k - 1 : k + 2], window)
+        found.append(Line(float((k + shift) * frequency[1]), height))
+    return tuple(found)
+
+
+def _between(three: Vector, window: str) -> tuple[float, float]:
+    """Where between the frequencies a line lies whose peak these are, in bins, and its height.
+
+    The ratio of the two largest of the three is that of the window's own transform there.
+    """
+    weights = get_window(window, SHAPE)
+    places = np.arange(SHAPE) / SHAPE
+
+    def response(away: float) -> float:
+        return float(np.abs(weights @ np.exp(-2j * np.pi * away * places)) / weights.sum())
+
+    side = 1.0 if three[2] >= three[0] else -1.0
+    ratio = float(max(three[0], three[2]) / three[1])
+
+    def off(away: float) -> float:
+        return response(1.0 - away) / response(away) - ratio
+
+    if off(0.0) >= 0.0:
+        away = 0.0
+    elif off(0.5) <= 0.0:
+        away = 0.5
+    else:
+        away = float(brentq(off, 0.0, 0.5, xtol=1e-9))
+    return side * away, float(three[1]) / response(away)

@@ -1,0 +1,371 @@
+"""`tracewire analyse section`, `bifurcation` and `lyapunov`: motions that do not repeat."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries
+from tracewire.cli.output import telling, working
+from tracewire.cli.setting import (
+    FigureFile,
+    OutputFile,
+    PartialFile,
+    Preset,
+    Rtol,
+    Start,
+    Values,
+    Workers,
+    failed_lines,
+    number_or_formula,
+    read_setting,
+    shown,
+    tell,
+    values_of,
+)
+from tracewire.cli.values import start_values_of
+from tracewire.errors import OptionError, Problem
+
+if TYPE_CHECKING:
+    from tracewire.analyse import Plane
+
+Period = Annotated[
+    str,
+    typer.Option(metavar="T", help="Points once a period, in s or a formula: '2*pi/omega'."),
+]
+Phase = Annotated[
+    str, typer.Option(metavar="T", help="The time of the first of them, in s or a formula.")
+]
+Edge = Annotated[
+    str, typer.Option(metavar="SOURCE", help="Points where a source rises, as a square wave does.")
+]
+Guard = Annotated[
+    str,
+    typer.Option(metavar="GUARD", help="Points where a guard crosses zero: its text or its block."),
+]
+Crosses = Annotated[str, typer.Option(help="The way a guard crosses: up, down or both.")]
+Skip = Annotated[int, typer.Option(metavar="N", help="Points that are passed over.")]
+Keep = Annotated[int, typer.Option(metavar="N", help="Points that are kept.")]
+Modulo = Annotated[
+    list[str] | None,
+    typer.Option(metavar="NAME=VALUE", help="A state that turns, as in 'phi=360 deg'. Repeatable."),
+]
+
+
+def section(
+    diagram: DiagramPath,
+    period: Period = "",
+    phase: Phase = "0",
+    edge: Edge = "",
+    guard: Guard = "",
+    crosses: Crosses = "up",
+    skip: Skip = 0,
+    keep: Keep = 500,
+    modulo: Modulo = None,
+    plane: Annotated[
+        tuple[str, str] | None, typer.Option(metavar="X Y", help="The two states of the figure.")
+    ] = None,
+    preset: Preset = "",
+    values: Values = None,
+    start: Start = None,
+    rtol: Rtol = 1e-6,
+    figure: FigureFile = None,
+    output: OutputFile = None,
+    library: Libraries = None,
+    as_json: AsJson = False,
+    debug: Debug = False,
+) -> None:
+    """The points of a Poincaré section: once a period, at rising edges, or where a guard crosses.
+
+    \b
+    Examples:
+      tracewire analyse section triple.yaml --edge torque --preset chaotic --skip 1000
+                --keep 30000 --plane psi1 psi1_dot --figure attractor.png
+      tracewire analyse section duffing.yaml --period 2*pi/omega --json
+    """
+    setting = read_setting(diagram, library, preset, values, start, figure=figure, output=output)
+    turns = start_values_of(setting.model, modulo or (), "--modulo")
+    with working("collecting points"):
+        from tracewire.analyse import section as section_of
+
+        found = section_of(
+            setting.model,
+            _plane(period, phase, edge, guard, crosses),
+            skip=skip,
+            keep=keep,
+            modulo=turns,
+            start=setting.start,
+            rtol=rtol,
+            **setting.options,
+        )
+    from tracewire.show.summary import Table
+
+    rows = tuple(
+        (name, found.units.get(name, ""), shown(found[name].min()), shown(found[name].max()))
+        for name in found.states
+    )
+    kind = "irregular" if found.irregular else "regular"
+
+    def draw(path: str) -> object:
+        from tracewire.show import plot_section
+
+        return plot_section(found, path, *(plane or ("", "")))
+
+    tell(
+        {
+            "points": len(found.t),
+            "clusters": found.clusters,
+            "irregular": found.irregular,
+            "from": float(found.t[0]),
+            "to": float(found.t[-1]),
+        },
+        [Table("points", ("state", "unit", "min", "max"), rows, frozenset({2, 3}))],
+        [f"{len(found.t)} points in {found.clusters} places: {kind}"],
+        as_json=as_json,
+        draw=draw,
+        figure=figure,
+        columns={"t": found.t} | {name: found[name] for name in found.states},
+        output=output,
+    )
+
+
+def bifurcation(
+    diagram: DiagramPath,
+    over: Annotated[
+        str,
+        typer.Option(
+            "--over", metavar="NAME=FROM:TO:COUNT", help="The parameter and its values: f=1:2:100."
+        ),
+    ],
+    period: Period = "",
+    phase: Phase = "0",
+    edge: Edge = "",
+    guard: Guard = "",
+    crosses: Crosses = "up",
+    direction: Annotated[
+        str,
+        typer.Option(
+            help="up, down, both (side by side), up_down, down_up (the state carried on), or apart "
+            "(each value from the start)."
+        ),
+    ] = "up",
+    skip: Skip = 200,
+    keep: Keep = 100,
+    modulo: Modulo = None,
+    states: Annotated[
+        list[str] | None,
+        typer.Option("--state", metavar="NAME", help="A state of the figure. Repeatable."),
+    ] = None,
+    preset: Preset = "",
+    values: Values = None,
+    start: Start = None,
+    rtol: Rtol = 1e-6,
+    workers: Workers = None,
+    partial: PartialFile = None,
+    figure: FigureFile = None,
+    output: OutputFile = None,
+    library: Libraries = None,
+    as_json: AsJson = False,
+    debug: Debug = False,
+) -> None:
+    """A bifurcation diagram: points of a section over a parameter, the state carried along.
+
+    A motion is irregular where its points make more places than a quarter of their number.
+
+    \b
+    Examples:
+      tracewire analyse bifurcation triple.yaml --over f=0.3:0.9:800 --edge torque
+                --direction down_up --state psi1_dot --partial sweep.npz --figure sweep.png
+      tracewire analyse bifurcation duffing.yaml --over f=0.2:0.5:200 --period 2*pi/omega
+    """
+    setting = read_setting(diagram, library, preset, values, start, figure=figure, output=output)
+    turns = start_values_of(setting.model, modulo or (), "--modulo")
+    ((name, grid),) = values_of(setting.model, [over]).items()
+    if name.startswith("start."):
+        what = "a bifurcation diagram goes over a parameter, and a start value is carried along"
+        raise OptionError([Problem(what, hint="Name a parameter.")])
+    if figure is not None:
+        wrong = [state for state in states or () if state not in setting.model.states]
+        if wrong:
+            from tracewire.errors import unknown
+
+            raise OptionError([unknown("state", state, setting.model.states) for state in wrong])
+    with working(f"going through {name}") as show:
+        from tracewire.analyse import bifurcation as bifurcation_of
+
+        found = bifurcation_of(
+            setting.model,
+            name,
+            grid,
+            _plane(period, phase, edge, guard, crosses),
+            direction=direction,  # type: ignore[arg-type]
+            skip=skip,
+            keep=keep,
+            modulo=turns,
+            start=setting.start,
+            rtol=rtol,
+            workers=workers,
+            partial=partial,
+            progress=telling(f"going through {name}", show),
+            **setting.options,
+        )
+    import numpy as np
+
+    from tracewire.show.summary import Table
+
+    rows, lines = [], []
+    for branch in found.branches:
+        lines += failed_lines(branch.errors)
+        for low, high in branch.bands:
+            rows.append((branch.direction, shown(low), shown(high)))
+    unit = f" [{found.unit}]" if found.unit else ""
+    tables = [
+        Table("irregular", ("direction", f"from{unit}", "to"), tuple(rows), frozenset({1, 2}))
+    ]
+    count = int(sum(branch.irregular.sum() for branch in found.branches))
+    total = sum(len(branch.values) for branch in found.branches)
+    lines.append(f"{count} of {total} values are irregular")
+
+    def draw(path: str) -> object:
+        from tracewire.show import plot_bifurcation
+
+        return plot_bifurcation(found, path, states or ())
+
+    first = [np.repeat(branch.values, keep) for branch in found.branches]
+    columns = {
+        "direction": np.concatenate(
+            [np.full(v.shape, b.direction) for b, v in zip(found.branches, first, strict=True)]
+        ),
+        name: np.concatenate(first),
+    }
+    for n, state in enumerate(found.states):
+        columns[state] = np.concatenate([b.points[:, :, n].ravel() for b in found.branches])
+    data = {
+        b.direction: {
+            name: b.values,
+            "clusters": b.clusters,
+            "irregular": b.irregular,
+            "bands": b.bands,
+            "failed": len(b.errors),
+        }
+        for b in found.branches
+    }
+    tell(
+        {"parameter": name, "branches": data},
+        tables if rows else [],
+        lines,
+        as_json=as_json,
+        draw=draw,
+        figure=figure,
+        columns=columns,
+        output=output,
+    )
+
+
+def lyapunov(
+    diagram: DiagramPath,
+    length: Annotated[float, typer.Option(metavar="T", help="The time to average over, in s.")],
+    transient: Annotated[
+        float, typer.Option(metavar="T", help="The time to leave out before, in s.")
+    ] = 0.0,
+    interval: Annotated[
+        float | None,
+        typer.Option(
+            metavar="DT",
+            help="The time between two orthogonalisations; about 30 steps if not given.",
+        ),
+    ] = None,
+    count: Annotated[
+        int | None, typer.Option(metavar="N", help="The largest exponents alone.")
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Of the first directions.")] = 0,
+    preset: Preset = "",
+    values: Values = None,
+    start: Start = None,
+    rtol: Rtol = 1e-6,
+    figure: FigureFile = None,
+    output: OutputFile = None,
+    library: Libraries = None,
+    as_json: AsJson = False,
+    debug: Debug = False,
+) -> None:
+    """The Lyapunov exponents of a motion, with their standard errors.
+
+    Where the field is smooth their sum is the mean divergence, which is told beside it.
+
+    \b
+    Examples:
+      tracewire analyse lyapunov lorenz.yaml --length 500 --transient 20 --figure exponents.png
+      tracewire analyse lyapunov triple.yaml --preset chaotic --length 2000 --transient 500
+    """
+    setting = read_setting(diagram, library, preset, values, start, figure=figure, output=output)
+    with working("following deviations") as show:
+        from tracewire.analyse import lyapunov as lyapunov_of
+
+        found = lyapunov_of(
+            setting.model,
+            length,
+            interval=interval,
+            transient=transient,
+            count=count,
+            start=setting.start,
+            rtol=rtol,
+            seed=seed,
+            progress=telling("following deviations", show),
+            **setting.options,
+        )
+    from tracewire.show.summary import Table
+
+    rows = tuple(
+        (shown(value), f"{error:.2g}")
+        for value, error in zip(found.exponents.tolist(), found.errors.tolist(), strict=True)
+    )
+    lines = [f"positive by three errors: {found.positive}"]
+    if len(found.exponents) == len(found.states):
+        lines.append(f"sum {found.total:.6g} 1/s; Kaplan-Yorke dimension {found.dimension:.4g}")
+    if any(value == -float("inf") for value in found.exponents.tolist()):
+        lines.append(
+            "-inf: lost where something sticks, or shrunk to rounding within an interval, "
+            "which a shorter --interval would show"
+        )
+    if found.divergence is not None:
+        lines.append(f"mean divergence {found.divergence:.6g} 1/s, which the sum should be")
+
+    def draw(path: str) -> object:
+        from tracewire.show import plot_lyapunov
+
+        return plot_lyapunov(found, path, setting.model.flat.title)
+
+    tell(
+        {
+            "exponents": found.exponents,
+            "errors": found.errors,
+            "positive": found.positive,
+            "sum": found.total,
+            "divergence": found.divergence,
+            "dimension": found.dimension,
+            "warnings": found.warnings,
+        },
+        [Table("Lyapunov exponents [1/s]", ("exponent", "error"), rows, frozenset({0, 1}))],
+        lines,
+        as_json=as_json,
+        draw=draw,
+        figure=figure,
+        columns={"t": found.t}
+        | {f"exponent_{k + 1}": found.running[:, k] for k in range(found.running.shape[1])},
+        output=output,
+        warnings=found.warnings,
+    )
+
+
+def _plane(period: str, phase: str, edge: str, guard: str, crosses: str) -> Plane:
+    from tracewire.analyse import Plane
+
+    return Plane(
+        period=number_or_formula(period) if period else None,
+        edge=edge,
+        guard=guard,
+        phase=number_or_formula(phase),
+        direction=crosses,  # type: ignore[arg-type]
+    )

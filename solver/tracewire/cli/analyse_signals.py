@@ -1,0 +1,261 @@
+"""`tracewire analyse spectrum, scalogram, growth, invariants`: signals of one run."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from tracewire.cli.one_run import Every, Signal, Since, Span, run_of, signal_setting
+from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries
+from tracewire.cli.setting import (
+    FigureFile,
+    OutputFile,
+    Preset,
+    Rtol,
+    Start,
+    Values,
+    shown,
+    tell,
+)
+
+
+def spectrum(
+    diagram: DiagramPath,
+    signal: Signal,
+    since: Since = None,
+    window: Annotated[str, typer.Option(help="hann, flattop, blackman or boxcar.")] = "hann",
+    high: Annotated[
+        float | None, typer.Option(metavar="HZ", help="The highest frequency of the figure.")
+    ] = None,
+    lines: Annotated[int, typer.Option(metavar="N", help="Lines to tell.")] = 8,
+    span: Span = None,
+    every: Every = None,
+    preset: Preset = "",
+    values: Values = None,
+    start: Start = None,
+    rtol: Rtol = 1e-6,
+    figure: FigureFile = None,
+    output: OutputFile = None,
+    library: Libraries = None,
+    as_json: AsJson = False,
+    debug: Debug = False,
+) -> None:
+    """The amplitude spectrum of a signal, in its unit, and its largest lines.
+
+    \b
+    Examples:
+      tracewire analyse spectrum coupled.yaml phi1 --span 0 200 --every 0.02 --figure lines.png
+      tracewire analyse spectrum triple.yaml psi1 --since 100 --lines 3 --json
+    """
+    setting = signal_setting(diagram, library, preset, values, start, [signal], figure, output)
+    run = run_of(setting, span, every, rtol)
+    from tracewire.analyse import spectrum as spectrum_of
+    from tracewire.show.summary import Table
+
+    found = spectrum_of(run, signal, since=since, window=window, lines=lines)
+    rows = tuple((shown(line.frequency), shown(line.amplitude)) for line in found.lines)
+    header = ("frequency [Hz]", f"amplitude [{found.unit}]" if found.unit else "amplitude")
+
+    def draw(path: str) -> object:
+        from tracewire.show import plot_spectrum
+
+        return plot_spectrum(found, path, high)
+
+    tell(
+        {
+            "signal": signal,
+            "unit": found.unit,
+            "resolution": found.resolution,
+            "lines": found.lines,
+        },
+        [Table(f"lines of {signal}", header, rows, frozenset({0, 1}))],
+        [f"lines nearer than {found.resolution:.3g} Hz are one"],
+        as_json=as_json,
+        draw=draw,
+        figure=figure,
+        columns={"frequency": found.frequency, "amplitude": found.amplitude},
+        output=output,
+    )
+
+
+def scalogram(
+    diagram: DiagramPath,
+    signal: Signal,
+    low: Annotated[float | None, typer.Option(metavar="HZ", help="The lowest frequency.")] = None,
+    high: Annotated[float | None, typer.Option(metavar="HZ", help="The highest frequency.")] = None,
+    waves: Annotated[
+        float, typer.Option(help="More tell frequencies apart, fewer tell times.")
+    ] = 6.0,
+    since: Since = None,
+    span: Span = None,
+    every: Every = None,
+    preset: Preset = "",
+    values: Values = None,
+    start: Start = None,
+    rtol: Rtol = 1e-6,
+    figure: FigureFile = "scalogram.png",
+    output: OutputFile = None,
+    library: Libraries = None,
+    as_json: AsJson = False,
+    debug: Debug = False,
+) -> None:
+    """Draw which frequencies a signal has at which times: Morlet's wavelet transform.
+
+    \b
+    Example:
+      tracewire analyse scalogram ramp.yaml phi --low 0.1 --high 3 --figure ramp.png
+    """
+    setting = signal_setting(diagram, library, preset, values, start, [signal], figure, output)
+    run = run_of(setting, span, every, rtol)
+    from tracewire.analyse import scalogram as scalogram_of
+
+    found = scalogram_of(run, signal, low=low, high=high, waves=waves, since=since)
+
+    def draw(path: str) -> object:
+        from tracewire.show import plot_scalogram
+
+        return plot_scalogram(found, path)
+
+    columns = {"t": found.t, "ridge": found.ridge}
+    if output is not None and output.endswith(".npz"):
+        columns |= {"frequency": found.frequency, "amplitude": found.amplitude}
+    tell(
+        {
+            "signal": signal,
+            "unit": found.unit,
+            "frequencies": [float(found.frequency[0]), float(found.frequency[-1])],
+            "largest": float(found.amplitude.max()),
+        },
+        [],
+        [f"largest amplitude {found.amplitude.max():.6g} {found.unit}".rstrip()],
+        as_json=as_json,
+        draw=draw,
+        figure=figure,
+        columns=columns,
+        output=output,
+    )
+
+
+def growth(
+    diagram: DiagramPath,
+    signal: Signal,
+    by: Annotated[str, typer.Option(help="peaks of a wave, or size of a norm.")] = "peaks",
+    beat: Annotated[
+        float | None, typer.Option(metavar="T", help="Of a signal that beats: the period in s.")
+    ] = None,
+    since: Since = None,
+    span: Span = None,
+    every: Every = None,
+    preset: Preset = "",
+    values: Values = None,
+    start: Start = None,
+    rtol: Rtol = 1e-8,
+    figure: FigureFile = None,
+    output: OutputFile = None,
+    library: Libraries = None,
+    as_json: AsJson = False,
+    debug: Debug = False,
+) -> None:
+    """How fast an oscillation grows or decays: the rate in 1/s with its standard error.
+
+    \b
+    Examples:
+      tracewire analyse growth hill.yaml x --since 2
+      tracewire analyse growth mathieu.yaml y --beat 6.283 --figure growth.png
+    """
+    setting = signal_setting(diagram, library, preset, values, start, [signal], figure, output)
+    run = run_of(setting, span, every, rtol)
+    from tracewire.analyse import growth_rate
+
+    found = growth_rate(run, signal, by=by, since=since, period=beat)  # type: ignore[arg-type]
+
+    def draw(path: str) -> object:
+        from tracewire.show import plot_growth
+
+        return plot_growth(found, path)
+
+    bent = f"the envelope bends, and its second half has {found.late:.6g} /s: try --since"
+    tell(
+        {
+            "signal": signal,
+            "rate": found.rate,
+            "error": found.error,
+            "peaks": len(found.t),
+            "bends": found.bends,
+            "late": found.late,
+        },
+        [],
+        [f"{signal} goes as exp({found.rate:.6g} t): rate {found.rate:.6g} ± {found.error:.2g} /s"],
+        as_json=as_json,
+        draw=draw,
+        figure=figure,
+        columns={"t": found.t, "size": found.size},
+        output=output,
+        warnings=[bent] if found.bends else [],
+    )
+
+
+def invariants(
+    diagram: DiagramPath,
+    names: Annotated[
+        list[str],
+        typer.Argument(metavar="SIGNAL ...", help="Signals that should not change: energies."),
+    ],
+    scale: Annotated[
+        float | None,
+        typer.Option(metavar="SIZE", help="What a drift is compared with, in SI."),
+    ] = None,
+    span: Span = None,
+    every: Every = None,
+    preset: Preset = "",
+    values: Values = None,
+    start: Start = None,
+    rtol: Rtol = 1e-9,
+    figure: FigureFile = None,
+    output: OutputFile = None,
+    library: Libraries = None,
+    as_json: AsJson = False,
+    debug: Debug = False,
+) -> None:
+    """How far signals that should stay the same drift over a run.
+
+    \b
+    Examples:
+      tracewire analyse invariants atwood.yaml energy --set mu=3
+      tracewire analyse invariants atwood.yaml energy second --rtol 1e-10 --figure drift.png
+    """
+    setting = signal_setting(diagram, library, preset, values, start, names, figure, output)
+    run = run_of(setting, span, every, rtol)
+    from tracewire.analyse import invariant_drift
+    from tracewire.show.summary import Table
+
+    found = invariant_drift(run, names, scale=scale)
+    rows = tuple(
+        (d.name, d.unit, shown(d.start), f"{d.largest:.3g}", shown(d.at), f"{d.relative:.3g}")
+        for d in found
+    )
+    header = ("signal", "unit", "start", "largest drift", "at t [s]", "relative")
+
+    def draw(path: str) -> object:
+        from tracewire.show import plot_invariants
+
+        return plot_invariants(found, path, run.title)
+
+    data = {
+        d.name: {
+            "start": d.start, "largest": d.largest, "final": d.final, "relative": d.relative,
+            "scale": d.scale,
+        }
+        for d in found
+    }  # fmt: skip
+    tell(
+        {"drift": data, "rtol": rtol},
+        [Table("drift", header, rows, frozenset({2, 3, 4, 5}))],
+        [],
+        as_json=as_json,
+        draw=draw,
+        figure=figure,
+        columns={"t": run.t} | {d.name: d.values for d in found},
+        output=output,
+    )

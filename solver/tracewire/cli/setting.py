@@ -1,0 +1,231 @@
+"""What all kinds of analysis are given, and how they tell what came out."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tracewire.cli.options import load_model
+from tracewire.cli.output import (
+    check_target,
+    note,
+    print_json,
+    print_table,
+    print_text,
+    working,
+    writing,
+)
+from tracewire.cli.values import parameter_values_of, start_values_of
+from tracewire.errors import OptionError, Problem
+
+if TYPE_CHECKING:
+    from tracewire.compile import Model
+    from tracewire.show.summary import Table
+
+OUTPUTS = (".csv", ".npz")
+FIGURES = (".png", ".svg", ".pdf")
+NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+VALUES = re.compile(rf"\s*([^=\s]+)\s*=\s*({NUMBER})\s*:\s*({NUMBER})\s*:\s*(\d+)\s*(.*)")
+
+Preset = Annotated[str, typer.Option(help="A preset of the diagram.", metavar="NAME")]
+Values = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help="A parameter, as in k=2.5 or 'phi=13.6 deg'. Repeatable.",
+        show_default=False,
+    ),
+]
+Start = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="NAME=VALUE", help="The start value of a state. Repeatable.", show_default=False
+    ),
+]
+Record = Annotated[
+    list[str] | None,
+    typer.Option(metavar="SIGNAL", help="A further signal to record. Repeatable."),
+]
+Period = Annotated[
+    str,
+    typer.Option(metavar="T", help="The period in s, or a formula of parameters: '2*pi/omega'."),
+]
+Begin = Annotated[
+    str, typer.Option(metavar="T", help="When it begins, in s or a formula: '0.5/f'.")
+]
+Rtol = Annotated[float, typer.Option(help="The relative tolerance.")]
+FigureFile = Annotated[
+    str | None, typer.Option("--figure", metavar="FILE", help="Draw it to .png, .svg or .pdf.")
+]
+OutputFile = Annotated[
+    str | None, typer.Option("--output", metavar="FILE", help="Write the numbers to .csv or .npz.")
+]
+PartialFile = Annotated[
+    str | None,
+    typer.Option(
+        "--partial",
+        metavar="FILE",
+        help="Keep what is done in this .npz; the same command goes on from there.",
+    ),
+]
+Workers = Annotated[
+    int | None, typer.Option(metavar="N", help="Threads; the number of cores unless given.")
+]
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A model with the values that the command line gives it."""
+
+    model: Model
+    parameters: Mapping[str, float]
+    start: Mapping[str, float]
+    preset: str
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """The values as functions take them."""
+        return {"parameters": self.parameters, "preset": self.preset}
+
+
+def read_setting(
+    diagram: str,
+    library: Sequence[str] | None,
+    preset: str,
+    values: Sequence[str] | None,
+    start: Sequence[str] | None = None,
+    record: Sequence[str] | None = None,
+    *,
+    figure: str | None = None,
+    output: str | None = None,
+) -> Setting:
+    """The model and its values; targets that could not be written are refused before the work."""
+    check_target(figure, FIGURES, "figure")
+    check_target(output, OUTPUTS, "output")
+    model = load_model(diagram, library, record)
+    from tracewire.solve import parameter_values
+
+    parameters = parameter_values_of(model, values or ())
+    parameter_values(model, parameters, preset)
+    return Setting(model, parameters, start_values_of(model, start or ()), preset)
+
+
+def values_of(model: Model, texts: Sequence[str], option: str = "--over") -> dict[str, Any]:
+    """NAME=FROM:TO:COUNT as evenly spaced values in SI, by name. Raises OptionError."""
+    import numpy as np
+
+    found: dict[str, Any] = {}
+    problems: list[Problem] = []
+    for text in texts:
+        match = VALUES.fullmatch(text)
+        if match is None:
+            what = f"{option} '{text}' is not a name, '=' and FROM:TO:COUNT"
+            problems.append(Problem(what, hint=f"Write it like {option} f=0.3:0.9:800."))
+            continue
+        name, first, last, count, unit = match.groups()
+        if name.startswith("start."):
+            state = name.removeprefix("start.")
+            ends = [start_values_of(model, [f"{state}={x} {unit}"], option) for x in (first, last)]
+        else:
+            ends = [
+                parameter_values_of(model, [f"{name}={x} {unit}"], option) for x in (first, last)
+            ]
+        low, high = (next(iter(end.values())) for end in ends)
+        if int(count) < 1:
+            problems.append(Problem(f"{option} '{text}' has no values", hint="Give a COUNT."))
+            continue
+        if name in found:
+            problems.append(Problem(f"{option} gives '{name}' twice", hint="Leave one out."))
+        found[name] = np.linspace(low, high, int(count))
+    if problems:
+        raise OptionError(problems)
+    return found
+
+
+def tell(
+    data: Mapping[str, object],
+    tables: Sequence[Table],
+    lines: Sequence[str],
+    *,
+    as_json: bool,
+    draw: Callable[[str], object] | None = None,
+    figure: str | None = None,
+    columns: Mapping[str, Any] | None = None,
+    output: str | None = None,
+    warnings: Sequence[str] = (),
+) -> None:
+    """Write figure and numbers where they are asked for, and print what came out."""
+    for warning in warnings:
+        note(f"warning: {warning}")
+    if output is not None:
+        with writing(output):
+            write_numbers(output, columns or {})
+    if figure is not None and draw is not None:
+        with working(f"drawing {figure}"), writing(figure):
+            draw(figure)
+    written = [path for path in (output, figure) if path is not None]
+    if as_json:
+        print_json({**data, "written": written})
+        return
+    for table in tables:
+        print_table(table)
+    for line in lines:
+        print_text(line)
+    for path in written:
+        print_text(f"written: {path}")
+
+
+def write_numbers(path: str, columns: Mapping[str, Any]) -> None:
+    """Arrays by name to .npz; to .csv columns of one length. Raises OptionError."""
+    import numpy as np
+
+    arrays = {name: np.asarray(values) for name, values in columns.items()}
+    if path.endswith(".npz"):
+        with Path(path).open("wb") as file:
+            np.savez(file, allow_pickle=False, **arrays)
+        return
+    with Path(path).open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(arrays)
+        rows = zip(*(values.ravel().tolist() for values in arrays.values()), strict=True)
+        writer.writerows([repr(v) if isinstance(v, float) else v for v in row] for row in rows)
+
+
+def shown(value: float) -> str:
+    """A number for a table."""
+    return f"{value:.8g}"
+
+
+def complex_text(value: complex) -> str:
+    """A complex number for a table."""
+    if abs(value.imag) <= 1e-12 * abs(value):
+        return f"{value.real:.8g}"
+    return f"{value.real:.8g} {'+' if value.imag >= 0 else '-'} {abs(value.imag):.8g}i"
+
+
+def failed_lines(errors: Mapping[Any, str]) -> list[str]:
+    """What to say of points that failed: how many, and why the first did."""
+    if not errors:
+        return []
+    first = next(iter(errors.values())).split("\n")[0]
+    return [f"{len(errors)} points failed; the first of them: {first}"]
+
+
+def number_or_formula(text: str) -> float | str:
+    """A number, or the text as a formula."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def parts(values: Any) -> list[list[float]]:
+    """Complex numbers for JSON, as [real, imaginary]."""
+    return [[float(value.real), float(value.imag)] for value in values]

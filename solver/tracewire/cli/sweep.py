@@ -1,0 +1,119 @@
+"""`tracewire sweep`: a few numbers of runs over a grid of parameter values."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries
+from tracewire.cli.output import telling, working
+from tracewire.cli.setting import (
+    FigureFile,
+    OutputFile,
+    PartialFile,
+    Preset,
+    Rtol,
+    Start,
+    Values,
+    Workers,
+    failed_lines,
+    read_setting,
+    shown,
+    tell,
+    values_of,
+)
+
+
+def sweep(
+    diagram: DiagramPath,
+    over: Annotated[
+        list[str],
+        typer.Option(
+            "--over",
+            metavar="NAME=FROM:TO:COUNT",
+            help="A parameter, or start.STATE, and its values: 'k=1:5:41'. Repeatable.",
+        ),
+    ],
+    keep: Annotated[
+        list[str],
+        typer.Option(
+            "--keep",
+            metavar="NUMBER",
+            help="end(x), max(x), min(x), range(x), mean(x), rms(x) of a signal, or "
+            "events. Repeatable.",
+        ),
+    ],
+    since: Annotated[
+        float | None,
+        typer.Option(metavar="T", help="Leave out the samples before this time, in s."),
+    ] = None,
+    span: Annotated[
+        tuple[float, float] | None, typer.Option(metavar="FROM TO", help="From and to, in s.")
+    ] = None,
+    preset: Preset = "",
+    values: Values = None,
+    start: Start = None,
+    rtol: Rtol = 1e-6,
+    workers: Workers = None,
+    partial: PartialFile = None,
+    figure: FigureFile = None,
+    output: OutputFile = None,
+    library: Libraries = None,
+    as_json: AsJson = False,
+    debug: Debug = False,
+) -> None:
+    """Simulate a diagram over a grid of parameter values, and keep a few numbers of each run.
+
+    \b
+    Examples:
+      tracewire sweep oscillator.yaml --over omega=0.5:3:101 --keep "max(x)" --since 50
+                --figure resonance.png
+      tracewire sweep pendulum.yaml --over k=1:5:21 --over c=0:1:11 --keep "rms(phi)"
+                --partial sweep.npz --output sweep.csv
+    """
+    setting = read_setting(diagram, library, preset, values, start, figure=figure, output=output)
+    grid = values_of(setting.model, over)
+    with working("sweeping") as show:
+        from tracewire.analyse import sweep as sweep_of
+
+        found = sweep_of(
+            setting.model,
+            grid,
+            keep,
+            since=since,
+            workers=workers,
+            progress=telling("sweeping", show),
+            partial=partial,
+            parameters=setting.parameters,
+            start=setting.start,
+            preset=setting.preset,
+            span=span,
+            rtol=rtol,
+        )
+    import numpy as np
+
+    from tracewire.show.summary import Table
+
+    rows = tuple(
+        (name, shown(float(np.nanmin(v))), shown(float(np.nanmax(v))))
+        for name, v in found.values.items()
+    )
+    points = np.meshgrid(*found.grid.values(), indexing="ij")
+    columns = dict(zip(found.grid, points, strict=True)) | dict(found.values)
+
+    def draw(path: str) -> object:
+        from tracewire.show import plot_sweep
+
+        return plot_sweep(found, path)
+
+    tell(
+        {"grid": found.grid, "values": found.values, "failed": len(found.errors)},
+        [Table("over the grid", ("number", "min", "max"), rows, frozenset({1, 2}))],
+        [f"{points[0].size} runs", *failed_lines(found.errors)],
+        as_json=as_json,
+        draw=draw,
+        figure=figure,
+        columns=columns,
+        output=output,
+    )

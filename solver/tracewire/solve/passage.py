@@ -1,0 +1,272 @@
+"""`Passage`: a run that goes on from one stop to the next, for analyses that look at it there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import cast
+
+import numpy as np
+from numpy.ctypeslib import as_ctypes
+from numpy.typing import ArrayLike, NDArray
+
+from tracewire.compile import Model
+from tracewire.errors import OptionError, Problem, unknown
+from tracewire.solve.core.arrays import Arrays
+from tracewire.solve.core.codes import (
+    BUDGET,
+    END,
+    EVENTS,
+    FINISHED,
+    LENGTH,
+    LOG_FULL,
+    PAUSED,
+    SAMPLED,
+    STEPS,
+    T,
+)
+from tracewire.solve.core.flow import FREE, FUNCTIONS, rates
+from tracewire.solve.core.integrate import advance
+from tracewire.solve.core.jit import invoke_at, ready
+from tracewire.solve.core.methods import NAMES
+from tracewire.solve.execute import Execution
+from tracewire.solve.failures import failure
+from tracewire.solve.interrupt import Halt, Interrupted
+from tracewire.solve.limits import Limits
+from tracewire.solve.sensitivities import new_sensitivity
+from tracewire.solve.setup import kept_plan, new_arrays, new_flow, new_progress, packed, prepare
+from tracewire.solve.simulate import parameter_values, start_of, tables_of, tolerance_of
+from tracewire.solve.space import Space
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+START = "start."
+LONG = 10.0  # lengths to which instants are resolved and of which a step is a tenth at most
+
+
+class Passage:
+    """A run of a model that stops where it is told to, and goes on from there.
+
+    Modes, slides, contacts and memories go on over a stop; parameters are those of the beginning.
+    With `tangents` the columns of S (n, n), which follow S' = f_x S and jump with the states at
+    events, are there to be read and set at each stop; they begin as the identity. `length` in s is
+    about how far it is from one stop to the next; `inner` is the number of instants between two
+    stops at which states are kept. The other arguments are those of `simulate`.
+
+    Raises OptionError and SimulationError as `simulate` does.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        *,
+        length: float,
+        begin: float = 0.0,
+        parameters: Mapping[str, float] | None = None,
+        start: Mapping[str, float] | None = None,
+        preset: str = "",
+        inputs: Mapping[str, tuple[ArrayLike, ArrayLike]] | None = None,
+        method: str = "auto",
+        rtol: float = 1e-9,
+        atol: float | Mapping[str, float] | None = None,
+        tangents: bool = False,
+        inner: int = 0,
+        halt: Halt | None = None,
+    ) -> None:
+        if method not in ("auto", *NAMES) or method == "rk4":
+            known = ["auto", *(name for name in NAMES if name != "rk4")]
+            raise OptionError([unknown("method", method, known)])
+        if not (np.isfinite(length) and length > 0 and np.isfinite(begin)):
+            what = f"an interval of {length:g} s from t = {begin:g} s has no use"
+            raise OptionError([Problem(what, hint="Give a finite length above 0.")])
+        self.model = model
+        self.parameters = parameter_values(model, parameters or {}, preset)
+        tolerance = tolerance_of(model, rtol, atol, method, None, LONG * length)
+        for name in FUNCTIONS:  # several passages may run in threads
+            model.compiled_address(name)
+        vector = np.array([*self.parameters.values(), 0.0])
+        tables = packed(tables_of(model, self.parameters, inputs or {}))
+        flow = new_flow(model, vector, tables)
+        x = start_of(model, flow, start or {})
+        span = begin, begin + LONG * length
+        progress = new_progress(model, x, span, np.zeros(inner), method, tolerance)
+        plan = kept_plan(model)
+        plan = plan._replace(direct=np.arange(len(x)))
+        progress = progress._replace(samples=np.zeros((inner, len(x))))
+        asked = tuple(START + name for name in model.states) if tangents else ()
+        sensitivity = new_sensitivity(model, flow, progress, asked, {}, {}, self.parameters)
+        if asked:  # no recorded signals are followed, but the states
+            sensitivity = sensitivity._replace(samples=np.zeros((inner, len(x) * len(x))))
+        self.arrays: Arrays = new_arrays(flow, plan, progress, sensitivity)
+        self._space = Space((inner, len(tables), asked, (), preset), self.arrays)
+        self._execution = Execution(
+            model,
+            self.arrays,
+            Limits(),
+            begin,
+            halt=halt or Halt(),
+            asked=asked,
+            table=self._space.table,
+        )
+        self._preset, self._inputs, self._start = preset, dict(inputs or {}), dict(start or {})
+        self._given = dict(parameters or {})
+        self._settle()
+
+    def begin_with(
+        self, parameters: Mapping[str, float], *, begin: float, length: float, x: Vector | None
+    ) -> None:
+        """Begin anew with other values of parameters, over those of the first beginning.
+
+        At the states x (n,), or at the start values. Raises OptionError and SimulationError.
+        """
+        model, arrays = self.model, self.arrays
+        self.parameters = parameter_values(model, {**self._given, **parameters}, self._preset)
+        self._space.renew()
+        arrays.flow.c[:] = 0.0
+        prepare(model, arrays.flow, np.array([*self.parameters.values(), 0.0]))
+        arrays.flow.k[:] = packed(tables_of(model, self.parameters, self._inputs))
+        now = arrays.progress.now
+        now[T], now[END], now[LENGTH] = begin, begin + LONG * length, LONG * length
+        for array, first in self._space.first:
+            if array is arrays.flow.c or array is arrays.flow.k or array is now:
+                first[:] = array
+        self._execution.start = begin
+        self.begin_at(begin, start_of(model, arrays.flow, self._start) if x is None else x)
+
+    def _settle(self) -> None:
+        """Decide the modes at the beginning; no step is taken."""
+        self.arrays.progress.ints[BUDGET] = 0
+        status = ready(advance)(self._address)
+        if status not in (FINISHED, PAUSED, LOG_FULL):
+            raise failure(self.model, self.arrays, status)
+
+    @property
+    def _address(self) -> int:
+        return cast(int, self._space.table.__array_interface__["data"][0])
+
+    def begin_at(self, t: float, x: Vector) -> None:
+        """Begin anew at a time and states (n,): modes are decided anew, memories at their start."""
+        self._space.renew()
+        self._execution.rows.clear()
+        progress = self.arrays.progress
+        progress.now[END] += t - progress.now[T]
+        progress.now[T] = self.arrays.sensitivity.now[0] = t
+        progress.x[:] = x
+        self._settle()
+
+    @property
+    def t(self) -> float:
+        """The time of the stop in s."""
+        return float(self.arrays.progress.now[T])
+
+    @property
+    def x(self) -> Vector:
+        """The states (n,) at the stop: the right limit."""
+        return self.arrays.progress.x.copy()
+
+    @property
+    def tangents(self) -> Matrix:
+        """The tangent vectors at the stop, the columns of S (n, n)."""
+        return self.arrays.sensitivity.s.copy()
+
+    @tangents.setter
+    def tangents(self, columns: Matrix) -> None:
+        sensitivity = self.arrays.sensitivity
+        sensitivity.s[:] = columns
+        sensitivity.peak[:] = np.maximum(np.abs(columns), self.arrays.progress.atol[:, None])
+
+    def go_to(self, end: float, inner: ArrayLike = ()) -> None:
+        """Go on to the time `end` in s; what happens there has happened then.
+
+        `inner` holds the ascending instants in (t, end] at which states are kept: see `inside`.
+        Raises SimulationError where it cannot go on, Interrupted where the user stops it.
+        """
+        progress = self.arrays.progress
+        progress.now[END] = end
+        times = np.asarray(inner, dtype=float)
+        if len(progress.times):
+            progress.times[:] = times if len(times) else np.inf
+            progress.ints[SAMPLED] = 0 if len(times) else len(progress.times)
+        progress.ints[STEPS] = 0
+        execution = self._execution
+        execution.rows.clear()
+        execution.logged, execution.seconds = 0, 0.0
+        if end > progress.now[T]:
+            try:
+                execution.run()
+            except Interrupted as error:
+                what = f"interrupted at t = {self.t:.9g} s, on the way to {end:g} s"
+                raise Interrupted([Problem(what)]) from error
+
+    @property
+    def inside(self) -> Matrix:
+        """The states (K, n) at the inner instants of the last interval."""
+        return self.arrays.progress.samples.copy()
+
+    @property
+    def inside_tangents(self) -> NDArray[np.float64]:
+        """The tangent vectors (K, n, n) at the inner instants of the last interval."""
+        n = len(self.model.states)
+        both = self.arrays.sensitivity.samples.reshape(-1, n, n)
+        return np.ascontiguousarray(both.transpose(0, 2, 1))
+
+    @property
+    def log(self) -> Matrix:
+        """What happened in the last interval, in order: time, kind, mode, direction, x⁻, x⁺."""
+        rows = self._execution.log
+        return rows[:, : rows.shape[1] - len(self._execution.asked)]
+
+    @property
+    def kinds(self) -> set[str]:
+        """The kinds of what happened in the last interval."""
+        return {EVENTS[int(kind)] for rows in self._execution.rows for kind in rows[:, 1]}
+
+    @property
+    def modes(self) -> Vector:
+        """The values of the modes (M,) at the stop."""
+        return self.arrays.flow.m[: len(self.model.modes)].copy()
+
+    @property
+    def held(self) -> list[int]:
+        """The modes whose guards are held at zero: slides and resting contacts."""
+        return np.flatnonzero(self.arrays.flow.bound != FREE).tolist()
+
+    def value(
+        self, function: str, size: int, x: Vector, t: float, modes: Vector | None = None
+    ) -> Vector:
+        """A function of the model (see `Model.address`) at a time and states, (size,).
+
+        `modes` (M,) in place of those at the stop.
+        """
+        flow, out = self.arrays.flow, np.zeros(size)
+        m = flow.m
+        if modes is not None:
+            m = m.copy()
+            m[: len(modes)] = modes
+        address = self.model.compiled_address(function)
+        invoke_at(address, t, np.ascontiguousarray(x), m, flow.c, flow.k, out)
+        return out
+
+    def rates(self) -> Vector:
+        """The rates (n,) at the stop: on a slide those along it."""
+        x, out = self.x, np.zeros(len(self.model.states))
+        pointers = [as_ctypes(array) for array in (x, out)]
+        ready(rates)(self._address, self.t, pointers[0], len(x), pointers[1], len(x))
+        return out
+
+    @property
+    def steps(self) -> int:
+        """The steps, accepted and rejected ones, of the last interval."""
+        return int(self.arrays.progress.ints[STEPS])
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the user should know of the way so far."""
+        return self._execution.warnings
+
+    def jacobian(
+        self, x: Vector | None = None, t: float | None = None, modes: Vector | None = None
+    ) -> Matrix:
+        """d rate / d x (n, n), at the stop unless states and time are given."""
+        n = len(self.model.states)
+        at, when = self.x if x is None else x, self.t if t is None else t
+        return self.value("jacobian", n * (n + 1), at, when, modes).reshape(n, n + 1)[:, :n]
