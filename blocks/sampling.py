@@ -23,7 +23,7 @@ zero_order_hold = Block(
     inputs=(Input("of"),),
     parameters=(
         Parameter("period", "s", "between two samples", low=0.0),
-        Parameter("offset", "s", "the time of one of the samples", default=0.0),
+        Parameter("offset", "s", "above zero, the time of the first sample", default=0.0),
         START,
     ),
     states=(State("y", rate="0", start="start"),),

@@ -36,7 +36,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_the_readme_shows_every_kind_of_example() -> None:
     verbs = {shlex.split(command)[1] for command in COMMANDS}
-    assert verbs == {"blocks", "check", "show", "run", "fit", "trace", "analyse", "sweep"}
+    assert verbs == {"blocks", "check", "show", "run", "fit", "trace", "analyse", "sweep", "paper"}
     assert len(fenced("python")) == len(fenced("yaml")) == 1
 
 
@@ -45,7 +45,7 @@ def test_the_readme_shows_every_kind_of_example() -> None:
 def test_each_command_of_the_readme_works(here: Path, command: str) -> None:
     words = shlex.split(command)[1:]
     assert main(words) == 0
-    for option in ("--figure", "--report"):
+    for option in ("--output" if words[0] == "paper" else "--figure", "--report"):
         if option in words:
             assert (here / words[words.index(option) + 1]).stat().st_size > 0
 

@@ -67,6 +67,18 @@ def test_the_rule_of_irregular_motion() -> None:
     assert count_clusters(np.zeros((10, 1)), np.zeros(1)) == 1
 
 
+def test_many_points_are_counted_by_the_same_rule() -> None:
+    """More points than their pairs fit the memory, on seven places and scattered."""
+    rng = np.random.default_rng(5)
+    extent, unit = np.array([1.0, 1.0]), np.array([np.inf, 1.0])
+    orbit = np.repeat(rng.uniform(0.0, 1.0, (7, 2)), 400, axis=0)
+    assert count_clusters(orbit + 1e-5 * rng.uniform(size=orbit.shape), extent, unit) == 7
+    scattered = rng.uniform(0.0, 1.0, (2001, 2))
+    few = count_clusters(scattered[:2000], extent, unit, near=5e-3)
+    many = count_clusters(np.vstack([scattered[:2000], scattered[:1]]), extent, unit, near=5e-3)
+    assert many == few < 2000
+
+
 def test_points_of_a_period_are_those_of_a_run() -> None:
     model = made(DUFFING)
     found = section(model, Plane(period="2*pi/omega", phase="0.5/omega"), skip=3, keep=6, rtol=1e-9)

@@ -190,8 +190,11 @@ def test_clocks_are_timed_and_those_of_one_time_are_one() -> None:
     mode = model.modes[first.trigger]
     assert (mode.kind, mode.signal) == ("floor", "held")
     assert mode.timed is not None
-    line = [value(model, entry, {}, T=0.5) for entry in mode.timed]
+    (begun,) = (i for i, other in enumerate(model.modes) if other.jumps == "clock")
+    line = [value(model, entry, {begun: 1.0}, T=0.5) for entry in mode.timed]
     assert line == [2.0, -0.5]
+    line = [value(model, entry, {begun: 0.0}, T=0.5) for entry in mode.timed]
+    assert line == [0.0, -0.5]  # no tick until half a period before the first
     assert model.modes[own.trigger].timed is not None
     slope = model.modes[own.trigger].timed[0]  # type: ignore[index]
     assert value(model, slope, {}) == pytest.approx(50.0)
@@ -206,7 +209,10 @@ def test_resets_of_transitions_stand_behind_those_of_events() -> None:
 def test_the_equations_tell_memories_and_clocks() -> None:
     told = made(BACKLASH).equations
     assert "while play.mode is 1 (up) and w < 0: play.mode := 0, play.at := u - 1/2" in told
-    assert "when (t - 0.25)/T is a whole number: held := x" in made(CLOCKS).equations
+    clocks = made(CLOCKS.replace("T, offset: 0.25}\n  n", "T, offset: T}\n  n")).equations
+    assert "when (t - 0.25)/T is a whole number, first at t = 0.25: held := x" in clocks
+    assert "when (t - T)/T is a whole number, first at t = T if T > 0: again := held" in clocks
+    assert "when t/0.02 is a whole number: n := n + 1" in clocks
     assert "when stop.x - 2 crosses up: stop.v := -e*stop.v" in made(STOP).equations
 
 

@@ -156,8 +156,8 @@ def test_a_shifted_hold_gives_its_start_until_the_first_sample() -> None:
     shifted = {"shift": 0.1, "T": 0.5}
     result = run(CLOCKED, times=[0.0, 0.09, 0.1, 0.59, 0.6], parameters=shifted)
     assert result["hold"] == pytest.approx([-7, -7, 0.1, 0.1, 0.6], abs=1e-12)
-    early = run(CLOCKED, times=[-0.5, -0.3, 0.0], span=(-0.5, 0), parameters=shifted)
-    assert early["hold"] == pytest.approx([-7, -0.4, -0.4], abs=1e-12)
+    early = run(CLOCKED, times=[-0.5, -0.3, 0.2], span=(-0.5, 0.2), parameters=shifted)
+    assert early["hold"] == pytest.approx([-7, -7, 0.1], abs=1e-12)
 
 
 def test_a_sampled_controller_gives_the_exact_difference_equation() -> None:

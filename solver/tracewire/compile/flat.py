@@ -38,8 +38,9 @@ class FlatState:
 class FlatEvent:
     """A reset: where `when` crosses zero, states get the values of `set`, all reading x⁻.
 
-    `clocked`: where `when` reaches a whole number; it is then (t - offset)/period. `block` is the
-    path of the block whose event it is, empty for one of a diagram.
+    `clocked`: where `when` reaches a whole number; it is then (t - offset)/period, and not whole
+    before an offset above zero. `block` is the path of the block whose event it is, empty for one
+    of a diagram.
     """
 
     name: str

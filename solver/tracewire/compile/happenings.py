@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from tracewire.compile.flat import FlatEvent, FlatMemory, FlatTransition
 from tracewire.diagram import Crosses, Event, Value
 from tracewire.errors import Place
-from tracewire.formula import Call, Expression, Name, Number, parse, parse_condition
+from tracewire.formula import Call, Expression, Name, Number, parse, parse_condition, to_text
 from tracewire.library import Block
 
 Write = Callable[[Expression], Expression]
@@ -97,6 +97,27 @@ def diagram_events(
 
 
 def clock(period: Expression, offset: Expression) -> Expression:
-    """The formula that is a whole number at offset + k*period."""
-    since = Name("t") if offset == Number(0.0) else Call("-", (Name("t"), offset))
-    return Call("/", (since, period))
+    """The formula that is a whole number where a clock ticks: at offset + k*period.
+
+    Where the offset is above zero it is the time of the first tick: up to half a period before it
+    the formula is -1/2.
+    """
+    if offset == Number(0.0):
+        return Call("/", (Name("t"), period))
+    periods = Call("/", (Call("-", (Name("t"), offset)), period))
+    waiting = Call("max", (periods, Number(-0.5)))
+    if isinstance(offset, Number):
+        return waiting if offset.value > 0 else periods
+    return Call("if", (Call(">", (offset, Number(0.0))), waiting, periods))
+
+
+def told_clock(formula: Expression) -> str:
+    """What the formula of a clock says, in words."""
+    condition, first = "", ""
+    if isinstance(formula, Call) and formula.function == "if":
+        condition, formula = f" if {to_text(formula.arguments[0])}", formula.arguments[1]
+    if isinstance(formula, Call) and formula.function == "max":
+        formula = formula.arguments[0]
+        if isinstance(formula, Call) and isinstance(formula.arguments[0], Call):
+            first = f", first at t = {to_text(formula.arguments[0].arguments[1])}{condition}"
+    return f"{to_text(formula)} is a whole number{first}"

@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from tracewire.compile.differentiate import linear_in_t
+from tracewire.compile.events import lower_events
 from tracewire.compile.flat import Flat
 from tracewire.compile.linear import solve_linear
 from tracewire.compile.memory import (
     Reset,
     Transition,
     declare_memories,
-    lower_events,
     lower_memories,
 )
 from tracewire.compile.solve_loops import lower_loop
@@ -33,7 +33,9 @@ class Mode:
     entries, so its changes are known times. `holds`: at guard = 0 a `dry` may hold the guard at
     zero. `at_zero`: the sign mode that the user's comparison gives at exactly zero. `memory`: the
     number of the mode of a block with memory, by the order of `names`; its guard is the number at
-    the start, and only the model's transitions change it.
+    the start, and only the model's transitions change it. `jumps`: it is there for an event, and no
+    log shows it: the `side` of zero that a guard is on which only jumps, the memory by which the
+    event fires where that goes `up` or `down`, or the time at which a `clock` begins.
     """
 
     kind: ModeKind
@@ -46,6 +48,7 @@ class Mode:
     at_zero: int = 1
     table: int = -1
     names: tuple[str, ...] = ()
+    jumps: Literal["", "side", "up", "down", "clock"] = ""
 
 
 @dataclass

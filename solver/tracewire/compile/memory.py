@@ -1,9 +1,10 @@
-"""Events and blocks with memory on the tape: resets, clocks, modes that keep themselves.
+"""Resets and blocks with memory on the tape: modes that keep themselves.
 
 A **reset** fires where the mode `trigger` crosses in its `direction`: the guard of a sign mode goes
-through zero, the floor mode of a clock goes up by one at (t - offset)/period = k, and at the start
-of a run where that is such a time. A reset without a trigger (-1) fires with the transition that
-names it. All resets of one instant read x⁻ and the modes before, and write x⁺ together.
+through zero, the floor mode of a clock goes up by one where its guard is a whole number, and at the
+start of a run where that is such a time. A reset without a trigger (-1) fires with the transitions
+that name it: those of a memory, or those of an event whose guard only jumps (see `jumps`). All
+resets of one instant read x⁻ and the modes before, and write x⁺ together.
 
 A **memory** is a mode of kind `memory`: 0.0, 1.0, 2.0, ... in the order of the names of its modes.
 It has no crossing: what stands as its guard is the number of the mode in which it starts, to be
@@ -25,11 +26,12 @@ from dataclasses import dataclass, field, replace
 from functools import reduce
 from typing import TYPE_CHECKING, Literal
 
+from tracewire.compile.happenings import told_clock
 from tracewire.errors import Place
 from tracewire.formula import Call, Expression, Number, to_text
 
 if TYPE_CHECKING:
-    from tracewire.compile.flat import Flat, FlatEvent, FlatMemory
+    from tracewire.compile.flat import Flat, FlatMemory
     from tracewire.compile.lower import Lowering
 
 Direction = Literal["up", "down", "both"]
@@ -80,31 +82,8 @@ def block_of(memory: FlatMemory) -> str:
     return memory.name.rpartition(".")[0]
 
 
-def lower_events(lowering: Lowering) -> None:
-    """The resets that have a trigger of their own, in the order of the events."""
-    out = lowering.out
-    claimed: set[int] = set()
-    for event in lowering.flat.events:
-        lowering.signal = event.block or event.name
-        trigger, direction = _trigger(lowering, event)
-        if event.block and trigger not in claimed:  # is_held() may have made the mode before
-            out.modes[trigger] = replace(out.modes[trigger], signal=event.block)
-        claimed.add(trigger)
-        values = _values(lowering, event.set)
-        out.resets.append(Reset(event.name, event.kind, trigger, direction, values, event.place))
-
-
-def _trigger(lowering: Lowering, event: FlatEvent) -> tuple[int, Direction]:
-    if event.clocked:
-        text = f"clock of {event.block or event.name}"
-        return lowering.mode("floor", lowering.lower(event.when), text), "up"
-    leaf = lowering.condition(event.when, strict=False, always=True)
-    trigger, level = lowering.side(leaf)
-    turned: dict[Direction, Direction] = {"up": "down", "down": "up"}
-    return trigger, event.crosses if level else turned.get(event.crosses, "both")
-
-
-def _values(lowering: Lowering, values: Mapping[str, Expression]) -> dict[int, int]:
+def values_of(lowering: Lowering, values: Mapping[str, Expression]) -> dict[int, int]:
+    """The entries of new values by the numbers of the states that get them."""
     return {lowering.index[name]: lowering.lower(formula) for name, formula in values.items()}
 
 
@@ -124,7 +103,7 @@ def lower_memories(lowering: Lowering) -> None:
                 reset = len(out.resets)
                 ends = (memory.modes[transition.source], memory.modes[transition.target])
                 name = f"{lowering.signal}: {ends[0]} -> {ends[1]}"
-                values = _values(lowering, transition.set)
+                values = values_of(lowering, transition.set)
                 out.resets.append(Reset(name, "reset", -1, "both", values, memory.place))
             out.transitions.append(
                 Transition(
@@ -196,8 +175,8 @@ def told(flat: Flat) -> list[str]:
     lines = []
     for event in flat.events:
         sets = ", ".join(f"{name} := {to_text(value)}" for name, value in event.set.items())
-        how = "is a whole number" if event.clocked else f"crosses {event.crosses}"
-        lines.append(f"when {to_text(event.when)} {how}: {sets}")
+        crosses = f"{to_text(event.when)} crosses {event.crosses}"
+        lines.append(f"when {told_clock(event.when) if event.clocked else crosses}: {sets}")
     return lines + [line for memory in flat.memories for line in _told_memory(memory)]
 
 

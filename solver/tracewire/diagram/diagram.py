@@ -95,7 +95,8 @@ class Event:
     """A reset: where `when` crosses zero, the states in `set` get new values, all read from x⁻.
 
     `when` may be the name of an event of a block: it happens where that one does. A clock has
-    `every` instead, a period: it happens at `offset` + k*period.
+    `every` instead, a period: it happens at `offset` + k*period, where `offset` is above zero not
+    before it.
     """
 
     when: Expression | None

@@ -104,9 +104,10 @@ class Transition:
 class Event:
     """A reset: where `when` crosses zero, the states in `set` get new values, all read from x⁻.
 
-    `when` is a formula, or several: the event happens where any of them crosses. A clock has
-    `every` instead, a period in s: it happens at `offset` + k*period for every whole k, and at the
-    start of a run where that is such a time. A diagram may add to an event by its name:
+    `when` is a formula, or several: the event happens where any of them crosses; one that is
+    constant between events, where it jumps. A clock has `every` instead, a period in s: it happens
+    at `offset` + k*period, and at the start of a run where that is such a time; an `offset` above
+    zero is the time of the first one. A diagram may add to an event by its name:
     `when: block.name`. An event of kind `impact` is that of a contact: the log says so. A contact,
     of either kind, is an event whose reset turns the rate of its guard round: it comes to rest,
     holds the guard at zero by a force along its reset, and lets go where that would have to pull.

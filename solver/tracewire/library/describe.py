@@ -171,7 +171,7 @@ def _transition(transition: Transition) -> tuple[str, str, str, str]:
 
 def _when(event: Event) -> str:
     if event.every is not None:
-        shift = "" if event.offset == "0" else f", shifted by {event.offset}"
+        shift = "" if event.offset == "0" else f", first at t = {event.offset}"
         return f"every {event.every} s{shift}"
     direction = "zero" if event.crosses == "both" else f"zero {event.crosses}"
     return f"{' or '.join(event.guards)} crosses {direction}"

@@ -20,6 +20,7 @@ events) fires at the instant of the jump, when all other modes stand still there
 from below zero to zero or above, or from zero, where that was no arrival from below, to above; down
 likewise. Its reset reads what the other resets of that instant wrote. A start fires nothing. Of a
 guard that moves as well, such as a ramp minus a square wave, only the passages through zero fire.
+Of two jumps at one instant that write one state, the later event of the diagram has the last word.
 
 **Memory.** A block with memory has named modes that only its transitions change: while the memory
 is `source` and the condition of the transition holds, it becomes `target`, and its reset, if it has

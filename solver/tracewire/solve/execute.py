@@ -156,9 +156,10 @@ class Execution:
             rows = self.progress.log[:logged].copy()
             if self.asked:
                 rows = np.hstack([rows, self.arrays.sensitivity.times[:logged]])
+            rows = _shown(self.model, rows)
             self.rows.append(rows)
             self.progress.ints[LOGGED] = 0
-            self.logged += logged
+            self.logged += len(rows)
 
     @property
     def log(self) -> Matrix:
@@ -199,6 +200,19 @@ class Execution:
         if self.asked:
             said.extend(undefined(self.model, self.arrays.sensitivity))
         return tuple(said)
+
+
+def _shown(model: Model, rows: Matrix) -> Matrix:
+    """The rows of a log without what is made for events: an event whose guard jumps is a reset."""
+    jumps = np.array([mode.jumps for mode in model.modes])
+    if not np.any(jumps != ""):
+        return rows
+    of = jumps[rows[:, 2].astype(np.int64)]
+    fires = ((of == "up") | (of == "down")) & (rows[:, 3] > 0)
+    rows[fires, 1] = EVENTS.index("reset")
+    rows[of == "down", 3] = -1
+    kept: Matrix = rows[(of == "") | fires]
+    return kept
 
 
 def _event(model: Model, row: Vector, asked: tuple[str, ...]) -> Event:

@@ -92,6 +92,8 @@ def failure(model: Model, arrays: Arrays, status: int) -> SimulationError:
 
 def _no_mode(model: Model, t: float, guards: Sequence[int], what: str) -> SimulationError:
     modes = [model.modes[i] for i in guards]
+    if any(mode.jumps for mode in modes):
+        return _endless(model, t, tuple(dict.fromkeys(mode.signal for mode in modes)))
     if any(mode.kind == "memory" for mode in modes):
         names = ", ".join(f"'{mode.signal}'" for mode in modes)
         text = f"the transitions of {names} at t = {t:.9g} s lead back to where they began"
@@ -104,6 +106,17 @@ def _no_mode(model: Model, t: float, guards: Sequence[int], what: str) -> Simula
         text = f"no consistent mode at t = {t:.9g} s: {texts} changes with its own mode"
         hint = "A guard reads a signal that jumps with its mode: use hysteresis."
     place = place_of(model, modes[0].signal) if modes else Place()
+    return SimulationError([Problem(text, place, (), hint)])
+
+
+def _endless(model: Model, t: float, names: Sequence[str]) -> SimulationError:
+    """Events whose guards jump, and that set each other off at one instant."""
+    shown = ", ".join(f"'{name}'" for name in names)
+    what = f"the events {shown} fire" if len(names) > 1 else f"the event {shown} fires"
+    text = f"{what} again and again at t = {t:.9g} s"
+    events = {event.block or event.name: event for event in model.flat.events}
+    place = events[names[0]].place if names[0] in events else place_of(model, names[0])
+    hint = "Let what they set not carry their guards back over zero, or give one 'crosses: up'."
     return SimulationError([Problem(text, place, (), hint)])
 
 

@@ -34,6 +34,8 @@ from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.modes import noise, piece
 
 SAMPLES = 5  # of the margins over a step, both ends included
+SLACK = 0.25  # a parabola that stays above zero by less than bend/32 may be wrong about it
+CLOSE = 1.0 / 16.0  # of a sample's distance: where a dip is looked at more closely
 HELD_NOISE = 1e-9
 ROOT = 1e-14
 CLEARLY = 4.0  # beyond its level, in units of the noise
@@ -203,7 +205,8 @@ def _is_quiet(core: int, count: int, level: float) -> bool:
         for k in range(1, SAMPLES - 1):
             before, here, after = rows[k - 1, i], rows[k, i], rows[k + 1, i]
             bend, slope = after - 2 * here + before, after - before
-            dips = int(slope * slope > 8 * bend * here) & int(abs(slope) <= 2 * bend)
+            dips = int(slope * slope > bend * (8 * here - SLACK * bend))
+            dips &= int(abs(slope) <= 2 * bend)
             loud |= int(bend > 0) & dips & int(before > floor)
     return loud == 0
 
@@ -261,15 +264,21 @@ def _dip(core: int, method: int, count: int, item: int, floor: float) -> float:
     for k in range(1, count - 1):
         before, here, after = rows[k - 1, item], rows[k, item], rows[k + 1, item]
         bend, slope = after - 2 * here + before, after - before
-        if not (bend > 0 and slope * slope > 8 * bend * here and abs(slope) <= 2 * bend):
+        if not (bend > 0 and abs(slope) <= 2 * bend):
             continue
-        if not before > floor:
+        if not (slope * slope > bend * (8 * here - SLACK * bend) and before > floor):
             continue
         shift = -slope / (2 * bend)
-        theta = (k + shift) * step
-        values = np.empty(rows.shape[1])
-        _margins_inside(core, method, theta, values)
-        if values[item] < -floor:
+        values = np.empty((3, rows.shape[1]))
+        for i in range(3):  # closer by, where the parabola is better
+            beside = min(float(len(rows) - 1), max(0.0, k + shift + CLOSE * (i - 1)))
+            _margins_inside(core, method, beside * step, values[i])
+        bend = values[2, item] - 2 * values[1, item] + values[0, item]
+        if bend > 0:
+            shift -= CLOSE * (values[2, item] - values[0, item]) / (2 * bend)
+        theta = min(1.0, max(0.0, (k + shift) * step))
+        _margins_inside(core, method, theta, values[1])
+        if values[1, item] < -floor:
             low = (k - 1 if shift <= 0 else k) * step
             return _root(core, method, item, low, theta)
     return np.inf

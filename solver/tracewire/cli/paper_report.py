@@ -1,0 +1,30 @@
+"""`tracewire paper a`: what the paper states, and what its diagrams do."""
+
+from __future__ import annotations
+
+from tracewire.cli.output import check_target, print_json, print_table, print_text, working
+from tracewire.cli.progress import stages
+
+
+def write_report(paper: str, report: str | None, full: bool, as_json: bool) -> None:
+    """Measure all statements of a paper; print them, and write them to .html or .md."""
+    check_target(report, (".md", ".html"), "report")
+    with working(f"paper {paper}") as show:
+        from tracewire.paper.document import data_of, report_of, statements_table, summary
+        from tracewire.paper.reproduction import reproduce
+
+        found = reproduce(paper, full=full, progress=stages(show))
+    if report is not None:
+        report_of(found).write(report)
+    if as_json:
+        print_json({**data_of(found), "written": [] if report is None else [report]})
+        return
+    print_table(statements_table(found.rows, f"paper {paper}", short=True))
+    for table in found.tables:
+        print_table(table)
+    for row in found.rows:
+        if row.verdict != "agrees":
+            print_text(f"{row.statement.name}: {row.verdict}. {row.why}")
+    print_text(summary(found))
+    if report is not None:
+        print_text(f"written: {report}")

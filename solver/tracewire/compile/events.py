@@ -1,0 +1,45 @@
+"""Events on the tape: the reset of each, and what triggers it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from tracewire.compile.jumps import lower_jumps, only_jumps
+from tracewire.compile.memory import Direction, Reset, values_of
+
+if TYPE_CHECKING:
+    from tracewire.compile.flat import FlatEvent
+    from tracewire.compile.lower import Lowering
+
+
+def lower_events(lowering: Lowering) -> None:
+    """The resets that have a trigger of their own, in the order of the events."""
+    out = lowering.out
+    claimed: set[int] = set()
+    for event in lowering.flat.events:
+        lowering.signal = event.block or event.name
+        if not event.clocked and only_jumps(lowering, guard := lowering.lower(event.when)):
+            lower_jumps(lowering, event, guard, len(out.resets))
+            values = values_of(lowering, event.set)
+            out.resets.append(Reset(event.name, "reset", -1, "both", values, event.place))
+            continue
+        trigger, direction = _trigger(lowering, event)
+        if event.block and trigger not in claimed:  # is_held() may have made the mode before
+            out.modes[trigger] = replace(out.modes[trigger], signal=event.block)
+        claimed.add(trigger)
+        values = values_of(lowering, event.set)
+        out.resets.append(Reset(event.name, event.kind, trigger, direction, values, event.place))
+
+
+def _trigger(lowering: Lowering, event: FlatEvent) -> tuple[int, Direction]:
+    if event.clocked:
+        modes, text = lowering.out.modes, f"clock of {event.block or event.name}"
+        before = len(modes)
+        guard = lowering.lower(event.when)
+        modes[before:] = [replace(mode, jumps="clock") for mode in modes[before:]]
+        return lowering.mode("floor", guard, text), "up"
+    leaf = lowering.condition(event.when, strict=False, always=True)
+    trigger, level = lowering.side(leaf)
+    turned: dict[Direction, Direction] = {"up": "down", "down": "up"}
+    return trigger, event.crosses if level else turned.get(event.crosses, "both")

@@ -1,0 +1,129 @@
+"""A reproduction as a document and as data for programs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from tracewire.paper.figure import PAPERS
+from tracewire.paper.headers import read_headers
+from tracewire.paper.reproduction import Reproduction, Row
+from tracewire.show.document import Report, Section
+from tracewire.show.summary import Table
+
+HEADER = ("statement", "the paper", "source", "measured", "expected", "verdict")
+READING = (
+    "Each row is a statement of the paper, or of the theory that it rests on, with a number that "
+    "the shipped diagrams give. `agrees`: the number is as expected. `the print is wrong`: what is "
+    "printed cannot hold; the reason stands below, and the corrected statement is a row of its own "
+    "or is what the diagrams have. `does not agree`: neither."
+)
+
+
+def report_of(found: Reproduction) -> Report:
+    """The document: the verdicts, all statements, where and why they do not agree, the tables."""
+    sections = [
+        Section(PAPERS[found.paper], (summary(found), READING)),
+        Section("What the paper states, and what the diagrams do", tables=tuple(_tables(found))),
+    ]
+    wrong = [row for row in found.rows if row.verdict == "the print is wrong"]
+    if wrong:
+        sections.append(Section("Where the print is wrong", points=tuple(map(_point, wrong))))
+    if found.open:
+        sections.append(Section("What does not agree", points=tuple(map(_point, found.open))))
+    notes = [row for row in found.rows if row.verdict == "agrees" and row.why]
+    if notes:
+        points = tuple(f"{names}: {why}" for why, names in _by_note(notes).items())
+        sections.append(Section("Remarks", points=points))
+    if found.tables:
+        sections.append(Section("Details", tables=found.tables))
+    errata = [header for header in read_headers(found.paper) if header.errata]
+    if errata:
+        points = tuple(f"{header.name} ({header.file}): {header.errata}" for header in errata)
+        sections.append(Section("All errata, by the diagrams", points=points))
+    return Report(f"Paper {found.paper.upper()}: reproduction report", tuple(sections))
+
+
+def summary(found: Reproduction) -> str:
+    """How many statements have which verdict, in a sentence."""
+    counts = "; ".join(f"{verdict}: {n}" for verdict, n in found.counts.items() if n)
+    plural = "s" * (len(found.rows) != 1)
+    runs = "as finely as the paper" if found.full else "in short runs (`--full`: the paper's)"
+    needs_runs = found.paper == "b"
+    how = f", {runs}" if needs_runs else ""
+    return f"{len(found.rows)} statement{plural}: {counts}. Measured in {found.seconds:.0f} s{how}."
+
+
+def statements_table(rows: Iterable[Row], title: str = "", *, short: bool = False) -> Table:
+    """Rows of a reproduction as a table; `short` without what the paper says."""
+    cells = []
+    for row in rows:
+        statement = row.statement
+        unit = f" {statement.unit}" if statement.unit else ""
+        measured = "-" if row.value is None else f"{_number(row.value)}{unit}"
+        expected = f"{statement.expected.text}{unit}"
+        says = f"{statement.says} ({statement.what})"
+        cells.append((statement.name, says, statement.source, measured, expected, row.verdict))
+    columns = [n for n in range(len(HEADER)) if not short or n not in (1, 2)]
+    kept = tuple(tuple(cell[n] for n in columns) for cell in cells)
+    return Table(title, tuple(HEADER[n] for n in columns), kept)
+
+
+def data_of(found: Reproduction) -> dict[str, object]:
+    """The same for programs: plain types, what is not finite as None."""
+    return {
+        "paper": found.paper,
+        "title": PAPERS[found.paper],
+        "full": found.full,
+        "seconds": found.seconds,
+        "counts": dict(found.counts),
+        "statements": [_record(row) for row in found.rows],
+        "tables": [
+            {"title": table.title, "header": table.header, "rows": table.rows}
+            for table in found.tables
+        ],
+    }
+
+
+def _record(row: Row) -> dict[str, object]:
+    statement, bounds = row.statement, row.statement.expected
+    return {
+        "name": statement.name,
+        "system": statement.system,
+        "says": statement.says,
+        "source": statement.source,
+        "what": statement.what,
+        "unit": statement.unit,
+        "value": row.value,
+        "expected": bounds.text,
+        "low": bounds.low if math.isfinite(bounds.low) else None,
+        "high": bounds.high if math.isfinite(bounds.high) else None,
+        "verdict": row.verdict,
+        "why": row.why,
+        "seconds": row.seconds,
+    }
+
+
+def _tables(found: Reproduction) -> Iterable[Table]:
+    for system in found.systems:
+        rows = [row for row in found.rows if row.statement.system == system]
+        yield statements_table(rows, system)
+
+
+def _point(row: Row) -> str:
+    statement = row.statement
+    unit = f" {statement.unit}" if statement.unit else ""
+    value = "" if row.value is None else f" Measured: {statement.what} {_number(row.value)}{unit}."
+    return f"{statement.name}, {statement.source}: {statement.says} {row.why}{value}"
+
+
+def _by_note(rows: Iterable[Row]) -> dict[str, str]:
+    """The names of the statements with each note."""
+    found: dict[str, list[str]] = {}
+    for row in rows:
+        found.setdefault(row.why, []).append(row.statement.name)
+    return {why: ", ".join(names) for why, names in found.items()}
+
+
+def _number(value: float) -> str:
+    return f"{value:.7g}" if abs(value) >= 1e-3 or value == 0 else f"{value:.2e}"

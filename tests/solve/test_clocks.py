@@ -1,0 +1,93 @@
+"""When clocks tick: an offset above zero is the time of the first tick."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from solve.models import kinds, made, run
+from tracewire.solve import simulate
+
+CLOCK = """
+span: [0, 2]
+parameters: {T: 0.5, begin: OFFSET}
+blocks:
+  n: {type: integrator, of: zero}
+  zero: {type: constant, value: 0}
+  now: {type: time}
+  held: {type: zero_order_hold, of: now, period: T, offset: OFFSET, start: -7}
+events:
+  - {every: 0.5, offset: begin, set: {n: n + 1}}
+record: [n, held]
+"""
+EVEN = [0.0, 0.5, 1.0, 1.5, 2.0]
+
+
+@pytest.mark.parametrize(
+    ("offset", "ticks"),
+    [
+        (0, EVEN),
+        (0.2, [0.2, 0.7, 1.2, 1.7]),
+        (0.3, [0.3, 0.8, 1.3, 1.8]),
+        (0.5, EVEN[1:]),
+        (1.0, EVEN[2:]),
+        (1.3, [1.3, 1.8]),
+        (7.25, []),
+        (-0.2, [0.3, 0.8, 1.3, 1.8]),
+        (-0.5, EVEN),
+    ],
+)
+def test_the_first_tick_is_at_the_offset(offset: float, ticks: list[float]) -> None:
+    result = run(CLOCK.replace("OFFSET", str(offset)))
+    times = [event.time for event in result.events]
+    assert times == pytest.approx([tick for tick in ticks for _ in range(2)], abs=1e-12)
+    assert set(kinds(result)) <= {"reset"}
+    assert result.final["n"] == len(ticks)
+    assert result["held"][-1] == pytest.approx(ticks[-1] if ticks else -7, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("offset", "span", "ticks"),
+    [
+        (0, (-1, 1), [-1.0, -0.5, 0.0, 0.5, 1.0]),
+        (-0.2, (-1, 1), [-0.7, -0.2, 0.3, 0.8]),
+        (0.2, (-1, 1), [0.2, 0.7]),
+        (0.5, (-1, 1), [0.5, 1.0]),
+        (0.5, (0.25, 1), [0.5, 1.0]),
+        (0.5, (0.5, 1), [0.5, 1.0]),
+        (1.3, (-1, 1), []),
+        (0.5, (10, 11), [10.0, 10.5, 11.0]),
+        (1.3, (10.3, 11), [10.3, 10.8]),
+        (10.3, (10.1, 11), [10.3, 10.8]),
+    ],
+)
+def test_a_span_may_begin_anywhere(
+    offset: float, span: tuple[float, float], ticks: list[float]
+) -> None:
+    result = run(CLOCK.replace("OFFSET", str(offset)), span=span)
+    own = [event.time for event in result.events if event.block == "events[0]"]
+    assert own == pytest.approx(ticks, abs=1e-12)
+    assert result.final["n"] == len(ticks)
+
+
+def test_an_offset_is_a_parameter_like_any_other() -> None:
+    model = made(CLOCK.replace("OFFSET", "0.75"))
+    result = simulate(model, parameters={"begin": -0.25}, sensitivities=["begin"])
+    ticks = [event for event in result.events if event.block == "events[0]"]
+    assert [tick.time for tick in ticks] == pytest.approx([0.25, 0.75, 1.25, 1.75])
+    later = simulate(model, sensitivities=["begin"])
+    ticks = [event for event in later.events if event.block == "events[0]"]
+    assert [tick.time for tick in ticks] == pytest.approx([0.75, 1.25, 1.75])
+    assert [tick.sensitivity["begin"] for tick in ticks] == pytest.approx(np.ones(3))
+
+
+def test_clocks_of_one_instant_read_what_was_before_whatever_their_offsets() -> None:
+    text = """
+span: [0, 2]
+blocks:
+  now: {type: time}
+  first: {type: zero_order_hold, of: now, period: 0.25, start: -1}
+  second: {type: zero_order_hold, of: first, period: 0.5, offset: 0.5, start: -2}
+record: [second]
+"""
+    result = run(text, times=[0.4, 0.5, 0.9, 1.0])
+    assert result["second"] == pytest.approx([-2, 0.25, 0.25, 0.75], abs=1e-12)
