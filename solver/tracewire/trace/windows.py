@@ -211,7 +211,8 @@ def _settled_one(
                 break
         moved = dict(zip(start, np.array(list(start.values())) + share * answer, strict=True))
         if _far_off(windows, n, moved):
-            break
+            share /= 4
+            continue
         there = windows.criterion.linearised(n, windows.values, moved)
         if not there.ran:
             break
@@ -302,9 +303,9 @@ def _moved(windows: Windows, views: Sequence[Projection], step: Vector) -> Windo
     for n, (view, old) in enumerate(zip(views, windows.near, strict=True)):
         expected = old.residual.ravel() + old.slopes[:, :count] @ step
         moved = np.array(list(windows.starts[n].values())) - view.answer @ expected
-        start = dict(zip(windows.starts[n], moved.tolist(), strict=True))
+        start: Mapping[str, float] = dict(zip(windows.starts[n], moved.tolist(), strict=True))
         if _far_off(windows, n, start):
-            return None
+            start = windows.starts[n]
         starts.append(start)
         near.append(windows.criterion.linearised(n, values, start))
         if not near[-1].ran and old.ran:
