@@ -239,6 +239,8 @@ class Criterion:
         sigma = self.sigma[segment.measured.name]
         parts = [(sensing.derivative(run, name, of) / sigma).ravel() for name, of in moved.items()]
         slopes = np.stack(parts, axis=1) if parts else np.zeros((shown.size, 0))
+        if not (np.abs(slopes) < LARGEST).all():  # their squares would be no numbers
+            return self._differences(n, named, start)
         return Linearised(self.difference(n, shown), slopes, run.final)
 
     def outputs(
