@@ -155,6 +155,19 @@ def test_differences_stand_in_where_sensitivities_fail(
     assert all(0 <= a <= 1 for a in tried)  # they stay inside the bounds
 
 
+def test_derivatives_whose_squares_are_no_numbers_are_taken_by_differences() -> None:
+    model = made("""
+span: [0, 1]
+blocks:
+  x: {type: integrator, of: rate, start: 0}
+  rate: {type: gain, of: x, k: 600}
+""")
+    measured = series(np.zeros(3), t=np.array([0.0, 0.5, 1.0]), sigma={"x": 1e-3})
+    whole = Segment(measured, 0.0, np.arange(3), {"x": 0.0}, ("x",))
+    near = Criterion(model, [whole], [], {}).linearised(0, {}, {"x": 0.0})
+    assert np.isfinite(near.slopes**2).all(), "exp(600) = 4e260"
+
+
 def test_gain_delay_and_offset_of_a_sensor_and_their_derivatives() -> None:
     """A sensor of x = a t + b shows gain*(a (t - delay) + b) + offset, b before the begin."""
     bounds = {"gain": (0.5, 2.0), "delay": (-1.0, 1.0), "offset": (-1.0, 1.0)}

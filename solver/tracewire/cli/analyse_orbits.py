@@ -11,12 +11,14 @@ from tracewire.cli.output import telling, working
 from tracewire.cli.setting import (
     Begin,
     FigureFile,
+    Modulo,
     OutputFile,
     PartialFile,
     Period,
     Preset,
     Rtol,
     Start,
+    TwoStates,
     Values,
     Workers,
     complex_text,
@@ -42,18 +44,8 @@ def orbit(
     skip: Annotated[
         int, typer.Option(metavar="N", help="Periods to simulate before the search begins.")
     ] = 0,
-    turns: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--modulo",
-            metavar="NAME=VALUE",
-            help="A state that closes up to a multiple, as in 'phi=360 deg'. Repeatable.",
-        ),
-    ] = None,
-    plane: Annotated[
-        tuple[str, str] | None,
-        typer.Option(metavar="X Y", help="The two states of the figure."),
-    ] = None,
+    turns: Modulo = None,
+    plane: TwoStates = None,
     preset: Preset = "",
     values: Values = None,
     start: Start = None,

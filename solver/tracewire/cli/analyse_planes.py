@@ -2,13 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tracewire.cli.one_run import Every, Signal, Since, Span, run_of, signal_setting
+from tracewire.cli.one_run import Every, Signal, Since, Span, run_of
 from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries
-from tracewire.cli.setting import FigureFile, OutputFile, Preset, Rtol, Start, Values, tell
+from tracewire.cli.setting import (
+    FigureFile,
+    OutputFile,
+    Preset,
+    Rtol,
+    Start,
+    Values,
+    read_setting,
+    tell,
+)
+
+if TYPE_CHECKING:
+    from tracewire.solve import Run
 
 
 def portrait(
@@ -35,10 +48,14 @@ def portrait(
       tracewire analyse portrait pendulum.yaml phi phi_dot --figure portrait.svg
       tracewire analyse portrait duffing.yaml x v --span 0 400 --since 200
     """
-    _draw_plane(
-        *(diagram, library, preset, values, start, (x, y), span, every, rtol, since),
-        *(figure, output, as_json, False),
+    names = (x, y)
+    setting = read_setting(
+        diagram, library, preset, values, start, names, figure=figure, output=output
     )
+    run = run_of(setting, span, every, rtol)
+    from tracewire.show import plot_portrait
+
+    _tell_plane(run, names, since, plot_portrait, figure, output, as_json=as_json)
 
 
 def polar(
@@ -69,36 +86,30 @@ def polar(
     Example:
       tracewire analyse polar atwood.yaml l phi --set mu=3 --figure orbit.svg
     """
-    _draw_plane(
-        *(diagram, library, preset, values, start, (radius, angle), span, every, rtol, since),
-        *(figure, output, as_json, True),
+    names = (radius, angle)
+    setting = read_setting(
+        diagram, library, preset, values, start, names, figure=figure, output=output
     )
+    run = run_of(setting, span, every, rtol)
+    from tracewire.show import plot_polar
+
+    _tell_plane(run, names, since, plot_polar, figure, output, as_json=as_json)
 
 
-def _draw_plane(
-    diagram: str,
-    library: list[str] | None,
-    preset: str,
-    values: list[str] | None,
-    start: list[str] | None,
+def _tell_plane(
+    run: Run,
     names: tuple[str, str],
-    span: tuple[float, float] | None,
-    every: float | None,
-    rtol: float,
     since: float | None,
+    plot: Callable[..., object],
     figure: str | None,
     output: str | None,
+    *,
     as_json: bool,
-    is_polar: bool,
 ) -> None:
-    setting = signal_setting(diagram, library, preset, values, start, names, figure, output)
-    run = run_of(setting, span, every, rtol)
+    """Draw and write two signals of a run."""
     first = -float("inf") if since is None else since
 
     def draw(path: str) -> object:
-        from tracewire.show import plot_polar, plot_portrait
-
-        plot = plot_polar if is_polar else plot_portrait
         return plot(run, *names, path, since=first)
 
     chosen = run.t >= first

@@ -10,11 +10,13 @@ from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries
 from tracewire.cli.output import telling, working
 from tracewire.cli.setting import (
     FigureFile,
+    Modulo,
     OutputFile,
     PartialFile,
     Preset,
     Rtol,
     Start,
+    TwoStates,
     Values,
     Workers,
     failed_lines,
@@ -47,10 +49,6 @@ Guard = Annotated[
 Crosses = Annotated[str, typer.Option(help="The way a guard crosses: up, down or both.")]
 Skip = Annotated[int, typer.Option(metavar="N", help="Points that are passed over.")]
 Keep = Annotated[int, typer.Option(metavar="N", help="Points that are kept.")]
-Modulo = Annotated[
-    list[str] | None,
-    typer.Option(metavar="NAME=VALUE", help="A state that turns, as in 'phi=360 deg'. Repeatable."),
-]
 
 
 def section(
@@ -63,9 +61,7 @@ def section(
     skip: Skip = 0,
     keep: Keep = 500,
     modulo: Modulo = None,
-    plane: Annotated[
-        tuple[str, str] | None, typer.Option(metavar="X Y", help="The two states of the figure.")
-    ] = None,
+    plane: TwoStates = None,
     preset: Preset = "",
     values: Values = None,
     start: Start = None,

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from tracewire.cli.one_run import Every, Signal, Since, Span, run_of, signal_setting
+from tracewire.cli.one_run import Every, Signal, Since, Span, run_of
 from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries
 from tracewire.cli.setting import (
     FigureFile,
@@ -15,6 +15,7 @@ from tracewire.cli.setting import (
     Rtol,
     Start,
     Values,
+    read_setting,
     shown,
     tell,
 )
@@ -48,7 +49,9 @@ def spectrum(
       tracewire analyse spectrum coupled.yaml phi1 --span 0 200 --every 0.02 --figure lines.png
       tracewire analyse spectrum triple.yaml psi1 --since 100 --lines 3 --json
     """
-    setting = signal_setting(diagram, library, preset, values, start, [signal], figure, output)
+    setting = read_setting(
+        diagram, library, preset, values, start, [signal], figure=figure, output=output
+    )
     run = run_of(setting, span, every, rtol)
     from tracewire.analyse import spectrum as spectrum_of
     from tracewire.show.summary import Table
@@ -106,7 +109,9 @@ def scalogram(
     Example:
       tracewire analyse scalogram ramp.yaml phi --low 0.1 --high 3 --figure ramp.png
     """
-    setting = signal_setting(diagram, library, preset, values, start, [signal], figure, output)
+    setting = read_setting(
+        diagram, library, preset, values, start, [signal], figure=figure, output=output
+    )
     run = run_of(setting, span, every, rtol)
     from tracewire.analyse import scalogram as scalogram_of
 
@@ -164,7 +169,9 @@ def growth(
       tracewire analyse growth hill.yaml x --since 2
       tracewire analyse growth mathieu.yaml y --beat 6.283 --figure growth.png
     """
-    setting = signal_setting(diagram, library, preset, values, start, [signal], figure, output)
+    setting = read_setting(
+        diagram, library, preset, values, start, [signal], figure=figure, output=output
+    )
     run = run_of(setting, span, every, rtol)
     from tracewire.analyse import growth_rate
 
@@ -225,7 +232,9 @@ def invariants(
       tracewire analyse invariants atwood.yaml energy --set mu=3
       tracewire analyse invariants atwood.yaml energy second --rtol 1e-10 --figure drift.png
     """
-    setting = signal_setting(diagram, library, preset, values, start, names, figure, output)
+    setting = read_setting(
+        diagram, library, preset, values, start, names, figure=figure, output=output
+    )
     run = run_of(setting, span, every, rtol)
     from tracewire.analyse import invariant_drift
     from tracewire.show.summary import Table

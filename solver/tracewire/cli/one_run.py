@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from tracewire.cli.output import note, telling, working
-from tracewire.cli.setting import Setting, read_setting
+from tracewire.cli.setting import Setting
 from tracewire.errors import OptionError, Problem
 
 if TYPE_CHECKING:
@@ -22,22 +21,6 @@ Since = Annotated[
     float | None, typer.Option(metavar="T", help="Leave out what is before this time, in s.")
 ]
 Signal = Annotated[str, typer.Argument(metavar="SIGNAL", help="A signal.", show_default=False)]
-
-
-def signal_setting(
-    diagram: str,
-    library: list[str] | None,
-    preset: str,
-    values: list[str] | None,
-    start: list[str] | None,
-    names: Sequence[str],
-    figure: str | None,
-    output: str | None,
-) -> Setting:
-    """The setting, with these signals recorded."""
-    return read_setting(
-        diagram, library, preset, values, start, names, figure=figure, output=output
-    )
 
 
 def run_of(

@@ -60,6 +60,17 @@ Period = Annotated[
 Begin = Annotated[
     str, typer.Option(metavar="T", help="When it begins, in s or a formula: '0.5/f'.")
 ]
+Modulo = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--modulo",
+        metavar="NAME=VALUE",
+        help="A state that closes up to a multiple, as in 'phi=360 deg'. Repeatable.",
+    ),
+]
+TwoStates = Annotated[
+    tuple[str, str] | None, typer.Option(metavar="X Y", help="The two states of the figure.")
+]
 Rtol = Annotated[float, typer.Option(help="The relative tolerance.")]
 FigureFile = Annotated[
     str | None, typer.Option("--figure", metavar="FILE", help="Draw it to .png, .svg or .pdf.")

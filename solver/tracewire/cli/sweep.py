@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from tracewire.cli.one_run import Since, Span
 from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries
 from tracewire.cli.output import telling, working
 from tracewire.cli.setting import (
@@ -44,13 +45,8 @@ def sweep(
             "events. Repeatable.",
         ),
     ],
-    since: Annotated[
-        float | None,
-        typer.Option(metavar="T", help="Leave out the samples before this time, in s."),
-    ] = None,
-    span: Annotated[
-        tuple[float, float] | None, typer.Option(metavar="FROM TO", help="From and to, in s.")
-    ] = None,
+    since: Since = None,
+    span: Span = None,
     preset: Preset = "",
     values: Values = None,
     start: Start = None,

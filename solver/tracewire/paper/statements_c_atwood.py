@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import sqrt
 
 import numpy as np
@@ -94,9 +95,8 @@ def _pushed(preset: str) -> Measure:
     return find
 
 
-def _velocity(x: object) -> np.ndarray:
+def _velocity(state: Mapping[str, float]) -> np.ndarray:
     """Of m2, from the rates of the four coordinates."""
-    state = dict(x)  # type: ignore[call-overload]
     r, one, two = 1.0 + state["l2"], state["phi1"], state["phi2"]
     along = np.array([np.sin(one), -np.cos(one)]) * state["l1_dot"]
     across = np.array([np.cos(one), np.sin(one)]) * state["l1"] * state["phi1_dot"]

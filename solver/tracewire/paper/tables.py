@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from tracewire.paper.identification import FLOOR, NINE, SPRING, identification, step_of
@@ -46,9 +48,8 @@ def found_table(systems: Systems) -> Table:
     names = ("B1", "B2", *SPRING, *NINE)
     rows = [(name, shown(found[name]), shown(true[name])) for name in names]
 
-    def product(values: object, side: str) -> float:
-        get = dict(values)  # type: ignore[call-overload]
-        return float(get["alpha"] * (1 + get["beta"]) * get[f"T_s2_{side}"])
+    def product(values: Mapping[str, float], side: str) -> float:
+        return values["alpha"] * (1 + values["beta"]) * values[f"T_s2_{side}"]
 
     for side in "lr":
         name = f"alpha (1 + beta) T_s2_{side}"
