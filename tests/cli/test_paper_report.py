@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tracewire.paper import reproduction
+from tracewire.paper import figure_of, reproduction
 from tracewire.paper.statement import Statement, above, below
 
 AGREES = Statement("C07 one", "It swings.", "Eq 8", "a number", lambda s: 1.0, above(0.5), "s")
@@ -16,8 +16,10 @@ MISPRINT = Statement(
 
 
 @pytest.fixture(autouse=True)
-def two_statements(monkeypatch: pytest.MonkeyPatch) -> None:
+def two_statements(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(reproduction, "statements_of", lambda paper: (AGREES, MISPRINT))
+    monkeypatch.setattr(reproduction, "figures_of", lambda paper: (figure_of(paper, "18"),))
 
 
 def test_a_paper_prints_what_it_states_and_what_came_out(call: Any) -> None:
@@ -26,6 +28,8 @@ def test_a_paper_prints_what_it_states_and_what_came_out(call: Any) -> None:
     assert all(text in found.out for text in ("C07 one", "1 s", "≥ 0.5 s", "agrees"))
     assert "C07 two: the print is wrong. A misprint." in found.out
     assert "2 statements: agrees: 1; the print is wrong: 1." in found.out
+    assert "written: paper_c.html" in found.out
+    assert "It swings." in Path("paper_c.html").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("ending", ["html", "md"])
@@ -35,6 +39,8 @@ def test_the_report_is_written(call: Any, tmp_path: Path, ending: str) -> None:
     assert found.code == 0 and f"written: {file}" in found.out
     text = file.read_text(encoding="utf-8")
     assert "reproduction report" in text and "It swings." in text and "A misprint." in text
+    assert "Fig. 18 of paper C" in text
+    assert "data:image/png" in text if ending == "html" else (tmp_path / "c_18.png").exists()
 
 
 def test_json_has_every_statement(call: Any, tmp_path: Path) -> None:

@@ -9,7 +9,6 @@ import typer
 from tracewire.cli.options import AsJson, Debug
 from tracewire.cli.paper_figures import write_figure, write_figures, write_table
 from tracewire.cli.paper_report import write_report
-from tracewire.cli.reporting import ReportFile
 from tracewire.errors import OptionError, Problem
 
 
@@ -35,7 +34,14 @@ def paper(
     table: Annotated[
         bool, typer.Option("--table", help="Write the page of all systems, with its pictures.")
     ] = False,
-    report: ReportFile = None,
+    report: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE",
+            help="The report, .html (one file) or .md (its figures beside it); "
+            "paper_a.html and so on unless given.",
+        ),
+    ] = None,
     as_json: AsJson = False,
     debug: Debug = False,
 ) -> None:
@@ -43,7 +49,7 @@ def paper(
 
     \b
     Examples:
-      tracewire paper c --report c.html
+      tracewire paper c
       tracewire paper c --figure 33
       tracewire paper b --figure 6 --full --output bifurcation.svg
       tracewire paper c --figures --output figures

@@ -8,16 +8,17 @@ from tracewire.cli.progress import stages
 
 def write_report(paper: str, report: str | None, full: bool, as_json: bool) -> None:
     """Measure all statements of a paper; print them, and write them to .html or .md."""
+    report = report or f"paper_{paper}.html"
     check_target(report, (".md", ".html"), "report")
     with working(f"paper {paper}") as show:
         from tracewire.paper.document import data_of, report_of, statements_table, summary
         from tracewire.paper.reproduction import reproduce
 
         found = reproduce(paper, full=full, progress=stages(show))
-    if report is not None:
+    with working("drawing the figures"):
         report_of(found).write(report)
     if as_json:
-        print_json({**data_of(found), "written": [] if report is None else [report]})
+        print_json({**data_of(found), "written": [report]})
         return
     print_table(statements_table(found.rows, f"paper {paper}", short=True))
     for table in found.tables:
@@ -26,5 +27,4 @@ def write_report(paper: str, report: str | None, full: bool, as_json: bool) -> N
         if row.verdict != "agrees":
             print_text(f"{row.statement.name}: {row.verdict}. {row.why}")
     print_text(summary(found))
-    if report is not None:
-        print_text(f"written: {report}")
+    print_text(f"written: {report}")

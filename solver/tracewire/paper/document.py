@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from tracewire.paper.figure import PAPERS
+from tracewire.paper.draw import draw
+from tracewire.paper.figure import PAPERS, PaperFigure
 from tracewire.paper.headers import read_headers
 from tracewire.paper.reproduction import Reproduction, Row
-from tracewire.show.document import Report, Section
+from tracewire.paper.setting import Amount
+from tracewire.show.document import Figure, Report, Section
 from tracewire.show.summary import Table
 
 HEADER = ("statement", "the paper", "source", "measured", "expected", "verdict")
@@ -21,7 +23,7 @@ READING = (
 
 
 def report_of(found: Reproduction) -> Report:
-    """The document: the verdicts, all statements, where and why they do not agree, the tables."""
+    """The document: the verdicts, all statements, where and why they do not agree, the figures."""
     sections = [
         Section(PAPERS[found.paper], (summary(found), READING)),
         Section("What the paper states, and what the diagrams do", tables=tuple(_tables(found))),
@@ -37,6 +39,10 @@ def report_of(found: Reproduction) -> Report:
         sections.append(Section("Remarks", points=points))
     if found.tables:
         sections.append(Section("Details", tables=found.tables))
+    amount: Amount = "full" if found.full else "usual"
+    drawn = tuple(_figure(figure, amount) for figure in found.figures)
+    if drawn:
+        sections.append(Section("The figures of the paper, as its models draw them", figures=drawn))
     errata = [header for header in read_headers(found.paper) if header.errata]
     if errata:
         points = tuple(f"{header.name} ({header.file}): {header.errata}" for header in errata)
@@ -108,6 +114,12 @@ def _tables(found: Reproduction) -> Iterable[Table]:
     for system in found.systems:
         rows = [row for row in found.rows if row.statement.system == system]
         yield statements_table(rows, system)
+
+
+def _figure(figure: PaperFigure, amount: Amount) -> Figure:
+    # the picture holds the paper's caption: Markdown would not show it
+    name = f"Fig. {figure.number} of paper {figure.paper.upper()}"
+    return Figure(f"{figure.stem}.png", name, lambda path: draw(figure, [path], amount))
 
 
 def _point(row: Row) -> str:

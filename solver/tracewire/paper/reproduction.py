@@ -8,6 +8,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from tracewire.errors import TracewireError
+from tracewire.paper.figure import PaperFigure
+from tracewire.paper.figures import figures_of
 from tracewire.paper.runs import Systems
 from tracewire.paper.statement import VERDICTS, Statement, Verdict
 from tracewire.paper.statements import DIAGRAMS, statements_of
@@ -35,13 +37,14 @@ class Reproduction:
     """What a paper states and what its diagrams do.
 
     `tables` are what a statement cannot hold: the steps of an identification, the bands of a
-    bifurcation diagram. `full` tells that the runs were as long as the paper's; `seconds` is the
-    time of all.
+    bifurcation diagram; `figures` are those that a report draws. `full` tells that the runs were as
+    long as the paper's; `seconds` is the time of all.
     """
 
     paper: str
     rows: tuple[Row, ...]
     tables: tuple[Table, ...]
+    figures: tuple[PaperFigure, ...]
     full: bool
     seconds: float
 
@@ -73,7 +76,8 @@ def reproduce(
     """Measure the statements of paper "a", "b" or "c" on the shipped diagrams.
 
     `full` makes the runs as long and as fine as the paper's. `statements` are measured instead of
-    the paper's own. `progress` is told what is done next, in words that end on `(3 of 40)`.
+    the paper's own, and then there are no tables and figures. `progress` is told what is done next,
+    in words that end on `(3 of 40)`.
     A statement that cannot be measured is a row that says why. Raises OptionError: no such paper.
     """
     own = statements_of(paper)
@@ -85,7 +89,8 @@ def reproduce(
         systems.tell(f"{statement.name} ({n} of {len(chosen)})")
         rows.append(_row(statement, systems))
     tables = tables_of(paper, systems) if statements is None else ()
-    return Reproduction(paper, tuple(rows), tables, full, time.perf_counter() - began)
+    figures = figures_of(paper) if statements is None else ()
+    return Reproduction(paper, tuple(rows), tables, figures, full, time.perf_counter() - began)
 
 
 def _row(statement: Statement, systems: Systems) -> Row:
