@@ -1,4 +1,4 @@
-"""The cases: what is hidden where. Sizes and series follow from the name, so they never change."""
+"""The cases: what is hidden where. Sizes and series follow from the name and the draw."""
 
 from __future__ import annotations
 
@@ -61,11 +61,12 @@ class Case:
     variables: tuple[tuple[str, ...], ...] = ()  # of an unexplained effect: each is right
     seconds: float = 10.0
     bad: str = ""  # what is wrong with the input
+    draw: int = 0  # other sizes, parameters, series and noise of the same case
 
     @property
     def seed(self) -> int:
         """Of every random number of the case."""
-        return zlib.crc32(self.name.encode())
+        return zlib.crc32(f"{self.name}{f'#{self.draw}' if self.draw else ''}".encode())
 
 
 def spec(
@@ -261,8 +262,13 @@ def nulls(count: int = NULLS) -> tuple[Case, ...]:
     return tuple(found)
 
 
-def chosen(pattern: str = "", null_count: int = NULLS, quick: bool = False) -> list[Case]:
-    """The cases whose name matches a pattern such as `single/*@cart`; `quick`: a sample of all."""
+def chosen(
+    pattern: str = "", null_count: int = NULLS, quick: bool = False, draw: int = 0
+) -> list[Case]:
+    """The cases whose name matches a pattern such as `single/*@cart`; `quick`: a sample of all.
+
+    `draw` numbers repetitions with other random numbers.
+    """
     cases = [*SINGLES, *EXTRA, *DOUBLES, *OUTSIDE, *BAD, *nulls(null_count)]
     if quick:
         cases = [
@@ -276,4 +282,4 @@ def chosen(pattern: str = "", null_count: int = NULLS, quick: bool = False) -> l
     if pattern:
         every = pattern if any(c in pattern for c in "*?[") else f"*{pattern}*"
         cases = [case for case in cases if fnmatch.fnmatch(case.name, every)]
-    return cases
+    return [replace(case, draw=draw) for case in cases]

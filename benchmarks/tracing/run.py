@@ -29,6 +29,7 @@ def main(arguments: Sequence[str]) -> int:
     parser.add_argument("--quick", action="store_true", help="a sample of about 25 cases")
     parser.add_argument("--only", default="", help="a pattern of case names: 'double/*', 'chain'")
     parser.add_argument("--nulls", type=int, default=NULLS, help=f"how many; default {NULLS}")
+    parser.add_argument("--draw", type=int, default=0, help="other random numbers; default 0")
     parser.add_argument("--jobs", type=int, default=2, help="processes; default 2")
     parser.add_argument("--json", type=Path, help="a file for one JSON line a case")
     parser.add_argument("--folder", type=Path, help="keeps the records; default: a temporary one")
@@ -37,7 +38,7 @@ def main(arguments: Sequence[str]) -> int:
     parser.add_argument("--sanity", action="store_true", help="s2 of a refit by scipy, no trace")
     parser.add_argument("--score", type=Path, help="tables of an earlier --json file, no trace")
     options = parser.parse_args(arguments)
-    cases = chosen(options.only, options.nulls, options.quick)
+    cases = chosen(options.only, options.nulls, options.quick, options.draw)
     screen = console()
     if options.list:
         screen.print("\n".join(case.name for case in cases))

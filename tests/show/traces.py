@@ -164,7 +164,7 @@ FOUND = Found(
         curve("swing_1", "train", 1.0, 1), curve("swing_2", "gate", 0.6, 2),
         curve("swing_3", "validate", 1.3, 3),
     ),
-    forces=(force(),),
+    find_forces=lambda: (force(),),
     paragraph="'Swing & rest' was fitted as it stands.",
     words=("every third window of the train series is kept back as the gate",),
     original=read_text(TEXT),
@@ -175,7 +175,7 @@ FOUND = Found(
 """An effect with two ties."""
 
 NULL = replace(
-    FOUND, verdict="null", effects=(), s2_before=1.02, s2_after=1.02, moved=(), forces=(),
+    FOUND, verdict="null", effects=(), s2_before=1.02, s2_after=1.02, moved=(), find_forces=tuple,
     values={"k": 4.0, "c": 0.05}, declared={"k": 4.0, "c": 0.05},
     steps=(StepTold(0.5, 1.02, 0.4, (), "nothing stands out (p = 0.4)"),), experiments=(),
     confusable=((), np.zeros((0, 0))), diagram=FOUND.original,
@@ -186,8 +186,8 @@ NULL = replace(
 """Nothing is missing."""
 
 UNEXPLAINED = replace(
-    FOUND, verdict="unexplained", effects=(), s2_before=81.0, s2_after=81.0, moved=(), forces=(),
-    values=FOUND.declared, steps=(StepTold(0.5, 81.0, 0.0, TRIED[1:4], "no effect passes"),),
+    FOUND, verdict="unexplained", effects=(), s2_before=81.0, s2_after=81.0, moved=(),
+    find_forces=tuple, values=FOUND.declared, steps=(StepTold(0.5, 81.0, 0.0, TRIED[1:4], "no effect passes"),),
     experiments=(), diagram=FOUND.original, missing=missing_of_q(),
     dependences=(
         Dependence("torque", ("q",), 0.97), Dependence("torque", ("v",), 0.04),

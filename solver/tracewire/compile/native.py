@@ -17,7 +17,7 @@ from tracewire.compile.machine import PREFIX
 
 LARGE = 1_000_000  # characters of IR, about 6000 blocks, from which on a quick compiler is better:
 # it takes a tenth of the time, and what it makes is 20 % slower
-KEPT = 32
+KEPT = 256
 
 _lock = RLock()
 _kept: OrderedDict[bytes, Native] = OrderedDict()

@@ -10,7 +10,7 @@ import numpy as np
 from tracewire.errors import DiagramError, FitError
 from tracewire.trace.candidates import is_default
 from tracewire.trace.judge import AT_NOISE, MATERIAL
-from tracewire.trace.search import MANY, SLOWER, STEPS, Search
+from tracewire.trace.search import MANY, SLOWER, STEPS, WITHIN, Search
 from tracewire.trace.trial import Added, Trial
 
 CHEAP = 6.0
@@ -67,9 +67,13 @@ def finished(search: Search, declared: Trial, best: Trial) -> Final:
 
 
 def _over(search: Search, trial: Trial) -> Trial:
-    """The trial over all that is not held back for the final claim, on windows as they are."""
+    """The trial over all that is not held back for the final claim, on windows as they are; where
+    it does not run on some of them, as it was."""
     windows = search.windows(search.stretches.whole(), trial.length)
-    return search.bench.again(trial, windows, trial.length)
+    try:
+        return search.bench.again(trial, windows, trial.length)
+    except FitError:
+        return trial
 
 
 def _refitted(
@@ -86,6 +90,7 @@ def _refitted(
             fixed=known if fixed is None else fixed,
             steps=STEPS,
             budget=SLOWER * STEPS * len(trial.windows.segments) * trial.cost,
+            target=WITHIN * trial.rss,
         )
     except (FitError, DiagramError):
         return None

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -236,13 +237,18 @@ class Found:
     experiments: tuple[Experiment, ...]
     confusable: tuple[tuple[str, ...], Matrix]
     curves: tuple[Curve, ...]
-    forces: tuple[Force, ...]
+    find_forces: Callable[[], tuple[Force, ...]] = field(repr=False)
     paragraph: str
     words: tuple[str, ...]
     original: Diagram
     diagram: Diagram
     units: Mapping[str, str] = field(default_factory=dict)
     interrupted: bool = False
+
+    @cached_property
+    def forces(self) -> tuple[Force, ...]:
+        """What is needed at each place that got an effect; found when it is asked for."""
+        return self.find_forces()
 
     @property
     def depends_on(self) -> tuple[str, ...]:

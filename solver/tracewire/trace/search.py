@@ -15,6 +15,7 @@ from tracewire.trace.levels import levels_of
 from tracewire.trace.places import Place
 from tracewire.trace.repeated import comes_back, visible
 from tracewire.trace.screening import Proposal, Row, Screen, screened
+from tracewire.trace.strays import without_strays
 from tracewire.trace.stretches import SHORTEST, Stretches
 from tracewire.trace.tangent import Tangent
 from tracewire.trace.trial import Added, Bench, Trial
@@ -125,7 +126,27 @@ class Search:
         self.tell("fitting the declared model")
         length = self.lengths[0]
         windows = self.windows(self.stretches.train, length)
-        return self.bench.fitted((), windows, length, self.values)
+        trial = self.bench.fitted((), windows, length, self.values, steps=FIRST_STEPS)
+        if not trial.converged and trial.s2 > FAR:
+            trial = without_strays(self.bench, trial, windows, FIRST_STEPS)
+        if trial.converged:
+            return trial
+        return self.bench.fitted((), trial.windows.segments, length, trial.values)
+
+    def is_part(self, trial: Trial) -> bool:
+        """Whether a trial leaves out windows that it does not bear."""
+        return len(trial.windows.segments) < len(self.windows(self.stretches.train, trial.length))
+
+    def completed(self, trial: Trial) -> Trial:
+        """A trial on all windows, where it bears those that were left out."""
+        if not self.is_part(trial):
+            return trial
+        windows = self.windows(self.stretches.train, trial.length)
+        try:
+            whole = self.bench.again(trial, windows, trial.length)
+        except FitError:
+            return trial
+        return whole if whole.s2 < FAR else trial
 
     def climbed(
         self, trial: Trial, sections: Sequence[Section] | None = None, far: float = FAR
@@ -149,7 +170,7 @@ class Search:
 
     def run(self, declared: Trial) -> None:
         """One effect after the other, from the declared fit."""
-        self.first = self.best = self.climbed(declared)
+        self.first = self.best = declared if self.is_part(declared) else self.climbed(declared)
         self._stepped()
         if self.first.s2 > FAR and self.best.s2 > NEAR and self.free:
             self._lengthened()
@@ -168,7 +189,7 @@ class Search:
             step = self.steps[first]
             words = f"accepted a runner-up: {_named(one.trial, step.before)}"
             self.steps = [*self.steps[:first], replace(step, after=one.trial, words=words)]
-            self.best = self.climbed(one.trial)
+            self.best = self.climbed(self.completed(one.trial))
             self._onward()
             shorter = self.best.length < known[0].length
             if shorter or self.best.s2 > (1 - MATERIAL) * known[0].s2:
@@ -180,7 +201,7 @@ class Search:
             found = self.step(self.best)
             if found is None:
                 break
-            self.best = self.climbed(found)
+            self.best = self.climbed(self.completed(found))
 
     def _runners_up(self, number: int) -> list[Tried]:
         """Single effects that did nearly as well in a step as the one that was accepted."""
@@ -243,7 +264,8 @@ class Search:
         tried = self.refitted(now, singles)
         if not any(one.trial.s2 < AT_NOISE for one in tried):  # a pair says nothing more there
             pairs = [p for p in proposals if len(p.rows) > 1]
-            tried = self.ranked(now, [*tried, *self.refitted(now, pairs)])
+            target = min((one.trial.rss for one in tried), default=np.inf)
+            tried = self.ranked(now, [*tried, *self.refitted(now, pairs, target)])
         winner = None
         for number in _worth_judging(tried, now):
             verdict = self.judged(now, tried[number], tried)
@@ -268,8 +290,13 @@ class Search:
                 verdict = gate(self.bench, other.trial, one.trial, windows, fall)
         return verdict
 
-    def refitted(self, now: Trial, proposals: Sequence[Proposal]) -> list[Tried]:
-        """The proposals in the loop, the best first: a few steps each, then the best converged."""
+    def refitted(
+        self, now: Trial, proposals: Sequence[Proposal], target: float = np.inf
+    ) -> list[Tried]:
+        """The proposals in the loop, the best first: a few steps each, then the best converged.
+
+        Those that are too slow to come near the best, or below `target`, are given up on the way.
+        """
         few = _few(now.windows.segments)
         begun = []
         for number, proposal in enumerate(proposals, start=1):
@@ -284,8 +311,10 @@ class Search:
         for number, (trial, proposal) in enumerate(begun):
             if number < kept and trial.rss < WITHIN * begun[0][0].rss:
                 self.tell(f"refitting {_named(trial, now)} on all windows ({number + 1} of {kept})")
-                trial = self.extended(trial, (), now.windows.segments) or trial
-                done.append(Tried(trial, proposal, 0.0, 0.0))
+                whole = self.extended(trial, (), now.windows.segments, target=target)
+                if whole is not None:
+                    done.append(Tried(whole, proposal, 0.0, 0.0))
+                    target = min(target, WITHIN * whole.rss)
         return self.ranked(now, done)
 
     def ranked(self, now: Trial, tried: Sequence[Tried]) -> list[Tried]:
@@ -303,7 +332,12 @@ class Search:
         return sorted(rows, key=lambda one: one.rise)
 
     def extended(
-        self, now: Trial, added: Sequence[Added], segments: Sequence[Segment], steps: int = STEPS
+        self,
+        now: Trial,
+        added: Sequence[Added],
+        segments: Sequence[Segment],
+        steps: int = STEPS,
+        target: float = np.inf,
     ) -> Trial | None:
         """The model with more effects, refitted from where it stood; None if it does not run."""
         try:
@@ -315,6 +349,7 @@ class Search:
                 fixed=now.windows.criterion.parameters,
                 steps=steps,
                 budget=SLOWER * steps * len(segments) * now.cost,
+                target=target,
             )
         except (FitError, DiagramError) as error:
             names = " and ".join(map(str, added))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -157,7 +158,7 @@ def _found(search: Search, final: Final, interrupted: bool) -> Found:
         experiments=() if interrupted else _experiments(search, final),
         confusable=confusable(search),
         curves=tuple(curve for part in parts for curve in part.curves(sigma, units)),
-        forces=_forces(search, best),
+        find_forces=partial(_forces, search, best),
         paragraph="",
         words=tuple(search.words),
         original=bench.declared.diagram,

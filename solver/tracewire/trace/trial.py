@@ -25,7 +25,7 @@ from tracewire.trace.tones import Sine, tones_of
 from tracewire.trace.windows import Windows, descended, opened, settled
 
 Vector = NDArray[np.float64]
-LEAST_STEPS, STEPS, EVENTS, SECONDS = 500, 15, 5, 1.0
+LEAST_STEPS, STEPS, EVENTS, SECONDS = 1500, 15, 5, 20.0
 """What a run may cost: steps, steps a sample, events a sample, seconds. An effect that makes a
 model as slow as that is a failure, not a candidate to wait for."""
 
@@ -169,11 +169,13 @@ class Bench:
         fixed: Mapping[str, float] | None = None,
         steps: int = 20,
         budget: float = np.inf,
+        target: float = np.inf,
     ) -> Trial:
         """The declared diagram with effects fitted to windows, from the values given.
 
-        `fixed` are parameters that are not fitted, `budget` the steps of all runs together. Raises
-        FitError where the model cannot be simulated, DiagramError where an effect cannot be wired.
+        `fixed` are parameters that are not fitted, `budget` the steps of all runs together. A fit
+        that is too slow to reach the sum of squares `target` ends early. Raises FitError where the
+        model cannot be simulated, DiagramError where an effect cannot be wired.
         """
         added = [(effect.candidate, effect.values) for effect in effects]
         diagram = extend(self.declared.diagram, added) if added else self.declared.diagram
@@ -185,7 +187,7 @@ class Bench:
         criterion.budget = budget
         windows = opened(criterion)
         _refuse_failed(criterion, windows)
-        windows, converged = descended(windows, steps)
+        windows, converged = descended(windows, steps, target)
         _refuse_failed(criterion, windows)
         now = tuple(effect.at(windows.values) for effect in effects)
         return Trial(diagram, model, now, windows, length, converged)

@@ -34,7 +34,9 @@ CREEPS = 5e-4
 SETTLED = 0.05
 """What is still to gain, in units of the noise's variance, where a fit has converged."""
 FIRST_DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-9, 1e6
-MOST_FAILURES = 2
+MOST_FAILURES = 8
+PATIENCE = 4
+"""The steps of a fit before it may be given up as too slow."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,11 +225,13 @@ def _settled_one(
     return start, near
 
 
-def descended(windows: Windows, steps: int = 20) -> tuple[Windows, bool]:
+def descended(windows: Windows, steps: int = 20, target: float = np.inf) -> tuple[Windows, bool]:
     """The unknowns and all starts fitted by Levenberg and Marquardt; whether it converged.
 
     Each step comes from the problem without the starts, within the bounds of the unknowns. Windows
-    that do worse than the step promised are settled for themselves before it is judged.
+    that do worse than the step promised are settled for themselves before it is judged. It ends
+    early where the sum of squares would not fall to `target` at its pace in the steps that are
+    left: it has lost against what reached that.
     """
     unknowns = windows.criterion.unknowns
     low, high = np.array([u.low for u in unknowns]), np.array([u.high for u in unknowns])
@@ -236,12 +240,14 @@ def descended(windows: Windows, steps: int = 20) -> tuple[Windows, bool]:
     windows = settled(windows)
     if not len(unknowns):
         return windows, True
-    for _ in range(steps):
+    gained = np.inf
+    for left_over in reversed(range(steps)):
         views = [projection(windows, n) for n in range(len(windows.near))]
         reduced, residual = eliminated(windows, views)
         reduced = reduced * scales
         values = np.array([windows.values[u.name] for u in unknowns])
         room = (low - values) / scales, (high - values) / scales
+        refused = False
         while True:
             step = _bounded(reduced, residual, damping, room)
             left = residual + reduced @ step
@@ -252,14 +258,23 @@ def descended(windows: Windows, steps: int = 20) -> tuple[Windows, bool]:
             there = _moved(windows, views, step * scales)
             failures += there is None
             if there is not None and there.rss < windows.rss:
-                gained = windows.rss - there.rss
-                windows, damping = carried(there), max(damping / 10, LEAST_DAMPING)
-                if gained < max(SETTLED, CREEPS * windows.rss):
-                    return windows, True
+                before, gained = gained, windows.rss - there.rss
+                windows = carried(there)
+                # what was refused a moment ago would be refused again
+                damping = damping if refused else max(damping / 10, LEAST_DAMPING)
                 break
-            damping = max(damping * 10, FIRST_DAMPING)
+            if there is not None and there.rss < (1 + CREEPS) * windows.rss:
+                return windows, True  # as flat as the solver is exact
+            damping = max(damping * (100 if refused else 10), FIRST_DAMPING)
+            refused = True
             if damping > MOST_DAMPING or failures > MOST_FAILURES:
                 return windows, False
+        if gained < max(SETTLED, CREEPS * windows.rss):
+            return windows, True
+        pace = min(gained / before, 1 - 1e-9)
+        coming = gained * min(left_over, pace / (1 - pace))
+        if steps - left_over >= PATIENCE and windows.rss - coming > target:
+            return windows, False
     return windows, False
 
 
@@ -306,10 +321,14 @@ def _moved(windows: Windows, views: Sequence[Projection], step: Vector) -> Windo
         start: Mapping[str, float] = dict(zip(windows.starts[n], moved.tolist(), strict=True))
         if _far_off(windows, n, start):
             start = windows.starts[n]
-        starts.append(start)
-        near.append(windows.criterion.linearised(n, values, start))
-        if not near[-1].ran and old.ran:
+        there_now = windows.criterion.linearised(n, values, start)
+        if not there_now.ran and old.ran:  # a start that is led into a barrier is kicked away
+            start = windows.starts[n]
+            there_now = windows.criterion.linearised(n, values, start)
+        if not there_now.ran and old.ran:
             return None
+        starts.append(start)
+        near.append(there_now)
         promised.append(float(np.sum(view.off(expected) ** 2)))
     there = replace(windows, values=values, starts=tuple(starts), near=tuple(near))
     limits = 2 * np.array(promised) + 2 * np.array([x.residual.size for x in near])
