@@ -187,7 +187,8 @@ NULL = replace(
 
 UNEXPLAINED = replace(
     FOUND, verdict="unexplained", effects=(), s2_before=81.0, s2_after=81.0, moved=(),
-    find_forces=tuple, values=FOUND.declared, steps=(StepTold(0.5, 81.0, 0.0, TRIED[1:4], "no effect passes"),),
+    find_forces=tuple, values=FOUND.declared,
+    steps=(StepTold(0.5, 81.0, 0.0, TRIED[1:4], "no effect passes"),),
     experiments=(), diagram=FOUND.original, missing=missing_of_q(),
     dependences=(
         Dependence("torque", ("q",), 0.97), Dependence("torque", ("v",), 0.04),
