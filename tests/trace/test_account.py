@@ -15,7 +15,6 @@ from tracewire.trace.account import (
     intervals,
     moved,
     rmse,
-    standard_errors,
 )
 from tracewire.trace.trial import Bench
 from tracewire.trace.windows import Section, cut
@@ -89,7 +88,7 @@ def test_a_slow_residual_widens_the_intervals() -> None:
     slow = replace(m, values={"x": m.values["x"] + 2 * NOISE * np.sin(3 * m.t)})
     white, coloured = trial_of(bench_of(m), length=400), trial_of(bench_of(slow), length=400)
     assert coloured.part < 0.8 < white.part
-    errors = standard_errors(white), standard_errors(coloured)
+    errors = white.standard_errors, coloured.standard_errors
     ratio = (coloured.s2 / white.s2 * white.part / coloured.part) ** 0.5
     assert errors[1]["k"] / errors[0]["k"] == pytest.approx(ratio, rel=0.1)
 

@@ -65,11 +65,11 @@ def test_windows_that_are_all_alike_stay() -> None:
 def test_a_fit_that_cannot_reach_its_target_ends_early() -> None:
     m = record(lambda x, v: -30.0 * np.sign(x) * (abs(x) > 0.5))
     bench = bench_of(m)
-    segments, _ = begun(bench, m)
-    start = {"k": 6.0, "c": 1.9}
-    free = bench.fitted((), segments, LENGTH, start)
-    ended = bench.fitted((), segments, LENGTH, start, target=free.rss / 100)
-    reached = bench.fitted((), segments, LENGTH, start, target=2 * free.rss)
+    length, start = 60, {"k": 6.0, "c": 1.9}
+    segments = cut(bench.declared, Section(m, 0, len(m.t)), length, bench.states)
+    free = bench.fitted((), segments, length, start)
+    ended = bench.fitted((), segments, length, start, target=free.rss / 100)
+    reached = bench.fitted((), segments, length, start, target=2 * free.rss)
     assert free.converged and not ended.converged
     assert ended.windows.criterion.runs < free.windows.criterion.runs
     assert reached.rss == free.rss

@@ -13,7 +13,7 @@ from tracewire.fit.segment import Segment
 from tracewire.trace.found import ChannelError, Curve, Moved
 from tracewire.trace.search import Search
 from tracewire.trace.trial import Bench, Trial
-from tracewire.trace.windows import Section, eliminated, opened, projection, settled
+from tracewire.trace.windows import Section, opened, settled
 
 Vector = NDArray[np.float64]
 FIRST_PART = 0.2
@@ -135,22 +135,10 @@ def rmse(parts: Sequence[Compared], which: int) -> float:
     return float(np.sqrt(np.mean(np.concatenate([p.free[which].ravel() for p in parts]) ** 2)))
 
 
-def standard_errors(trial: Trial) -> dict[str, float]:
-    """The standard error of each fitted value, with the residual's autocorrelation counted."""
-    windows = trial.windows
-    views = [projection(windows, n) for n in range(len(windows.near))]
-    reduced, _ = eliminated(windows, views)
-    scales = np.array([u.scale for u in windows.criterion.unknowns])
-    information = (reduced * scales).T @ (reduced * scales)
-    covariance = np.linalg.pinv(information, rcond=1e-12) * max(trial.s2, 1e-300) / trial.part
-    spread = np.sqrt(np.maximum(np.diag(covariance), 0.0)) * scales
-    return dict(zip(windows.values, spread.tolist(), strict=True))
-
-
 def intervals(trial: Trial) -> dict[str, tuple[float, float]]:
     """The 95 % interval of each fitted value."""
     quantile = float(student.ppf(0.5 + CONFIDENCE / 2, max(trial.freedom * trial.part, 1.0)))
-    errors = standard_errors(trial)
+    errors = trial.standard_errors
     return {
         name: (value - quantile * errors[name], value + quantile * errors[name])
         for name, value in trial.values.items()
@@ -159,7 +147,7 @@ def intervals(trial: Trial) -> dict[str, tuple[float, float]]:
 
 def moved(bench: Bench, declared: Trial, best: Trial, values: dict[str, float]) -> list[Moved]:
     """The declared parameters without and with the effects."""
-    errors = standard_errors(best)
+    errors = best.standard_errors
     return [
         Moved(
             name,

@@ -16,6 +16,8 @@ from tracewire.trace.trial import Added, Trial
 CHEAP = 6.0
 RELATED = 0.9
 RIVALS = 5
+CERTAIN = 10.0
+"""The standard errors from which on a declared term is not tried without: it is there."""
 OPEN = 10.0
 """A rival that BIC puts less than this behind is a tie."""
 
@@ -223,6 +225,9 @@ def _dropped(search: Search, best: Trial) -> tuple[Trial, tuple[str, ...]]:
     own = search.bench.declared.flat.parameters
     for unknown in best.windows.criterion.unknowns:
         if unknown.low != 0.0 or unknown.name not in own:
+            continue
+        certain = best.values[unknown.name] > CERTAIN * best.standard_errors[unknown.name]
+        if certain and best.s2 < AT_NOISE:
             continue
         fixed = {**best.windows.criterion.parameters, unknown.name: 0.0}
         smaller = _refitted(search, best, best.effects, fixed)

@@ -22,7 +22,14 @@ from tracewire.trace.candidates import Candidate, extend, unknowns_of
 from tracewire.trace.phases import best_phase
 from tracewire.trace.statistics import bic, effective_part
 from tracewire.trace.tones import Sine, tones_of
-from tracewire.trace.windows import Windows, descended, opened, settled
+from tracewire.trace.windows import (
+    Windows,
+    descended,
+    eliminated,
+    opened,
+    projection,
+    settled,
+)
 
 Vector = NDArray[np.float64]
 LEAST_STEPS, STEPS, EVENTS, SECONDS = 1500, 15, 5, 20.0
@@ -125,6 +132,18 @@ class Trial:
     def part(self) -> float:
         """N_eff/N of the residuals."""
         return effective_part(self.windows.residuals)
+
+    @cached_property
+    def standard_errors(self) -> dict[str, float]:
+        """The standard error of each fitted value, with the residual's autocorrelation counted."""
+        windows = self.windows
+        views = [projection(windows, n) for n in range(len(windows.near))]
+        reduced, _ = eliminated(windows, views)
+        scales = np.array([u.scale for u in windows.criterion.unknowns])
+        information = (reduced * scales).T @ (reduced * scales)
+        covariance = np.linalg.pinv(information, rcond=1e-12) * max(self.s2, 1e-300) / self.part
+        spread = np.sqrt(np.maximum(np.diag(covariance), 0.0)) * scales
+        return dict(zip(windows.values, spread.tolist(), strict=True))
 
     def quality(self, part: float) -> float:
         """BIC, of residuals of which this part is independent."""

@@ -35,8 +35,9 @@ SETTLED = 0.05
 """What is still to gain, in units of the noise's variance, where a fit has converged."""
 FIRST_DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-9, 1e6
 MOST_FAILURES = 8
-PATIENCE = 4
-"""The steps of a fit before it may be given up as too slow."""
+PATIENCE, HOPE = 4, 2.0
+"""Steps in a row that are too slow until a fit is given up, and how many times the gain that its
+pace promises may still come."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -240,7 +241,7 @@ def descended(windows: Windows, steps: int = 20, target: float = np.inf) -> tupl
     windows = settled(windows)
     if not len(unknowns):
         return windows, True
-    gained = np.inf
+    gained, too_slow = np.inf, 0
     for left_over in reversed(range(steps)):
         views = [projection(windows, n) for n in range(len(windows.near))]
         reduced, residual = eliminated(windows, views)
@@ -272,8 +273,9 @@ def descended(windows: Windows, steps: int = 20, target: float = np.inf) -> tupl
         if gained < max(SETTLED, CREEPS * windows.rss):
             return windows, True
         pace = min(gained / before, 1 - 1e-9)
-        coming = gained * min(left_over, pace / (1 - pace))
-        if steps - left_over >= PATIENCE and windows.rss - coming > target:
+        coming = HOPE * gained * min(left_over, pace / (1 - pace))
+        too_slow = too_slow + 1 if windows.rss - coming > target else 0
+        if too_slow >= PATIENCE:
             return windows, False
     return windows, False
 
