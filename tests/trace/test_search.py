@@ -11,9 +11,10 @@ from oracles.oscillator import bench_of, candidates_of, record, search_of
 from tracewire.trace.candidates import Candidate
 from tracewire.trace.places import Place
 from tracewire.trace.screening import Row, Screen
-from tracewire.trace.search import PAIRS, SINGLES, Search, shortest_window, shortlist
+from tracewire.trace.search import Search
+from tracewire.trace.shortlist import PAIRS, SINGLES, shortlist
 from tracewire.trace.statistics import Columns
-from tracewire.trace.stretches import share_out
+from tracewire.trace.stretches import share_out, shortest_window
 from tracewire.trace.trial import Added, Trial
 
 N = 1000

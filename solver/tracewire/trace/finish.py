@@ -10,7 +10,8 @@ import numpy as np
 from tracewire.errors import DiagramError, FitError
 from tracewire.trace.candidates import is_default
 from tracewire.trace.judge import AT_NOISE, MATERIAL
-from tracewire.trace.search import MANY, SLOWER, STEPS, WITHIN, Search
+from tracewire.trace.search import SLOWER, STEPS, WITHIN, Search
+from tracewire.trace.shortlist import MANY
 from tracewire.trace.trial import Added, Trial
 
 CHEAP = 6.0

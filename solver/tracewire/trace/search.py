@@ -14,15 +14,15 @@ from tracewire.trace.judge import MATERIAL, Verdict, gate
 from tracewire.trace.levels import levels_of
 from tracewire.trace.places import Place
 from tracewire.trace.repeated import comes_back, visible
-from tracewire.trace.screening import Proposal, Row, Screen, screened
+from tracewire.trace.screening import Proposal, Screen, screened
+from tracewire.trace.shortlist import LEAST_GAIN, MANY, SINGLES, shortlist
 from tracewire.trace.strays import without_strays
-from tracewire.trace.stretches import SHORTEST, Stretches
+from tracewire.trace.stretches import Stretches
 from tracewire.trace.tangent import Tangent
 from tracewire.trace.trial import Added, Bench, Trial
 from tracewire.trace.windows import Section
 
 MOST_EFFECTS = 3
-LEAST_GAIN = 5.0
 CHANCE = 1e-3
 FAR = 30.0
 """Longer windows than those that leave this many times the noise's variance say little: there the
@@ -31,10 +31,6 @@ LENGTHENED, NEAR = 0.2, 3.0
 LONGEST = 1000
 """Samples of a section: a search on longer ones takes too long, as contacts do in such runs."""
 LONGER = 3
-SINGLES, PAIRS = 6, 3
-MANY = 10
-"""Single effects that are refitted far from the noise, where the screen's promises are poor."""
-COPY = 1 - 1e-6
 KEPT = 3
 SLOWER = 6.0
 """How many times the cost of the model before an effect may take, in steps of a run."""
@@ -374,40 +370,6 @@ def _few(segments: Sequence[Segment]) -> list[Segment]:
         for name in names
         for segment in [s for s in segments if s.measured.name == name][:most]
     ]
-
-
-def shortlist(screen: Screen, room: int, count: int = SINGLES) -> list[Proposal]:
-    """What is worth a refit: the best single effects, and pairs that promise more than their
-    parts."""
-    singles: list[Row] = []
-    for row in sorted(screen.best(), key=lambda row: (-round(row.gain, 3), not row.candidate.sign)):
-        # an exact copy, as of what is more in one direction where there is no other, has its name
-        same = (screen.columns.likeness(row.columns, other.columns) for other in singles)
-        if row.gain > LEAST_GAIN and (len(singles) >= MANY or all(x < COPY for x in same)):
-            singles.append(row)
-    found = [Proposal((row,), row.gain) for row in singles[:count]]
-    if room < 2:
-        return found
-    alone = {str(row.candidate): row.gain for row in screen.best()}
-    best = max(alone.values(), default=0.0)
-    pairs = [pair for pair in screen.pairs() if pair.gain > max(best, LEAST_GAIN) + LEAST_GAIN]
-    return found + pairs[:PAIRS]
-
-
-def shortest_window(stretches: Stretches) -> int:
-    """The samples of the shortest window: about a fifth of the slowest series' period, at least 16.
-
-    A series without a period, as of a falling body, has no phase that a long run could lose: it is
-    one window.
-    """
-    lengths = []
-    for section in stretches.train:
-        for values in section.measured.values.values():
-            y = values[section.first : section.end]
-            centred = y - np.mean(y)
-            crossings = int(np.sum(np.diff(np.signbit(centred))))
-            lengths.append(2 * len(y) / crossings if crossings > 1 else 5 * len(y))
-    return int(np.clip(np.median(lengths) / 5, SHORTEST, max(stretches.longest, SHORTEST)))
 
 
 def _named(trial: Trial, now: Trial) -> str:

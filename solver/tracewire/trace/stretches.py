@@ -89,3 +89,19 @@ def share_out(measured: Sequence[Measured]) -> Stretches:
             train.append(Section(m, edges[n], edges[n + 2]))
             gate.append(Section(m, edges[n + 2], edges[n + 3]))
     return Stretches(tuple(train), tuple(gate), tuple(validate), tuple(words))
+
+
+def shortest_window(stretches: Stretches) -> int:
+    """The samples of the shortest window: about a fifth of the slowest series' period, at least 16.
+
+    A series without a period, as of a falling body, has no phase that a long run could lose: it is
+    one window.
+    """
+    lengths = []
+    for section in stretches.train:
+        for values in section.measured.values.values():
+            y = values[section.first : section.end]
+            centred = y - np.mean(y)
+            crossings = int(np.sum(np.diff(np.signbit(centred))))
+            lengths.append(2 * len(y) / crossings if crossings > 1 else 5 * len(y))
+    return int(np.clip(np.median(lengths) / 5, SHORTEST, max(stretches.longest, SHORTEST)))

@@ -24,8 +24,8 @@ from tracewire.trace.mistakes import refuse_mistakes
 from tracewire.trace.places import find_places
 from tracewire.trace.power import powers
 from tracewire.trace.refusals import check_series, remarks
-from tracewire.trace.search import Search, shortest_window
-from tracewire.trace.stretches import share_out
+from tracewire.trace.search import Search
+from tracewire.trace.stretches import share_out, shortest_window
 from tracewire.trace.tangent import Tangent
 from tracewire.trace.telling import paragraph_of
 from tracewire.trace.told import (
