@@ -25,6 +25,7 @@ from tracewire.trace.places import find_places
 from tracewire.trace.power import powers
 from tracewire.trace.refusals import check_series, remarks
 from tracewire.trace.search import Search
+from tracewire.trace.spikes import without_spikes
 from tracewire.trace.stretches import share_out, shortest_window
 from tracewire.trace.tangent import Tangent
 from tracewire.trace.telling import paragraph_of
@@ -107,6 +108,7 @@ def begun(
     series = tuple(load_measured(model) if measured is None else measured)
     check_series(model, series)
     sigma = channel_noise([m for m in series if m.use != "validate"])
+    series = tuple(without_spikes(m, sigma) for m in series)
     bench = Bench(model, series, sigma, rtol)
     stretches = share_out(series)
     words = [*remarks(series), *stretches.words]
