@@ -79,7 +79,12 @@ def test_what_nothing_explains_is_told_with_place_and_variables() -> None:
     both = paragraph_of(replace(UNEXPLAINED, missing=missing_of_two()))
     assert "It depends on the coordinate q and the rate v" in both
     nowhere = paragraph_of(replace(UNEXPLAINED, missing=None))
-    assert "where it comes from cannot be said" in nowhere
+    assert "where it comes from cannot be said: a random disturbance" in nowhere
+    assert "random disturbance" not in text
+    assert UNEXPLAINED.missing is not None
+    little = paragraph_of(replace(UNEXPLAINED, missing=replace(UNEXPLAINED.missing, share=0.31)))
+    assert "explains 31 % of what is above the noise. The rest depends on no variable" in little
+    assert "process noise" in little
 
 
 def test_what_is_unexplained_is_never_called_as_small_as_the_noise() -> None:

@@ -26,6 +26,12 @@ VARIABLES = {
 MOST_TOLD = 3
 TINY = 1e-12
 WORTH_TELLING = 0.01
+LITTLE = 0.5
+"""The share of the excess below which the variables found explain little of it."""
+RANDOM = (
+    "a random disturbance of the motion (process noise), or something that is not measured, looks "
+    "like that"
+)
 COMMON = ("coulomb", "viscous", "quad_drag", "stiffness", "cubic_stiffness", "sensor_offset")
 
 
@@ -172,8 +178,10 @@ def _unexplained(found: Found) -> list[str]:
             f"{variables_words(missing.variables)}: a smooth function of that explains "
             f"{percent(missing.share)} of what is above the noise."
         )
+        if missing.share < LITTLE:
+            parts.append(f"The rest depends on no variable that was tried: {RANDOM}.")
     else:
-        parts.append("It is no noise, but where it comes from cannot be said.")
+        parts.append(f"It is no noise, but where it comes from cannot be said: {RANDOM}.")
     parts.append(
         "No effect was accepted by then; not all were tried."
         if found.interrupted
