@@ -19,7 +19,9 @@ STRAY = 30.0
 """A window with this many times the squared residual of the middle one is a stray."""
 LEFT = 0.5
 """The part of the windows that stays at least."""
-ROUNDS, AMONG_STRAYS = 4, 30.0
+ROUNDS = 4
+LEAST_LED = 30.0
+"""RSS per degree of freedom from which on strays may lead a fit."""
 
 
 def without_strays(bench: Bench, trial: Trial, segments: Sequence[Segment], steps: int) -> Trial:
@@ -34,7 +36,7 @@ def without_strays(bench: Bench, trial: Trial, segments: Sequence[Segment], step
             sizes = best.windows.squares / [max(r.size, 1) for r in best.windows.residuals]
             near = np.flatnonzero(sizes <= STRAY * np.median(sizes)).tolist()
             few = len(near) < LEFT * len(segments)
-            if best.s2 < AMONG_STRAYS or len(near) == len(kept) or few:
+            if best.s2 < LEAST_LED or len(near) == len(kept) or few:
                 break
             kept = [kept[n] for n in near]
             starts = [best.windows.segments[n] for n in near]
@@ -46,4 +48,4 @@ def without_strays(bench: Bench, trial: Trial, segments: Sequence[Segment], step
         whole = bench.fitted((), whole_segments, trial.length, best.values, steps=steps)
     except FitError:
         return trial
-    return whole if min(whole.s2 / AMONG_STRAYS, best.s2 / AT_NOISE) < 1 else best
+    return whole if min(whole.s2 / LEAST_LED, best.s2 / AT_NOISE) < 1 else best
