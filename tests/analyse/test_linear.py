@@ -18,6 +18,20 @@ blocks:
   x: {type: integrator, of: r}
   r: {type: expression, formula: "1 - x - FORCE"}
 """
+INSIDE = """
+span: [0, 1]
+inputs: {u: {default: 0}}
+blocks:
+  body: {type: mass, push: u}
+subsystems:
+  mass:
+    inputs: [push]
+    outputs: {way: x}
+    blocks:
+      x: {type: integrator, of: v}
+      v: {type: integrator, of: a}
+      a: {type: expression, formula: "push - 9*x - 0.4*v"}
+"""
 
 
 def test_the_matrices_of_an_oscillator() -> None:
@@ -122,20 +136,18 @@ def test_slopes_that_are_not_finite_are_told() -> None:
         linearise(made(KINK.replace("FORCE", "sqrt(x)")))
 
 
-def test_control_is_handed_over_or_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_linear_model_goes_on_in_control() -> None:
+    control = pytest.importorskip("control")
+    found = linearise(made(INSIDE), inputs=["u"], outputs=["body.x"])
+    system = found.to_control()
+    assert system.state_labels == ["body_x", "body_v"]
+    assert (system.input_labels, system.output_labels) == (["u"], ["body_x"])
+    np.testing.assert_allclose(np.sort_complex(control.poles(system)), np.roots([1, 0.4, 9])[::-1])
+    assert control.dcgain(system) == pytest.approx(1 / 9)
+
+
+def test_control_is_asked_for_where_it_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
     found = linearise(made(OSCILLATOR), inputs=["u"], outputs=["x"])
-    given: dict[str, Any] = {}
-
-    class Control:
-        @staticmethod
-        def ss(*matrices: Any, **names: Any) -> str:
-            given.update(matrices=matrices, **names)
-            return "a state space"
-
-    monkeypatch.setitem(sys.modules, "control", Control)
-    assert found.to_control() == "a state space"
-    assert given["matrices"][0] is found.A
-    assert given["inputs"] == ["u"]
     monkeypatch.setitem(sys.modules, "control", None)
     with pytest.raises(AnalysisError, match=r"not installed. Install it: pip install control"):
         found.to_control()

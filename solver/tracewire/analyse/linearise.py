@@ -53,7 +53,10 @@ class Linear:
         return verdict.of_eigenvalues(self.eigenvalues)
 
     def to_control(self) -> Any:
-        """The same as a StateSpace of python-control. Raises AnalysisError where it is missing."""
+        """The same as a StateSpace of python-control, with names that it allows: `stop_v` for stop.v.
+
+        Raises AnalysisError where it is not installed.
+        """
         try:
             control = import_module("control")
         except ImportError:
@@ -64,9 +67,9 @@ class Linear:
             self.B,
             self.C,
             self.D,
-            states=list(self.states),
-            inputs=list(self.inputs),
-            outputs=list(self.outputs),
+            states=[name.replace(".", "_") for name in self.states],
+            inputs=[name.replace(".", "_") for name in self.inputs],
+            outputs=[name.replace(".", "_") for name in self.outputs],
         )
 
 
