@@ -53,7 +53,7 @@ class Linear:
         return verdict.of_eigenvalues(self.eigenvalues)
 
     def to_control(self) -> Any:
-        """The same as a StateSpace of python-control, with names that it allows: `stop_v` for stop.v.
+        """The same as a StateSpace of python-control; stop.v is called `stop_v` there.
 
         Raises AnalysisError where it is not installed.
         """
