@@ -35,7 +35,7 @@ def without_spikes(measured: Measured, sigma: Mapping[str, float]) -> Measured:
     than 3 off the cubic through theirs, once it stands on its own. So the kink of an impact, a turn
     under dry friction and the step of a body that is stopped are none.
     """
-    found = {name: spikes(measured.t, y, sigma[name]) for name, y in measured.values.items()}
+    found = {name: spikes(measured.t, y, sigma.get(name, 0.0)) for name, y in measured.values.items()}
     bad = np.any(list(found.values()), axis=0)
     if not bad.any() or np.mean(bad) > MOST:
         return measured
@@ -47,7 +47,7 @@ def without_spikes(measured: Measured, sigma: Mapping[str, float]) -> Measured:
 
 
 def spikes(t: Vector, y: Vector, sigma: float) -> Flags:
-    """Which samples (N,) are spikes, where the noise has the standard deviation sigma."""
+    """Which samples (N,) are spikes, where the noise has the standard deviation sigma; none at 0."""
     flags = np.zeros(len(y), dtype=bool)
     if len(y) <= 2 * SIDE or sigma <= 0:
         return flags
