@@ -35,7 +35,8 @@ def without_spikes(measured: Measured, sigma: Mapping[str, float]) -> Measured:
     than 3 off the cubic through theirs, once it stands on its own. So the kink of an impact, a turn
     under dry friction and the step of a body that is stopped are none.
     """
-    found = {name: spikes(measured.t, y, sigma.get(name, 0.0)) for name, y in measured.values.items()}
+    t = measured.t
+    found = {name: spikes(t, y, sigma.get(name, 0.0)) for name, y in measured.values.items()}
     bad = np.any(list(found.values()), axis=0)
     if not bad.any() or np.mean(bad) > MOST:
         return measured
@@ -43,11 +44,11 @@ def without_spikes(measured: Measured, sigma: Mapping[str, float]) -> Measured:
     plural = "s" * (int(bad.sum()) > 1)
     remark = f"{bad.sum()} single sample{plural} left out, far off their neighbours: {told}"
     values = {name: y[~bad] for name, y in measured.values.items()}
-    return replace(measured, t=measured.t[~bad], values=values, remarks=(*measured.remarks, remark))
+    return replace(measured, t=t[~bad], values=values, remarks=(*measured.remarks, remark))
 
 
 def spikes(t: Vector, y: Vector, sigma: float) -> Flags:
-    """Which samples (N,) are spikes, where the noise has the standard deviation sigma; none at 0."""
+    """Which samples (N,) are spikes beside noise of the standard deviation sigma; none at 0."""
     flags = np.zeros(len(y), dtype=bool)
     if len(y) <= 2 * SIDE or sigma <= 0:
         return flags
