@@ -54,5 +54,12 @@ def test_where_bic_is_decided_less_support_is_enough() -> None:
     assert judged([10.0] * WINDOWS, after, fall=200.0).passed
 
 
+def test_what_shows_in_one_window_and_harms_none_passes_where_bic_is_decided() -> None:
+    after = [1.0, 10.3, *[10.0] * (WINDOWS - 2)]  # z = 1
+    assert judged([10.0] * WINDOWS, after, fall=200.0).passed
+    harmed = [1.0, 12.0, *[10.0] * (WINDOWS - 2)]
+    assert not judged([10.0] * WINDOWS, harmed, fall=200.0).passed
+
+
 def test_without_an_error_there_is_nothing_to_improve() -> None:
     assert judged([0.0, 0.0], [0.0, 0.0]).words == "gate: nothing to improve"

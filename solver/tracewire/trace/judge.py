@@ -17,6 +17,8 @@ AT_NOISE = 1.5
 MATERIAL = 1 / 3
 DECISIVE = 100.0
 """A fall of BIC that needs less support from the gate."""
+HARM = 0.1
+"""The part of what windows gain that others may lose: a stop is met in few, and harms none."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +41,7 @@ def gate(
     Its squared error must be 2 % smaller there (a third, where it stays far above the noise, where
     everything is significant), and either the paired z over windows exceeds 2, or
     more than three of four windows improve; where BIC has fallen by more than 100, z above 1 is
-    enough. `fall` is that fall of BIC.
+    enough, or that hardly any window does worse. `fall` is that fall of BIC.
     """
     old, new = bench.on(now, windows), bench.on(trial, windows)
     before = np.array([float(np.sum(r**2)) for r in old])
@@ -52,7 +54,8 @@ def gate(
     mean = float(np.mean(change))
     z = mean / (spread / len(change) ** 0.5) if spread > 0 else np.copysign(np.inf, mean)
     improved = float(np.mean(change > 0))
-    supported = z > 2 or improved > 0.75 or (fall > DECISIVE and z > 1)
+    harmless = -float(np.minimum(change, 0.0).sum()) < HARM * float(np.maximum(change, 0.0).sum())
+    supported = z > 2 or improved > 0.75 or (fall > DECISIVE and (z > 1 or harmless))
     passed = drop > (LEAST_DROP if trial.s2 <= AT_NOISE else MATERIAL) and supported
     words = f"gate: squared error {'falls' if drop > 0 else 'rises'} by {abs(drop):.0%}"
     return Verdict(
