@@ -20,7 +20,7 @@ from tracewire.trace.strays import without_strays
 from tracewire.trace.stretches import Stretches
 from tracewire.trace.tangent import Tangent
 from tracewire.trace.trial import Added, Bench, Trial
-from tracewire.trace.windows import Section
+from tracewire.trace.windows import Section, Windows
 
 MOST_EFFECTS = 3
 CHANCE = 1e-3
@@ -37,6 +37,8 @@ SLOWER = 6.0
 WITHIN = 2.0
 STEPS, FIRST_STEPS, FEW = 20, 5, 30
 """Steps of a refit and of the first round of refits, and about how many windows that takes."""
+SMALL = 0.1
+"""The part of its promised size at which an effect begins again that led a refit astray."""
 AT_NOISE = 1.3
 RUNNER_UP = 0.9
 """The part of the fall of BIC of the best effect from which another one is a runner-up."""
@@ -293,12 +295,19 @@ class Search:
 
         Those that are too slow to come near the best, or below `target`, are given up on the way.
         """
-        few = _few(now.windows.segments)
+        few, least = _few(now.windows)
         begun = []
         for number, proposal in enumerate(proposals, start=1):
             names = " and ".join(str(row.candidate) for row in proposal.rows)
             self.tell(f"refitting with {names} ({number} of {len(proposals)})")
-            trial = self.extended(now, [r.added for r in proposal.rows], few, FIRST_STEPS)
+            added = [row.added for row in proposal.rows]
+            trial = self.extended(now, added, few, FIRST_STEPS)
+            if trial is not None and trial.rss > least:  # the promised size led it astray
+                small = [
+                    one.having(one.candidate.parameter, SMALL * one.coefficient) for one in added
+                ]
+                again = self.extended(now, small, few, FIRST_STEPS) or trial
+                trial = min(trial, again, key=lambda one: one.rss)
             if trial is not None:
                 begun.append((trial, proposal))
         begun.sort(key=lambda pair: pair[0].rss)
@@ -361,15 +370,14 @@ def _worth_judging(tried: Sequence[Tried], now: Trial) -> list[int]:
     return sorted({*gains[:2], *singles[:1]})
 
 
-def _few(segments: Sequence[Segment]) -> list[Segment]:
-    """About 30 of the windows: the first ones of each series, as memories go on between them."""
-    names = list(dict.fromkeys(segment.measured.name for segment in segments))
-    most = -(-FEW // len(names))
-    return [
-        segment
-        for name in names
-        for segment in [s for s in segments if s.measured.name == name][:most]
-    ]
+def _few(windows: Windows) -> tuple[list[Segment], float]:
+    """About 30 of the windows, the first ones of each series, as memories go on between them; and
+    their sum of squares."""
+    segments = windows.segments
+    names = [segment.measured.name for segment in segments]
+    most = -(-FEW // len(set(names)))
+    rows = [n for n, name in enumerate(names) if names[:n].count(name) < most]
+    return [segments[n] for n in rows], float(windows.squares[rows].sum())
 
 
 def _named(trial: Trial, now: Trial) -> str:
