@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -59,19 +60,19 @@ def diagram_of(s: Systems) -> Bifurcation:
     return s.kept("diagram", sweep)
 
 
-def main_band(found: Bifurcation, direction: str) -> tuple[float, float]:
+def main_band(bands: Iterable[tuple[float, float]]) -> tuple[float, float]:
     """The widest band of irregular motion in Hz; bands a step of 0.003 Hz apart count as one."""
-    bands: list[tuple[float, float]] = []
-    for low, high in found[direction].bands:
-        if bands and low - bands[-1][1] < 0.003:
-            bands[-1] = (bands[-1][0], high)
+    joined: list[tuple[float, float]] = []
+    for low, high in bands:
+        if joined and low - joined[-1][1] < 0.003:
+            joined[-1] = (joined[-1][0], high)
         else:
-            bands.append((low, high))
-    return max(bands, key=lambda band: band[1] - band[0], default=(math.nan, math.nan))
+            joined.append((low, high))
+    return max(joined, key=lambda band: band[1] - band[0], default=(math.nan, math.nan))
 
 
 def _edge(direction: str, end: int) -> Measure:
-    return lambda s: main_band(diagram_of(s), direction)[end]
+    return lambda s: main_band(diagram_of(s)[direction].bands)[end]
 
 
 def _beside(direction: str) -> Measure:
@@ -79,7 +80,7 @@ def _beside(direction: str) -> Measure:
 
     def find(s: Systems) -> float:
         branch = diagram_of(s)[direction]
-        low, high = main_band(diagram_of(s), direction)
+        low, high = main_band(diagram_of(s)[direction].bands)
         beside = branch.irregular & ((branch.values < low) | (branch.values > high))
         return float(np.mean(beside))
 
