@@ -237,8 +237,7 @@ class Criterion:
         except SimulationError:
             return self._differences(n, named, start)
         sigma = self.sigma[segment.measured.name]
-        parts = [(sensing.derivative(run, name, of) / sigma).ravel() for name, of in moved.items()]
-        slopes = np.stack(parts, axis=1) if parts else np.zeros((shown.size, 0))
+        slopes = (sensing.derivatives(run, moved) / sigma[:, None]).reshape(shown.size, len(moved))
         if not (np.abs(slopes) < LARGEST).all():  # their squares would be no numbers
             return self._differences(n, named, start)
         return Linearised(self.difference(n, shown), slopes, run.final)

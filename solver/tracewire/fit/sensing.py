@@ -7,16 +7,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.diagram import SENSOR
 from tracewire.fit.segment import Segment
-from tracewire.fit.sensor import PLAIN, Sensor
+from tracewire.fit.sensor import Sensor
 from tracewire.solve import Run
 
 Vector = NDArray[np.float64]
+Cube = NDArray[np.float64]
 STEP = 1e-3
 """Of a sample interval: how far to each side a signal is sampled for its rate."""
 
@@ -61,33 +63,42 @@ class Sensing:
         ]
         return np.stack(columns, axis=1)
 
-    def derivative(self, run: Run, name: str, sensitivity: str = "") -> Vector:
-        """d shown/d an unknown, shape (N, signals).
+    def derivatives(self, run: Run, unknowns: Mapping[str, str]) -> Cube:
+        """d shown/d unknowns, shape (N, signals, unknowns).
 
-        `sensitivity` is the name under which the run has the derivatives of the signals in it; for
-        an unknown of a sensor it is not needed.
+        `unknowns` gives each unknown by name the name under which the run has the derivatives of
+        the signals in it; of a sensor it is ''.
         """
-        found = np.zeros((len(self.segment.rows), len(self.segment.signals)))
-        kind, _, of = name.partition(".")
-        for column, (signal, sensor) in enumerate(
+        found = np.zeros((len(self.segment.rows), len(self.segment.signals), len(unknowns)))
+        rows = {name: row for row, name in enumerate(run.sensitivities)}
+        moving = [column for column, name in enumerate(unknowns.values()) if name]
+        moved = [rows[name] for name in unknowns.values() if name]
+        for number, (signal, sensor) in enumerate(
             zip(self.segment.signals, self.sensors, strict=True)
         ):
-            at = self.at[column]
-            if sensitivity:
-                slope = run.sensitivities[sensitivity][signal]
-                found[:, column] = self._slope(sensor, run[signal][at]) * slope[at]
-            elif signal == of and kind == "offset":
-                found[:, column] = 1.0
-            elif signal == of and kind == "gain":
-                found[:, column] = run[signal][at]
-            elif signal == of and kind == "quad":
-                found[:, column] = run[signal][at] ** 2
-            elif signal == of and kind == "drift":
-                found[:, column] = self.since
-            elif signal == of and kind == "delay":
-                rate = self._rate(run, signal, column)
-                found[:, column] = -self._slope(sensor, run[signal][at]) * rate
+            at = self.at[number]
+            if moved:
+                slopes = run.sensitivities.array[moved, run.sensitivities.signals.index(signal)]
+                found[:, number, moving] = (self._slope(sensor, run[signal][at]) * slopes[:, at]).T
+            for column, name in enumerate(unknowns):
+                kind, _, of = name.partition(".")
+                if of == signal and not unknowns[name]:
+                    found[:, number, column] = self._of_sensor(kind, run, number)
         return found
+
+    def _of_sensor(self, kind: str, run: Run, number: int) -> Vector | float:
+        """d shown/d an unknown of the sensor of a signal."""
+        signal = self.segment.signals[number]
+        delayed = run[signal][self.at[number]]
+        if kind == "delay":
+            return -self._slope(self.sensors[number], delayed) * self._rate(run, signal, number)
+        known: dict[str, Vector | float] = {
+            "offset": 1.0,
+            "gain": delayed,
+            "quad": delayed**2,
+            "drift": self.since,
+        }
+        return known.get(kind, 0.0)
 
     def _slope(self, sensor: Sensor, delayed: Vector) -> Vector | float:
         """d shown/d y(t - delay)."""
@@ -102,5 +113,6 @@ class Sensing:
 
 def _sensor(segment: Segment, signal: str, named: Mapping[str, float]) -> Sensor:
     own = segment.measured.sensor(signal)
-    numbers = {kind: named.get(f"{kind}.{signal}", getattr(own, kind)) for kind in SENSOR}
-    return replace(PLAIN, **numbers)
+    names = {kind: f"{kind}.{signal}" for kind in SENSOR}
+    changed: dict[str, Any] = {k: named[name] for k, name in names.items() if name in named}
+    return replace(own, **changed) if changed else own

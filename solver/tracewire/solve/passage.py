@@ -32,7 +32,7 @@ from tracewire.solve.execute import Execution
 from tracewire.solve.failures import failure
 from tracewire.solve.interrupt import Halt, Interrupted
 from tracewire.solve.limits import Limits
-from tracewire.solve.sensitivities import new_sensitivity
+from tracewire.solve.sensitivities import UNMOVED, new_sensitivity
 from tracewire.solve.setup import kept_plan, new_arrays, new_flow, new_progress, packed, prepare
 from tracewire.solve.simulate import parameter_values, start_of, tables_of, tolerance_of
 from tracewire.solve.space import Space
@@ -93,11 +93,11 @@ class Passage:
         plan = plan._replace(direct=np.arange(len(x)))
         progress = progress._replace(samples=np.zeros((inner, len(x))))
         asked = tuple(START + name for name in model.states) if tangents else ()
-        sensitivity = new_sensitivity(model, flow, progress, asked, {}, {}, self.parameters)
+        sensitivity = new_sensitivity(model, flow, progress, asked, UNMOVED, {}, self.parameters)
         if asked:  # no recorded signals are followed, but the states
             sensitivity = sensitivity._replace(samples=np.zeros((inner, len(x) * len(x))))
         self.arrays: Arrays = new_arrays(flow, plan, progress, sensitivity)
-        self._space = Space((inner, len(tables), asked, (), preset), self.arrays)
+        self._space = Space((inner, len(tables), asked, ()), self.arrays)
         self._execution = Execution(
             model,
             self.arrays,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from tracewire.errors import OptionError, Problem, unknown
 
 Vector = NDArray[np.float64]
+Cube = NDArray[np.float64]
 EventKind = Literal[
     "crossing", "scheduled", "reset", "impact", "stick", "slip", "rest", "transition"
 ]
@@ -67,6 +68,27 @@ class EventLog(Sequence[Event]):
         return repr(self._events)
 
 
+class Sensitivities(Mapping[str, Mapping[str, Vector]]):
+    """d signal/d name (N,) at fixed times in SI, by name and by recorded signal:
+    `["k"]["theta"]`; all of them as `array` (names, signals, N)."""
+
+    def __init__(
+        self, names: Sequence[str] = (), signals: Sequence[str] = (), array: Cube | None = None
+    ) -> None:
+        self.signals = tuple(signals)
+        self.array = np.zeros((0, len(self.signals), 0)) if array is None else array
+        self._rows = {name: n for n, name in enumerate(names)}
+
+    def __getitem__(self, name: str) -> Mapping[str, Vector]:
+        return dict(zip(self.signals, self.array[self._rows[name]], strict=True))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._rows)
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+
 @dataclass(frozen=True)
 class Statistics:
     """What a run cost: accepted and rejected steps, evaluations of the rates, method by mode."""
@@ -97,7 +119,7 @@ class Run:
     final: Mapping[str, float]
     statistics: Statistics
     warnings: tuple[str, ...] = ()
-    sensitivities: Mapping[str, Mapping[str, Vector]] = field(default_factory=dict)
+    sensitivities: Sensitivities = field(default_factory=Sensitivities)
 
     def __getitem__(self, name: str) -> Vector:
         if name not in self.signals:

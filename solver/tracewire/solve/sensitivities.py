@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass, field
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +16,12 @@ from tracewire.solve.core.arrays import Flow, Progress, Sensitivity
 from tracewire.solve.core.codes import FLAGS, GRAZES, LOST, SIMULTANEOUS, TOUCHES, ZENO
 from tracewire.solve.core.jit import invoke_at
 from tracewire.solve.core.variation import DERIVATIVES, OF_STARTS
+from tracewire.solve.run import Sensitivities
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 START = "start."
+MOST_KEPT = 200  # of what a model keeps of which parameters move
 STEP = 1e-3  # of a parameter that others follow; what is left of the error is of order 6
 WEIGHTS = ((1.0, 3 / 4), (2.0, -3 / 20), (3.0, 1 / 60))
 SAID = {
@@ -31,33 +35,71 @@ SAID = {
 
 def checked(model: Model, names: Sequence[str]) -> tuple[str, ...]:
     """The names of what is asked for, each once. Raises OptionError for what does not exist."""
-    there = [*model.parameters, *(START + state for state in model.states)]
-    known = set(there)
     asked = tuple(dict.fromkeys([names] if isinstance(names, str) else names))
-    problems = [unknown("sensitivity", name, there) for name in asked if name not in known]
-    if problems:
-        raise OptionError(problems)
+    known = model.parameters, {START + state for state in model.states}
+    strange = [name for name in asked if not any(name in names for names in known)]
+    if strange:
+        there = [*model.parameters, *(START + state for state in model.states)]
+        raise OptionError([unknown("sensitivity", name, there) for name in strange])
     return asked
 
 
-def follow(
-    formulas: Mapping[str, Expression],
-    values: Mapping[str, float],
-    asked: tuple[str, ...],
-    given: Mapping[str, float],
-) -> dict[str, Vector]:
-    """By parameter, its derivatives (q,) in what is asked for; those that are all zero left out.
+@dataclass(frozen=True, eq=False)
+class Moving:
+    """The parameters that move with what is asked for, and their derivatives in it: (a, q)."""
 
-    `formulas` of the parameters over each other, `values` of all of them; those that are `given`
-    follow no other.
+    names: tuple[str, ...] = ()
+    rates: Matrix = field(default_factory=lambda: np.zeros((0, 0)))
+
+
+UNMOVED = Moving()
+
+
+def moving_with(
+    model: Model,
+    asked: tuple[str, ...],
+    values: Mapping[str, float],
+    given: Mapping[str, float],
+    preset: str = "",
+) -> Moving:
+    """What moves with what is asked for, of the parameters that the model reads.
+
+    `values` of all parameters; those that are `given` follow no other.
     """
     if not asked:
-        return {}
-    reads = {name: formulas.keys() & names_of(formula) for name, formula in formulas.items()}
-    reads = {name: read for name, read in reads.items() if read and name not in given}
-    columns = [_followers(formulas, reads, values, name) for name in asked]
-    moving = [name for name in formulas if any(column.get(name) for column in columns)]
-    return {name: np.array([column.get(name, 0.0) for column in columns]) for name in moving}
+        return UNMOVED
+    key = "moving", preset, asked, frozenset(given)
+    known = model.kept.get(key)
+    if known is None:  # the same for all values, where nothing that moves follows others
+        formulas = model.parameter_formulas(preset)
+        reads = {name: formulas.keys() & names_of(formula) for name, formula in formulas.items()}
+        reads = {name: read for name, read in reads.items() if read and name not in given}
+        led = {name for leader in asked for name in _led(leader, formulas, reads)}
+        names = tuple(name for name in formulas if name in led and name in model.read_parameters)
+        rates = np.array([[float(name == leader) for leader in asked] for name in names])
+        known = Moving(names, rates.reshape(-1, len(asked))), reads, led & reads.keys()
+        if len(model.kept) < MOST_KEPT:
+            model.kept[key] = known
+    moving, reads, following = known
+    if not following:
+        return cast(Moving, moving)
+    formulas = model.parameter_formulas(preset)
+    columns = [_followers(formulas, reads, values, leader) for leader in asked]
+    rates = np.array([[column.get(name, 0.0) for column in columns] for name in moving.names])
+    return Moving(moving.names, rates.reshape(-1, len(asked)))
+
+
+def _led(
+    leader: str, formulas: Mapping[str, Expression], reads: Mapping[str, Set[str]]
+) -> set[str]:
+    """A parameter and all that follow it."""
+    found = {leader} & formulas.keys()
+    for _ in reads if found else ():
+        more = {name for name, read in reads.items() if read & found}
+        if more <= found:
+            break
+        found |= more
+    return found
 
 
 def _followers(
@@ -103,20 +145,19 @@ def new_sensitivity(
     flow: Flow,
     progress: Progress,
     asked: tuple[str, ...],
-    rates: Mapping[str, Vector],
+    moving: Moving,
     start: Mapping[str, float],
     values: Mapping[str, float],
 ) -> Sensitivity:
     """The sensitivities of a run that has not begun.
 
-    `rates` are those of the parameters in what is asked for, `start` the start values that are set
-    and so follow no parameter, `values` those of the parameters.
+    `moving` are the parameters that move with what is asked for, `start` the start values that are
+    set and so follow no parameter, `values` those of the parameters.
     """
     n, modes, q = len(progress.x), len(flow.bound), len(asked)
-    moving = [name for name in rates if name in model.read_parameters]
-    a = len(moving)
+    a = len(moving.names)
     w = n + 1 + a if q else 0
-    names = [*model.states, "t", *moving]
+    names = [*model.states, "t", *moving.names]
     functions = [model.derivative(of, names) for of in DERIVATIVES] if q else []
     address = [model.compiled_address(name) for name in functions]
     sensitivity = Sensitivity(
@@ -140,7 +181,7 @@ def new_sensitivity(
         real_pivots=np.zeros(n, dtype=np.int64),
         order=np.zeros(n + 1, dtype=np.int64),
     )
-    set_sensitivity(model, flow, progress, sensitivity, asked, rates, start, values)
+    set_sensitivity(model, flow, progress, sensitivity, asked, moving, start, values)
     return sensitivity
 
 
@@ -150,16 +191,15 @@ def set_sensitivity(
     progress: Progress,
     sensitivity: Sensitivity,
     asked: tuple[str, ...],
-    rates: Mapping[str, Vector],
+    moving: Moving,
     start: Mapping[str, float],
     values: Mapping[str, float],
 ) -> None:
     """Let the sensitivities of a run that has not begun be those of this one."""
     n, s = len(progress.x), sensitivity.s
-    moving = [name for name in rates if name in model.read_parameters]
-    if moving:
-        sensitivity.chain[:] = [rates[name] for name in moving]
-        rows, nothing = np.zeros((n, n + 1 + len(moving))), np.zeros(1)
+    if moving.names:
+        sensitivity.chain[:] = moving.rates
+        rows, nothing = np.zeros((n, n + 1 + len(moving.names))), np.zeros(1)
         address = sensitivity.address[OF_STARTS]
         invoke_at(address, 0.0, nothing, flow.m, flow.c, flow.k, rows.reshape(-1))
         s[:] = rows[:, n + 1 :] @ sensitivity.chain
@@ -175,23 +215,18 @@ def set_sensitivity(
     sensitivity.now[0] = progress.now[0]
 
 
-def by_name(
+def recorded(
     model: Model, sensitivity: Sensitivity, asked: tuple[str, ...], samples: int
-) -> dict[str, dict[str, Vector]]:
-    """d signal/d name at the first samples, by name and by recorded signal."""
-    count = len(model.recorded)
-    return {
-        name: {
-            signal: sensitivity.samples[:samples, j * count + column].copy()
-            for column, signal in enumerate(model.recorded)
-        }
-        for j, name in enumerate(asked)
-    }
+) -> Sensitivities:
+    """d signal/d name at the first samples."""
+    rows = np.array(sensitivity.samples[:samples].T, order="C")
+    shape = len(asked), len(model.recorded), samples
+    return Sensitivities(asked, model.recorded, rows.reshape(shape))
 
 
 def undefined(model: Model, sensitivity: Sensitivity) -> Iterator[str]:
     """What to say of instants where a sensitivity is not defined."""
-    for kind, said in SAID.items():
+    for kind, said in SAID.items() if sensitivity.flags.any() else ():
         count, mode = sensitivity.flags[kind].tolist()
         if count:
             guard = f"'{model.modes[mode].text}'" if model.modes else "a state"

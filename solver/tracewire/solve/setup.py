@@ -136,15 +136,20 @@ def starts(model: Model, flow: Flow) -> Vector:
 
 def packed(tables: Sequence[Table]) -> Vector:
     """All tables in one array: their offsets, then of each its length, points, values, slopes."""
-    if not tables:
-        return np.zeros(1)
-    parts: list[Vector] = [np.zeros(len(tables))]
+    out = np.zeros(len(tables) + sum(3 * len(x) for x, _ in tables) + 1)
+    steps: dict[int, Vector] = {}  # many tables have the same x
     offset = len(tables)
     for number, (x, y) in enumerate(tables):
-        parts[0][number] = offset
-        parts.append(np.concatenate(([len(x)], x, y, np.diff(y) / np.diff(x))))
-        offset += len(parts[-1])
-    return np.concatenate([*parts, [0.0]])
+        count = len(x)
+        if id(x) not in steps:
+            steps[id(x)] = x[1:] - x[:-1]
+        out[number], out[offset] = offset, count
+        out[offset + 1 : offset + 1 + count] = x
+        out[offset + 1 + count : offset + 1 + 2 * count] = y
+        slopes = out[offset + 1 + 2 * count : offset + 3 * count]
+        np.divide(y[1:] - y[:-1], steps[id(x)], out=slopes)
+        offset += 3 * count
+    return out
 
 
 def new_progress(

@@ -20,10 +20,10 @@ from tracewire.solve.interrupt import Interrupted
 from tracewire.solve.limits import Limits
 from tracewire.solve.run import EventLog, Run
 from tracewire.solve.sensitivities import (
-    by_name,
     checked,
-    follow,
+    moving_with,
     new_sensitivity,
+    recorded,
     set_sensitivity,
 )
 from tracewire.solve.setup import (
@@ -92,8 +92,8 @@ def simulate(
     tolerance = tolerance_of(model, rtol, atol, method, step, end - begin)
     vector = np.array([*values.values(), 0.0])  # never empty
     tables = packed(tables_of(model, values, inputs or {}))
-    moved = tuple(sorted((*(parameters or {}), *(start or {})))) if asked else ()
-    key = len(samples), len(tables), asked, moved, preset
+    moving = moving_with(model, asked, values, parameters or {}, preset)
+    key = len(samples), len(tables), asked, moving.names
     space = take(model, key)
     if space is not None:
         arrays, flow, state = space.arrays, space.arrays.flow, space.arrays.progress
@@ -102,15 +102,13 @@ def simulate(
         x = start_of(model, flow, start or {})
         set_up(state, x, (begin, end), samples, method, tolerance)
         if asked:
-            chain = follow(model.parameter_formulas(preset), values, asked, parameters or {})
             sensitivity = arrays.sensitivity
-            set_sensitivity(model, flow, state, sensitivity, asked, chain, start or {}, values)
+            set_sensitivity(model, flow, state, sensitivity, asked, moving, start or {}, values)
     else:
         flow = new_flow(model, vector, tables)
         x = start_of(model, flow, start or {})
         state = new_progress(model, x, (begin, end), samples, method, tolerance)
-        chain = follow(model.parameter_formulas(preset), values, asked, parameters or {})
-        sensitivity = new_sensitivity(model, flow, state, asked, chain, start or {}, values)
+        sensitivity = new_sensitivity(model, flow, state, asked, moving, start or {}, values)
         arrays = new_arrays(flow, kept_plan(model), state, sensitivity)
         space = Space(key, arrays)
     execution = Execution(
@@ -142,7 +140,7 @@ def run_of(execution: Execution, values: Mapping[str, float], x: Vector, t: Vect
         final=dict(zip(names, state.x.tolist(), strict=True)),
         statistics=execution.statistics,
         warnings=execution.warnings,
-        sensitivities=by_name(model, execution.arrays.sensitivity, execution.asked, len(t)),
+        sensitivities=recorded(model, execution.arrays.sensitivity, execution.asked, len(t)),
     )
 
 
@@ -295,11 +293,15 @@ def tables_of(
     flat = model.flat
     problems = [unknown("input", name, flat.inputs) for name in inputs if name not in flat.inputs]
     tables = []
+    times: dict[int, Vector] = {}  # many inputs have the same: they are looked at once
     for name in model.lowered.tables:
         if name in flat.tables:
-            tables.append(_table(name, flat.tables[name].x, flat.tables[name].y))
+            key = "table", name
+            if key not in model.kept:
+                model.kept[key] = _table(name, flat.tables[name].x, flat.tables[name].y, {})
+            tables.append(model.kept[key])
         elif name in inputs:
-            tables.append(_table(name, *inputs[name]))
+            tables.append(_table(name, *inputs[name], times))
         else:
             default = flat.inputs[name]
             if default is None:
@@ -309,16 +311,20 @@ def tables_of(
                 )
                 problems.append(Problem(f"the input '{name}' has no source", hint=hint))
             else:
-                tables.append(_table(name, [0.0], [evaluate(default, values)]))
+                tables.append(_table(name, [0.0], [evaluate(default, values)], {}))
     if problems:
         raise OptionError(problems)
     return tables
 
 
-def _table(name: str, x: ArrayLike, y: ArrayLike) -> Table:
-    xs, ys = np.asarray(x, dtype=float).ravel(), np.asarray(y, dtype=float).ravel()
-    good = len(xs) == len(ys) and len(xs) > 0 and bool(np.all(np.diff(xs) > 0))
-    if not (good and np.isfinite(xs).all() and np.isfinite(ys).all()):
+def _table(name: str, x: ArrayLike, y: ArrayLike, known: dict[int, Vector]) -> Table:
+    """A table whose x ascend and whose y are finite; `known` has the x that do, by identity."""
+    xs, ys = known.get(id(x)), np.asarray(y, dtype=float).ravel()
+    if xs is None:
+        xs = np.asarray(x, dtype=float).ravel()
+        if len(xs) and np.isfinite(xs).all() and (xs[1:] > xs[:-1]).all():
+            known[id(x)] = xs
+    if not (id(x) in known and len(xs) == len(ys) and np.isfinite(ys).all()):
         hint = "Give as many values as times, times that ascend, and no NaN."
         raise OptionError([Problem(f"the table of the input '{name}' is not usable", hint=hint)])
     return xs, ys

@@ -11,7 +11,7 @@ from tracewire.compile import Model
 from tracewire.solve.core.arrays import Arrays, table_of
 
 Vector = NDArray[np.float64]
-Key = tuple[int, int, tuple[str, ...], tuple[str, ...], str]
+Key = tuple[int, int, tuple[str, ...], tuple[str, ...]]
 MOST = 16  # kinds of spaces that a model keeps
 MOST_NUMBERS = 500_000  # of samples and tables; larger arrays are not kept
 ONLY_WRITTEN = ("address", "log", "stiff", "times")
@@ -22,7 +22,7 @@ class Space:
     """The arrays of one run, and their table for the core.
 
     `key` says which runs they fit: the number of samples and the numbers in their tables, the
-    sensitivities, and with these the names that are set and the preset.
+    sensitivities, and the parameters that move with these.
     """
 
     def __init__(self, key: Key, arrays: Arrays) -> None:

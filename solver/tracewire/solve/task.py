@@ -28,7 +28,7 @@ from tracewire.solve.observers import (
     crossings,
     instants,
 )
-from tracewire.solve.sensitivities import new_sensitivity
+from tracewire.solve.sensitivities import UNMOVED, new_sensitivity
 from tracewire.solve.setup import kept_plan, new_arrays, new_flow, new_progress, packed, prepare
 from tracewire.solve.simulate import (
     ascending,
@@ -200,7 +200,7 @@ class Task:
         columns, width = len(model.recorded), len(self.plan.direct)
         if width > columns:
             state = state._replace(samples=np.full((len(every), width), np.nan))
-        nothing = new_sensitivity(model, flow, state, (), {}, {}, {})
+        nothing = new_sensitivity(model, flow, state, (), UNMOVED, {}, {})
         arrays = new_arrays(flow, self.plan, state, nothing)
         execution = Execution(model, arrays, self.limits, begin, halt=self.halt)
         execution.run()

@@ -114,10 +114,10 @@ def screened(tangent: Tangent, trial: Trial, candidates: Sequence[Candidate]) ->
     sizes = [near.residual.size for near in windows.near]
     parts = np.split(matrix, np.cumsum(sizes)[:-1])
     reduced = np.concatenate([view.off(part) for view, part in zip(views, parts, strict=True)])
-    seen = np.sum(reduced**2, axis=0)
+    seen = _squares(reduced)
     basis = _basis(unknowns)
     left = reduced - basis @ (basis.T @ reduced)
-    masked = 1 - np.sum(left**2, axis=0) / np.maximum(seen, 1e-300)
+    masked = 1 - _squares(left) / np.maximum(seen, 1e-300)
     visible = seen > 1e-18 * max(float(seen.max(initial=0.0)), 1e-300)
     masked = np.where(visible, np.clip(masked, 0.0, 1.0), 1.0)
     columns = Columns(
@@ -159,15 +159,14 @@ def _by_series(
         return matrix, variants
     sizes = [near.residual.size for near in tangent.windows.near]
     of = np.repeat(tangent.series, sizes)
-    columns: list[Vector] = []
-    found: list[Variant] = []
-    for number, variant in enumerate(variants):
-        column = matrix[:, number]
-        own = bool(variant.candidate.each)
-        parts = [np.where(of == n, column, 0.0) for n in range(count)] if own else [column]
-        columns += parts
-        found += [variant] * len(parts)
-    return np.stack(columns, axis=1), found
+    parts = [count if variant.candidate.each else 1 for variant in variants]
+    columns = matrix[:, np.repeat(np.arange(len(variants)), parts)]
+    first = 0
+    for own in parts:
+        for n in range(own if own > 1 else 0):
+            columns[of != n, first + n] = 0.0
+        first += own
+    return columns, [v for v, own in zip(variants, parts, strict=True) for _ in range(own)]
 
 
 def _groups(variants: Sequence[Variant]) -> Iterator[list[tuple[int, Variant]]]:
@@ -239,6 +238,11 @@ def _count(candidate: Candidate, shapes: Mapping[str, float], series: Sequence[s
     amplitude and a phase in each series that has a phase of its own."""
     more = 2 * (len(series) - 1) if series else 0
     return 1 + more + sum(not is_default(candidate, name, value) for name, value in shapes.items())
+
+
+def _squares(matrix: Matrix) -> Vector:
+    """The sum of squares of each column."""
+    return np.asarray(np.einsum("ij,ij->j", matrix, matrix))
 
 
 def _basis(matrix: Matrix) -> Matrix:

@@ -93,8 +93,9 @@ class Columns:
         largest = np.zeros(DRAWS)
         single = [n for n, group in enumerate(groups) if len(group) == 1]
         columns = [groups[n][0] for n in single]
-        sizes = np.linalg.norm(self.matrix[:, columns], axis=0)
-        scores = (self.matrix[:, columns] / np.maximum(sizes, 1e-300)).T @ noise
+        alone = self.matrix[:, columns]
+        sizes = np.linalg.norm(alone, axis=0)
+        scores = (alone.T @ noise) / np.maximum(sizes, 1e-300)[:, None]
         sided = np.array([signs[n] for n in single])[:, None]
         scores = np.where((sided == 0) | (scores * sided < 0), scores, 0.0)
         if len(scores):

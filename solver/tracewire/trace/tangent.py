@@ -75,7 +75,8 @@ class Tangent:
         self.series = series_of(windows)
         runs = observed(observer, windows, rtol)
         self.trajectories = stitched(windows, runs)
-        self.joined = [self._joined(n, run) for n, run in enumerate(runs)]
+        pairs = enumerate(zip(windows.segments, runs, strict=True))
+        self.joined = [self._joined(n, segment, run) for n, (segment, run) in pairs]
 
     def answer(self, histories: Mapping[str, Sequence[Matrix]]) -> Matrix:
         """What torques do to the residuals in sigma, shape (M, K), before anything is projected.
@@ -145,8 +146,7 @@ class Tangent:
         ]
         return np.asarray(np.array(gains) / sigma)
 
-    def _joined(self, n: int, run: Run) -> Joined:
-        segment = self.windows.segments[n]
+    def _joined(self, n: int, segment: Segment, run: Run) -> Joined:
         times, samples, counts = nodes_of(segment)
         pieces = []
         for first in range(0, max(len(times) - 1, 1), NODES - 1):
@@ -167,17 +167,14 @@ class Tangent:
         found = run_of(
             self.model, self.windows, segment, start, t, self.rtol, hats, [*starts, *own, *probes]
         )
-        names = (*self.outputs, *self.states)
-
-        def answers(asked: Sequence[str]) -> Matrix:
-            parts = [
-                np.stack([found.sensitivities[one][name] for name in names], axis=1)
-                for one in asked
-            ]
-            return np.stack(parts, axis=2) if parts else np.zeros((count, len(names), 0))
-
-        answer = answers(probes).reshape(count, len(names), len(self.places), count)
-        return Piece(nodes, answers(starts), answers(own), answer)
+        signals = found.sensitivities.signals
+        rows = [signals.index(name) for name in (*self.outputs, *self.states)]
+        answers = found.sensitivities.array[:, rows].transpose(2, 1, 0)
+        of_starts, of_unknowns, of_hats = np.split(
+            answers, [len(starts), len(starts) + len(own)], axis=2
+        )
+        shape = count, len(rows), len(self.places), count
+        return Piece(nodes, of_starts, of_unknowns, of_hats.reshape(shape))
 
 
 def series_of(windows: Windows) -> list[int]:

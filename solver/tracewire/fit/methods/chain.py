@@ -113,10 +113,11 @@ class Chain:
             weights = criterion.weights(n)
             own = [*range(self.parameters), *range(self.offsets[n], self.offsets[n + 1])]
             sigma = criterion.sigma[measured.name]
-            slopes = [sensing.derivative(run, name, of) / sigma for name, of in answers.items()]
+            slopes = sensing.derivatives(run, answers) / sigma[:, None]
             rows = [(lost.residual * weights).ravel()]
             columns = [*own]
-            parts = [np.stack([(s * lost.slope * weights).ravel() for s in slopes], axis=1)]
+            slopes *= (lost.slope * weights)[:, :, None]
+            parts = [slopes.reshape(lost.residual.size, len(answers))]
             if self.follows[n]:
                 following = range(self.offsets[n + 1], self.offsets[n + 2])
                 columns += following
