@@ -159,6 +159,38 @@ def test_an_oscillator_has_its_closed_sensitivities(method: str) -> None:
     assert found["start.v"]["x"] == pytest.approx(np.sin(w * t) / w, abs=1e-7)
 
 
+@pytest.mark.parametrize("method", ["auto", "dop853", "rosenbrock"])
+def test_the_points_of_an_input_are_kinks_and_jumps_stay_jumps(method: str) -> None:
+    """x = 1.5 exp(-k U) with U the integral of u, and y = jump (U(t) - U(instant)) behind the
+    instant, which is a point of u, too: dx/dk = -U x, dy/d instant = -jump u(instant)."""
+    text = """
+span: [0, 2]
+inputs: {u: {default: 0}}
+parameters: {k: 0.8, jump: 0.5, instant: 1}
+blocks:
+  x: {type: integrator, of: slope, start: 1.5}
+  slope: {type: expression, formula: -k*u*x}
+  y: {type: integrator, of: gust, start: 0}
+  gust: {type: expression, formula: jump*u*floor(t/instant)}
+"""
+    points = np.linspace(0, 2, 41)
+    u = 1.3 + np.sin(2 * points) + 0.4 * np.random.default_rng(5).standard_normal(41)
+    whole = np.concatenate(([0.0], np.cumsum((u[1:] + u[:-1]) / 2 * np.diff(points))))[:-1]
+    t = points[:-1]
+    names = ["k", "jump", "instant", "start.x"]
+    inputs = {"u": (points, u)}
+    run = simulate(
+        made(text), method=method, times=t, inputs=inputs, sensitivities=names, rtol=1e-10
+    )
+    x, found, elsewhere = 1.5 * np.exp(-0.8 * whole), run.sensitivities, t != t[20]
+    assert found["k"]["x"] == pytest.approx(-whole * x, abs=1e-7)
+    assert found["start.x"]["x"] == pytest.approx(x / 1.5, abs=1e-7)
+    behind = np.where(t < t[20], 0.0, whole - whole[20])
+    assert found["jump"]["y"] == pytest.approx(behind, abs=1e-7)
+    moved = np.where(t > t[20], -0.5 * u[20], 0.0)
+    assert found["instant"]["y"][elsewhere] == pytest.approx(moved[elsewhere], abs=1e-7)
+
+
 def test_what_rests_still_has_sensitivities_that_swing() -> None:
     """The steps of the states are as long as they may be; those of S follow S."""
     run = simulate(

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from oracles.oscillator import (
     DIAGRAM,
+    NOISE,
     bench_of,
     candidates_of,
     later,
     record,
     trial_of,
 )
+from scipy.integrate import solve_ivp
 from tracewire.errors import FitError
+from tracewire.fit import Measured
 from tracewire.trace.trial import Added
 from tracewire.trace.windows import Section, cut
 
@@ -107,3 +112,27 @@ def test_a_model_that_takes_too_many_events_is_given_up() -> None:
     )
     with pytest.raises(FitError, match="more than 305 events"):
         trial_of(bench_of(record(end=3.0), text=text))
+
+
+def test_a_delay_is_found_on_short_windows_too() -> None:
+    """A window's first samples show what was before it: its run begins earlier."""
+    delay, t = 0.047, np.arange(0.0, 12.0, 0.03)
+    drive = "3*sin(2*t) + 2*sin(5.3*t)"
+
+    def rates(t: float, state: np.ndarray) -> list[float]:
+        x, v = state.tolist()
+        return [v, 3 * math.sin(2 * t) + 2 * math.sin(5.3 * t) - 25 * x - 0.2 * v]
+
+    run = solve_ivp(rates, (-1, 12), [1.0, 0.0], rtol=1e-10, atol=1e-11, dense_output=True)
+    x = run.sol(t - delay)[0] + NOISE * np.random.default_rng(3).standard_normal(len(t))
+    m = Measured("swing", "train", t, {"x": x}, start={"x": None, "v": None})
+    text = DIAGRAM.replace("spring, damper]", "spring, damper, drive]").replace(
+        "  damper:", f"  drive: {{type: expression, formula: {drive}}}\n  damper:"
+    )
+    bench = bench_of(m, text=text)
+    late = Added(candidates_of(bench)["sensor_delay @ sensor.x"], {"delay": 0.7 * delay})
+    trial = trial_of(bench, [late], length=20)
+    assert trial.values["delay.x"] == pytest.approx(delay, rel=0.02)
+    assert trial.s2 == pytest.approx(1.0, abs=0.2)
+    begins = [window.begin for window in trial.windows.segments]
+    assert all(b < w.t[0] - delay for b, w in zip(begins, trial.windows.segments, strict=True))

@@ -188,7 +188,7 @@ def _told(tell: Callable[[str], None]) -> Callable[[Progress], None]:
 
 
 def _print(found: Fit, profiles: list[Profile], written: list[str]) -> None:
-    from tracewire.show.report import fit_tables, fit_text, fit_words
+    from tracewire.show.fit_tables import fit_tables, fit_text, fit_words
 
     print_text(fit_text(found))
     for table in fit_tables(found):

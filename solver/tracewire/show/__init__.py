@@ -1,23 +1,32 @@
-"""What a person looks at: tables, figures and reports; matplotlib is imported when drawn."""
+"""What a person looks at: tables, figures and reports; matplotlib is imported when drawn.
 
-from tracewire.show.bifurcation_figures import plot_bifurcation, plot_section
-from tracewire.show.comparison_figures import plot_comparisons
-from tracewire.show.diagnostic_figures import plot_diagnostics, plot_profiles
-from tracewire.show.document import Report
-from tracewire.show.figures import plot_run
-from tracewire.show.fit_figures import plot_fit, plot_residual
-from tracewire.show.live import optimplotfit, optimplotfval, optimplotx
-from tracewire.show.parameter_figures import plot_convergence, plot_correlation, plot_parameters
-from tracewire.show.plane_figures import plot_orbit, plot_polar, plot_portrait
-from tracewire.show.report import report
-from tracewire.show.signal_figures import (
-    plot_growth,
-    plot_invariants,
-    plot_lyapunov,
-    plot_scalogram,
-    plot_spectrum,
-)
-from tracewire.show.sweep_figures import plot_chart, plot_sweep
+The names here are imported from their files when they are first used: a run needs no figures.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tracewire.show.any_report import report
+    from tracewire.show.bifurcation_figures import plot_bifurcation, plot_section
+    from tracewire.show.comparison_figures import plot_comparisons
+    from tracewire.show.diagnostic_figures import plot_diagnostics, plot_profiles
+    from tracewire.show.document import Report
+    from tracewire.show.figures import plot_run
+    from tracewire.show.fit_figures import plot_fit, plot_residual
+    from tracewire.show.live import optimplotfit, optimplotfval, optimplotx
+    from tracewire.show.parameter_figures import plot_convergence, plot_correlation, plot_parameters
+    from tracewire.show.plane_figures import plot_orbit, plot_polar, plot_portrait
+    from tracewire.show.signal_figures import (
+        plot_growth,
+        plot_invariants,
+        plot_lyapunov,
+        plot_scalogram,
+        plot_spectrum,
+    )
+    from tracewire.show.sweep_figures import plot_chart, plot_sweep
 
 __all__ = [
     "Report",
@@ -47,3 +56,29 @@ __all__ = [
     "plot_sweep",
     "report",
 ]
+
+FILE_OF = {
+    "bifurcation_figures": "plot_bifurcation plot_section",
+    "comparison_figures": "plot_comparisons",
+    "diagnostic_figures": "plot_diagnostics plot_profiles",
+    "document": "Report",
+    "figures": "plot_run",
+    "fit_figures": "plot_fit plot_residual",
+    "live": "optimplotfit optimplotfval optimplotx",
+    "parameter_figures": "plot_convergence plot_correlation plot_parameters",
+    "plane_figures": "plot_orbit plot_polar plot_portrait",
+    "any_report": "report",
+    "signal_figures": "plot_growth plot_invariants plot_lyapunov plot_scalogram plot_spectrum",
+    "sweep_figures": "plot_chart plot_sweep",
+}
+
+
+def __getattr__(name: str) -> object:
+    for file, names in FILE_OF.items():
+        if name in names.split():
+            return getattr(import_module(f"tracewire.show.{file}"), name)
+    raise AttributeError(f"module 'tracewire.show' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -172,7 +172,7 @@ def new_sensitivity(
         push=np.zeros((modes, n * a)),
         flags=np.zeros((FLAGS, 2), dtype=np.int64),
         flag_times=np.zeros(FLAGS),
-        now=np.zeros(5),
+        now=np.zeros(6),
         instants=np.zeros((modes, q)),
         bound=flow.bound.copy(),
         change=np.zeros((3 * n, q)),

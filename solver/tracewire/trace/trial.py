@@ -24,6 +24,7 @@ from tracewire.trace.statistics import bic, effective_part
 from tracewire.trace.tones import Sine, tones_of
 from tracewire.trace.windows import (
     Windows,
+    begun_before,
     descended,
     eliminated,
     opened,
@@ -281,6 +282,8 @@ class Bench:
         fixed: Mapping[str, float],
     ) -> Criterion:
         """The sum of squares in sigma, which is what a likelihood needs."""
+        values = {**fixed, **{u.name: u.value for u in unknowns}}
+        segments = [begun_before(model, segment, values) for segment in segments]
         longest = max(int(np.sum(s.measured.t[: s.rows[-1] + 1] >= s.begin)) for s in segments)
         return Criterion(
             model,

@@ -28,6 +28,9 @@ UNSEEN = 1e-7
 SETTLING, RESCUING = 8, 2
 FAR_OFF = 100.0
 """A start this many scales of its state away from the one that the data show."""
+AHEAD = 2.0
+"""How many delays of a sensor a window's run begins ahead of its first sample: a fit may find a
+longer delay than it began with."""
 CONVERGED = 1e-4
 CREEPS = 5e-4
 """A step that gains less than this part of the sum of squares is the last one."""
@@ -77,6 +80,23 @@ def cut(model: Model, section: Section, length: int, free: Sequence[str]) -> lis
         begin = float(measured.t[a - 1])
         windows.append(Segment(measured, begin, np.arange(a, b), start, tuple(free)))
     return windows
+
+
+def begun_before(model: Model, segment: Segment, delays: Mapping[str, float]) -> Segment:
+    """A window whose run begins so early that its first samples are seen through delays in s, by
+    the name of the sensor's unknown; where its start is not free, as it is."""
+    measured, first = segment.measured, float(segment.t[0])
+    signals = segment.signals
+    delay = max(delays.get(f"delay.{name}", measured.sensor(name).delay) for name in signals)
+    begin = first - AHEAD * delay
+    if not segment.free or segment.begin <= begin:
+        return segment
+    row = int(np.searchsorted(measured.t, begin, side="right")) - 1
+    if row < 0:
+        return replace(segment, begin=begin)
+    told = start_from_data(model, measured, row)
+    start = {name: told[name] for name in segment.free if name in told}
+    return replace(segment, begin=float(measured.t[row]), start={**segment.start, **start})
 
 
 @dataclass(frozen=True, eq=False)

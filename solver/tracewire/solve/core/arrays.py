@@ -156,7 +156,8 @@ class Sensitivity(NamedTuple):
     `samples` (N, R*q), `times` (rows of the log, q). `push` (M, n*a): of the push of a contact in
     the parameters. `flags` and `flag_times`: per kind of FLAGS how often, the mode and the time of
     the first. `now` holds that time, the next interval, whether the first nodes are
-    known, how many intervals need no estimate, and how long these may be.
+    known, how many intervals need no estimate, how long these may be, and whether only tables of t
+    go on to their next points.
     `instants` (M, q): how the instant moves at which each mode changes, of those that do so now.
     `bound` (M,): what was held after the last event. `change` (3n, q), `slopes` (3n, q),
     `real` (n, n), `real_pivots` and `order` (n + 1,) are work space.

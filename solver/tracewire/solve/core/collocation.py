@@ -33,7 +33,7 @@ NOTHING = 1e-7
 STILL = 1e-10
 """A column of S that is this small while something is held: what holds it cancels what moves it,
 and what is left is rounding, which no shorter interval makes less."""
-TIME, INTERVAL, KNOWN, UNCHECKED, LONGEST = range(5)  # places in Sensitivity.now
+TIME, INTERVAL, KNOWN, UNCHECKED, LONGEST, SMOOTH = range(6)  # places in Sensitivity.now
 
 
 @unit

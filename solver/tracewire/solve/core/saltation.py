@@ -19,13 +19,14 @@ from tracewire.solve.core.codes import (
     GRAZES,
     GUARD,
     LOST,
+    SEGMENT,
     SIMULTANEOUS,
     TIME,
     TOUCHES,
     ZENO,
     T,
 )
-from tracewire.solve.core.collocation import KNOWN, UNCHECKED
+from tracewire.solve.core.collocation import KNOWN, SMOOTH, UNCHECKED
 from tracewire.solve.core.collocation import TIME as TIME_REACHED
 from tracewire.solve.core.contact import reset_jump, side_of
 from tracewire.solve.core.flow import (
@@ -57,6 +58,7 @@ from tracewire.solve.core.variation import (
 SHALLOW = 8.0  # times the noise of a guard: what dips no deeper grazes
 STILL = 1e-9
 AGREE = 1e-6
+KINK = 1e-9  # of rates: by what they differ at the point of a table is rounding
 
 
 @unit
@@ -81,6 +83,10 @@ def enter(core: int, t: float, x: Vector) -> None:
     instants[:] = 0.0
     old, here, there = flow.m.copy(), np.empty(len(x)), np.empty(len(x))
     rates(core, t, x, here)
+    smooth = _is_smooth(core, t, x, here, there)
+    sensitivity.now[SMOOTH] = 1.0 if smooth else 0.0
+    if smooth:
+        return
     main, plain = -1, -1
     for i in np.flatnonzero(crossings.how >= 0):
         if crossings.how[i] != TIME or _resets(core, i):
@@ -110,6 +116,29 @@ def enter(core: int, t: float, x: Vector) -> None:
             if apart > AGREE * (abs(instants[i, j]) + abs(moved[j])):
                 flag(core, SIMULTANEOUS, i, t)
                 break
+
+
+@helper
+def _is_smooth(core: int, t: float, x: Vector, here: Vector, there: Vector) -> bool:
+    """Whether all that happens is that tables of t go on to their next points, where the rates have
+    a kink and no jump: when that is does not matter then."""
+    flow, plan, crossings = flow_of(core), plan_of(core), crossings_of(core)
+    if flow.counts[SLIDING] + flow.counts[RESTING]:
+        return False
+    for i in range(len(plan.kind)):
+        timed = crossings.how[i] == TIME and plan.kind[i] == SEGMENT
+        if crossings.how[i] >= 0 and (not timed or _resets(core, i)):
+            return False
+    old = flow.m.copy()
+    for i in range(len(plan.kind)):
+        if crossings.how[i] >= 0:
+            flow.m[i] = crossings.to[i]
+    rates(core, t, x, there)
+    flow.m[:] = old
+    same = True
+    for i in range(len(x)):
+        same = same and abs(there[i] - here[i]) <= KINK * (abs(there[i]) + abs(here[i]))
+    return same
 
 
 @helper
@@ -204,11 +233,24 @@ def reset_sensitivities(core: int, t: float, before: Vector, due: Ints, modes: V
 
 
 @unit
-def leave(core: int, t: float, x: Vector, waits: Vector) -> None:
-    """After all that happens at an instant: S again at a fixed time, in the new field."""
+def leave(core: int, t: float, before: Vector, x: Vector, old: Vector, waits: Vector) -> None:
+    """After all that happens at an instant: S again at a fixed time, in the new field.
+
+    `before` are x⁻ and `old` the modes before it.
+    """
     if not is_sensitive(core):
         return
-    flow, sensitivity = flow_of(core), sensitivity_of(core)
+    flow, plan, sensitivity = flow_of(core), plan_of(core), sensitivity_of(core)
+    if sensitivity.now[SMOOTH] > 0.0:
+        same = True
+        for i in range(len(x)):
+            same = same and x[i] == before[i]
+        for i in range(len(plan.kind)):
+            same = same and (plan.kind[i] == SEGMENT or flow.m[i] == old[i])
+            same = same and flow.bound[i] == sensitivity.bound[i]
+        if same:
+            sensitivity.now[TIME_REACHED] = t
+            return
     rate = np.empty(len(x))
     rates(core, t, x, rate)
     if np.all(np.isfinite(rate)):

@@ -115,7 +115,7 @@ def happen(core: int, t: float, x: Vector) -> int:
         if status != FINISHED:
             return status
     _write_log(core, t, before, x, done, fired, waits, old, bound)
-    leave(core, t, x, waits)
+    leave(core, t, before, x, old, waits)
     for i in range(modes):
         shrinks = progress.flights[i, 0] < np.inf
         if crossings.how[i] >= 0 and crossings.how[i] != TIME and not shrinks:

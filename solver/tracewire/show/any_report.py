@@ -10,12 +10,9 @@ from tracewire.fit.profile import Profile
 from tracewire.show.document import Figure, Report, Section
 from tracewire.show.figures import plot_run
 from tracewire.show.fit_report import fit_report
-from tracewire.show.fit_tables import fit_tables, fit_text, fit_words
 from tracewire.show.trace_report import trace_report
 from tracewire.solve import Run
 from tracewire.trace import Found
-
-__all__ = ["fit_tables", "fit_text", "fit_words", "report"]
 
 
 def report(subject: Run | Fit | Found, profiles: Sequence[Profile] = ()) -> Report:
