@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -35,6 +36,11 @@ class Linearised:
     slopes: Matrix
     final: Mapping[str, float]
     ran: bool = True
+
+    @cached_property
+    def square(self) -> float:
+        """The sum of the squared residuals."""
+        return float(np.sum(self.residual**2))
 
 
 class Criterion:

@@ -89,6 +89,8 @@ def same_quantity(one: str, other: str) -> bool:
     """
     for text in (one, other):
         read_unit(text)
+    if one.strip() == other.strip():
+        return True
     both = (TORQUE.sub(r"\1 m", text).strip() or "1" for text in (one, other))
     first, second = (_registry().parse_units(text) for text in both)
     return bool(first.is_compatible_with(second))

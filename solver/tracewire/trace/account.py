@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from tracewire.fit.segment import Segment
 from tracewire.trace.found import ChannelError, Curve, Moved
@@ -137,7 +137,7 @@ def rmse(parts: Sequence[Compared], which: int) -> float:
 
 def intervals(trial: Trial) -> dict[str, tuple[float, float]]:
     """The 95 % interval of each fitted value."""
-    quantile = float(student.ppf(0.5 + CONFIDENCE / 2, max(trial.freedom * trial.part, 1.0)))
+    quantile = float(stdtrit(max(trial.freedom * trial.part, 1.0), 0.5 + CONFIDENCE / 2))
     errors = trial.standard_errors
     return {
         name: (value - quantile * errors[name], value + quantile * errors[name])

@@ -34,7 +34,9 @@ LONGER = 3
 KEPT = 3
 SLOWER = 6.0
 """How many times the cost of the model before an effect may take, in steps of a run."""
-WITHIN = 2.0
+WITHIN, WITHIN_NOISE = 2.0, 1.2
+"""How many times the sum of squares of another one a refit must come near; where that one is at the
+noise, it must come nearer."""
 STEPS, FIRST_STEPS, FEW = 20, 5, 30
 """Steps of a refit and of the first round of refits, and about how many windows that takes."""
 SMALL = 0.1
@@ -319,7 +321,7 @@ class Search:
                 whole = self.extended(trial, (), now.windows.segments, target=target)
                 if whole is not None:
                     done.append(Tried(whole, proposal, 0.0, 0.0))
-                    target = min(target, WITHIN * whole.rss)
+                    target = min(target, rivalled(whole))
         return self.ranked(now, done)
 
     def ranked(self, now: Trial, tried: Sequence[Tried]) -> list[Tried]:
@@ -378,6 +380,11 @@ def _few(windows: Windows) -> tuple[list[Segment], float]:
     most = -(-FEW // len(set(names)))
     rows = [n for n, name in enumerate(names) if names[:n].count(name) < most]
     return [segments[n] for n in rows], float(windows.squares[rows].sum())
+
+
+def rivalled(trial: Trial) -> float:
+    """The sum of squares that a rival must promise to reach, or be given up."""
+    return (WITHIN_NOISE if trial.s2 < AT_NOISE else WITHIN) * trial.rss
 
 
 def _named(trial: Trial, now: Trial) -> str:

@@ -111,7 +111,7 @@ class Windows:
     @property
     def squares(self) -> Vector:
         """The sum of squared residuals of each window, in sigma."""
-        return np.array([float(np.sum(near.residual**2)) for near in self.near])
+        return np.array([near.square for near in self.near])
 
     @property
     def rss(self) -> float:
@@ -178,7 +178,7 @@ def settled(windows: Windows) -> Windows:
         starts[n], near[n] = _settled_one(current, n)
         ends = current.near[n - 1].final if n and _follows(windows, n) else {}
         expected = near[n].residual.size
-        if ends and float(np.sum(near[n].residual ** 2)) > 2 * expected:
+        if ends and near[n].square > 2 * expected:
             start: Mapping[str, float] = {name: ends[name] for name in starts[n]}
             other = windows.criterion.linearised(n, windows.values, start)
             there = replace(
@@ -187,7 +187,7 @@ def settled(windows: Windows) -> Windows:
                 near=(*near[:n], other, *near[n + 1 :]),
             )
             start, other = _settled_one(there, n)
-            if _square(other) < _square(near[n]):
+            if other.square < near[n].square:
                 starts[n], near[n] = start, other
     return replace(windows, starts=tuple(starts), near=tuple(near))
 
@@ -230,7 +230,7 @@ def _settled_one(
             view = projection(now, n)
             answer = -view.answer @ near.residual.ravel()
             gain = float(np.sum((view.basis.T @ near.residual.ravel()) ** 2))
-            if gain < max(SETTLED, CONVERGED * _square(near)):
+            if gain < max(SETTLED, CONVERGED * near.square):
                 break
         moved = dict(zip(start, np.array(list(start.values())) + share * answer, strict=True))
         if _far_off(windows, n, moved):
@@ -239,7 +239,7 @@ def _settled_one(
         there = windows.criterion.linearised(n, windows.values, moved)
         if not there.ran:
             break
-        if _square(there) < _square(near):
+        if there.square < near.square:
             start, near, share, answer = moved, there, min(2 * share, 1.0), None
         else:
             share /= 4
@@ -378,7 +378,7 @@ def _rescued(
     for start in (before, {name: ends[name] for name in before} if ends else {}):
         if start:
             tried.append((windows.criterion.linearised(n, windows.values, start), start))
-    near, start = min(tried, key=lambda pair: _square(pair[0]))
+    near, start = min(tried, key=lambda pair: pair[0].square)
     there = replace(
         windows,
         starts=(*windows.starts[:n], start, *windows.starts[n + 1 :]),
@@ -391,7 +391,3 @@ def _rescued(
 def _follows(windows: Windows, n: int) -> bool:
     one, other = windows.criterion.segments[n - 1], windows.criterion.segments[n]
     return one.measured is other.measured and int(one.rows[-1]) + 1 == int(other.rows[0])
-
-
-def _square(near: Linearised) -> float:
-    return float(np.sum(near.residual**2))

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import qmc
 
 from tracewire.errors import OptionError, Problem
 from tracewire.fit.descent import descend
@@ -86,6 +85,8 @@ def _points(search: Search) -> Matrix:
     count = len(search.criterion.unknowns)
     if not count:
         return np.empty((0, search.size))
+    from scipy.stats import qmc  # half a second: only this method pays for it
+
     exponent = int(np.ceil(np.log2(min(POINTS * count, MOST_POINTS))))
     cube = qmc.Sobol(count, scramble=False).random_base2(exponent)
     cube = (cube + search.rng().uniform(size=count)) % 1.0
