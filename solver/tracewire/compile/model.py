@@ -152,6 +152,10 @@ class Model:
         """
         return self._routines.compiled_address(name)
 
+    def compiled_addresses(self, names: Sequence[str]) -> list[int]:
+        """The addresses of several functions, compiled together: see `compiled_address`."""
+        return self._routines.compiled_addresses(names)
+
     def derivative(self, of: str, by: Sequence[str]) -> str:
         """The name of the function d(function `of`) / d(`by`), for `address`.
 
@@ -185,7 +189,8 @@ def compile(diagram: Diagram, record: Sequence[str] = (), backend: Backend = "ll
     """The model of a diagram.
 
     `record` names signals to record beside those of the diagram. `backend` makes the functions:
-    "llvm" machine code, "python" the readable source. Raises DiagramError: an algebraic loop
+    "llvm" machine code, "quick" such that takes less time to make and more to run, for a model of a
+    few short runs, "python" the readable source. Raises DiagramError: an algebraic loop
     without a solution, vectors that do not go together, a start value that reads a signal;
     OptionError: a recorded signal or a back end that does not exist.
     """

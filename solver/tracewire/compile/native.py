@@ -31,13 +31,17 @@ class Native:
     engine: Any = field(repr=False)
 
 
-def assemble(text: str, names: Iterable[str]) -> Native:
-    """The machine code of the functions `names` of an IR text; the same text is compiled once."""
-    key = hashlib.sha256(text.encode()).digest()
+def assemble(text: str, names: Iterable[str], *, quickly: bool = False) -> Native:
+    """The machine code of the functions `names` of an IR text; the same text is compiled once.
+
+    `quickly`: by the quick compiler, which large texts get anyway.
+    """
+    quickly = quickly or len(text) > LARGE
+    key = hashlib.sha256(text.encode()).digest() + bytes([quickly])
     with _lock:
         found = _kept.pop(key, None)
         if found is None:
-            engine = _engine(text)
+            engine = _engine(text, quickly)
             found = Native({name: engine.get_function_address(name) for name in names}, engine)
         _kept[key] = found
         if len(_kept) > KEPT:
@@ -45,12 +49,12 @@ def assemble(text: str, names: Iterable[str]) -> Native:
         return found
 
 
-def _engine(text: str) -> Any:
+def _engine(text: str, quickly: bool) -> Any:
     _initialize()
     target = llvm.Target.from_default_triple().create_target_machine(
         cpu=llvm.get_host_cpu_name(),
         features=llvm.get_host_cpu_features().flatten(),
-        opt=0 if len(text) > LARGE else 2,
+        opt=0 if quickly else 2,
         jit=True,
     )
     # The tape is folded and shared already; passes over the IR only cost time, and they would join

@@ -15,8 +15,8 @@ from tracewire.compile.machine import MachineWriter, machine_text
 from tracewire.compile.pointers import address_of, as_c, when_called
 from tracewire.compile.source import Function, Writer, guarded, load
 
-Backend = Literal["llvm", "python"]
-BACKENDS: tuple[Backend, ...] = ("llvm", "python")
+Backend = Literal["llvm", "quick", "python"]
+BACKENDS: tuple[Backend, ...] = ("llvm", "quick", "python")
 ORDERS = {"guard_second": 2, "guard_third": 3, "guard_fourth": 4}
 PREPARE = "prepare"
 
@@ -184,12 +184,18 @@ class Routines:
 
     def compiled_address(self, name: str) -> int:
         """The address of a function, compiled now where it has not been."""
+        return self.compiled_addresses([name])[0]
+
+    def compiled_addresses(self, names: Sequence[str]) -> list[int]:
+        """The addresses of several functions; those that have not been are compiled together."""
         with self.lock:
-            if name not in self._addresses:
-                names = [name] if name in self.lazy else [PREPARE, *self.eager]
-                make = self._machine if self.backend == "llvm" else self._callback
-                self._addresses |= make(names)
-            return self._addresses[name]
+            missing = [name for name in names if name not in self._addresses]
+            if missing:
+                make = self._callback if self.backend == "python" else self._machine
+                lazy = [name for name in missing if name in self.lazy]
+                eager = [] if len(lazy) == len(missing) else [PREPARE, *self.eager]
+                self._addresses |= make([*eager, *lazy])
+            return [self._addresses[name] for name in names]
 
     def machine_ir(self, names: Sequence[str]) -> str:
         """The LLVM IR of functions."""
@@ -205,7 +211,8 @@ class Routines:
     def _machine(self, names: Sequence[str]) -> dict[str, int]:
         from tracewire.compile.native import assemble  # LLVM is loaded by those who compile
 
-        native = assemble(self.machine_ir(names), [_symbol(name) for name in names])
+        symbols = [_symbol(name) for name in names]
+        native = assemble(self.machine_ir(names), symbols, quickly=self.backend == "quick")
         self._kept.append(native)
         return {name: native.addresses[_symbol(name)] for name in names}
 

@@ -81,8 +81,7 @@ class Passage:
         self.model = model
         self.parameters = parameter_values(model, parameters or {}, preset)
         tolerance = tolerance_of(model, rtol, atol, method, None, LONG * length)
-        for name in FUNCTIONS:  # several passages may run in threads
-            model.compiled_address(name)
+        model.compiled_addresses(FUNCTIONS)  # several passages may run in threads
         vector = np.array([*self.parameters.values(), 0.0])
         tables = packed(tables_of(model, self.parameters, inputs or {}))
         flow = new_flow(model, vector, tables)

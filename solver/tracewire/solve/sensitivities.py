@@ -159,7 +159,7 @@ def new_sensitivity(
     w = n + 1 + a if q else 0
     names = [*model.states, "t", *moving.names]
     functions = [model.derivative(of, names) for of in DERIVATIVES] if q else []
-    address = [model.compiled_address(name) for name in functions]
+    address = model.compiled_addresses(functions)
     sensitivity = Sensitivity(
         address=np.array(address, dtype=np.int64),
         chain=np.zeros((a, q)),

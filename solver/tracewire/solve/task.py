@@ -104,8 +104,7 @@ class Task:
         vector = np.array([*values.values(), 0.0])
         defaults = [f for n, f in model.flat.inputs.items() if n not in self.inputs and f]
         self.tables_vary = any(names_of(formula) for formula in defaults)
-        for name in FUNCTIONS:  # one that is made during a run would wait for Python's lock
-            model.compiled_address(name)
+        model.compiled_addresses(FUNCTIONS)  # made during a run one would wait for Python's lock
         self.flow = new_flow(model, vector, packed(tables))
         self.check_times()
         ready(advance)  # not in a thread

@@ -52,7 +52,7 @@ def separating(bench: Bench, one: Trial, other: Trial, name: str, rival: str) ->
     Raises OptionError where nothing can be simulated.
     """
     rig = rig_of(bench, one)
-    states = compile(one.diagram, record=[*bench.signals, *bench.states])
+    states = compile(one.diagram, record=[*bench.signals, *bench.states], backend="quick")
     # what the data at hand say of the rival's unknowns
     views = [projection(other.windows, n) for n in range(len(other.windows.near))]
     known, _ = eliminated(other.windows, views)

@@ -90,6 +90,6 @@ def _fitted(best: Trial, windows: Windows, place: Place, rtol: float) -> list[Ve
     outputs = {effect.name: effect.output for effect in effects_of(best.diagram)}
     added = [e.candidate for e in best.effects if e.candidate.place.name == place.name]
     signals = [c.block + outputs.get(c.effect, "") for c in added]
-    model = compile(best.diagram, record=signals)
+    model = compile(best.diagram, record=signals, backend="quick")
     runs: list[Trajectory] = trajectories(model, windows, rtol)
     return [np.sum([run.signals[name] for name in signals], axis=0) for run in runs]

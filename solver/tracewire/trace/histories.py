@@ -121,7 +121,7 @@ def _together(
     )
     outputs = [_output(small, name) for name in blocks]
     small = Diagram(**{**vars(small), "record": dict.fromkeys(outputs, Spot())})
-    model = compile(small)
+    model = compile(small, backend="quick")
     found: dict[Variant, list[Vector]] = {variant: [] for variant in variants}
     for run in trajectories:
         given = {name: (run.t, run.signals[signal]) for signal, name in inputs.items()}

@@ -68,9 +68,9 @@ class Tangent:
         text, self.probes = probed(diagram, self.places, NODES)
         self.hats = [name for name in text.inputs if name not in diagram.inputs]
         record = list(dict.fromkeys((*self.outputs, *self.states)))
-        self.model = compile(text, record=record)
-        wanted = signals_at(self.places)
-        observer = compile(diagram, record=list(dict.fromkeys((*record, *wanted))))
+        self.model = compile(text, record=record, backend="quick")
+        wanted = dict.fromkeys((*record, *signals_at(self.places)))
+        observer = compile(diagram, record=list(wanted), backend="quick")
         self.rtol = rtol
         self.series = series_of(windows)
         runs = observed(observer, windows, rtol)

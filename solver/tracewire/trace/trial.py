@@ -177,7 +177,7 @@ class Bench:
 
     def compiled(self, diagram: Diagram) -> Model:
         """A diagram as a model that records what is measured."""
-        return compile(diagram, record=self.signals)
+        return compile(diagram, record=self.signals, backend="quick")
 
     def fitted(
         self,
