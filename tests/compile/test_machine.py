@@ -15,7 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from library.values import library
 from solve.models import BALL, one
-from tracewire.compile import compile, native
+from tracewire.compile import Model, compile, native
 from tracewire.diagram import read, read_text
 from tracewire.errors import OptionError
 from tracewire.library import Block
@@ -266,7 +266,7 @@ def test_constants_are_the_parameters_and_behind_them_what_is_made_of_them() -> 
         assert values(model, "rhs", Point(0.0, [1.0], [], [9.0, 2.0], [])) == [-1.0]
 
 
-@pytest.mark.parametrize("backend", ["llvm", "python"])
+@pytest.mark.parametrize("backend", ["llvm", "quick", "python"])
 def test_a_lazy_function_is_compiled_by_its_first_call(backend: str) -> None:
     model = compile(read_text(one("x*x*t")), backend=backend)  # type: ignore[arg-type]
     first = model.address("jacobian")
@@ -283,6 +283,19 @@ def test_a_lazy_function_may_be_compiled_without_a_call() -> None:
     direct = model.compiled_address("jacobian")
     assert model.address("jacobian") == direct
     assert called(direct, 2, 2.0, [3.0]) == [12.0, 9.0]
+
+
+def test_functions_that_are_compiled_together_are_those_that_are_compiled_alone() -> None:
+    alone, together = (compile(read_text(one("x*x*t")), backend="quick") for _ in range(2))
+    names = ["jacobian", "rhs", "guard_second", "jacobian"]
+    found = together.compiled_addresses(names)
+    assert found == [together.compiled_address(name) for name in names]
+    assert called(found[0], 2, 2.0, [3.0]) == values_of(alone, "jacobian")
+    assert called(found[1], 1, 2.0, [3.0]) == values_of(alone, "rhs") == [18.0]
+
+
+def values_of(model: Model, name: str) -> list[float]:
+    return called(model.compiled_address(name), 2 if name == "jacobian" else 1, 2.0, [3.0])
 
 
 def test_threads_may_ask_and_call_at_once() -> None:

@@ -6,7 +6,6 @@ exception, in NaN, or not at all.
 
 from __future__ import annotations
 
-import inspect
 import os
 import re
 from collections.abc import Iterable
@@ -31,7 +30,7 @@ ADAPTIVE = [
     for name in getattr(tracewire.solve, "METHODS", ("auto", "dormand_prince", "rosenbrock"))
     if name != "rk4"  # of a fixed step
 ]
-BACKENDS = ["llvm", "python"] if "backend" in inspect.signature(tw.compile).parameters else [""]
+BACKENDS: tuple[Any, ...] = ("llvm", "quick", "python")
 Vector = NDArray[np.float64]
 QUIET = [HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large]
 
@@ -95,8 +94,7 @@ def compared(first: Ended, second: Ended, tolerance: float, logs: bool, who: str
 def check(wiring: Wiring) -> None:
     """Compare all that can compute this diagram."""
     diagram = tw.read_text(wiring.text())
-    options: list[dict[str, Any]] = [{"backend": name} if name else {} for name in BACKENDS]
-    models = [tw.compile(diagram, **option) for option in options]
+    models = [tw.compile(diagram, backend=backend) for backend in BACKENDS]
     base = Ended(models[0], ADAPTIVE[0])
     # How far a small change of the start is carried tells what may be asked of two computations.
     nudged = [

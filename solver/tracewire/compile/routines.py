@@ -189,7 +189,7 @@ class Routines:
     def compiled_addresses(self, names: Sequence[str]) -> list[int]:
         """The addresses of several functions; those that have not been are compiled together."""
         with self.lock:
-            missing = [name for name in names if name not in self._addresses]
+            missing = [name for name in dict.fromkeys(names) if name not in self._addresses]
             if missing:
                 make = self._callback if self.backend == "python" else self._machine
                 lazy = [name for name in missing if name in self.lazy]
