@@ -61,5 +61,14 @@ def test_what_shows_in_one_window_and_harms_none_passes_where_bic_is_decided() -
     assert not judged([10.0] * WINDOWS, harmed, fall=200.0).passed
 
 
+def test_a_window_in_which_both_lose_their_track_does_not_count() -> None:
+    before, after = [1.6] * (WINDOWS - 1), [0.8] * (WINDOWS - 1)
+    verdict = judged([*before, 3870.0], [*after, 4050.0])
+    assert verdict.passed and verdict.drop == pytest.approx(0.5)
+    assert not judged([*before, 3870.0], [*after, 4050.0], s2=5.0).passed, "it is lost anyway"
+    assert not judged([*before, 1.6], [*after, 4050.0]).passed, "the trial itself lost it"
+    assert not judged([*before[:-1], 3870.0, 3870.0], [*after[:-1], 4050.0, 4050.0]).passed
+
+
 def test_without_an_error_there_is_nothing_to_improve() -> None:
     assert judged([0.0, 0.0], [0.0, 0.0]).words == "gate: nothing to improve"

@@ -19,6 +19,9 @@ DECISIVE = 100.0
 """A fall of BIC that needs less support from the gate."""
 HARM = 0.1
 """The part of what windows gain that others may lose: a stop is met in few, and harms none."""
+ASTRAY, FEW_ASTRAY = 30.0, 0.1
+"""Times the noise's variance from which on a window has lost its track, as by an impact that comes
+a sample too early, where the model is at the noise elsewhere; and the part that may have."""
 
 
 @dataclass(frozen=True)
@@ -41,11 +44,15 @@ def gate(
     Its squared error must be 2 % smaller there (a third, where it stays far above the noise, where
     everything is significant), and either the paired z over windows exceeds 2, or
     more than three of four windows improve; where BIC has fallen by more than 100, z above 1 is
-    enough, or that hardly any window does worse. `fall` is that fall of BIC.
+    enough, or that hardly any window does worse. `fall` is that fall of BIC. Of a trial at the
+    noise, few windows in which both models lose their track say nothing and do not count.
     """
     old, new = bench.on(now, windows), bench.on(trial, windows)
     before = np.array([float(np.sum(r**2)) for r in old])
     after = np.array([float(np.sum(r**2)) for r in new])
+    astray = np.minimum(before, after) > ASTRAY * np.array([r.size for r in new])
+    if trial.s2 <= AT_NOISE and astray.sum() <= FEW_ASTRAY * len(astray):
+        before, after = before[~astray], after[~astray]
     if not before.sum() > 0:
         return Verdict(False, 0.0, 0.0, 0.0, "gate: nothing to improve")
     drop = float(1 - after.sum() / before.sum())
