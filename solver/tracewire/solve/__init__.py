@@ -66,7 +66,8 @@ t) change at computed times that steps end on; breakpoints of tables are not log
 
 **Sensitivities.** S = dx/dp follows S' = f_x S + f_p between events. At an event the instant moves
 by dτ = -(g_x S + g_p)/g', and S⁺ = R_x (S⁻ + f⁻ dτ) + R_p + R_t dτ - f⁺ dτ, with R the reset and f⁺
-the field that holds after it, a slide included. Where it is not defined (the end of a Zeno
+the field that holds after it, a slide included. At a breakpoint of a table in t, where the field
+has a kink and no jump, S goes on as it is. Where it is not defined (the end of a Zeno
 sequence, a guard that is only grazed, several things at one instant) it stays finite, and a
 warning says so.
 

@@ -10,7 +10,7 @@ import numpy as np
 from tracewire.errors import DiagramError, FitError
 from tracewire.trace.candidates import is_default
 from tracewire.trace.judge import AT_NOISE, MATERIAL
-from tracewire.trace.search import SLOWER, STEPS, Search, rivalled
+from tracewire.trace.search import SLOWER, STEPS, Search, target_of
 from tracewire.trace.shortlist import MANY
 from tracewire.trace.trial import Added, Trial
 
@@ -93,7 +93,7 @@ def _refitted(
             fixed=known if fixed is None else fixed,
             steps=STEPS,
             budget=SLOWER * STEPS * len(trial.windows.segments) * trial.cost,
-            target=rivalled(trial),
+            target=target_of(trial),
         )
     except (FitError, DiagramError):
         return None

@@ -321,7 +321,7 @@ class Search:
                 whole = self.extended(trial, (), now.windows.segments, target=target)
                 if whole is not None:
                     done.append(Tried(whole, proposal, 0.0, 0.0))
-                    target = min(target, rivalled(whole))
+                    target = min(target, target_of(whole))
         return self.ranked(now, done)
 
     def ranked(self, now: Trial, tried: Sequence[Tried]) -> list[Tried]:
@@ -382,7 +382,7 @@ def _few(windows: Windows) -> tuple[list[Segment], float]:
     return [segments[n] for n in rows], float(windows.squares[rows].sum())
 
 
-def rivalled(trial: Trial) -> float:
+def target_of(trial: Trial) -> float:
     """The sum of squares that a rival must promise to reach, or be given up."""
     return (WITHIN_NOISE if trial.s2 < AT_NOISE else WITHIN) * trial.rss
 
