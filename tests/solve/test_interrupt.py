@@ -104,12 +104,9 @@ def test_progress_is_told_while_a_run_goes_on(monkeypatch: pytest.MonkeyPatch) -
 
 
 @pytest.fixture(autouse=True)
-def usual() -> Iterator[None]:
-    """Ctrl-C as a program has it that a user starts, also where the tests run in the background."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+def _left_as_it_was(_ctrl_c: None) -> Iterator[None]:
     yield
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
-    signal.signal(signal.SIGINT, before)
 
 
 def after(parts: int) -> Callable[[float, float], None]:
