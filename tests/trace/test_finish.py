@@ -9,8 +9,9 @@ import pytest
 from oracles.oscillator import bench_of, candidates_of, record, search_of
 from tracewire.trace.finish import Final, finished
 from tracewire.trace.places import find_places
+from tracewire.trace.refits import Tried
 from tracewire.trace.screening import Proposal, screened
-from tracewire.trace.search import Search, Step, Tried
+from tracewire.trace.search import Search, Step
 from tracewire.trace.tangent import Tangent
 from tracewire.trace.trial import Added, Trial
 
@@ -46,10 +47,10 @@ def ended(
         tried = []
         for other in screen:
             added = Added(known[other], {known[other].parameter: 0.02})
-            trial = search.extended(best, [added], now.windows.segments)
+            trial = search.refits.extended(best, [added], now.windows.segments)
             if trial is not None and other in rows:
                 tried.append(Tried(trial, Proposal((rows[other],), 1.0), 0.0, 0.0))
-        ranked = search.ranked(best, tried)
+        ranked = search.refits.ranked(best, tried)
         after: Trial = next(one.trial for one in ranked if str(one.trial.effects[-1]) == name)
         search.steps.append(Step(best, shown, 0.0, tuple(ranked), after, ""))
         best = after

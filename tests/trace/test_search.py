@@ -118,7 +118,8 @@ def test_an_effect_that_cannot_be_run_is_left_out_with_a_reason() -> None:
     now = search.declared()
     coulomb = candidates_of(search.bench)["coulomb @ force"]
     nowhere = replace(coulomb, signals={"rate": "nowhere"})
-    assert search.extended(now, [Added(nowhere, {"level": 0.1})], now.windows.segments) is None
+    added = [Added(nowhere, {"level": 0.1})]
+    assert search.refits.extended(now, added, now.windows.segments) is None
     (told,) = search.words
     assert told.startswith("coulomb @ force was not tried: ") and "'nowhere'" in told
 

@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tracewire.errors import DiagramError, FitError
+from tracewire.errors import FitError
 from tracewire.trace.candidates import is_default
 from tracewire.trace.judge import AT_NOISE, MATERIAL
-from tracewire.trace.search import SLOWER, STEPS, Search, target_of
+from tracewire.trace.refits import WITHIN, few_of, target_of
+from tracewire.trace.search import Search
 from tracewire.trace.shortlist import MANY
 from tracewire.trace.trial import Added, Trial
 
@@ -18,7 +19,7 @@ CHEAP = 6.0
 RELATED = 0.9
 RIVALS = 5
 CERTAIN = 10.0
-"""The standard errors from which on a declared term is not tried without: it is there."""
+"""The standard errors from which on no model without a term is tried: it is there."""
 OPEN = 10.0
 """A rival that BIC puts less than this behind is a tie."""
 
@@ -83,20 +84,8 @@ def _refitted(
     search: Search, trial: Trial, effects: Sequence[Added], fixed: dict[str, float] | None = None
 ) -> Trial | None:
     """The trial with other effects on the same windows; None where that does not run."""
-    known = trial.windows.criterion.parameters
-    try:
-        return search.bench.fitted(
-            effects,
-            trial.windows.segments,
-            trial.length,
-            trial.values,
-            fixed=known if fixed is None else fixed,
-            steps=STEPS,
-            budget=SLOWER * STEPS * len(trial.windows.segments) * trial.cost,
-            target=target_of(trial),
-        )
-    except (FitError, DiagramError):
-        return None
+    segments = trial.windows.segments
+    return search.refits.fitted(trial, effects, segments, fixed=fixed, target=target_of(trial))
 
 
 def _exchanged(search: Search, best: Trial, number: int) -> tuple[Trial, tuple[Rival, ...]]:
@@ -108,12 +97,14 @@ def _exchanged(search: Search, best: Trial, number: int) -> tuple[Trial, tuple[R
     results: list[tuple[float, Trial, Added]] = []
     known = _known_rivals(search, effect)
     kept = {str(e) for e in others}
+    few = _few_short(search, best)
     for added, _ in known[: RIVALS if search.returns else MANY]:
         if str(added) in kept:
             continue
-        trial = _refitted(
-            search, best, [*best.effects[:number], added, *best.effects[number + 1 :]]
-        )
+        effects = [*best.effects[:number], added, *best.effects[number + 1 :]]
+        if _is_far_behind(search, few, effects):
+            continue
+        trial = _refitted(search, best, effects)
         if trial is not None:
             results.append((trial.quality(part), trial, trial.effects[number]))
     results.append((best.quality(part), best, effect))
@@ -136,6 +127,27 @@ def _exchanged(search: Search, best: Trial, number: int) -> tuple[Trial, tuple[R
     return winner, tuple(found)
 
 
+def _few_short(search: Search, best: Trial) -> Trial | None:
+    """The best model on few of the shortest windows; None where those it stands on are as short."""
+    length = search.lengths[0]
+    if length >= best.length:
+        return None
+    segments = search.windows(search.stretches.whole(), length)
+    try:
+        return search.bench.again(best, [segments[n] for n in few_of(segments)], length)
+    except FitError:
+        return None
+
+
+def _is_far_behind(search: Search, few: Trial | None, effects: Sequence[Added]) -> bool:
+    """Whether rivals do so badly on few short windows that long ones need not be tried."""
+    if few is None:
+        return False
+    target = WITHIN * few.rss
+    trial = search.refits.fitted(few, effects, few.windows.segments, target=target)
+    return trial is None or trial.rss > target
+
+
 def _known_rivals(search: Search, effect: Added) -> list[tuple[Added, float]]:
     """Effects that looked like one when it was screened, the most likely first."""
     for step in search.steps:
@@ -148,12 +160,14 @@ def _known_rivals(search: Search, effect: Added) -> list[tuple[Added, float]]:
             for one in step.tried
             if len(one.proposal.rows) == 1
         }
+        # singles say little where two effects came together
+        together = len(step.after.effects) > len(step.before.effects) + 1
         found = []
         for name, row in rows.items():
             if name == str(effect):
                 continue
             likeness = step.screen.columns.likeness(mine.columns, row.columns)
-            if likeness > RELATED or name in tried:
+            if likeness > RELATED or name in tried or together:
                 found.append((row.added, likeness, tried.get(name, np.inf)))
         found.sort(key=lambda item: (item[2], -item[1]))
         return [(added, likeness) for added, likeness, _ in found]
@@ -201,11 +215,14 @@ def _common_phases(search: Search, best: Trial) -> Trial:
 def _pruned(search: Search, best: Trial) -> Trial:
     """The best model without effects that the others make superfluous.
 
-    At the noise BIC decides; far above it an effect must take a third off the squared error.
+    At the noise BIC decides, and what is many standard errors from nothing is not tried without;
+    far above the noise an effect must take a third off the squared error.
     """
     while len(best.effects) > 1:
         costs = []
         for effect in best.effects:
+            if best.s2 < AT_NOISE and _is_certain(best, effect):
+                continue
             search.tell(f"trying without {effect}")
             smaller = _refitted(search, best, [e for e in best.effects if e is not effect])
             if smaller is None:
@@ -218,6 +235,13 @@ def _pruned(search: Search, best: Trial) -> Trial:
             return best
         best = min(costs, key=lambda cost: cost[0])[1]
     return best
+
+
+def _is_certain(best: Trial, effect: Added) -> bool:
+    """Whether a coefficient is many standard errors from that of no effect."""
+    candidate = effect.candidate
+    error = best.standard_errors.get(candidate.coefficient, np.inf)
+    return bool(abs(effect.coefficient - candidate.neutral) > CERTAIN * error)
 
 
 def _dropped(search: Search, best: Trial) -> tuple[Trial, tuple[str, ...]]:

@@ -5,56 +5,30 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-
-from tracewire.errors import DiagramError, FitError
+from tracewire.errors import FitError
 from tracewire.fit.segment import Segment
 from tracewire.trace.candidates import find_candidates
 from tracewire.trace.judge import MATERIAL, Verdict, gate
 from tracewire.trace.levels import levels_of
 from tracewire.trace.places import Place
+from tracewire.trace.refits import AT_NOISE, FAR, FIRST_STEPS, NEAR, Refits, Tried, named
 from tracewire.trace.repeated import comes_back, visible
-from tracewire.trace.screening import Proposal, Screen, screened
+from tracewire.trace.screening import Screen, screened
 from tracewire.trace.shortlist import LEAST_GAIN, MANY, SINGLES, shortlist
 from tracewire.trace.strays import without_strays
 from tracewire.trace.stretches import Stretches
 from tracewire.trace.tangent import Tangent
-from tracewire.trace.trial import Added, Bench, Trial
-from tracewire.trace.windows import Section, Windows
+from tracewire.trace.trial import Bench, Trial
+from tracewire.trace.windows import Section
 
 MOST_EFFECTS = 3
 CHANCE = 1e-3
-FAR = 30.0
-"""Longer windows than those that leave this many times the noise's variance say little: there the
-residual does not depend linearly any more on what is missing."""
-LENGTHENED, NEAR = 0.2, 3.0
+LENGTHENED = 0.2
 LONGEST = 1000
 """Samples of a section: a search on longer ones takes too long, as contacts do in such runs."""
 LONGER = 3
-KEPT = 3
-SLOWER = 6.0
-"""How many times the cost of the model before an effect may take, in steps of a run."""
-WITHIN, WITHIN_NOISE = 2.0, 1.2
-"""How many times the sum of squares of another one a refit must come near; where that one is at the
-noise, it must come nearer."""
-STEPS, FIRST_STEPS, FEW = 20, 5, 30
-"""Steps of a refit and of the first round of refits, and about how many windows that takes."""
-SMALL = 0.1
-"""The part of its promised size at which an effect begins again that led a refit astray."""
-AT_NOISE = 1.3
 RUNNER_UP = 0.9
 """The part of the fall of BIC of the best effect from which another one is a runner-up."""
-
-
-@dataclass(frozen=True, eq=False)
-class Tried:
-    """Effects that were refitted: how much BIC rose, and what became of them."""
-
-    trial: Trial
-    proposal: Proposal
-    rise: float
-    weight: float
-    remark: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,6 +66,11 @@ class Search:
         if self.first is None or self.best is None:
             raise AssertionError("the declared model comes first")
         return self.first, self.best
+
+    @property
+    def refits(self) -> Refits:
+        """How proposals are refitted."""
+        return Refits(self.bench, self.tell, self.words)
 
     @property
     def free(self) -> tuple[str, ...]:
@@ -187,7 +166,7 @@ class Search:
             self.tell(f"from the runner-up {one.trial.effects[-1]} ({number} of {len(runners_up)})")
             known = self.best, self.steps[:]
             step = self.steps[first]
-            words = f"accepted a runner-up: {_named(one.trial, step.before)}"
+            words = f"accepted a runner-up: {named(one.trial, step.before)}"
             self.steps = [*self.steps[:first], replace(step, after=one.trial, words=words)]
             self.best = self.climbed(self.completed(one.trial))
             self._onward()
@@ -261,11 +240,8 @@ class Search:
             self.steps.append(Step(now, screen, chance, (), None, words))
             return None
         singles = [p for p in proposals if len(p.rows) == 1]
-        tried = self.refitted(now, singles)
-        if not any(one.trial.s2 < AT_NOISE for one in tried):  # a pair says nothing more there
-            pairs = [p for p in proposals if len(p.rows) > 1]
-            target = min((one.trial.rss for one in tried), default=np.inf)
-            tried = self.ranked(now, [*tried, *self.refitted(now, pairs, target)])
+        pairs = [p for p in proposals if len(p.rows) > 1]
+        tried = self.refits.tried(now, singles, pairs)
         winner = None
         for number in _worth_judging(tried, now):
             verdict = self.judged(now, tried[number], tried)
@@ -273,7 +249,7 @@ class Search:
             if verdict.passed:
                 winner = tried[number]
                 break
-        words = "no effect passes" if winner is None else f"accepted: {_named(winner.trial, now)}"
+        words = "no effect passes" if winner is None else f"accepted: {named(winner.trial, now)}"
         after = None if winner is None else winner.trial
         self.steps.append(Step(now, screen, chance, tuple(tried), after, words))
         return after
@@ -290,79 +266,6 @@ class Search:
                 verdict = gate(self.bench, other.trial, one.trial, windows, fall)
         return verdict
 
-    def refitted(
-        self, now: Trial, proposals: Sequence[Proposal], target: float = np.inf
-    ) -> list[Tried]:
-        """The proposals in the loop, the best first: a few steps each, then the best converged.
-
-        Those that are too slow to come near the best, or below `target`, are given up on the way.
-        """
-        few, least = _few(now.windows)
-        begun = []
-        for number, proposal in enumerate(proposals, start=1):
-            names = " and ".join(str(row.candidate) for row in proposal.rows)
-            self.tell(f"refitting with {names} ({number} of {len(proposals)})")
-            added = [row.added for row in proposal.rows]
-            trial = self.extended(now, added, few, FIRST_STEPS)
-            if trial is not None and trial.rss > least:  # the promised size led it astray
-                small = [
-                    one.having(one.candidate.parameter, SMALL * one.coefficient) for one in added
-                ]
-                again = self.extended(now, small, few, FIRST_STEPS) or trial
-                trial = min(trial, again, key=lambda one: one.rss)
-            if trial is not None:
-                begun.append((trial, proposal))
-        begun.sort(key=lambda pair: pair[0].rss)
-        done = []
-        kept = KEPT if now.s2 < FAR else KEPT + 2
-        for number, (trial, proposal) in enumerate(begun):
-            if number < kept and trial.rss < WITHIN * begun[0][0].rss:
-                self.tell(f"refitting {_named(trial, now)} on all windows ({number + 1} of {kept})")
-                whole = self.extended(trial, (), now.windows.segments, target=target)
-                if whole is not None:
-                    done.append(Tried(whole, proposal, 0.0, 0.0))
-                    target = min(target, target_of(whole))
-        return self.ranked(now, done)
-
-    def ranked(self, now: Trial, tried: Sequence[Tried]) -> list[Tried]:
-        """Trials on the same windows by BIC, the best first, with their weights."""
-        if not tried:
-            return []
-        part = min((one.trial for one in tried), key=lambda trial: trial.rss).part
-        rises = np.array([one.trial.quality(part) - now.quality(part) for one in tried])
-        weights = np.exp(-0.5 * (rises - rises.min()))
-        weights = weights / weights.sum()
-        rows = [
-            replace(one, rise=float(rise), weight=float(weight))
-            for one, rise, weight in zip(tried, rises, weights, strict=True)
-        ]
-        return sorted(rows, key=lambda one: one.rise)
-
-    def extended(
-        self,
-        now: Trial,
-        added: Sequence[Added],
-        segments: Sequence[Segment],
-        steps: int = STEPS,
-        target: float = np.inf,
-    ) -> Trial | None:
-        """The model with more effects, refitted from where it stood; None if it does not run."""
-        try:
-            return self.bench.fitted(
-                (*now.effects, *added),
-                segments,
-                now.length,
-                now.values,
-                fixed=now.windows.criterion.parameters,
-                steps=steps,
-                budget=SLOWER * steps * len(segments) * now.cost,
-                target=target,
-            )
-        except (FitError, DiagramError) as error:
-            names = " and ".join(map(str, added))
-            self.words.append(f"{names} was not tried: {error.problems[0].what}")
-            return None
-
 
 def _worth_judging(tried: Sequence[Tried], now: Trial) -> list[int]:
     """The two best, and the best single effect: where no pair is more than its parts."""
@@ -370,22 +273,3 @@ def _worth_judging(tried: Sequence[Tried], now: Trial) -> list[int]:
     gains = [n for n in gains if len(tried[n].trial.effects) > len(now.effects)]
     singles = [n for n in gains if len(tried[n].trial.effects) == len(now.effects) + 1]
     return sorted({*gains[:2], *singles[:1]})
-
-
-def _few(windows: Windows) -> tuple[list[Segment], float]:
-    """About 30 of the windows, the first ones of each series, as memories go on between them; and
-    their sum of squares."""
-    segments = windows.segments
-    names = [segment.measured.name for segment in segments]
-    most = -(-FEW // len(set(names)))
-    rows = [n for n, name in enumerate(names) if names[:n].count(name) < most]
-    return [segments[n] for n in rows], float(windows.squares[rows].sum())
-
-
-def target_of(trial: Trial) -> float:
-    """The sum of squares that a rival must promise to reach, or be given up."""
-    return (WITHIN_NOISE if trial.s2 < AT_NOISE else WITHIN) * trial.rss
-
-
-def _named(trial: Trial, now: Trial) -> str:
-    return " and ".join(str(e) for e in trial.effects[len(now.effects) :])
