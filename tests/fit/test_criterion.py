@@ -164,7 +164,7 @@ blocks:
 """)
     measured = series(np.zeros(3), t=np.array([0.0, 0.5, 1.0]), sigma={"x": 1e-3})
     whole = Segment(measured, 0.0, np.arange(3), {"x": 0.0}, ("x",))
-    near = Criterion(model, [whole], [], {}).linearised(0, {}, {"x": 0.0})
+    near = Criterion(model, [whole], [], {}).linearised({}, {0: {"x": 0.0}})[0]
     assert np.isfinite(near.slopes**2).all(), "exp(600) = 4e260"
 
 

@@ -143,7 +143,7 @@ def test_a_start_inside_a_stiff_barrier_is_rescued_by_the_window_before() -> Non
     inside = Segment(m, there.begin, there.rows, {"x": -0.01, "v": 0.0}, ("x", "v"))
 
     def fitted(*segments: Segment) -> np.ndarray:
-        criterion = Criterion(model, segments, [], {}, 1e-8, {"x": 2e-3}, weighting="sum")
+        criterion = Criterion(model, segments, [], {}, 1e-8, {"x": 2e-3}, chained=True)
         return settled(opened(criterion)).squares
 
     assert fitted(inside)[0] > 1e6, "by itself it stays astray"

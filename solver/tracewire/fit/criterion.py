@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Literal
 
 import numpy as np
@@ -14,16 +15,20 @@ from numpy.typing import NDArray
 from tracewire.compile import Model
 from tracewire.errors import DataError, OptionError, Problem, SimulationError, unknown
 from tracewire.fit.loss import LOSSES
-from tracewire.fit.measured import LARGEST
+from tracewire.fit.measured import LARGEST, Measured
 from tracewire.fit.segment import Segment, Unknown, of_diagram, parameter_in
 from tracewire.fit.sensing import Sensing
-from tracewire.solve import Interrupted, Limits, Run, simulate
+from tracewire.solve import Interrupted, Limits, Span, simulate, simulate_spans
+from tracewire.solve.interrupt import Halt, until_interrupted
+from tracewire.solve.limits import beyond_budget
+from tracewire.solve.many import cores
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 Weighting = Literal["mean", "sum"]
 STEP = 1e-4
 PENALTY = 100.0
+LARGE = 2000
 LIMITS = Limits(steps=500_000, seconds=120.0)
 
 
@@ -43,6 +48,15 @@ class Linearised:
         return float(np.sum(self.residual**2))
 
 
+@dataclass(frozen=True, eq=False)
+class _Group:
+    """Segments of one series by number, the steps that they took, and what they warn of."""
+
+    near: dict[int, Linearised]
+    steps: int
+    warnings: set[tuple[str, str]]
+
+
 class Criterion:
     """Residuals of a model on segments, as a function of unknowns and of the segments' free starts.
 
@@ -56,7 +70,8 @@ class Criterion:
     `weighting` is "mean", and rho the loss. So for one series and one signal it is
     mean(residual^2)/2, the objective of paper A's appendix; for several, Eq 5 of paper B.
     `parameters` holds what is fixed, by the names that unknowns have; `sigma` the noise of each
-    signal instead of the declared one, `limits` what one run may cost.
+    signal instead of the declared one, `limits` what one run may cost. Where segments are
+    `chained`, states that are not free go on from one to the next, where it begins at its end.
 
     A segment whose run fails counts as 100 times the spread of its data, and is told in `failures`.
 
@@ -76,6 +91,7 @@ class Criterion:
         weighting: Weighting = "mean",
         loss: str = "linear",
         limits: Limits = LIMITS,
+        chained: bool = False,
     ) -> None:
         if loss not in LOSSES:
             raise OptionError([unknown("loss", loss, LOSSES)])
@@ -96,7 +112,25 @@ class Criterion:
         )
         self._samples = [segment.samples() for segment in self.segments]
         self._weights: dict[int, Vector] = {}
+        self._following = (
+            {n for n in range(1, len(self.segments)) if self._follows(n)} if chained else set()
+        )
         self._rates = any(u.name.startswith("delay.") for u in self.unknowns)
+
+    def _follows(self, n: int) -> bool:
+        """Whether segment n begins where the one before it ends."""
+        before, segment = self.segments[n - 1], self.segments[n]
+        near = int(before.rows[-1]) + 1 == int(segment.rows[0])
+        return bool(segment.free) and before.measured is segment.measured and near
+
+    def follows(self, n: int) -> bool:
+        """Whether segment n goes on where the one before it ends, and is chained to it."""
+        return n in self._following
+
+    @property
+    def remembers(self) -> bool:
+        """Whether states go on from one segment to the next, so that these run together."""
+        return any(set(self.model.states) - set(self.segments[n].free) for n in self._following)
 
     def on(self, segments: Sequence[Segment]) -> Criterion:
         """The same criterion on other segments, of the same series."""
@@ -107,12 +141,6 @@ class Criterion:
         fresh.loss = self.loss
         fresh.sigma = {s.measured.name: self.sigma[s.measured.name] for s in segments}
         return fresh
-
-    def carry(self, n: int, states: Mapping[str, float]) -> None:
-        """Let segment n begin with these values of states that are not free."""
-        segment = self.segments[n]
-        moved = replace(segment, start={**segment.start, **states})
-        self.segments = (*self.segments[:n], moved, *self.segments[n + 1 :])
 
     # --- unknowns -----------------------------------------------------------------------------
 
@@ -212,11 +240,12 @@ class Criterion:
         self.evaluations += 1 + len(self.unknowns) + max((len(s) for s in starts), default=0)
         residuals, matrices = [], []
         self.warnings = set()
+        linearised = self.linearised(named, dict(enumerate(starts)))
         at = len(self.unknowns)
         for n, start in enumerate(starts):
             columns = [*range(len(self.unknowns)), *range(at, at + len(start))]
             at += len(start)
-            near = self.linearised(n, named, start)
+            near = linearised[n]
             matrix = np.zeros((near.residual.size, len(z)))
             matrix[:, columns] = near.slopes * self.scales[columns]
             residuals.append(near.residual)
@@ -224,62 +253,115 @@ class Criterion:
         return residuals, matrices
 
     def linearised(
-        self, n: int, named: Mapping[str, float], start: Mapping[str, float]
-    ) -> Linearised:
-        """Segment n near these unknowns and this start, by the sensitivities of one run.
+        self, named: Mapping[str, float], starts: Mapping[int, Mapping[str, float]]
+    ) -> dict[int, Linearised]:
+        """Segments near these unknowns and starts, by number, each by the sensitivities of one run.
 
-        By differences where such a run fails.
+        By differences where such a run fails. Series run in parallel.
         """
-        segment = self.segments[n]
+        series: dict[int, list[int]] = {}
+        for n in sorted(starts):
+            series.setdefault(id(self.segments[n].measured), []).append(n)
+        workers = min(cores(), len(series))
+        with until_interrupted() as halt:
+
+            def of_series(numbers: list[int]) -> _Group:
+                return self._group(numbers, named, starts, halt)
+
+            try:
+                if workers > 1 and sum(len(self.segments[n].rows) for n in starts) > LARGE:
+                    groups = list(_pool().map(of_series, series.values()))
+                else:
+                    groups = [of_series(numbers) for numbers in series.values()]
+            except Interrupted as error:  # no failed run: the whole search shall stop
+                raise KeyboardInterrupt from error
+        found: dict[int, Linearised] = {}
+        for numbers, group in zip(series.values(), groups, strict=True):
+            self.runs += len(numbers)
+            self.steps += group.steps
+            self.warnings |= group.warnings
+            found |= group.near
+        for n in starts.keys() - found.keys():
+            found[n] = self._differences(n, named, starts[n])
+        return found
+
+    def _group(
+        self,
+        numbers: Sequence[int],
+        named: Mapping[str, float],
+        starts: Mapping[int, Mapping[str, float]],
+        halt: Halt,
+    ) -> _Group:
+        """Segments of one series, as far as their runs end well."""
+        segments = [self.segments[n] for n in numbers]
+        measured = segments[0].measured
         values = {**self.parameters, **named}
-        sensing = Sensing(segment, values, rates=self._rates)
-        moved = {name: parameter_in(name, segment.measured) for name in named}
-        moved |= {f"start.{state}": f"start.{state}" for state in start}
-        try:
-            run = self._run(sensing, values, start, [name for name in moved.values() if name])
-            shown = sensing.shown(run)
-            _refuse_huge(segment, shown)
-            self.warnings |= {(segment.measured.name, warning) for warning in run.warnings}
-        except SimulationError:
-            return self._differences(n, named, start)
-        sigma = self.sigma[segment.measured.name]
-        slopes = (sensing.derivatives(run, moved) / sigma[:, None]).reshape(shown.size, len(moved))
-        if not (np.abs(slopes) < LARGEST).all():  # their squares would be no numbers
-            return self._differences(n, named, start)
-        return Linearised(self.difference(n, shown), slopes, run.final)
+        sensing = Sensing(segments, values, rates=self._rates)
+        free = tuple(dict.fromkeys(f"start.{name}" for n in numbers for name in starts[n]))
+        answers = {name: parameter_in(name, measured) for name in named}
+        answers |= {name: name for name in free}
+        ends = zip(sensing.begins, sensing.ends, sensing.times, strict=True)
+        runs = simulate_spans(
+            self.model,
+            [Span(*end, *self._start(n, starts[n])) for n, end in zip(numbers, ends, strict=True)],
+            parameters=of_diagram(values, measured),
+            rtol=self.rtol,
+            preset=measured.preset,
+            inputs=measured.inputs,
+            limits=self.limits,
+            budget=self.budget - self.steps,
+            sensitivities=[name for name in answers.values() if name],
+            halt=halt,
+        )
+        shown = sensing.shown(runs)
+        sigma = self.sigma[measured.name]
+        slopes = sensing.derivatives(runs, answers) / sigma[:, None]
+        samples = np.concatenate([self._samples[n] for n in numbers])
+        residual = _off(measured, samples, shown) / sigma
+        rows = np.cumsum([0, *(len(segment.rows) for segment in segments)])
+        # squares of what is larger would be no numbers
+        small = (np.abs(shown) < LARGEST).all(axis=1) & (np.abs(slopes) < LARGEST).all(axis=(1, 2))
+        small = np.logical_and.reduceat(small, rows[:-1])
+        near = {}
+        for number, (n, a, b) in enumerate(zip(numbers, rows[:-1], rows[1:], strict=True)):
+            if number in runs.errors or not small[number]:
+                continue
+            own = slopes[a:b].reshape(residual[a:b].size, len(answers))
+            if len(starts[n]) < len(free):
+                mine = [len(named) + free.index(f"start.{name}") for name in starts[n]]
+                own = own[:, [*range(len(named)), *mine]]
+            final = dict(zip(self.model.states, runs.final[number].tolist(), strict=True))
+            near[n] = Linearised(residual[a:b], own, final)
+        steps = int(runs.steps.sum()) + self.limits.steps * len(runs.errors)
+        told = {(measured.name, text) for texts in runs.warnings.values() for text in texts}
+        return _Group(near, steps, told)
+
+    def _start(self, n: int, start: Mapping[str, float]) -> tuple[Mapping[str, float], bool]:
+        """The states that are set where segment n begins, and whether others go on there."""
+        if n in self._following:
+            return start, True
+        return {**self.segments[n].start, **start}, False
 
     def outputs(
         self, segment: Segment, named: Mapping[str, float], start: Mapping[str, float]
     ) -> Vector:
         """What the sensors of a segment show in a run, shape (N, signals)."""
         values = {**self.parameters, **named}
-        sensing = Sensing(segment, values)
-        return sensing.shown(self._run(sensing, values, start))
-
-    def _run(
-        self,
-        sensing: Sensing,
-        values: Mapping[str, float],
-        start: Mapping[str, float],
-        sensitivities: Sequence[str] = (),
-    ) -> Run:
-        segment = sensing.segment
+        sensing = Sensing([segment], values)
         if self.steps > self.budget:
-            what = f"the model takes more than {self.budget:.0f} steps in all"
-            raise SimulationError([Problem(what, hint="Fit fewer or shorter segments.")])
+            raise beyond_budget(self.budget)
         self.runs += 1
         try:
             run = simulate(
                 self.model,
                 parameters=of_diagram(values, segment.measured),
                 start={**segment.start, **start},
-                span=(sensing.begin, sensing.end),
-                times=sensing.times,
+                span=(sensing.begins[0], sensing.ends[0]),
+                times=sensing.times[0],
                 rtol=self.rtol,
                 preset=segment.measured.preset,
                 inputs=segment.measured.inputs,
                 limits=self.limits,
-                sensitivities=sensitivities,
             )
         except Interrupted as error:  # no failed run: the whole search shall stop
             raise KeyboardInterrupt from error
@@ -287,18 +369,12 @@ class Criterion:
             self.steps += self.limits.steps
             raise
         self.steps += run.statistics.steps
-        return run
+        return sensing.shown(run)
 
     def difference(self, n: int, shown: Vector) -> Vector:
         """Residuals of what is shown: shown - measured in sigma, the shortest way around."""
-        segment = self.segments[n]
-        difference = shown - self._samples[n]
-        for column, signal in enumerate(segment.signals):
-            period = segment.measured.periods.get(signal, 0.0)
-            if period > 0:
-                turns = np.round(difference[:, column] / period)
-                difference[:, column] -= period * turns
-        return np.asarray(difference / self.sigma[segment.measured.name])
+        measured = self.segments[n].measured
+        return _off(measured, self._samples[n], shown) / self.sigma[measured.name]
 
     def _residual(self, n: int, named: Mapping[str, float], start: Mapping[str, float]) -> Vector:
         try:
@@ -336,6 +412,22 @@ class Criterion:
             parts.append(((there - at) / h).ravel())
         slopes = np.stack(parts, axis=1) if parts else np.zeros((at.size, 0))
         return Linearised(at, slopes, {})
+
+
+@cache
+def _pool() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(cores(), thread_name_prefix="tracewire")
+
+
+def _off(measured: Measured, samples: Vector, shown: Vector) -> Vector:
+    """What is shown without what was measured, (N, signals): the shortest way around."""
+    difference = shown - samples
+    for column, signal in enumerate(measured.values):
+        period = measured.periods.get(signal, 0.0)
+        if period > 0:
+            turns = np.round(difference[:, column] / period)
+            difference[:, column] -= period * turns
+    return np.asarray(difference)
 
 
 def half_square(vector: Vector) -> float:

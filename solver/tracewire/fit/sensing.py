@@ -1,4 +1,4 @@
-"""From a run to what the sensors of a segment show, and its derivatives.
+"""From runs to what the sensors of segments show, and its derivatives.
 
 A sensor shows gain*z + offset + quad*z^2 + drift*(t - t0) of its signal y, with z = y(t - delay).
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from tracewire.diagram import SENSOR
 from tracewire.fit.segment import Segment
 from tracewire.fit.sensor import Sensor
-from tracewire.solve import Run
+from tracewire.solve import Sensitivities
 
 Vector = NDArray[np.float64]
 Cube = NDArray[np.float64]
@@ -23,59 +23,84 @@ STEP = 1e-3
 """Of a sample interval: how far to each side a signal is sampled for its rate."""
 
 
-class Sensing:
-    """The sensors of a segment with the values of unknowns, and when they look at their signals.
-
-    `named` holds unknowns by name (`offset.SIGNAL` ...), which replace those of the series. With
-    `rates`, signals are sampled for d y/dt, too. `times` are the sample times that a run needs; a
-    sensor that looks back before its begin sees the signal there.
-    """
-
-    def __init__(self, segment: Segment, named: Mapping[str, float], rates: bool = False) -> None:
-        self.segment = segment
-        self.sensors = [_sensor(segment, signal, named) for signal in segment.signals]
-        self.rates = rates
-        t = segment.t
-        self.since = t - segment.measured.zero
-        self.begin = min(segment.begin, float(t[0]))
-        self.at: Sequence[slice | NDArray[np.intp]]
-        if not rates and not any(sensor.delay for sensor in self.sensors):
-            self.times, self.at = t, [slice(len(t))] * len(self.sensors)
-            return
-        looks: Vector = np.array([t - sensor.delay for sensor in self.sensors])
-        if rates:
-            self.step = STEP * float(np.median(np.diff(t))) if len(t) > 1 else STEP
-            looks = np.concatenate([looks, looks - self.step, looks + self.step])
-        self.times, at = np.unique(np.maximum(looks, self.begin), return_inverse=True)
-        self.at = list(at.reshape(looks.shape))
+class Seen(Protocol):
+    """A run, or runs over many spans: what sensors look at."""
 
     @property
-    def end(self) -> float:
-        """Where a run may end: at the last time that is looked at, and after the begin."""
-        last = float(self.times[-1])
-        return last if last > self.begin else float(self.segment.t[-1])
+    def sensitivities(self) -> Sensitivities:
+        """The derivatives of the signals."""
 
-    def shown(self, run: Run) -> Vector:
+    def __getitem__(self, name: str) -> Vector:
+        """The samples of a signal."""
+
+
+class Sensing:
+    """The sensors of segments of one series with the values of unknowns, and when they look at
+    their signals.
+
+    `named` holds unknowns by name (`offset.SIGNAL` ...), which replace those of the series. With
+    `rates`, signals are sampled for d y/dt, too. `times` are the sample times that a run of each
+    segment needs; a sensor that looks back before its begin sees the signal there.
+    """
+
+    def __init__(
+        self, segments: Sequence[Segment], named: Mapping[str, float], rates: bool = False
+    ) -> None:
+        self.segments, self.rates = segments, rates
+        self.signals = segments[0].signals
+        self.sensors = [_sensor(segments[0], signal, named) for signal in self.signals]
+        self.since = np.concatenate([segment.t for segment in segments])
+        self.since -= segments[0].measured.zero
+        self.begins = [min(segment.begin, float(segment.t[0])) for segment in segments]
+        self.at: Sequence[slice | NDArray[np.intp]]
+        if not rates and not any(sensor.delay for sensor in self.sensors):
+            self.times = [segment.t for segment in segments]
+            self.at = [slice(len(self.since))] * len(self.sensors)
+            return
+        self.times, parts, first = [], [], 0
+        for segment, begin in zip(segments, self.begins, strict=True):
+            looks = self._looks(segment.t)
+            times, at = np.unique(np.maximum(looks, begin), return_inverse=True)
+            self.times.append(times)
+            parts.append(first + at.reshape(looks.shape))
+            first += len(times)
+        self.at = list(np.concatenate(parts, axis=1))
+
+    def _looks(self, t: Vector) -> Vector:
+        """When the sensors look to show what they do at times (N,): (looks, N)."""
+        looks: Vector = np.array([t - sensor.delay for sensor in self.sensors])
+        if not self.rates:
+            return looks
+        step = STEP * float(np.median(np.diff(t))) if len(t) > 1 else STEP
+        return np.concatenate([looks, looks - step, looks + step])
+
+    @property
+    def ends(self) -> list[float]:
+        """Where runs may end: at the last time that is looked at, and after the begin."""
+        return [
+            float(times[-1]) if times[-1] > begin else float(segment.t[-1])
+            for segment, times, begin in zip(self.segments, self.times, self.begins, strict=True)
+        ]
+
+    def shown(self, run: Seen) -> Vector:
         """What the sensors show, shape (N, signals)."""
         columns = [
             sensor.shown(run[signal][at], self.since)
-            for signal, sensor, at in zip(self.segment.signals, self.sensors, self.at, strict=False)
+            for signal, sensor, at in zip(self.signals, self.sensors, self.at, strict=False)
         ]
         return np.stack(columns, axis=1)
 
-    def derivatives(self, run: Run, unknowns: Mapping[str, str]) -> Cube:
+    def derivatives(self, run: Seen, unknowns: Mapping[str, str]) -> Cube:
         """d shown/d unknowns, shape (N, signals, unknowns).
 
         `unknowns` gives each unknown by name the name under which the run has the derivatives of
         the signals in it; of a sensor it is ''.
         """
-        found = np.zeros((len(self.segment.rows), len(self.segment.signals), len(unknowns)))
+        found = np.zeros((len(self.since), len(self.signals), len(unknowns)))
         rows = {name: row for row, name in enumerate(run.sensitivities)}
         moving = [column for column, name in enumerate(unknowns.values()) if name]
         moved = [rows[name] for name in unknowns.values() if name]
-        for number, (signal, sensor) in enumerate(
-            zip(self.segment.signals, self.sensors, strict=True)
-        ):
+        for number, (signal, sensor) in enumerate(zip(self.signals, self.sensors, strict=True)):
             at = self.at[number]
             if moved:
                 slopes = run.sensitivities.array[moved, run.sensitivities.signals.index(signal)]
@@ -86,9 +111,9 @@ class Sensing:
                     found[:, number, column] = self._of_sensor(kind, run, number)
         return found
 
-    def _of_sensor(self, kind: str, run: Run, number: int) -> Vector | float:
+    def _of_sensor(self, kind: str, run: Seen, number: int) -> Vector | float:
         """d shown/d an unknown of the sensor of a signal."""
-        signal = self.segment.signals[number]
+        signal = self.signals[number]
         delayed = run[signal][self.at[number]]
         if kind == "delay":
             return -self._slope(self.sensors[number], delayed) * self._rate(run, signal, number)
@@ -104,10 +129,10 @@ class Sensing:
         """d shown/d y(t - delay)."""
         return sensor.gain + 2 * sensor.quad * delayed if sensor.quad else sensor.gain
 
-    def _rate(self, run: Run, signal: str, column: int) -> Vector:
-        count = len(self.segment.signals)
+    def _rate(self, run: Seen, signal: str, column: int) -> Vector:
+        count, times = len(self.signals), np.concatenate(self.times)
         down, up = self.at[count + column], self.at[2 * count + column]
-        width = np.maximum(self.times[up] - self.times[down], 1e-300)
+        width = np.maximum(times[up] - times[down], 1e-300)
         return np.asarray((run[signal][up] - run[signal][down]) / width)
 
 

@@ -92,8 +92,9 @@ from tracewire.solve.limits import Limits
 from tracewire.solve.many import Runs, simulate_many
 from tracewire.solve.observers import Section
 from tracewire.solve.passage import Passage
-from tracewire.solve.run import Event, Run, Statistics
+from tracewire.solve.run import Event, Run, Sensitivities, Statistics
 from tracewire.solve.simulate import parameter_values, simulate
+from tracewire.solve.spans import Span, SpanRuns, simulate_spans
 
 __all__ = [
     "Event",
@@ -103,8 +104,12 @@ __all__ = [
     "Run",
     "Runs",
     "Section",
+    "Sensitivities",
+    "Span",
+    "SpanRuns",
     "Statistics",
     "parameter_values",
     "simulate",
     "simulate_many",
+    "simulate_spans",
 ]

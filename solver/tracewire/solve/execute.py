@@ -81,6 +81,11 @@ class Execution:
         """How far the run is."""
         return self.arrays.progress
 
+    @property
+    def core(self) -> Ints:
+        """The table of the arrays for the core."""
+        return table_of(self.arrays) if self.table is None else self.table
+
     def run(self) -> None:
         """Integrate to the end.
 
@@ -89,12 +94,12 @@ class Execution:
         """
         ready(advance)  # it may take a minute, in which Ctrl-C should end it at once
         if self.halt is not None:
-            if not self._go_on(self.halt):
+            if not self.go_on(self.halt):
                 raise self.interrupted()
             return
         with until_interrupted() as halt:
             try:
-                self._go_on(halt)
+                self.go_on(halt)
             except SimulationError:
                 if not halt.asked:
                     raise
@@ -108,17 +113,20 @@ class Execution:
         what = f"interrupted at t = {now[T]:.9g} s, {way}"
         return Interrupted([Problem(what, hint="What there is of the run is in `.run`.")])
 
-    def _go_on(self, halt: Halt) -> bool:
-        """Integrate until the end, or until the user wants to stop; whether it is the end."""
+    def go_on(self, halt: Halt, status: int | None = None) -> bool:
+        """Integrate until the end, or until the user wants to stop; whether it is the end.
+
+        `status` is what the core has said already of a run that has begun.
+        """
         began = time.perf_counter()
         ints, now = self.progress.ints, self.progress.now
-        table = table_of(self.arrays) if self.table is None else self.table
+        table = self.core
         go_on, core = ready(advance), table.__array_interface__["data"][0]
         budget, last = first_budget(self.model), -PAUSE
         while not halt.asked:
             before, done = self.seconds, int(ints[STEPS])
             ints[BUDGET] = min(budget, self.limits.steps - done)
-            status = go_on(core)
+            status = go_on(core) if status is None else status
             self.seconds = time.perf_counter() - began
             self.empty_log()
             self.check_events()
@@ -128,6 +136,7 @@ class Execution:
                 raise failure(self.model, self.arrays, status)
             self.check_limits()
             budget = next_budget(budget, int(ints[STEPS]) - done, self.seconds - before)
+            status = None
             if self.tell is not None and self.seconds - last >= PAUSE:
                 last, part = self.seconds, float((now[T] - self.start) / now[LENGTH])
                 self.tell(part, self.seconds * (1 - part) / part if part > 0 else np.inf)

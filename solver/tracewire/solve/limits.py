@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tracewire.errors import Problem, SimulationError
+
 
 @dataclass(frozen=True)
 class Limits:
@@ -12,3 +14,9 @@ class Limits:
     steps: int = 50_000_000
     seconds: float = 600.0
     events: int = 1_000_000
+
+
+def beyond_budget(steps: float) -> SimulationError:
+    """The error of a run that is not begun, as those before it have taken too many steps."""
+    what = f"the model takes more than {steps:.0f} steps in all"
+    return SimulationError([Problem(what, hint="Fit fewer or shorter segments.")])

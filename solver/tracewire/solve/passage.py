@@ -95,8 +95,9 @@ class Passage:
         sensitivity = new_sensitivity(model, flow, progress, asked, UNMOVED, {}, self.parameters)
         if asked:  # no recorded signals are followed, but the states
             sensitivity = sensitivity._replace(samples=np.zeros((inner, len(x) * len(x))))
-        self.arrays: Arrays = new_arrays(flow, plan, progress, sensitivity)
-        self._space = Space((inner, len(tables), asked, ()), self.arrays)
+        arrays = new_arrays(flow, plan, progress, sensitivity)
+        self._space = Space((inner, len(tables), asked, ()), arrays)
+        self.arrays: Arrays = self._space.arrays
         self._execution = Execution(
             model,
             self.arrays,
@@ -125,9 +126,7 @@ class Passage:
         arrays.flow.k[:] = packed(tables_of(model, self.parameters, self._inputs))
         now = arrays.progress.now
         now[T], now[END], now[LENGTH] = begin, begin + LONG * length, LONG * length
-        for array, first in self._space.first:
-            if array is arrays.flow.c or array is arrays.flow.k or array is now:
-                first[:] = array
+        self._space.keep()
         self._execution.start = begin
         self.begin_at(begin, start_of(model, arrays.flow, self._start) if x is None else x)
 

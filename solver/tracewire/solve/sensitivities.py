@@ -208,11 +208,15 @@ def set_sensitivity(
         if name not in model.flat.parameters:
             s[:, j] = 0.0
             s[model.states.index(name.removeprefix(START)), j] = 1.0
-    # a change that all of a parameter's value moves a state less than its tolerance need not be
-    # followed closely: exp(-(rate/speed)^2) has such derivatives far from rest
-    sizes = np.array([abs(values.get(name, 0.0)) or 1.0 for name in asked])
-    sensitivity.peak[:] = np.maximum(np.abs(s), progress.atol[:, None] / sizes)
+    sensitivity.peak[:] = np.maximum(np.abs(s), least_peak(progress, asked, values))
     sensitivity.now[0] = progress.now[0]
+
+
+def least_peak(progress: Progress, asked: tuple[str, ...], values: Mapping[str, float]) -> Matrix:
+    """The sensitivities (n, q) below which they need not be followed closely: all of a parameter's
+    value moves a state less than its tolerance there, as far from rest of exp(-(rate/speed)^2)."""
+    sizes = np.array([abs(values.get(name, 0.0)) or 1.0 for name in asked])
+    return np.asarray(progress.atol[:, None] / sizes)
 
 
 def recorded(

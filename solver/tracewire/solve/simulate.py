@@ -22,23 +22,17 @@ from tracewire.solve.run import EventLog, Run
 from tracewire.solve.sensitivities import (
     checked,
     moving_with,
-    new_sensitivity,
     recorded,
     set_sensitivity,
 )
 from tracewire.solve.setup import (
     Table,
     Tolerance,
-    kept_plan,
-    new_arrays,
-    new_flow,
-    new_progress,
     packed,
-    prepare,
     set_up,
     starts,
 )
-from tracewire.solve.space import Space, give_back, take
+from tracewire.solve.space import give_back, space_for
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -90,27 +84,15 @@ def simulate(
     if method != "auto" and method not in NAMES:
         raise OptionError([unknown("method", method, ["auto", *NAMES])])
     tolerance = tolerance_of(model, rtol, atol, method, step, end - begin)
-    vector = np.array([*values.values(), 0.0])  # never empty
     tables = packed(tables_of(model, values, inputs or {}))
     moving = moving_with(model, asked, values, parameters or {}, preset)
-    key = len(samples), len(tables), asked, moving.names
-    space = take(model, key)
-    if space is not None:
-        arrays, flow, state = space.arrays, space.arrays.flow, space.arrays.progress
-        flow.k[:] = tables
-        prepare(model, flow, vector)
-        x = start_of(model, flow, start or {})
-        set_up(state, x, (begin, end), samples, method, tolerance)
-        if asked:
-            sensitivity = arrays.sensitivity
-            set_sensitivity(model, flow, state, sensitivity, asked, moving, start or {}, values)
-    else:
-        flow = new_flow(model, vector, tables)
-        x = start_of(model, flow, start or {})
-        state = new_progress(model, x, (begin, end), samples, method, tolerance)
-        sensitivity = new_sensitivity(model, flow, state, asked, moving, start or {}, values)
-        arrays = new_arrays(flow, kept_plan(model), state, sensitivity)
-        space = Space(key, arrays)
+    space = space_for(model, values, tables, asked, moving, len(samples))
+    arrays, flow, state = space.arrays, space.arrays.flow, space.arrays.progress
+    x = start_of(model, flow, start or {})
+    set_up(state, x, (begin, end), samples, method, tolerance)
+    if asked:
+        sensitivity = arrays.sensitivity
+        set_sensitivity(model, flow, state, sensitivity, asked, moving, start or {}, values)
     execution = Execution(
         model, arrays, limits or Limits(), begin, progress, None, asked, space.table
     )

@@ -2,39 +2,97 @@
 
 from __future__ import annotations
 
-from typing import cast
+from collections.abc import Mapping
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.solve.core.arrays import Arrays, table_of
+from tracewire.solve.sensitivities import Moving, new_sensitivity
+from tracewire.solve.setup import (
+    Tolerance,
+    kept_plan,
+    new_arrays,
+    new_flow,
+    new_progress,
+    prepare,
+)
 
 Vector = NDArray[np.float64]
 Key = tuple[int, int, tuple[str, ...], tuple[str, ...]]
 MOST = 16  # kinds of spaces that a model keeps
 MOST_NUMBERS = 500_000  # of samples and tables; larger arrays are not kept
-ONLY_WRITTEN = ("address", "log", "stiff", "times")
-"""What a run does not read before it has written it."""
+ONLY_WRITTEN = ("address", "c", "k", "log", "stiff", "times")
+"""What is written before each run, or not read before the run has written it."""
 
 
 class Space:
     """The arrays of one run, and their table for the core.
 
     `key` says which runs they fit: the number of samples and the numbers in their tables, the
-    sensitivities, and the parameters that move with these.
+    sensitivities, and the parameters that move with these. `block` is the memory of all that a run
+    changes, `first` what was there before.
     """
 
     def __init__(self, key: Key, arrays: Arrays) -> None:
-        self.key, self.arrays, self.table = key, arrays, table_of(arrays)
-        groups = [group for group in arrays if group is not arrays.plan]
-        fields = [item for group in groups for item in group._asdict().items()]
-        self.first = [(a, a.copy()) for name, a in fields if a.size and name not in ONLY_WRITTEN]
+        self.key = key
+        self.arrays, self.block = _in_one_block(arrays)
+        self.table, self.first = table_of(self.arrays), self.block.copy()
 
     def renew(self) -> None:
         """Let the arrays be as they were before their run."""
-        for array, first in self.first:
-            array[...] = first
+        self.block[:] = self.first
+
+    def keep(self) -> None:
+        """Let them be before each further run as they are now."""
+        self.first[:] = self.block
+
+
+def _in_one_block(arrays: Arrays) -> tuple[Arrays, Vector]:
+    """The arrays with all that a run changes in one block of memory, and that block."""
+    groups: list[Any] = list(arrays)
+    fields = [
+        (number, name, array)
+        for number, group in enumerate(groups)
+        for name, array in group._asdict().items()
+        if group is not arrays.plan and name not in ONLY_WRITTEN
+    ]
+    block = np.empty(sum(array.size for *_, array in fields))
+    first = 0
+    for number, name, array in fields:
+        part = block[first : first + array.size].view(array.dtype).reshape(array.shape)
+        part[...] = array
+        groups[number] = groups[number]._replace(**{name: part})
+        first += array.size
+    return Arrays(*groups), block
+
+
+def space_for(
+    model: Model,
+    values: Mapping[str, float],
+    tables: Vector,
+    asked: tuple[str, ...],
+    moving: Moving,
+    count: int,
+) -> Space:
+    """A free space for `count` samples, whose field has these parameters and packed tables; start,
+    span and sensitivities are for the caller to set."""
+    vector = np.array([*values.values(), 0.0])  # never empty
+    key = count, len(tables), asked, moving.names
+    space = take(model, key)
+    if space is None:
+        flow = new_flow(model, vector, tables)
+        nowhere, times = np.zeros(model.sizes.states), np.zeros(count)
+        tolerance = Tolerance(1.0, np.ones(len(nowhere)))
+        progress = new_progress(model, nowhere, (0.0, 1.0), times, "auto", tolerance)
+        sensitivity = new_sensitivity(model, flow, progress, asked, moving, {}, values)
+        return Space(key, new_arrays(flow, kept_plan(model), progress, sensitivity))
+    flow = space.arrays.flow
+    flow.k[:] = tables
+    prepare(model, flow, vector)
+    return space
 
 
 def take(model: Model, key: Key) -> Space | None:

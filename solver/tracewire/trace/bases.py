@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
-from scipy.signal import lfilter
 
 from tracewire.trace.levels import Trajectory
 from tracewire.trace.places import Place
@@ -229,6 +228,8 @@ def _history(runs: Sequence[Trajectory], q: Sequence[Vector], v: Sequence[Vector
 
 def lowpassed(t: Vector, x: Vector, lag: float) -> Vector:
     """y with lag*y' = x - y, begun at the first value; even samples."""
+    from scipy.signal import lfilter  # half a second that only the map of what is missing pays
+
     keep = math.exp(-float(np.median(np.diff(t))) / lag)
     found, _ = lfilter([1 - keep], [1, -keep], x, zi=[keep * x[0]])
     return np.asarray(found)

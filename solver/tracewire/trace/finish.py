@@ -16,7 +16,8 @@ from tracewire.trace.shortlist import MANY
 from tracewire.trace.trial import Added, Trial
 
 CHEAP = 6.0
-RELATED = 0.9
+RELATED, ALIKE = 0.9, 0.5
+"""The likeness from which on an effect is a rival; and where two effects came together."""
 RIVALS = 5
 CERTAIN = 10.0
 """The standard errors from which on no model without a term is tried: it is there."""
@@ -160,14 +161,13 @@ def _known_rivals(search: Search, effect: Added) -> list[tuple[Added, float]]:
             for one in step.tried
             if len(one.proposal.rows) == 1
         }
-        # singles say little where two effects came together
         together = len(step.after.effects) > len(step.before.effects) + 1
         found = []
         for name, row in rows.items():
             if name == str(effect):
                 continue
             likeness = step.screen.columns.likeness(mine.columns, row.columns)
-            if likeness > RELATED or name in tried or together:
+            if likeness > (ALIKE if together else RELATED) or name in tried:
                 found.append((row.added, likeness, tried.get(name, np.inf)))
         found.sort(key=lambda item: (item[2], -item[1]))
         return [(added, likeness) for added, likeness, _ in found]

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import gumbel_r
+from scipy.special import chdtrc
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 DRAWS = 200
 SEED = 20
+NEGLIGIBLE = 1e-9
 HIDDEN = 1e-6
 """The part of a column's square beyond which the unknowns that are there imitate it completely."""
 
@@ -55,8 +57,20 @@ class Columns:
         """The sum of squared residuals."""
         return float(self.residual @ self.residual)
 
+    @cached_property
+    def _alone(self) -> tuple[Vector, Vector]:
+        """The falls and the coefficients (K,) of each column alone."""
+        sizes = np.einsum("ij,ij->j", self.matrix, self.matrix)
+        seen = (1 - self.masked >= HIDDEN) & (sizes > 0)
+        along = self.residual @ self.matrix
+        values = np.where(seen, -along / np.where(seen, sizes, 1.0), 0.0)
+        return -along * values, values
+
     def score(self, indices: Sequence[int]) -> tuple[float, Vector]:
         """By how much columns taken together lower the sum of squares, and their coefficients."""
+        if len(indices) == 1:
+            falls, values = self._alone
+            return float(falls[indices[0]]), values[list(indices)]
         chosen = self.matrix[:, list(indices)]
         if min(1 - self.masked[list(indices)]) < HIDDEN:
             return 0.0, np.zeros(len(indices))
@@ -85,9 +99,16 @@ class Columns:
         """The probability that noise alone gives some group a fall of `best` or more.
 
         200 draws of white noise are scored as the residual is, all groups at once, and a Gumbel
-        distribution is fitted to the largest scores; so correlations between columns count, and no
-        run is needed. `best` is a fall in the noise's variance, counted by N_eff.
+        distribution is fitted to the largest scores by their moments; so correlations between
+        columns count, and no run is needed. `best` is a fall in the noise's variance, counted by
+        N_eff. Where the sum of the chances of all groups, which is never less, is next to nothing,
+        it is that sum.
         """
+        variance = (self.rss - best) / max(self.freedom, 1)
+        fall = best * self.part / max(variance, 1e-300)
+        most = sum(float(chdtrc(len(group), fall)) for group in groups)
+        if most < NEGLIGIBLE:
+            return most
         rng = np.random.default_rng(SEED)
         noise = rng.standard_normal((len(self.residual), DRAWS))
         largest = np.zeros(DRAWS)
@@ -104,6 +125,6 @@ class Columns:
             if len(group) > 1:
                 basis, _ = np.linalg.qr(self.matrix[:, list(group)])
                 largest = np.maximum(largest, np.sum((basis.T @ noise) ** 2, axis=0))
-        place, scale = gumbel_r.fit(largest)
-        variance = (self.rss - best) / max(self.freedom, 1)
-        return float(gumbel_r.sf(best * self.part / max(variance, 1e-300), place, scale))
+        scale = float(np.std(largest, ddof=1)) * 6**0.5 / np.pi
+        place = float(np.mean(largest)) - np.euler_gamma * scale
+        return float(-np.expm1(-np.exp(-(fall - place) / max(scale, 1e-300))))

@@ -293,6 +293,7 @@ class Bench:
             self.rtol,
             self.sigma,
             weighting="sum",
+            chained=True,
             limits=Limits(LEAST_STEPS + STEPS * longest, SECONDS, EVENTS * (longest + 10)),
         )
 

@@ -125,9 +125,13 @@ class Windows:
 
     @property
     def segments(self) -> list[Segment]:
-        """The windows with their fitted starts."""
-        pairs = zip(self.criterion.segments, self.starts, strict=True)
-        return [replace(s, start={**s.start, **start}) for s, start in pairs]
+        """The windows with their fitted starts, and memories as the window before has left them."""
+        found = []
+        for n, segment in enumerate(self.criterion.segments):
+            left = self.near[n - 1].final if self.criterion.follows(n) else {}
+            start = {**segment.start, **left, **self.starts[n]}
+            found.append(replace(segment, start=start))
+        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,8 +164,31 @@ def opened(criterion: Criterion) -> Windows:
     """The windows where their segments begin."""
     values = {u.name: u.value for u in criterion.unknowns}
     starts = [{name: s.start[name] for name in s.free} for s in criterion.segments]
-    near = [criterion.linearised(n, values, start) for n, start in enumerate(starts)]
-    return Windows(criterion, values, tuple(starts), tuple(near))
+    near = criterion.linearised(values, dict(enumerate(starts)))
+    return Windows(criterion, values, tuple(starts), tuple(near[n] for n in range(len(starts))))
+
+
+def begun_at(windows: Windows, starts: Mapping[int, Mapping[str, float]]) -> Windows:
+    """The windows with other starts of some, by number; the unknowns stay.
+
+    Where memories go on from one to the next all of them run, else those.
+    """
+    if not starts:
+        return windows
+    there = {**dict(enumerate(windows.starts)), **starts}
+    run = there if windows.criterion.remembers else starts
+    found = windows.criterion.linearised(windows.values, run)
+    near = tuple(found.get(n, old) for n, old in enumerate(windows.near))
+    return replace(windows, starts=tuple(there[n] for n in range(len(near))), near=near)
+
+
+def better(windows: Windows, other: Windows, rows: Sequence[int]) -> Windows:
+    """The windows with those of some others where these do better."""
+    starts, near = list(windows.starts), list(windows.near)
+    for n in rows:
+        if other.near[n].square < near[n].square:
+            starts[n], near[n] = other.starts[n], other.near[n]
+    return replace(windows, starts=tuple(starts), near=tuple(near))
 
 
 def settled(windows: Windows) -> Windows:
@@ -170,80 +197,62 @@ def settled(windows: Windows) -> Windows:
     A window whose start is led astray (a start inside a stiff barrier kicks it away) is tried from
     the end of the window before it.
     """
-    starts: list[Mapping[str, float]] = list(windows.starts)
-    near = list(windows.near)
-    for n in range(len(near)):
-        near[n] = _carried(windows, near, n)
-        current = replace(windows, starts=tuple(starts), near=tuple(near))
-        starts[n], near[n] = _settled_one(current, n)
-        ends = current.near[n - 1].final if n and _follows(windows, n) else {}
-        expected = near[n].residual.size
-        if ends and near[n].square > 2 * expected:
-            start: Mapping[str, float] = {name: ends[name] for name in starts[n]}
-            other = windows.criterion.linearised(n, windows.values, start)
-            there = replace(
-                current,
-                starts=(*starts[:n], start, *starts[n + 1 :]),
-                near=(*near[:n], other, *near[n + 1 :]),
-            )
-            start, other = _settled_one(there, n)
-            if other.square < near[n].square:
-                starts[n], near[n] = start, other
-    return replace(windows, starts=tuple(starts), near=tuple(near))
+    windows = _settled(windows, range(len(windows.near)), SETTLING)
+    off = [n for n, near in enumerate(windows.near) if near.square > 2 * near.residual.size]
+    there = begun_at(windows, _ends_before(windows, off))
+    rows = [n for n in off if there.starts[n] is not windows.starts[n]]
+    return _again(better(windows, _settled(there, rows, SETTLING), rows))
 
 
-def carried(windows: Windows) -> Windows:
-    """The windows with memories that go on from one to the next.
-
-    A state that is not free, such as that of an effect with memory, begins where it ended before.
-    """
-    near = list(windows.near)
-    for n in range(len(near)):
-        near[n] = _carried(windows, near, n)
-    return replace(windows, near=tuple(near))
+def _again(windows: Windows) -> Windows:
+    """The windows with memories as they are after starts of some have moved."""
+    remembers = windows.criterion.remembers
+    return begun_at(windows, dict(enumerate(windows.starts))) if remembers else windows
 
 
-def _carried(windows: Windows, near: Sequence[Linearised], n: int) -> Linearised:
-    """Window n with the memories that the one before it has left."""
-    segment = windows.criterion.segments[n]
-    if not n or not segment.free or not _follows(windows, n):
-        return near[n]
-    ends = {name: x for name, x in near[n - 1].final.items() if name not in segment.free}
-    if all(abs(x - segment.start.get(name, np.inf)) <= 0.0 for name, x in ends.items()):
-        return near[n]
-    windows.criterion.carry(n, ends)
-    return windows.criterion.linearised(n, windows.values, windows.starts[n])
+def _ends_before(windows: Windows, rows: Sequence[int]) -> dict[int, Mapping[str, float]]:
+    """The ends of the windows before some, which are starts for these, by number."""
+    found: dict[int, Mapping[str, float]] = {}
+    for n in rows:
+        ends = windows.near[n - 1].final if windows.criterion.follows(n) else {}
+        if ends:
+            found[n] = {name: ends[name] for name in windows.starts[n]}
+    return found
 
 
-def _settled_one(
-    windows: Windows, n: int, steps: int = SETTLING
-) -> tuple[Mapping[str, float], Linearised]:
-    """The start of window n fitted by damped Gauss-Newton steps."""
-    start: Mapping[str, float] = windows.starts[n]
-    near, share = windows.near[n], 1.0
-    if not start:
-        return start, near
-    answer: Matrix | None = None
+def _settled(windows: Windows, rows: Sequence[int], steps: int) -> Windows:
+    """The starts of some windows fitted by damped Gauss-Newton steps, each for itself."""
+    share = {n: 1.0 for n in rows if windows.starts[n]}
+    answers: dict[int, Vector] = {}
     for _ in range(steps):
-        if answer is None:
-            now = replace(windows, near=(*windows.near[:n], near, *windows.near[n + 1 :]))
-            view = projection(now, n)
-            answer = -view.answer @ near.residual.ravel()
-            gain = float(np.sum((view.basis.T @ near.residual.ravel()) ** 2))
-            if gain < max(SETTLED, CONVERGED * near.square):
-                break
-        moved = dict(zip(start, np.array(list(start.values())) + share * answer, strict=True))
-        if _far_off(windows, n, moved):
-            share /= 4
-            continue
-        there = windows.criterion.linearised(n, windows.values, moved)
-        if not there.ran:
+        moved: dict[int, Mapping[str, float]] = {}
+        for n in list(share):
+            near = windows.near[n]
+            if n not in answers:
+                view = projection(windows, n)
+                gain = float(np.sum((view.basis.T @ near.residual.ravel()) ** 2))
+                if gain < max(SETTLED, CONVERGED * near.square):
+                    del share[n]
+                    continue
+                answers[n] = -view.answer @ near.residual.ravel()
+            start = np.array(list(windows.starts[n].values())) + share[n] * answers[n]
+            moved[n] = dict(zip(windows.starts[n], start.tolist(), strict=True))
+            if _far_off(windows, n, moved[n]):
+                share[n] /= 4
+                del moved[n]
+        if not share:
             break
-        if there.square < near.square:
-            start, near, share, answer = moved, there, min(2 * share, 1.0), None
-        else:
-            share /= 4
-    return start, near
+        there = begun_at(windows, moved)
+        for n in moved:
+            if not there.near[n].ran:
+                del share[n]
+            elif there.near[n].square < windows.near[n].square:
+                share[n] = min(2 * share[n], 1.0)
+                del answers[n]
+            else:
+                share[n] /= 4
+        windows = better(windows, there, list(moved))
+    return windows
 
 
 def descended(windows: Windows, steps: int = 20, target: float = np.inf) -> tuple[Windows, bool]:
@@ -280,7 +289,7 @@ def descended(windows: Windows, steps: int = 20, target: float = np.inf) -> tupl
             failures += there is None
             if there is not None and there.rss < windows.rss:
                 before, gained = gained, windows.rss - there.rss
-                windows = carried(there)
+                windows = there
                 # what was refused a moment ago would be refused again
                 damping = damping if refused else max(damping / 10, LEAST_DAMPING)
                 break
@@ -334,30 +343,33 @@ def _moved(windows: Windows, views: Sequence[Projection], step: Vector) -> Windo
     values = {name: windows.values[name] + float(d) for name, d in zip(names, step, strict=True)}
     for u in windows.criterion.unknowns:
         values[u.name] = min(max(values[u.name], u.low), u.high)
-    starts: list[Mapping[str, float]] = []
-    near: list[Linearised] = []
+    starts: dict[int, Mapping[str, float]] = {}
     promised = []
     for n, (view, old) in enumerate(zip(views, windows.near, strict=True)):
         expected = old.residual.ravel() + old.slopes[:, :count] @ step
         moved = np.array(list(windows.starts[n].values())) - view.answer @ expected
         start: Mapping[str, float] = dict(zip(windows.starts[n], moved.tolist(), strict=True))
-        if _far_off(windows, n, start):
-            start = windows.starts[n]
-        there_now = windows.criterion.linearised(n, values, start)
-        if not there_now.ran and old.ran:  # a start that is led into a barrier is kicked away
-            start = windows.starts[n]
-            there_now = windows.criterion.linearised(n, values, start)
-        if not there_now.ran and old.ran:
-            return None
-        starts.append(start)
-        near.append(there_now)
+        starts[n] = windows.starts[n] if _far_off(windows, n, start) else start
         promised.append(float(np.sum(view.off(expected) ** 2)))
-    there = replace(windows, values=values, starts=tuple(starts), near=tuple(near))
-    limits = 2 * np.array(promised) + 2 * np.array([x.residual.size for x in near])
-    for n in np.flatnonzero(there.squares > np.maximum(limits, windows.squares)).tolist():
-        near[n], starts[n] = _rescued(there, windows.starts[n], n)
-        there = replace(there, starts=tuple(starts), near=tuple(near))
-    return there
+    there = begun_at(replace(windows, values=values), starts)
+    # a start that is led into a barrier is kicked away
+    lost = [n for n, old in enumerate(windows.near) if old.ran and not there.near[n].ran]
+    there = begun_at(there, {n: windows.starts[n] for n in lost})
+    if not all(there.near[n].ran for n in lost):
+        return None
+    limits = 2 * np.array(promised) + 2 * np.array([x.residual.size for x in there.near])
+    far = np.flatnonzero(there.squares > np.maximum(limits, windows.squares)).tolist()
+    return _rescued(there, {n: windows.starts[n] for n in far}) if far else there
+
+
+def _rescued(windows: Windows, before: Mapping[int, Mapping[str, float]]) -> Windows:
+    """Some windows from where they were `before`, or from the ends of those before them, where that
+    does better."""
+    rows = list(before)
+    tried = better(windows, begun_at(windows, before), rows)
+    ends = _ends_before(windows, rows)
+    tried = better(tried, begun_at(windows, ends), list(ends))
+    return _again(_settled(tried, rows, RESCUING))
 
 
 def _far_off(windows: Windows, n: int, start: Mapping[str, float]) -> bool:
@@ -367,27 +379,3 @@ def _far_off(windows: Windows, n: int, start: Mapping[str, float]) -> bool:
         not abs(value - segment.start.get(name, 0.0)) < FAR_OFF * segment.start_scale(name)
         for name, value in start.items()
     )
-
-
-def _rescued(
-    windows: Windows, before: Mapping[str, float], n: int
-) -> tuple[Linearised, Mapping[str, float]]:
-    """Window n from where it was, or from the end of the one before it, where that does better."""
-    tried = [(windows.near[n], windows.starts[n])]
-    ends = windows.near[n - 1].final if n and _follows(windows, n) else {}
-    for start in (before, {name: ends[name] for name in before} if ends else {}):
-        if start:
-            tried.append((windows.criterion.linearised(n, windows.values, start), start))
-    near, start = min(tried, key=lambda pair: pair[0].square)
-    there = replace(
-        windows,
-        starts=(*windows.starts[:n], start, *windows.starts[n + 1 :]),
-        near=(*windows.near[:n], near, *windows.near[n + 1 :]),
-    )
-    start, near = _settled_one(there, n, RESCUING)
-    return near, start
-
-
-def _follows(windows: Windows, n: int) -> bool:
-    one, other = windows.criterion.segments[n - 1], windows.criterion.segments[n]
-    return one.measured is other.measured and int(one.rows[-1]) + 1 == int(other.rows[0])

@@ -153,8 +153,8 @@ class Chain:
         segment, criterion = self.segments[n], self.criterion
         values = {**criterion.parameters, **named}
         rates = any(name.startswith("delay.") for name in named)
-        sensing = Sensing(segment, values, rates=rates)
-        times = sensing.times
+        sensing = Sensing([segment], values, rates=rates)
+        times = sensing.times[0]
         if self.follows[n]:
             times = np.append(times, self.segments[n + 1].begin)
         try:
@@ -162,7 +162,7 @@ class Chain:
                 criterion.model,
                 parameters=of_diagram(values, segment.measured),
                 start={**segment.start, **starts[n]},
-                span=(sensing.begin, float(times[-1])),
+                span=(sensing.begins[0], float(times[-1])),
                 times=times,
                 rtol=criterion.rtol,
                 preset=segment.measured.preset,

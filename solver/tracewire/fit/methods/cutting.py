@@ -48,7 +48,7 @@ def cut(model: Model, whole: Criterion, segment: Segment) -> list[Segment]:
         run = _run(model, whole, values, part, {**segment.start, **own} if first == 0 else now)
         length = least
         if run is not None:
-            sensing = Sensing(part, values)
+            sensing = Sensing([part], values)
             off = _around(part, sensing.shown(run) - part.samples())
             length = max(least, followed(off, spread))
         longest = max(longest, min(length, last - first))
@@ -110,14 +110,14 @@ def _run(
     start: dict[str, float],
 ) -> Run | None:
     """The run of a part, None where it fails."""
-    sensing = Sensing(part, values)
+    sensing = Sensing([part], values)
     try:
         return simulate(
             model,
             parameters=of_diagram(values, part.measured),
             start=start,
-            span=(sensing.begin, sensing.end),
-            times=sensing.times,
+            span=(sensing.begins[0], sensing.ends[0]),
+            times=sensing.times[0],
             rtol=whole.rtol,
             preset=part.measured.preset,
             inputs=part.measured.inputs,

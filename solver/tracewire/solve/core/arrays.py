@@ -184,6 +184,35 @@ class Sensitivity(NamedTuple):
     order: Ints
 
 
+class Spans(NamedTuple):
+    """Runs of one model over many spans, each from a start of its own, one after the other.
+
+    `at`: the number of the span, 1 while it has begun and not ended, the steps before a pause, the
+    events that a span may have. `ends` (W, 2): begin and end of each. `rows` (W + 1,): where its
+    samples begin in `times` (M,), `samples` (M, R) and `answers` (M, R*q). `x` (W, n) and `s`
+    (W, n*q): its start, and how that moves; `floor` (n, q) the least `peak`. `follows` (W,): 1
+    where the states in `kept` go on from the span before. `final` (W, n) and `steps` (W,): the
+    states at its end, and what it took. `first` is what `block` holds, which is all that a run
+    changes, before it.
+    """
+
+    at: Ints
+    ends: Matrix
+    rows: Ints
+    x: Matrix
+    s: Matrix
+    floor: Matrix
+    follows: Ints
+    kept: Ints
+    times: Vector
+    samples: Matrix
+    answers: Matrix
+    final: Matrix
+    steps: Ints
+    block: Vector
+    first: Vector
+
+
 class Arrays(NamedTuple):
     """All arrays of a run."""
 
@@ -196,11 +225,11 @@ class Arrays(NamedTuple):
     sensitivity: Sensitivity
 
 
-def table_of(arrays: Arrays) -> Ints:
+def table_of(groups: Arrays | Sequence[Spans]) -> Ints:
     """Address, rows and columns of each array, in the order of the classes and their fields."""
     rows = [
         (array.__array_interface__["data"][0], *array.shape, 1)[:3]
-        for group in cast(Sequence[Sequence[NDArray[Any]]], arrays)
+        for group in cast(Sequence[Sequence[NDArray[Any]]], groups)
         for array in group
     ]
     return np.array(rows, dtype=np.int64).ravel()

@@ -1,0 +1,137 @@
+"""Runs over many spans, one after the other, without a return to Python between them."""
+
+from __future__ import annotations
+
+import math
+
+import numba
+
+from tracewire.solve.core.arrays import (
+    BEHIND,
+    Flow,
+    Plan,
+    Progress,
+    Sensitivity,
+    Spans,
+    copy,
+    int_pointer,
+    ints,
+    is_sensitive,
+    matrix,
+    progress_of,
+    sensitivity_of,
+    vector,
+)
+from tracewire.solve.core.codes import (
+    END,
+    FINISHED,
+    LENGTH,
+    LOGGED,
+    PAUSED,
+    REJECTED,
+    STEPS,
+    WARNINGS,
+    T,
+)
+from tracewire.solve.core.integrate import advance
+from tracewire.solve.core.jit import helper, unit
+
+SPAN, INSIDE, LEFT, EVENTS = range(4)  # places in Spans.at
+BEFORE = len(Flow._fields) + len(Plan._fields)
+TIMES = BEFORE + Progress._fields.index("times")
+SAMPLES = BEFORE + Progress._fields.index("samples")
+ANSWERS = BEHIND + Sensitivity._fields.index("samples")
+FIELDS = BEHIND + len(Sensitivity._fields)
+OF_TIMES = Spans._fields.index("times")
+
+
+@helper
+def spans_of(spans: int) -> Spans:
+    """The spans."""
+    return Spans(
+        ints(spans, 0),
+        matrix(spans, 1),
+        ints(spans, 2),
+        matrix(spans, 3),
+        matrix(spans, 4),
+        matrix(spans, 5),
+        ints(spans, 6),
+        ints(spans, 7),
+        vector(spans, 8),
+        matrix(spans, 9),
+        matrix(spans, 10),
+        matrix(spans, 11),
+        ints(spans, 12),
+        vector(spans, 13),
+        vector(spans, 14),
+    )
+
+
+@unit
+def advance_spans(core: int, spans: int) -> int:
+    """Go on with the spans until all are done, the budget of steps is used up, or one is odd.
+
+    Returns FINISHED or PAUSED between two spans; INSIDE of a span what `advance` returns, also
+    FINISHED where there is something to say of it: its end is then for the caller to keep.
+    """
+    many = spans_of(spans)
+    at, progress = many.at, progress_of(core)
+    while at[SPAN] < len(many.ends):
+        number = at[SPAN]
+        _begin(core, spans, number)
+        at[INSIDE] = 1
+        status = advance(core)
+        if status != FINISHED or _is_odd(core, at[EVENTS]):
+            return status
+        copy(progress.x, many.final[number])
+        many.steps[number] = progress.ints[STEPS] - progress.ints[REJECTED]
+        at[SPAN], at[INSIDE] = number + 1, 0
+        at[LEFT] -= progress.ints[STEPS]
+        if at[LEFT] <= 0:
+            return PAUSED
+    return FINISHED
+
+
+@unit
+def _begin(core: int, spans: int, number: int) -> None:
+    """Let a run that has not begun be that over one of the spans."""
+    many = spans_of(spans)
+    copy(many.first, many.block)
+    table = numba.carray(int_pointer(core), (3 * FIELDS,))
+    there = numba.carray(int_pointer(spans), (3 * (OF_TIMES + 3),))
+    row = many.rows[number]
+    for place in range(3):
+        field = TIMES if place == 0 else (SAMPLES if place == 1 else ANSWERS)
+        width = 1 if place == 0 else there[3 * (OF_TIMES + place) + 2]
+        table[3 * field] = there[3 * (OF_TIMES + place)] + 8 * row * width
+        table[3 * field + 1] = many.rows[number + 1] - row
+    progress = progress_of(core)
+    now, x = progress.now, progress.x
+    now[T], now[END] = many.ends[number, 0], many.ends[number, 1]
+    now[LENGTH] = now[END] - now[T]
+    copy(many.x[number], x)
+    if many.follows[number]:
+        for state in many.kept:
+            if math.isfinite(many.final[number - 1, state]):
+                x[state] = many.final[number - 1, state]
+    if not is_sensitive(core):
+        return
+    s, peak = sensitivity_of(core).s, sensitivity_of(core).peak
+    for i in range(s.shape[0]):
+        for j in range(s.shape[1]):
+            s[i, j] = many.s[number, i * s.shape[1] + j]
+            peak[i, j] = max(abs(s[i, j]), many.floor[i, j])
+
+
+@helper
+def _is_odd(core: int, events: int) -> bool:
+    """Whether there is something to say of a run that has ended."""
+    progress = progress_of(core)
+    odd = progress.ints[WARNINGS] != 0 or progress.ints[LOGGED] > events
+    for mark in progress.overlooked:
+        odd = odd or mark != 0
+    if is_sensitive(core):
+        flags = sensitivity_of(core).flags
+        for kind in range(len(flags)):
+            odd = odd or flags[kind, 0] != 0
+    return odd

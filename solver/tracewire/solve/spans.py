@@ -1,0 +1,229 @@
+"""`simulate_spans`: one model with one set of parameters, over many spans from starts of their own.
+
+What the windows of a measured series need: many short runs, which differ in where they begin. They
+are prepared once, and the core goes from one to the next on its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tracewire.compile import Model
+from tracewire.errors import OptionError, Problem, SimulationError, unknown
+from tracewire.solve.core.arrays import Spans, table_of
+from tracewire.solve.core.codes import BUDGET, FINISHED, LOG_FULL, PAUSED, REJECTED, STEPS
+from tracewire.solve.core.jit import ready
+from tracewire.solve.core.spans import INSIDE, LEFT, SPAN, advance_spans
+from tracewire.solve.execute import Execution
+from tracewire.solve.failures import failure
+from tracewire.solve.interrupt import Halt, Interrupted
+from tracewire.solve.limits import Limits, beyond_budget
+from tracewire.solve.run import Sensitivities
+from tracewire.solve.sensitivities import (
+    START,
+    checked,
+    least_peak,
+    moving_with,
+    recorded,
+    set_sensitivity,
+)
+from tracewire.solve.setup import packed, set_up, starts
+from tracewire.solve.simulate import parameter_values, refuse_nan, tables_of, tolerance_of
+from tracewire.solve.space import Space, give_back, space_for
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+PAUSE_STEPS = 50_000
+"""Steps of all spans before Ctrl-C is heard."""
+
+
+@dataclass(frozen=True, eq=False)
+class Span:
+    """A run from `begin` to `end` in s, sampled at `times` (N,) within; `start` overrides start
+    values of the diagram. With `follows`, states that are not in `start` begin where the span
+    before has ended."""
+
+    begin: float
+    end: float
+    times: Vector
+    start: Mapping[str, float]
+    follows: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class SpanRuns:
+    """Runs over spans: `runs["name"]` (M,) in SI, the samples of one span behind those of the one
+    before; those of span n are `rows[n]` to `rows[n + 1]`.
+
+    `sensitivities` as those of a run; `final` (spans, states), `steps` (spans,) accepted steps, and
+    by number `errors` of spans whose run failed, whose samples mean nothing, and `warnings`.
+    """
+
+    signals: Mapping[str, Vector]
+    sensitivities: Sensitivities
+    rows: NDArray[np.int64]
+    final: Matrix
+    steps: NDArray[np.int64]
+    errors: Mapping[int, SimulationError]
+    warnings: Mapping[int, tuple[str, ...]]
+
+    def __getitem__(self, name: str) -> Vector:
+        return self.signals[name]
+
+
+def simulate_spans(
+    model: Model,
+    spans: Sequence[Span],
+    *,
+    parameters: Mapping[str, float] | None = None,
+    rtol: float = 1e-6,
+    preset: str = "",
+    inputs: Mapping[str, tuple[ArrayLike, ArrayLike]] | None = None,
+    limits: Limits | None = None,
+    budget: float = np.inf,
+    sensitivities: Sequence[str] = (),
+    halt: Halt | None = None,
+) -> SpanRuns:
+    """Simulate a model over many spans: each run is what `simulate` makes of it, alone.
+
+    Arguments are those of `simulate`; `limits` hold for each run, `budget` for the steps of all: a
+    run that begins beyond it fails. `halt` says whether the user wants to stop. A run that fails
+    does not end the others. Raises OptionError for arguments that do not fit, and Interrupted.
+    """
+    values = parameter_values(model, parameters or {}, preset)
+    asked = checked(model, sensitivities)
+    tables = packed(tables_of(model, values, inputs or {}))
+    moving = moving_with(model, asked, values, parameters or {}, preset)
+    limits = limits or Limits()
+    space = space_for(model, values, tables, asked, moving, 0)
+    arrays, progress = space.arrays, space.arrays.progress
+    tolerance = tolerance_of(model, rtol, None, "auto", None, np.inf)
+    set_up(progress, np.zeros(len(progress.x)), (0.0, 1.0), np.empty(0), "auto", tolerance)
+    if asked:
+        of_starts = arrays.sensitivity
+        set_sensitivity(model, arrays.flow, progress, of_starts, asked, moving, {}, values)
+    progress.ints[BUDGET] = min(limits.steps, PAUSE_STEPS)
+    space.keep()
+    many = _spans(model, space, asked, spans, limits)
+    many.floor[:] = least_peak(progress, asked, values)
+    execution = Execution(model, arrays, limits, 0.0, asked=asked, table=space.table)
+    errors, warnings = _executed(execution, many, budget, halt or Halt())
+    errors |= _undefined(model, many, errors)
+    answers = arrays.sensitivity._replace(samples=many.answers)
+    runs = SpanRuns(
+        signals=dict(zip(model.recorded, many.samples.T.copy(), strict=True)),
+        sensitivities=recorded(model, answers, asked, len(many.times)),
+        rows=many.rows,
+        final=many.final,
+        steps=many.steps,
+        errors=errors,
+        warnings=warnings,
+    )
+    give_back(model, space)
+    return runs
+
+
+def _spans(
+    model: Model, space: Space, asked: tuple[str, ...], spans: Sequence[Span], limits: Limits
+) -> Spans:
+    """The spans as the core takes them. Raises OptionError for starts that do not fit."""
+    flow, base = space.arrays.flow, space.arrays.sensitivity
+    count, (n, q), position = len(spans), base.s.shape, {x: i for i, x in enumerate(model.states)}
+    x = np.tile(starts(model, flow), (count, 1))
+    given = np.zeros((count, n), dtype=bool)
+    for number, span in enumerate(spans):
+        for name, value in span.start.items():
+            if name not in position:
+                raise OptionError([unknown("state", name, model.states)])
+            x[number, position[name]] = value
+            given[number, position[name]] = True
+    if not np.isfinite(x).all():
+        number, state = np.argwhere(~np.isfinite(x))[0].tolist()
+        what = f"the start of '{model.states[state]}' is {x[number, state]}"
+        raise OptionError([Problem(what)])
+    follows = np.array([span.follows for span in spans])
+    kept = np.flatnonzero(~given[follows].any(axis=0))
+    given[np.ix_(follows, kept)] = True
+    is_start = np.array([name.startswith(START) for name in asked], dtype=bool)
+    set_here = given[:, :, None] & ~is_start  # what is set follows no parameter
+    rows = np.cumsum([0, *(len(span.times) for span in spans)])
+    total = int(rows[-1])
+    return Spans(
+        at=np.array([0, 0, 0, limits.events], dtype=np.int64),
+        ends=np.array([(span.begin, span.end) for span in spans], dtype=float),
+        rows=rows.astype(np.int64),
+        x=x,
+        s=np.where(set_here, 0.0, base.s).reshape(count, n * q),
+        floor=np.zeros((n, q)),
+        follows=follows.astype(np.int64),
+        kept=kept.astype(np.int64),
+        times=np.concatenate([span.times for span in spans]),
+        samples=np.full((total, len(model.recorded)), np.nan),
+        answers=np.zeros((total, len(model.recorded) * q)),
+        final=np.full((count, n), np.nan),
+        steps=np.zeros(count, dtype=np.int64),
+        block=space.block,
+        first=space.first,
+    )
+
+
+def _executed(
+    execution: Execution, many: Spans, budget: float, halt: Halt
+) -> tuple[dict[int, SimulationError], dict[int, tuple[str, ...]]]:
+    """Let the core go over the spans; errors and warnings of some by number."""
+    errors: dict[int, SimulationError] = {}
+    warnings: dict[int, tuple[str, ...]] = {}
+    go_on, at = ready(advance_spans), many.at
+    tables = execution.core, table_of([many])
+    addresses = [table.__array_interface__["data"][0] for table in tables]
+    progress, limits = execution.progress, execution.limits
+    while at[SPAN] < len(many.ends):
+        if halt.asked:
+            raise Interrupted([Problem("interrupted")])
+        taken = int(many.steps.sum()) + limits.steps * len(errors)
+        if taken > budget:
+            beyond = beyond_budget(budget)
+            errors |= dict.fromkeys(range(int(at[SPAN]), len(many.ends)), beyond)
+            break
+        at[LEFT] = min(PAUSE_STEPS, budget - taken + 1)
+        status = go_on(*addresses)
+        if not at[INSIDE]:
+            continue
+        number = int(at[SPAN])
+        one = replace(execution, start=float(many.ends[number, 0]), rows=[], halt=halt)
+        try:
+            if status not in (FINISHED, LOG_FULL, PAUSED):
+                raise failure(one.model, one.arrays, status)
+            if not one.go_on(halt, status):
+                raise one.interrupted()
+            many.final[number] = progress.x
+            many.steps[number] = progress.ints[STEPS] - progress.ints[REJECTED]
+            if one.warnings:
+                warnings[number] = one.warnings
+        except Interrupted:
+            raise
+        except SimulationError as error:
+            errors[number] = error
+        at[SPAN], at[INSIDE] = number + 1, 0
+    return errors, warnings
+
+
+def _undefined(
+    model: Model, many: Spans, errors: Mapping[int, SimulationError]
+) -> dict[int, SimulationError]:
+    """The errors of spans where a recorded signal is not defined."""
+    if np.isfinite(many.samples).all():
+        return {}
+    found = {}
+    for number in range(len(many.ends)):
+        rows = slice(int(many.rows[number]), int(many.rows[number + 1]))
+        try:
+            if number not in errors:
+                refuse_nan(model, many.samples[rows], many.times[rows])
+        except SimulationError as error:
+            found[number] = error
+    return found
