@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from dataclasses import replace
+from functools import cache
 from typing import Literal
 
 import numpy as np
@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import DataError, OptionError, Problem, SimulationError, unknown
+from tracewire.fit.linearised import Linearised, Shooting, Shots, difference
 from tracewire.fit.loss import LOSSES
-from tracewire.fit.measured import LARGEST, Measured
-from tracewire.fit.segment import Segment, Unknown, of_diagram, parameter_in
+from tracewire.fit.measured import LARGEST
+from tracewire.fit.segment import Segment, Unknown, of_diagram
 from tracewire.fit.sensing import Sensing
-from tracewire.solve import Interrupted, Limits, Span, simulate, simulate_spans
-from tracewire.solve.interrupt import Halt, until_interrupted
+from tracewire.solve import Interrupted, Limits, simulate
+from tracewire.solve.interrupt import until_interrupted
 from tracewire.solve.limits import beyond_budget
 from tracewire.solve.many import cores
 
@@ -28,33 +29,9 @@ Matrix = NDArray[np.float64]
 Weighting = Literal["mean", "sum"]
 STEP = 1e-4
 PENALTY = 100.0
-LARGE = 2000
+MANY = 2000
+"""Samples from which on series run in parallel: threads cost more than they save before."""
 LIMITS = Limits(steps=500_000, seconds=120.0)
-
-
-@dataclass(frozen=True, eq=False)
-class Linearised:
-    """A segment near some unknowns: residuals (N, signals) in sigma, their derivatives `slopes`
-    (N*signals, unknowns + free starts) in SI, whether it `ran`, and the states where it ended."""
-
-    residual: Vector
-    slopes: Matrix
-    final: Mapping[str, float]
-    ran: bool = True
-
-    @cached_property
-    def square(self) -> float:
-        """The sum of the squared residuals."""
-        return float(np.sum(self.residual**2))
-
-
-@dataclass(frozen=True, eq=False)
-class _Group:
-    """Segments of one series by number, the steps that they took, and what they warn of."""
-
-    near: dict[int, Linearised]
-    steps: int
-    warnings: set[tuple[str, str]]
 
 
 class Criterion:
@@ -262,85 +239,46 @@ class Criterion:
         series: dict[int, list[int]] = {}
         for n in sorted(starts):
             series.setdefault(id(self.segments[n].measured), []).append(n)
-        workers = min(cores(), len(series))
         with until_interrupted() as halt:
 
-            def of_series(numbers: list[int]) -> _Group:
-                return self._group(numbers, named, starts, halt)
+            def shots(numbers: Sequence[int]) -> Shots:
+                return self._shooting(numbers).linearised(
+                    named,
+                    self.parameters,
+                    [starts[n] for n in numbers],
+                    [self.follows(n) and n - 1 in starts for n in numbers],
+                    self.budget - self.steps,
+                    halt,
+                )
 
+            many = sum(len(self.segments[n].rows) for n in starts) > MANY
+            apart = map if len(series) == 1 or cores() == 1 or not many else _threads().map
             try:
-                if workers > 1 and sum(len(self.segments[n].rows) for n in starts) > LARGE:
-                    groups = list(_pool().map(of_series, series.values()))
-                else:
-                    groups = [of_series(numbers) for numbers in series.values()]
+                groups = list(apart(shots, series.values()))
             except Interrupted as error:  # no failed run: the whole search shall stop
                 raise KeyboardInterrupt from error
         found: dict[int, Linearised] = {}
         for numbers, group in zip(series.values(), groups, strict=True):
             self.runs += len(numbers)
             self.steps += group.steps
-            self.warnings |= group.warnings
-            found |= group.near
+            self.warnings |= {(self.segments[numbers[0]].measured.name, w) for w in group.warnings}
+            found |= {numbers[place]: near for place, near in group.near.items()}
         for n in starts.keys() - found.keys():
             found[n] = self._differences(n, named, starts[n])
         return found
 
-    def _group(
-        self,
-        numbers: Sequence[int],
-        named: Mapping[str, float],
-        starts: Mapping[int, Mapping[str, float]],
-        halt: Halt,
-    ) -> _Group:
-        """Segments of one series, as far as their runs end well."""
+    def _shooting(self, numbers: Sequence[int]) -> Shooting:
+        """Segments of one series as they run together."""
         segments = [self.segments[n] for n in numbers]
-        measured = segments[0].measured
-        values = {**self.parameters, **named}
-        sensing = Sensing(segments, values, rates=self._rates)
-        free = tuple(dict.fromkeys(f"start.{name}" for n in numbers for name in starts[n]))
-        answers = {name: parameter_in(name, measured) for name in named}
-        answers |= {name: name for name in free}
-        ends = zip(sensing.begins, sensing.ends, sensing.times, strict=True)
-        runs = simulate_spans(
+        return Shooting(
             self.model,
-            [Span(*end, *self._start(n, starts[n])) for n, end in zip(numbers, ends, strict=True)],
-            parameters=of_diagram(values, measured),
-            rtol=self.rtol,
-            preset=measured.preset,
-            inputs=measured.inputs,
-            limits=self.limits,
-            budget=self.budget - self.steps,
-            sensitivities=[name for name in answers.values() if name],
-            halt=halt,
+            segments,
+            np.concatenate([self._samples[n] for n in numbers]),
+            self.sigma[segments[0].measured.name],
+            self.rtol,
+            self.limits,
+            self._rates,
         )
-        shown = sensing.shown(runs)
-        sigma = self.sigma[measured.name]
-        slopes = sensing.derivatives(runs, answers) / sigma[:, None]
-        samples = np.concatenate([self._samples[n] for n in numbers])
-        residual = _off(measured, samples, shown) / sigma
-        rows = np.cumsum([0, *(len(segment.rows) for segment in segments)])
-        # squares of what is larger would be no numbers
-        small = (np.abs(shown) < LARGEST).all(axis=1) & (np.abs(slopes) < LARGEST).all(axis=(1, 2))
-        small = np.logical_and.reduceat(small, rows[:-1])
-        near = {}
-        for number, (n, a, b) in enumerate(zip(numbers, rows[:-1], rows[1:], strict=True)):
-            if number in runs.errors or not small[number]:
-                continue
-            own = slopes[a:b].reshape(residual[a:b].size, len(answers))
-            if len(starts[n]) < len(free):
-                mine = [len(named) + free.index(f"start.{name}") for name in starts[n]]
-                own = own[:, [*range(len(named)), *mine]]
-            final = dict(zip(self.model.states, runs.final[number].tolist(), strict=True))
-            near[n] = Linearised(residual[a:b], own, final)
-        steps = int(runs.steps.sum()) + self.limits.steps * len(runs.errors)
-        told = {(measured.name, text) for texts in runs.warnings.values() for text in texts}
-        return _Group(near, steps, told)
-
-    def _start(self, n: int, start: Mapping[str, float]) -> tuple[Mapping[str, float], bool]:
-        """The states that are set where segment n begins, and whether others go on there."""
-        if n in self._following:
-            return start, True
-        return {**self.segments[n].start, **start}, False
 
     def outputs(
         self, segment: Segment, named: Mapping[str, float], start: Mapping[str, float]
@@ -374,7 +312,8 @@ class Criterion:
     def difference(self, n: int, shown: Vector) -> Vector:
         """Residuals of what is shown: shown - measured in sigma, the shortest way around."""
         measured = self.segments[n].measured
-        return _off(measured, self._samples[n], shown) / self.sigma[measured.name]
+        off = difference(measured, self._samples[n], shown)
+        return np.asarray(off / self.sigma[measured.name])
 
     def _residual(self, n: int, named: Mapping[str, float], start: Mapping[str, float]) -> Vector:
         try:
@@ -415,19 +354,9 @@ class Criterion:
 
 
 @cache
-def _pool() -> ThreadPoolExecutor:
+def _threads() -> ThreadPoolExecutor:
+    """Threads that wait for series: to begin them takes as long as hundreds of short runs."""
     return ThreadPoolExecutor(cores(), thread_name_prefix="tracewire")
-
-
-def _off(measured: Measured, samples: Vector, shown: Vector) -> Vector:
-    """What is shown without what was measured, (N, signals): the shortest way around."""
-    difference = shown - samples
-    for column, signal in enumerate(measured.values):
-        period = measured.periods.get(signal, 0.0)
-        if period > 0:
-            turns = np.round(difference[:, column] / period)
-            difference[:, column] -= period * turns
-    return np.asarray(difference)
 
 
 def half_square(vector: Vector) -> float:

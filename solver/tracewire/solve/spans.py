@@ -146,6 +146,7 @@ def _spans(
         what = f"the start of '{model.states[state]}' is {x[number, state]}"
         raise OptionError([Problem(what)])
     follows = np.array([span.follows for span in spans])
+    follows[0] = False
     kept = np.flatnonzero(~given[follows].any(axis=0))
     given[np.ix_(follows, kept)] = True
     is_start = np.array([name.startswith(START) for name in asked], dtype=bool)

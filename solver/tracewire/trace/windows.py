@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
 from tracewire.compile import Model
-from tracewire.fit.criterion import Criterion, Linearised
+from tracewire.fit.criterion import Criterion
+from tracewire.fit.linearised import Linearised
 from tracewire.fit.measured import Measured
 from tracewire.fit.segment import Segment
 from tracewire.fit.starts import start_from_data, whole_segment
