@@ -81,8 +81,8 @@ left limits), resets, modes and transitions, one sample.
 **How it runs.** `core` holds all of this as functions that numba compiles once per installation;
 they call the model's machine code by address. This room's other files are Python: they fill the
 arrays of a run (`setup`), let the core go on (`execute`), and find words for what went wrong
-(`failures`). Many rows of parameters run in threads (`many`); many short runs with the same parameters
-are prepared once, and the core goes from one to the next (`spans`).
+(`failures`). Many rows of parameters run in threads (`many`); many short runs with the same
+parameters are prepared once, and the core goes from one to the next (`spans`).
 
 Not there yet: delays; the rate of a state that is held by a stop is still a state, so that friction
 on it keeps its last side while the stop holds.
