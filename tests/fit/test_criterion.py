@@ -168,6 +168,55 @@ blocks:
     assert np.isfinite(near.slopes**2).all(), "exp(600) = 4e260"
 
 
+def test_segments_of_a_series_run_together_as_each_alone() -> None:
+    """Their starts are free in an order of their own, and one has no free start of v at all."""
+    model = made(OSCILLATOR, ("x", "v"))
+    measured = Measured("one", "train", T, {"x": np.cos(T), "v": -np.sin(T)})
+    start = {"x": 0.9, "v": 0.1}
+    segments = [
+        Segment(measured, float(T[a]), np.arange(a, a + 30), start, free)
+        for a, free in ((0, ("v", "x")), (30, ("x", "v")), (60, ("x",)))
+    ]
+    together = Criterion(model, segments, [Unknown("k", 1.2)], {})
+    near = together.linearised(
+        {"k": 1.2}, {n: {x: start[x] for x in s.free} for n, s in enumerate(segments)}
+    )
+    for n, segment in enumerate(segments):
+        alone = Criterion(model, [segment], together.unknowns, {})
+        other = alone.linearised({"k": 1.2}, {0: {x: start[x] for x in segment.free}})[0]
+        np.testing.assert_array_equal(near[n].residual, other.residual)
+        np.testing.assert_array_equal(near[n].slopes, other.slopes)
+        assert near[n].final == other.final
+
+
+def test_chained_segments_hand_on_what_is_not_free() -> None:
+    model = made(
+        """
+span: [0, 4]
+blocks:
+  x: {type: integrator, of: one, start: 0}
+  one: {type: constant, value: 1}
+  memory: {type: integrator, of: change, start: 0}
+  change: {type: expression, formula: x - memory}
+""",
+        ("x", "memory"),
+    )
+    t = np.linspace(0.0, 4.0, 81)
+    measured = Measured("one", "train", t, {"memory": t - 1 + np.exp(-t)})
+    segments = [
+        Segment(measured, float(t[a]), np.arange(a, a + 27), {"x": float(t[a])}, ("x",))
+        for a in (0, 27, 54)
+    ]
+    starts = {n: dict(s.start) for n, s in enumerate(segments)}
+    chained = Criterion(model, segments, [], {}, chained=True)
+    assert chained.remembers and [chained.follows(n) for n in range(3)] == [False, True, True]
+    found = chained.linearised({}, starts)
+    # a segment begins at its first sample, the one before ends at the sample before that
+    assert max(float(np.abs(near.residual).max()) for near in found.values()) < 0.06
+    alone = Criterion(model, segments, [], {}).linearised({}, starts)
+    assert float(np.abs(alone[2].residual).max()) > 1
+
+
 def test_gain_delay_and_offset_of_a_sensor_and_their_derivatives() -> None:
     """A sensor of x = a t + b shows gain*(a (t - delay) + b) + offset, b before the begin."""
     bounds = {"gain": (0.5, 2.0), "delay": (-1.0, 1.0), "offset": (-1.0, 1.0)}

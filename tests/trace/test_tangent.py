@@ -11,8 +11,9 @@ from oracles.oscillator import bench_of, record, trial_of
 from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.fit import Criterion, Measured
+from tracewire.trace.observed import nodes_of
 from tracewire.trace.places import find_places
-from tracewire.trace.tangent import Tangent, nodes_of
+from tracewire.trace.tangent import Tangent
 from tracewire.trace.windows import Section, Windows, cut, opened
 
 SMOOTH = """\

@@ -11,8 +11,9 @@ from tracewire.compile import compile
 from tracewire.diagram import effects_of
 from tracewire.trace.found import Force
 from tracewire.trace.levels import Trajectory
+from tracewire.trace.observed import trajectories
 from tracewire.trace.places import Place
-from tracewire.trace.tangent import Tangent, trajectories
+from tracewire.trace.tangent import Tangent
 from tracewire.trace.trial import Trial
 from tracewire.trace.windows import Windows, projection
 

@@ -113,15 +113,18 @@ def screened(tangent: Tangent, trial: Trial, candidates: Sequence[Candidate]) ->
     ]
     sizes = [near.residual.size for near in windows.near]
     parts = np.split(matrix, np.cumsum(sizes)[:-1])
-    reduced = np.concatenate([view.off(part) for view, part in zip(views, parts, strict=True)])
+    reduced = np.concatenate(
+        [view.off(part).T for view, part in zip(views, parts, strict=True)], axis=1
+    )
+    reduced, variants = _by_series(tangent, reduced, variants)
     seen = _squares(reduced)
     basis = _basis(unknowns)
-    left = reduced - basis @ (basis.T @ reduced)
+    left = reduced - (reduced @ basis) @ basis.T
     masked = 1 - _squares(left) / np.maximum(seen, 1e-300)
     visible = seen > 1e-18 * max(float(seen.max(initial=0.0)), 1e-300)
     masked = np.where(visible, np.clip(masked, 0.0, 1.0), 1.0)
     columns = Columns(
-        residual - basis @ (basis.T @ residual), left, masked, trial.part, trial.freedom
+        residual - basis @ (basis.T @ residual), left.T, masked, trial.part, trial.freedom
     )
     names = tuple(run.series for run in tangent.trajectories)
     rows = [_row(columns, group, names) for group in _groups(variants)]
@@ -145,28 +148,28 @@ def _matrix(tangent: Tangent, candidates: Sequence[Candidate]) -> tuple[Matrix, 
     matrix = tangent.answer(given) if variants else np.zeros((tangent.size, 0))
     sensors = [c for c in candidates if c.place.kind == "sensor"]
     shown = [tangent.sensed(c.effect, c.place.definition) for c in sensors]
-    matrix, variants = _by_series(tangent, matrix, variants)
     variants += [Variant(c, ()) for c in sensors]
     return np.column_stack([matrix, *shown]) if shown else matrix, variants
 
 
 def _by_series(
-    tangent: Tangent, matrix: Matrix, variants: list[Variant]
+    tangent: Tangent, rows: Matrix, variants: list[Variant]
 ) -> tuple[Matrix, list[Variant]]:
-    """The columns with one for each series, zero in the others, where a phase is its own there."""
+    """What variants do to the residuals, (K, M), with a row for each series, zero in the others,
+    where a phase is its own there."""
     count = len(tangent.trajectories)
     if count < 2 or not any(variant.candidate.each for variant in variants):
-        return matrix, variants
+        return rows, variants
     sizes = [near.residual.size for near in tangent.windows.near]
     of = np.repeat(tangent.series, sizes)
     parts = [count if variant.candidate.each else 1 for variant in variants]
-    columns = matrix[:, np.repeat(np.arange(len(variants)), parts)]
-    first = 0
-    for own in parts:
-        for n in range(own if own > 1 else 0):
-            columns[of != n, first + n] = 0.0
+    found, first = np.zeros((sum(parts), rows.shape[1])), 0
+    for row, own in zip(rows, parts, strict=True):
+        for n in range(own):
+            mine = of == n if own > 1 else slice(None)
+            found[first + n, mine] = row[mine]
         first += own
-    return columns, [v for v, own in zip(variants, parts, strict=True) for _ in range(own)]
+    return found, [v for v, own in zip(variants, parts, strict=True) for _ in range(own)]
 
 
 def _groups(variants: Sequence[Variant]) -> Iterator[list[tuple[int, Variant]]]:
@@ -240,9 +243,9 @@ def _count(candidate: Candidate, shapes: Mapping[str, float], series: Sequence[s
     return 1 + more + sum(not is_default(candidate, name, value) for name, value in shapes.items())
 
 
-def _squares(matrix: Matrix) -> Vector:
-    """The sum of squares of each column."""
-    return np.asarray(np.einsum("ij,ij->j", matrix, matrix))
+def _squares(rows: Matrix) -> Vector:
+    """The sum of squares of each row."""
+    return np.asarray(np.einsum("ij,ij->i", rows, rows))
 
 
 def _basis(matrix: Matrix) -> Matrix:

@@ -12,7 +12,9 @@ from scipy.special import chdtrc
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-DRAWS = 200
+DRAWS = (50, 200)
+SURE = 1e-5, 0.02
+"""The first draws are enough where the chance they tell is outside of these."""
 SEED = 20
 NEGLIGIBLE = 1e-9
 HIDDEN = 1e-6
@@ -74,7 +76,10 @@ class Columns:
         chosen = self.matrix[:, list(indices)]
         if min(1 - self.masked[list(indices)]) < HIDDEN:
             return 0.0, np.zeros(len(indices))
-        values = np.asarray(np.linalg.lstsq(chosen, -self.residual, rcond=1e-8)[0])
+        sizes = np.linalg.norm(chosen, axis=0)
+        matrix, along = chosen.T @ chosen, self.residual @ chosen
+        scaled = np.linalg.lstsq(matrix / np.outer(sizes, sizes), -along / sizes, rcond=1e-12)[0]
+        values = np.asarray(scaled / sizes)
         left = self.residual + chosen @ values
         return max(self.rss - float(left @ left), 0.0), values
 
@@ -98,7 +103,7 @@ class Columns:
     def chance(self, groups: Sequence[Sequence[int]], signs: Sequence[int], best: float) -> float:
         """The probability that noise alone gives some group a fall of `best` or more.
 
-        200 draws of white noise are scored as the residual is, all groups at once, and a Gumbel
+        Draws of white noise are scored as the residual is, all groups at once, and a Gumbel
         distribution is fitted to the largest scores by their moments; so correlations between
         columns count, and no run is needed. `best` is a fall in the noise's variance, counted by
         N_eff. Where the sum of the chances of all groups, which is never less, is next to nothing,
@@ -110,21 +115,31 @@ class Columns:
         if most < NEGLIGIBLE:
             return most
         rng = np.random.default_rng(SEED)
-        noise = rng.standard_normal((len(self.residual), DRAWS))
-        largest = np.zeros(DRAWS)
+        for draws in DRAWS:
+            chance = self._drawn(
+                groups, signs, fall, rng.standard_normal((draws, len(self.residual)))
+            )
+            if not SURE[0] < chance < SURE[1]:
+                break
+        return chance
+
+    def _drawn(
+        self, groups: Sequence[Sequence[int]], signs: Sequence[int], fall: float, noise: Matrix
+    ) -> float:
+        """The chance of a fall by draws of noise, (draws, M)."""
+        largest = np.zeros(len(noise))
         single = [n for n, group in enumerate(groups) if len(group) == 1]
-        columns = [groups[n][0] for n in single]
-        alone = self.matrix[:, columns]
+        alone = self.matrix[:, [groups[n][0] for n in single]]
         sizes = np.linalg.norm(alone, axis=0)
-        scores = (alone.T @ noise) / np.maximum(sizes, 1e-300)[:, None]
-        sided = np.array([signs[n] for n in single])[:, None]
+        scores = noise @ alone / np.maximum(sizes, 1e-300)
+        sided = np.array([signs[n] for n in single])
         scores = np.where((sided == 0) | (scores * sided < 0), scores, 0.0)
-        if len(scores):
-            largest = np.max(scores**2, axis=0)
+        if single:
+            largest = np.max(scores**2, axis=1)
         for group in groups:
             if len(group) > 1:
                 basis, _ = np.linalg.qr(self.matrix[:, list(group)])
-                largest = np.maximum(largest, np.sum((basis.T @ noise) ** 2, axis=0))
+                largest = np.maximum(largest, np.sum((noise @ basis) ** 2, axis=1))
         scale = float(np.std(largest, ddof=1)) * 6**0.5 / np.pi
         place = float(np.mean(largest)) - np.euler_gamma * scale
         return float(-np.expm1(-np.exp(-(fall - place) / max(scale, 1e-300))))

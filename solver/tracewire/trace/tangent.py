@@ -8,36 +8,43 @@ number of them, is a product of small matrices, without another run.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.compile import Model, compile
+from tracewire.compile import compile
 from tracewire.diagram import Diagram
-from tracewire.fit.criterion import LIMITS
-from tracewire.fit.segment import Segment, of_diagram, parameter_in
-from tracewire.solve import Run, simulate
-from tracewire.trace.levels import Trajectory, signals_at
+from tracewire.fit.segment import Segment
+from tracewire.solve import Span
+from tracewire.trace.levels import signals_at
+from tracewire.trace.observed import Signals, nodes_of, observed, runs_of, series_of, stitched
 from tracewire.trace.places import Place
 from tracewire.trace.probe import probed
 from tracewire.trace.windows import Windows
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
+SENSED: Mapping[str, Callable[[Vector, Vector], Vector]] = {
+    "sensor_offset": lambda y, t: np.ones(len(t)),
+    "sensor_gain": lambda y, t: y,
+    "sensor_delay": lambda y, t: -np.gradient(y, t),
+    "sensor_quad": lambda y, t: y**2,
+    "sensor_drift": lambda y, t: t - t[0],
+}
+"""What the coefficient 1 of a sensor's effect adds to a signal y(t)."""
 NODES = 13
 """Samples of a piece: few hats at a time keep a run cheap, many pieces cost runs."""
 
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """A few samples of a window: how outputs and states there answer to its start, the unknowns and
-    the hats, shapes (nodes, outputs + states, ...); `nodes` index the nodes of the window."""
+    """A few samples of a window: how outputs and states there answer to its start and to the hats,
+    shapes (nodes, outputs + states, ...); `nodes` index the nodes of the window."""
 
     nodes: slice
     start: Matrix
-    unknowns: Matrix
     hats: Matrix
 
 
@@ -75,8 +82,12 @@ class Tangent:
         self.series = series_of(windows)
         runs = observed(observer, windows, rtol)
         self.trajectories = stitched(windows, runs)
-        pairs = enumerate(zip(windows.segments, runs, strict=True))
-        self.joined = [self._joined(n, segment, run) for n, (segment, run) in pairs]
+        groups: dict[tuple[int, float], list[int]] = {}
+        for n, segment in enumerate(windows.segments):
+            early = min(segment.begin, float(segment.measured.t[0]))
+            groups.setdefault((self.series[n], early), []).append(n)
+        joined = [one for group in groups.values() for one in self._joined(group, runs)]
+        self.joined = sorted(joined, key=lambda one: one.window)
 
     def answer(self, histories: Mapping[str, Sequence[Matrix]]) -> Matrix:
         """What torques do to the residuals in sigma, shape (M, K), before anything is projected.
@@ -99,13 +110,7 @@ class Tangent:
             segment = self.windows.criterion.segments[joined.window]
             rows = joined.samples[joined.counts]
             y, t = run.signals[signal], run.t
-            shown = {
-                "sensor_offset": np.ones(len(t)),
-                "sensor_gain": y,
-                "sensor_delay": -np.gradient(y, t),
-                "sensor_quad": y**2,
-                "sensor_drift": t - t[0],
-            }[effect]
+            shown = SENSED[effect](y, t)
             column = np.zeros((len(rows), len(self.outputs)))
             at = self.outputs.index(signal)
             sigma = self.windows.criterion.sigma[segment.measured.name][at]
@@ -146,109 +151,41 @@ class Tangent:
         ]
         return np.asarray(np.array(gains) / sigma)
 
-    def _joined(self, n: int, segment: Segment, run: Run) -> Joined:
-        times, samples, counts = nodes_of(segment)
-        pieces = []
-        for first in range(0, max(len(times) - 1, 1), NODES - 1):
-            nodes = slice(first, min(first + NODES, len(times)))
-            pieces.append(self._piece(segment, run, times, nodes))
-        return Joined(n, times, samples, counts, tuple(pieces))
+    def _joined(self, group: Sequence[int], runs: Sequence[Signals]) -> list[Joined]:
+        """Windows of one series, which have their nodes in common.
 
-    def _piece(self, segment: Segment, run: Run, times: Vector, nodes: slice) -> Piece:
-        t = times[nodes]
-        start = {name: float(run[name][nodes.start]) for name in self.states}
-        count = len(t)
-        identity = np.eye(NODES)
-        hats = {name: (t, identity[j, :count]) for j, name in enumerate(self.hats[:count])}
-        known = (parameter_in(name, segment.measured) for name in self.windows.values)
-        own = [name for name in known if name]
+        Each hat is one every NODES nodes and zero between, so that in a piece all are different,
+        and the runs of all pieces have the same inputs.
+        """
+        first_one = self.windows.criterion.segments[group[0]]
+        nodes = [nodes_of(self.windows.criterion.segments[n]) for n in group]
+        known = [first_one.measured.t, *(times for times, *_ in nodes)]
+        common = np.unique(np.concatenate(known))
+        turn = np.arange(len(common)) % NODES
+        hats = {name: (common, (turn == j).astype(float)) for j, name in enumerate(self.hats)}
+        parts, spans = [], []
+        for n, (times, *_) in zip(group, nodes, strict=True):
+            for first in range(0, max(len(times) - 1, 1), NODES - 1):
+                here = slice(first, min(first + NODES, len(times)))
+                start = {name: float(runs[n][name][first]) for name in self.states}
+                t = times[here]
+                spans.append(Span(float(t[0]), float(t[-1]), t, start))
+                parts.append((n, here, turn[np.searchsorted(common, t)]))
         starts = [f"start.{name}" for name in self.states]
-        probes = [name for names in self.probes for name in names[:count]]
-        found = run_of(
-            self.model, self.windows, segment, start, t, self.rtol, hats, [*starts, *own, *probes]
-        )
+        probes = [name for names in self.probes for name in names]
+        asked = [*starts, *probes]
+        found = runs_of(self.model, self.windows, first_one, spans, self.rtol, hats, asked)
         signals = found.sensitivities.signals
         rows = [signals.index(name) for name in (*self.outputs, *self.states)]
         answers = found.sensitivities.array[:, rows].transpose(2, 1, 0)
-        of_starts, of_unknowns, of_hats = np.split(
-            answers, [len(starts), len(starts) + len(own)], axis=2
-        )
-        shape = count, len(rows), len(self.places), count
-        return Piece(nodes, of_starts, of_unknowns, of_hats.reshape(shape))
-
-
-def series_of(windows: Windows) -> list[int]:
-    """The number of the series behind each window, in the order of the windows."""
-    names = list(dict.fromkeys(s.measured.name for s in windows.criterion.segments))
-    return [names.index(s.measured.name) for s in windows.criterion.segments]
-
-
-def trajectories(model: Model, windows: Windows, rtol: float) -> list[Trajectory]:
-    """The recorded signals of a model along fitted windows, for each series."""
-    return stitched(windows, observed(model, windows, rtol))
-
-
-def observed(model: Model, windows: Windows, rtol: float) -> list[Run]:
-    """The runs of fitted windows, sampled at their nodes."""
-    return [
-        run_of(model, windows, segment, segment.start, nodes_of(segment)[0], rtol)
-        for segment in windows.segments
-    ]
-
-
-def stitched(windows: Windows, runs: Sequence[Run]) -> list[Trajectory]:
-    """The signals of each series along its windows."""
-    found: list[Trajectory] = []
-    segments, numbers = windows.criterion.segments, series_of(windows)
-    for number in range(max(numbers) + 1):
-        mine = [n for n, of in enumerate(numbers) if of == number]
-        t = segments[mine[0]].measured.t
-        signals = {name: np.full(len(t), np.nan) for name in runs[mine[0]].signals}
-        for n in mine:
-            samples = nodes_of(segments[n])[1]
-            for name, values in signals.items():
-                values[samples] = runs[n][name]
-        known = np.flatnonzero(np.isfinite(next(iter(signals.values()), np.zeros(len(t)))))
-        joined = {name: np.interp(t, t[known], values[known]) for name, values in signals.items()}
-        of = segments[mine[0]].measured
-        found.append(Trajectory(t, joined, of.series or of.name))
-    return found
-
-
-def nodes_of(segment: Segment) -> tuple[Vector, NDArray[np.intp], NDArray[np.bool_]]:
-    """The times of a window's nodes, the samples behind them, and which of them count."""
-    t = segment.measured.t
-    inside = np.flatnonzero((t >= segment.begin) & (t <= segment.t[-1]))
-    counts = np.isin(inside, segment.rows)
-    times = t[inside]
-    if times[0] > segment.begin:
-        times = np.concatenate(([segment.begin], times))
-        inside = np.concatenate((inside[:1], inside))
-        counts = np.concatenate(([False], counts))
-    return times, inside, counts
-
-
-def run_of(
-    model: Model,
-    windows: Windows,
-    segment: Segment,
-    start: Mapping[str, float],
-    times: Vector,
-    rtol: float,
-    hats: Mapping[str, tuple[Vector, Vector]] | None = None,
-    asked: Sequence[str] = (),
-) -> Run:
-    """A run of a model with the values of fitted windows."""
-    values = {**windows.criterion.parameters, **windows.values}
-    return simulate(
-        model,
-        parameters=of_diagram(values, segment.measured),
-        start=start,
-        span=(float(times[0]), float(times[-1])),
-        times=times,
-        rtol=rtol,
-        preset=segment.measured.preset,
-        inputs={**segment.measured.inputs, **(hats or {})},
-        limits=LIMITS,
-        sensitivities=asked,
-    )
+        pieces: dict[int, list[Piece]] = {n: [] for n in group}
+        for row, (n, here, order) in enumerate(parts):
+            mine = answers[found.rows[row] : found.rows[row + 1]]
+            of_starts, of_hats = np.split(mine, [len(starts)], axis=2)
+            shape = len(mine), len(rows), len(self.places), NODES
+            at_nodes = of_hats.reshape(shape)[:, :, :, order]
+            pieces[n].append(Piece(here, of_starts, at_nodes))
+        return [
+            Joined(n, times, samples, counts, tuple(pieces[n]))
+            for n, (times, samples, counts) in zip(group, nodes, strict=True)
+        ]
