@@ -109,14 +109,18 @@ def test_many_events_and_steps_are_no_more_than_in_a_run_alone() -> None:
 
 def test_what_is_not_set_goes_on_from_the_span_before() -> None:
     model = made(LAGGED)
-    whole = simulate(model, times=T, rtol=1e-9)
+    asked = ["tau", "start.x"]
+    whole = simulate(model, times=T, rtol=1e-9, sensitivities=asked)
     spans = [
         Span(float(T[a]), float(T[b]), T[a : b + 1], {"x": float(T[a])}, follows=a > 0)
         for a, b in ((0, 80), (80, 120), (120, 200))
     ]
-    together = simulate_spans(model, spans, rtol=1e-9)
+    together = simulate_spans(model, spans, rtol=1e-9, sensitivities=asked)
     inner = together.rows[1:-1]
     assert np.delete(together["memory"], inner) == pytest.approx(whole["memory"], abs=1e-8)
+    moved = np.delete(together.sensitivities["tau"]["memory"], inner)
+    assert moved == pytest.approx(whole.sensitivities["tau"]["memory"], abs=1e-6)
+    assert together.sensitivities["start.x"]["memory"][together.rows[1]] == 0.0, "another start"
     alone = simulate_spans(model, [spans[1]])  # there is none before it
     assert alone["memory"][0] == 0.25
 

@@ -15,9 +15,9 @@ from numpy.typing import ArrayLike, NDArray
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, SimulationError, unknown
 from tracewire.solve.core.arrays import Spans, table_of
-from tracewire.solve.core.codes import BUDGET, FINISHED, LOG_FULL, PAUSED, REJECTED, STEPS
+from tracewire.solve.core.codes import BUDGET, FINISHED, LOG_FULL, PAUSED
 from tracewire.solve.core.jit import ready
-from tracewire.solve.core.spans import INSIDE, LEFT, SPAN, advance_spans
+from tracewire.solve.core.spans import INSIDE, LEFT, SPAN, advance_spans, keep_end
 from tracewire.solve.execute import Execution
 from tracewire.solve.failures import failure
 from tracewire.solve.interrupt import Halt, Interrupted
@@ -45,7 +45,7 @@ PAUSE_STEPS = 50_000
 class Span:
     """A run from `begin` to `end` in s, sampled at `times` (N,) within; `start` overrides start
     values of the diagram. With `follows`, states that are not in `start` begin where the span
-    before has ended."""
+    before has ended, as do their derivatives by parameters."""
 
     begin: float
     end: float
@@ -162,10 +162,12 @@ def _spans(
         floor=np.zeros((n, q)),
         follows=follows.astype(np.int64),
         kept=kept.astype(np.int64),
+        lasting=(~is_start).astype(np.int64),
         times=np.concatenate([span.times for span in spans]),
         samples=np.full((total, len(model.recorded)), np.nan),
         answers=np.zeros((total, len(model.recorded) * q)),
         final=np.full((count, n), np.nan),
+        final_s=np.zeros((count, n * q)),
         steps=np.zeros(count, dtype=np.int64),
         block=space.block,
         first=space.first,
@@ -178,10 +180,10 @@ def _executed(
     """Let the core go over the spans; errors and warnings of some by number."""
     errors: dict[int, SimulationError] = {}
     warnings: dict[int, tuple[str, ...]] = {}
-    go_on, at = ready(advance_spans), many.at
+    go_on, keep_end_of, at = ready(advance_spans), ready(keep_end), many.at
     tables = execution.core, table_of([many])
     addresses = [table.__array_interface__["data"][0] for table in tables]
-    progress, limits = execution.progress, execution.limits
+    limits = execution.limits
     while at[SPAN] < len(many.ends):
         if halt.asked:
             raise Interrupted([Problem("interrupted")])
@@ -201,8 +203,7 @@ def _executed(
                 raise failure(one.model, one.arrays, status)
             if not one.go_on(halt, status):
                 raise one.interrupted()
-            many.final[number] = progress.x
-            many.steps[number] = progress.ints[STEPS] - progress.ints[REJECTED]
+            keep_end_of(*addresses)
             if one.warnings:
                 warnings[number] = one.warnings
         except Interrupted:

@@ -199,10 +199,28 @@ def settled(windows: Windows) -> Windows:
     the end of the window before it.
     """
     windows = _settled(windows, range(len(windows.near)), SETTLING)
-    off = [n for n, near in enumerate(windows.near) if near.square > 2 * near.residual.size]
-    there = begun_at(windows, _ends_before(windows, off))
-    rows = [n for n in off if there.starts[n] is not windows.starts[n]]
-    return _again(better(windows, _settled(there, rows, SETTLING), rows))
+    off = [n for n, near in enumerate(windows.near) if not _is_good(near)]
+    return _again(_from_ends(windows, off, SETTLING))
+
+
+def _from_ends(windows: Windows, rows: Sequence[int], steps: int) -> Windows:
+    """Some windows from the ends of those before them, where that does better; once more, where the
+    one before has changed by that."""
+    changed = {n - 1 for n in rows}
+    while True:
+        off = [n for n in rows if n - 1 in changed and not _is_good(windows.near[n])]
+        there = begun_at(windows, _ends_before(windows, off))
+        tried = [n for n in off if there.starts[n] is not windows.starts[n]]
+        if not tried:
+            return windows
+        found = better(windows, _settled(there, tried, steps), tried)
+        changed = {n for n in tried if found.starts[n] is not windows.starts[n]}
+        windows = found
+
+
+def _is_good(near: Linearised) -> bool:
+    """Whether a window is so near the noise that it is not astray."""
+    return near.square <= 2 * near.residual.size
 
 
 def _again(windows: Windows) -> Windows:
@@ -368,9 +386,9 @@ def _rescued(windows: Windows, before: Mapping[int, Mapping[str, float]]) -> Win
     does better."""
     rows = list(before)
     tried = better(windows, begun_at(windows, before), rows)
-    ends = _ends_before(windows, rows)
-    tried = better(tried, begun_at(windows, ends), list(ends))
-    return _again(_settled(tried, rows, RESCUING))
+    ends = _ends_before(tried, rows)
+    tried = better(tried, begun_at(tried, ends), list(ends))
+    return _again(_from_ends(_settled(tried, rows, RESCUING), rows, RESCUING))
 
 
 def _far_off(windows: Windows, n: int, start: Mapping[str, float]) -> bool:

@@ -57,13 +57,15 @@ def spans_of(spans: int) -> Spans:
         matrix(spans, 5),
         ints(spans, 6),
         ints(spans, 7),
-        vector(spans, 8),
-        matrix(spans, 9),
+        ints(spans, 8),
+        vector(spans, 9),
         matrix(spans, 10),
         matrix(spans, 11),
-        ints(spans, 12),
-        vector(spans, 13),
-        vector(spans, 14),
+        matrix(spans, 12),
+        matrix(spans, 13),
+        ints(spans, 14),
+        vector(spans, 15),
+        vector(spans, 16),
     )
 
 
@@ -83,13 +85,25 @@ def advance_spans(core: int, spans: int) -> int:
         status = advance(core)
         if status != FINISHED or _is_odd(core, at[EVENTS]):
             return status
-        copy(progress.x, many.final[number])
-        many.steps[number] = progress.ints[STEPS] - progress.ints[REJECTED]
+        keep_end(core, spans)
         at[SPAN], at[INSIDE] = number + 1, 0
         at[LEFT] -= progress.ints[STEPS]
         if at[LEFT] <= 0:
             return PAUSED
     return FINISHED
+
+
+@unit
+def keep_end(core: int, spans: int) -> None:
+    """Keep where the run over a span has ended."""
+    many, progress = spans_of(spans), progress_of(core)
+    number = many.at[SPAN]
+    copy(progress.x, many.final[number])
+    many.steps[number] = progress.ints[STEPS] - progress.ints[REJECTED]
+    if is_sensitive(core):
+        s = sensitivity_of(core).s
+        for i in range(s.shape[0]):
+            copy(s[i], many.final_s[number, i * s.shape[1] : (i + 1) * s.shape[1]])
 
 
 @unit
@@ -110,17 +124,32 @@ def _begin(core: int, spans: int, number: int) -> None:
     now[T], now[END] = many.ends[number, 0], many.ends[number, 1]
     now[LENGTH] = now[END] - now[T]
     copy(many.x[number], x)
+    if is_sensitive(core):
+        s = sensitivity_of(core).s
+        for i in range(s.shape[0]):
+            copy(many.s[number, i * s.shape[1] : (i + 1) * s.shape[1]], s[i])
     if many.follows[number]:
-        for state in many.kept:
-            if math.isfinite(many.final[number - 1, state]):
-                x[state] = many.final[number - 1, state]
-    if not is_sensitive(core):
-        return
-    s, peak = sensitivity_of(core).s, sensitivity_of(core).peak
-    for i in range(s.shape[0]):
-        for j in range(s.shape[1]):
-            s[i, j] = many.s[number, i * s.shape[1] + j]
-            peak[i, j] = max(abs(s[i, j]), many.floor[i, j])
+        _go_on(core, spans, number)
+    if is_sensitive(core):
+        s, peak = sensitivity_of(core).s, sensitivity_of(core).peak
+        for i in range(s.shape[0]):
+            for j in range(s.shape[1]):
+                peak[i, j] = max(abs(s[i, j]), many.floor[i, j])
+
+
+@unit
+def _go_on(core: int, spans: int, number: int) -> None:
+    """Let states that are kept begin where the span before has ended, unless its run has failed."""
+    many, x = spans_of(spans), progress_of(core).x
+    for state in many.kept:
+        if not math.isfinite(many.final[number - 1, state]):
+            continue
+        x[state] = many.final[number - 1, state]
+        if is_sensitive(core):
+            s = sensitivity_of(core).s
+            for j in range(s.shape[1]):
+                if many.lasting[j]:
+                    s[state, j] = many.final_s[number - 1, state * s.shape[1] + j]
 
 
 @helper
