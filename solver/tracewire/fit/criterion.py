@@ -29,8 +29,8 @@ Matrix = NDArray[np.float64]
 Weighting = Literal["mean", "sum"]
 STEP = 1e-4
 PENALTY = 100.0
-MANY = 2000
-"""Samples from which on series run in parallel: threads cost more than they save before."""
+MANY = 3000
+"""Steps from which on series run in parallel: threads cost more than they save before."""
 LIMITS = Limits(steps=500_000, seconds=120.0)
 
 
@@ -234,11 +234,11 @@ class Criterion:
     ) -> dict[int, Linearised]:
         """Segments near these unknowns and starts, by number, each by the sensitivities of one run.
 
-        By differences where such a run fails. Series run in parallel.
+        By differences where such a run fails. Many steps run in parallel.
         """
-        series: dict[int, list[int]] = {}
-        for n in sorted(starts):
-            series.setdefault(id(self.segments[n].measured), []).append(n)
+        rows = sum(len(self.segments[n].rows) for n in starts)  # about as many steps, at first
+        many = (len(starts) * self.steps / self.runs if self.runs else rows) > MANY
+        groups = self._groups(sorted(starts), halves=many and not self.remembers)
         with until_interrupted() as halt:
 
             def shots(numbers: Sequence[int]) -> Shots:
@@ -251,14 +251,13 @@ class Criterion:
                     halt,
                 )
 
-            many = sum(len(self.segments[n].rows) for n in starts) > MANY
-            apart = map if len(series) == 1 or cores() == 1 or not many else _threads().map
+            apart = _threads().map if many and cores() > 1 else map
             try:
-                groups = list(apart(shots, series.values()))
+                done = list(apart(shots, groups))
             except Interrupted as error:  # no failed run: the whole search shall stop
                 raise KeyboardInterrupt from error
         found: dict[int, Linearised] = {}
-        for numbers, group in zip(series.values(), groups, strict=True):
+        for numbers, group in zip(groups, done, strict=True):
             self.runs += len(numbers)
             self.steps += group.steps
             self.warnings |= {(self.segments[numbers[0]].measured.name, w) for w in group.warnings}
@@ -266,6 +265,17 @@ class Criterion:
         for n in starts.keys() - found.keys():
             found[n] = self._differences(n, named, starts[n])
         return found
+
+    def _groups(self, numbers: Sequence[int], halves: bool) -> list[list[int]]:
+        """Segments that run together: those of a series, or of half of it."""
+        series: dict[int, list[int]] = {}
+        for n in numbers:
+            series.setdefault(id(self.segments[n].measured), []).append(n)
+        if not halves:
+            return list(series.values())
+        middles = [(group, -(-len(group) // 2)) for group in series.values()]
+        parts = [part for group, at in middles for part in (group[:at], group[at:])]
+        return [part for part in parts if part]
 
     def _shooting(self, numbers: Sequence[int]) -> Shooting:
         """Segments of one series as they run together."""
@@ -355,7 +365,7 @@ class Criterion:
 
 @cache
 def _threads() -> ThreadPoolExecutor:
-    """Threads that wait for series: to begin them takes as long as hundreds of short runs."""
+    """Threads that wait for work: to begin them takes as long as hundreds of short runs."""
     return ThreadPoolExecutor(cores(), thread_name_prefix="tracewire")
 
 

@@ -90,6 +90,8 @@ def simulate_spans(
 ) -> SpanRuns:
     """Simulate a model over many spans: each run is what `simulate` makes of it, alone.
 
+    Only that what is found stiff in one span is taken for stiff at once in those behind it.
+
     Arguments are those of `simulate`; `limits` hold for each run, `budget` for the steps of all: a
     run that begins beyond it fails. `halt` says whether the user wants to stop. A run that fails
     does not end the others. Raises OptionError for arguments that do not fit, and Interrupted.
@@ -154,7 +156,7 @@ def _spans(
     rows = np.cumsum([0, *(len(span.times) for span in spans)])
     total = int(rows[-1])
     return Spans(
-        at=np.array([0, 0, 0, limits.events], dtype=np.int64),
+        at=np.array([0, 0, 0, limits.events, 0], dtype=np.int64),
         ends=np.array([(span.begin, span.end) for span in spans], dtype=float),
         rows=rows.astype(np.int64),
         x=x,

@@ -170,10 +170,15 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
 
 @helper
 def _key(core: int, out: Vector) -> None:
-    """What identifies the mode combination."""
-    flow = flow_of(core)
-    out[: len(flow.m)] = flow.m
-    out[len(flow.m) :] = flow.bound
+    """What identifies the mode combination. The points of tables in t are passed over: between
+    any two of them the field is as stiff, and a measured input has hundreds."""
+    flow, plan = flow_of(core), plan_of(core)
+    modes = len(plan.kind)
+    for i in range(len(flow.m)):
+        passed = i < modes and plan.kind[i] == SEGMENT and plan.is_timed[i] != 0
+        out[i] = 0.0 if passed else flow.m[i]
+    for i in range(modes):
+        out[len(flow.m) + i] = flow.bound[i]
 
 
 @unit
@@ -187,14 +192,13 @@ def _choose(core: int) -> None:
     ints[CURRENT] = DOP853 if progress.now[RTOL] <= TIGHT else DORMAND_PRINCE
     if ints[STIFF_ROWS] == 0:
         return
-    flow, stiff = flow_of(core), progress.stiff
-    count = len(flow.m)
+    stiff = progress.stiff
+    key = np.empty(stiff.shape[1])
+    _key(core, key)
     for row in range(ints[STIFF_ROWS]):
         same = True
-        for i in range(count):
-            same = same and stiff[row, i] == flow.m[i]
-        for i in range(len(flow.bound)):
-            same = same and stiff[row, count + i] == flow.bound[i]
+        for i in range(len(key)):
+            same = same and stiff[row, i] == key[i]
         if same:
             ints[CURRENT] = ROSENBROCK
             return

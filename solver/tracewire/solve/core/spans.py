@@ -30,13 +30,14 @@ from tracewire.solve.core.codes import (
     PAUSED,
     REJECTED,
     STEPS,
+    STIFF_ROWS,
     WARNINGS,
     T,
 )
 from tracewire.solve.core.integrate import advance
 from tracewire.solve.core.jit import helper, unit
 
-SPAN, INSIDE, LEFT, EVENTS = range(4)  # places in Spans.at
+SPAN, INSIDE, LEFT, EVENTS, STIFF = range(5)  # places in Spans.at
 BEFORE = len(Flow._fields) + len(Plan._fields)
 TIMES = BEFORE + Progress._fields.index("times")
 SAMPLES = BEFORE + Progress._fields.index("samples")
@@ -99,6 +100,7 @@ def keep_end(core: int, spans: int) -> None:
     many, progress = spans_of(spans), progress_of(core)
     number = many.at[SPAN]
     copy(progress.x, many.final[number])
+    many.at[STIFF] = progress.ints[STIFF_ROWS]
     many.steps[number] = progress.ints[STEPS] - progress.ints[REJECTED]
     if is_sensitive(core):
         s = sensitivity_of(core).s
@@ -123,6 +125,7 @@ def _begin(core: int, spans: int, number: int) -> None:
     now, x = progress.now, progress.x
     now[T], now[END] = many.ends[number, 0], many.ends[number, 1]
     now[LENGTH] = now[END] - now[T]
+    progress.ints[STIFF_ROWS] = many.at[STIFF]  # what was found stiff is so in other spans, too
     copy(many.x[number], x)
     if is_sensitive(core):
         s = sensitivity_of(core).s
