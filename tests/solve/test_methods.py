@@ -136,6 +136,20 @@ blocks:
     assert again["x"] == pytest.approx(np.cos(again.t), abs=1e-6)
 
 
+def test_a_measured_input_is_found_stiff_once_and_not_at_each_of_its_points() -> None:
+    model = made("""
+span: [0, 1]
+inputs: {u: {default: 0}}
+blocks:
+  x: {type: integrator, of: a}
+  a: {type: expression, formula: "-1e5*(x - u)"}
+""")
+    t = np.linspace(0, 1, 101)
+    result = simulate(model, inputs={"u": (t, np.sin(6 * t))}, times=t)
+    assert result.statistics.stiff_steps > 0.8 * result.statistics.steps
+    assert result["x"] == pytest.approx(np.sin(6 * t), abs=1e-4)
+
+
 def test_auto_never_takes_a_stiff_step_where_nothing_is_stiff() -> None:
     free = simulate(twisted())
     assert free.statistics.stiff_steps == 0
