@@ -9,15 +9,9 @@ from scipy.optimize import least_squares
 from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.fit import Criterion, Measured, Segment
-from tracewire.trace.windows import (
-    Section,
-    cut,
-    descended,
-    eliminated,
-    opened,
-    projection,
-    settled,
-)
+from tracewire.trace.descent import descended
+from tracewire.trace.settling import settled
+from tracewire.trace.windows import Section, cut, eliminated, opened, projection
 
 BALL = """\
 span: [0, 2]

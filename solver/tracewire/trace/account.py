@@ -12,8 +12,9 @@ from scipy.special import stdtrit
 from tracewire.fit.segment import Segment
 from tracewire.trace.found import ChannelError, Curve, Moved
 from tracewire.trace.search import Search
+from tracewire.trace.settling import settled
 from tracewire.trace.trial import Bench, Trial
-from tracewire.trace.windows import Section, opened, settled
+from tracewire.trace.windows import Section, opened
 
 Vector = NDArray[np.float64]
 FIRST_PART = 0.2

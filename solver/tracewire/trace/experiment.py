@@ -21,8 +21,9 @@ from tracewire.fit.segment import Segment, of_diagram
 from tracewire.solve import Limits, simulate
 from tracewire.trace.found import Experiment
 from tracewire.trace.rig import Rig, Setting, rig_of
+from tracewire.trace.settling import settled
 from tracewire.trace.trial import Bench, Trial
-from tracewire.trace.windows import eliminated, opened, projection, settled
+from tracewire.trace.windows import eliminated, opened, projection
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]

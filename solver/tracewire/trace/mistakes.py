@@ -18,7 +18,8 @@ from tracewire.fit.noise import channel_noise
 from tracewire.fit.unknowns import free_unknowns, sensor_unknowns
 from tracewire.formula import Name, same_quantity
 from tracewire.solve import parameter_values
-from tracewire.trace.windows import Section, cut, descended, opened
+from tracewire.trace.descent import descended
+from tracewire.trace.windows import Section, cut, opened
 
 Vector = NDArray[np.float64]
 FAR = 30.0

@@ -7,7 +7,8 @@ from collections.abc import Callable
 import numpy as np
 
 from tracewire.fit.criterion import Criterion
-from tracewire.trace.windows import descended, opened, projection
+from tracewire.trace.descent import descended
+from tracewire.trace.windows import opened, projection
 
 STEPS = 8
 TURN = np.linspace(-np.pi, np.pi, 72, endpoint=False)

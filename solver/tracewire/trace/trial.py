@@ -19,18 +19,12 @@ from tracewire.fit.segment import Segment, Unknown
 from tracewire.fit.unknowns import free_unknowns, sensor_unknowns
 from tracewire.solve import Limits, parameter_values
 from tracewire.trace.candidates import Candidate, extend, unknowns_of
+from tracewire.trace.descent import descended
 from tracewire.trace.phases import best_phase
+from tracewire.trace.settling import settled
 from tracewire.trace.statistics import bic, effective_part
 from tracewire.trace.tones import Sine, tones_of
-from tracewire.trace.windows import (
-    Windows,
-    begun_before,
-    descended,
-    eliminated,
-    opened,
-    projection,
-    settled,
-)
+from tracewire.trace.windows import Windows, begun_before, eliminated, opened, projection
 
 Vector = NDArray[np.float64]
 LEAST_STEPS, STEPS, EVENTS, SECONDS = 1500, 15, 5, 20.0
