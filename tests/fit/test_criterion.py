@@ -189,6 +189,14 @@ def test_segments_of_a_series_run_together_as_each_alone() -> None:
         assert near[n].final == other.final
 
 
+def test_without_unknowns_there_are_residuals_and_no_slopes() -> None:
+    criterion = criterion_of(LINE_MODEL, series(0 * T))
+    alone = Criterion(LINE_MODEL, criterion.segments, [], {"a": 1.0, "b": 0.0})
+    near = alone.linearised({}, {0: {}})[0]
+    assert near.slopes.shape == (len(T), 0)
+    assert near.residual[:, 0] == pytest.approx(T)
+
+
 def test_chained_segments_hand_on_what_is_not_free() -> None:
     model = made(
         """

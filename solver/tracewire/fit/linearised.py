@@ -108,7 +108,7 @@ class Shooting:
             if number in runs.errors or not usable[number]:
                 continue
             mine = slice(int(rows[number]), int(rows[number + 1]))
-            own = slopes[mine].reshape(-1, len(answers))
+            own = slopes[mine].reshape(residual[mine].size, len(answers))
             columns = [len(named) + free.index(f"start.{name}") for name in start]
             if columns != [*range(len(named), len(answers))]:
                 own = own[:, [*range(len(named)), *columns]]

@@ -129,15 +129,17 @@ def _exchanged(search: Search, best: Trial, number: int) -> tuple[Trial, tuple[R
 
 
 def _few_short(search: Search, best: Trial) -> Trial | None:
-    """The best model on few of the shortest windows; None where those it stands on are as short."""
+    """The best model on few of the shortest windows; None where those it stands on are as short, or
+    where it is far from the noise on these."""
     length = search.lengths[0]
     if length >= best.length:
         return None
     segments = search.windows(search.stretches.whole(), length)
     try:
-        return search.bench.again(best, [segments[n] for n in few_of(segments)], length)
+        few = search.bench.again(best, [segments[n] for n in few_of(segments)], length)
     except FitError:
         return None
+    return few if few.s2 < AT_NOISE else None
 
 
 def _is_far_behind(search: Search, few: Trial | None, effects: Sequence[Added]) -> bool:

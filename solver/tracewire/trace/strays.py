@@ -25,7 +25,7 @@ LEAST_LED = 30.0
 
 
 def without_strays(bench: Bench, trial: Trial, segments: Sequence[Segment], steps: int) -> Trial:
-    """A declared fit that did not converge, without the windows that led it astray.
+    """A declared fit that ended far from the noise, without the windows that led it astray.
 
     It is fitted in rounds of some `steps`. All windows are used again where they are near the noise
     from there, and where the others are at it: then what is missing shows in the strays alone.
