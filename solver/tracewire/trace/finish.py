@@ -10,7 +10,7 @@ import numpy as np
 from tracewire.errors import FitError
 from tracewire.trace.candidates import is_default
 from tracewire.trace.judge import AT_NOISE, MATERIAL
-from tracewire.trace.refits import WITHIN, few_of, target_of
+from tracewire.trace.refits import few_of, target_of
 from tracewire.trace.search import Search
 from tracewire.trace.shortlist import MANY
 from tracewire.trace.trial import Added, Trial
@@ -19,6 +19,9 @@ CHEAP = 6.0
 RELATED, ALIKE = 0.9, 0.5
 """The likeness from which on an effect is a rival; and where two effects came together."""
 RIVALS = 5
+BEHIND = 10.0
+"""How many times the sum of squares of the best model a rival may leave in few short windows, where
+few steps may not bring it further."""
 CERTAIN = 10.0
 """The standard errors from which on no model without a term is tried: it is there."""
 OPEN = 10.0
@@ -146,7 +149,7 @@ def _is_far_behind(search: Search, few: Trial | None, effects: Sequence[Added]) 
     """Whether rivals do so badly on few short windows that long ones need not be tried."""
     if few is None:
         return False
-    target = WITHIN * few.rss
+    target = BEHIND * few.rss
     trial = search.refits.fitted(few, effects, few.windows.segments, target=target)
     return trial is None or trial.rss > target
 
