@@ -17,8 +17,9 @@ from tracewire.trace.trial import Bench, Trial
 
 STRAY = 30.0
 """A window with this many times the squared residual of the middle one is a stray."""
-LEFT = 0.5
-"""The part of the windows that stays at least."""
+LEFT, MOST_LEFT = 0.5, 0.8
+"""The part of the windows that stays at least; and of a fit that converged: windows that are many
+and far off show what is missing."""
 ROUNDS = 4
 LEAST_LED = 30.0
 """RSS per degree of freedom from which on strays may lead a fit."""
@@ -31,12 +32,12 @@ def without_strays(bench: Bench, trial: Trial, segments: Sequence[Segment], step
     from there, and where the others are at it: then what is missing shows in the strays alone.
     """
     kept, best = list(range(len(segments))), trial
+    least = (MOST_LEFT if trial.converged else LEFT) * len(segments)
     try:
         for _ in range(ROUNDS):
             sizes = best.windows.squares / [max(r.size, 1) for r in best.windows.residuals]
             near = np.flatnonzero(sizes <= STRAY * np.median(sizes)).tolist()
-            few = len(near) < LEFT * len(segments)
-            if best.s2 < LEAST_LED or len(near) == len(kept) or few:
+            if best.s2 < LEAST_LED or len(near) == len(kept) or len(near) < least:
                 break
             kept = [kept[n] for n in near]
             starts = [best.windows.segments[n] for n in near]
