@@ -37,6 +37,8 @@ def cells(*entries: object) -> np.ndarray:
 
 def same(mine: object, theirs: Any) -> bool:
     """Whether a value is what scipy makes of it."""
+    if isinstance(mine, Other) and mine == "an object of a class":
+        return type(theirs).__name__ == "MatlabOpaque"
     if isinstance(theirs, np.ndarray) and theirs.dtype.names:
         flat = theirs.ravel(order="F")
         return isinstance(mine, Structs) and all(
@@ -56,6 +58,11 @@ def same(mine: object, theirs: Any) -> bool:
 def check_against_scipy(content: bytes) -> None:
     theirs = {k: v for k, v in loadmat(io.BytesIO(content)).items() if not k.startswith("__")}
     mine = variables_of(content)
+    if theirs.pop("None", None) is not None:  # so scipy calls every object of a class
+        others = {name: value for name, value in mine.items() if isinstance(value, Other)}
+        objects = [name for name, value in others.items() if value == "an object of a class"]
+        assert objects
+        mine = {name: value for name, value in mine.items() if name not in objects}
     assert mine.keys() == theirs.keys()
     assert [name for name in theirs if not same(mine[name], theirs[name])] == []
 

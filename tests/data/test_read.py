@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 from tracewire.data import Columns, read_columns
@@ -330,6 +330,7 @@ texts = st.one_of(
     delimiter=st.one_of(st.none(), st.text(max_size=1)),
     comment=st.sampled_from(["#", "", "//"]),
 )
+@example(content=b"*", want="t", time=None, delimiter=None, comment="#")
 def test_any_content_is_read_or_refused_with_a_message(
     content: str | bytes,
     want: str,

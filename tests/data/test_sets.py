@@ -16,7 +16,8 @@ from types import ModuleType
 import numpy as np
 import pytest
 from tracewire.data import read_columns, sets
-from tracewire.data.sets import SETS, DataSet, Upstream, fetch, get_set
+from tracewire.data.index import SETS, DataSet, Upstream
+from tracewire.data.sets import fetch, get_set
 from tracewire.errors import DownloadError, OptionError
 
 SHARED = Path(__file__).parents[3] / "shared/data"
@@ -165,3 +166,32 @@ def test_all_drops_of_all_balls_are_in_one_table() -> None:
     other = (folder / "derived_drops.csv").read_text("utf-8").splitlines()
     assert own[0] == other[0]
     assert sorted(own) == sorted(other)
+
+
+@pytest.mark.skipif(not SHARED.is_dir(), reason="the measured series are not here")
+def test_counts_of_the_motor_become_an_angle(tmp_path: Path) -> None:
+    made = tmp_path / "turn.csv"
+    folder = SHARED / "motor_cogging"
+    made.write_text(SETS["motor_cogging"].made["turn_0.csv"](folder), encoding="utf-8")
+    own = read_columns(made, {"angle": "angle", "current": "current"}, "t")
+    t, counts, current = np.load(folder / "slow2_nocomp_0.npy")
+    assert own.time == pytest.approx(t, abs=1e-6)
+    assert own.values["angle"] / (2 * np.pi) * 8192 == pytest.approx(counts, abs=1e-3)
+    assert own.values["current"] == pytest.approx(current, abs=1e-6)
+
+
+@pytest.mark.skipif(not SHARED.is_dir(), reason="the measured series are not here")
+def test_periods_of_the_bench_are_averaged_and_angles_become_speeds(tmp_path: Path) -> None:
+    folder = SHARED / "twomass_bench"
+    made = tmp_path / "period.csv"
+    made.write_text(SETS["twomass_bench"].made["periods_4_12.csv"](folder), encoding="utf-8")
+    own = read_columns(made, {"current": "current", "motor": "motor", "load": "load"}, "t")
+    file = folder / "MultisineTypeA.mat"
+    raw = read_columns(file, {"motor": "theta_mx", "load": "theta_my"}, every=4e-4)
+    assert len(own.time) == 2500
+    assert abs(np.mean(own.values["current"])) < 1e-6
+    for name, sign in (("motor", 1), ("load", -1)):
+        angle = sign * raw.values[name].reshape(20, 2500)[3:12].mean(axis=0)
+        between = np.diff(angle) / 4e-4  # the mean speed between two samples
+        middle = (own.values[name][1:] + own.values[name][:-1]) / 2
+        assert np.std(between - middle) < 0.03 * np.std(middle)

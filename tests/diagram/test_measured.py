@@ -37,7 +37,7 @@ def test_a_series_becomes_a_noun_in_si(file: Path) -> None:
     signals:
       theta: {column: angle, unit: deg, sigma: 0.1, offset: {fit: [-1, 1]}}
       b: other
-    inputs: {drive: {column: u, unit: mN m}}
+    inputs: {drive: {column: u, unit: mN m, sigma: 5, hold: previous}}
     start: {theta: free, omega: {value: 180, unit: deg}, o.v: k, b.x: 1, b.o.x: free}
     preset: printed
     from: 2.0
@@ -56,7 +56,9 @@ def test_a_series_becomes_a_noun_in_si(file: Path) -> None:
     assert theta.offset.factor == theta.factor
     assert theta.offset.fit == pytest.approx((-degree, degree))
     assert (other.column, other.factor, other.sigma) == ("other", 1.0, None)
-    assert series.inputs["drive"].factor == pytest.approx(1e-3)
+    drive = series.inputs["drive"]
+    assert (drive.factor, drive.sigma) == (pytest.approx(1e-3), pytest.approx(5e-3))
+    assert (drive.hold, theta.hold) == ("previous", None)
     assert list(series.start) == ["theta", "omega", "o.v", "b.x", "b.o.x"]
     assert series.start["theta"] is None
     assert series.start["omega"].factor == pytest.approx(degree)
@@ -98,8 +100,18 @@ def test_the_plainest_series(file: Path) -> None:
         ("time: t", "time: t, inputs: {u: v}", "unknown input 'u'; there are: drive."),
         (
             "time: t",
-            "time: t, inputs: {drive: {column: u, sigma: 1}}",
-            "unknown key of a measured input 'sigma'; there are: column, unit.",
+            "time: t, inputs: {drive: {column: u, sgma: 1}}",
+            "unknown key of a measured input 'sgma'; there are: column, hold, sigma, unit.",
+        ),
+        (
+            "time: t",
+            "time: t, inputs: {drive: {column: u, sigma: 0}}",
+            "'sigma' must be above zero, not 0",
+        ),
+        (
+            "time: t",
+            "time: t, inputs: {drive: {column: u, hold: next}}",
+            "unknown hold 'next'; there are: linear, previous, smooth. previous: each value acts",
         ),
         ("time: t", "time: t, start: {o: 1}", "unknown state 'o'; there are: b.o.v, b.o.x, b.x"),
         ("time: t", "time: t, start: {theta: fre}", "unknown parameter 'fre'"),

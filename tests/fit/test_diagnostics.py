@@ -71,6 +71,17 @@ def test_correlated_noise_of_the_declared_size_is_told_as_such() -> None:
     assert found.words.startswith("at the declared noise, yet correlated over 0.02 s")
 
 
+def test_a_noise_that_cannot_be_told_from_the_signal_is_no_missing_effect() -> None:
+    t = np.linspace(0, 60, 3000)
+    slow = autoregression((0.98,), len(t), np.random.default_rng(5))
+    measured = series(3 * t + slow, t=t, start={"x": None})
+    (found,) = diagnose(fit(made(LINE), [measured], method="least_squares"))
+    assert found.estimate is not None and not found.estimate.is_sure
+    assert found.size > 1.5 * found.noise
+    assert "the noise, which may be as large as that: it is between" in found.words
+    assert "something is missing" not in found.words
+
+
 def test_outliers_are_counted_and_told() -> None:
     noise = 0.1 * np.random.default_rng(6).standard_normal(601)
     noise[::60] += 3.0

@@ -1,4 +1,4 @@
-"""Smooth inputs follow a spline between their samples; all others are joined by straight lines."""
+"""Inputs between their samples: smooth ones follow a spline, held ones jump, others are lines."""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 from scipy.signal import chirp, sawtooth, square
 from tracewire.compile import compile
 from tracewire.diagram import read
-from tracewire.fit import load_measured
-from tracewire.fit.inputs import smoothed
-from tracewire.solve import simulate
+from tracewire.fit import Measured, load_measured
+from tracewire.fit.inputs import looks_held, smoothed
+from tracewire.solve import Held, simulate, values_at, with_points
 
 Vector = NDArray[np.float64]
 T = np.arange(500) / 50.0
@@ -117,8 +118,8 @@ def test_a_series_has_its_smooth_input_as_a_spline_and_tells(tmp_path: Path, smo
     (tmp_path / "run.yaml").write_text(TEXT, encoding="utf-8")
     model = compile(read(tmp_path / "run.yaml"))
     (run,) = load_measured(model)
-    told = [step for step in run.steps if "spline" in step]
-    assert told == (["input 'u' is smooth: a cubic spline, in 999 points"] if smooth else [])
+    how = "smooth: a cubic spline, in 999 points" if smooth else "joined by straight lines"
+    assert [step for step in run.steps if step.startswith("input")] == [f"input 'u' is {how}"]
     if not smooth:
         assert np.array_equal(run.inputs["u"][1], u)
         return
@@ -131,3 +132,103 @@ def test_a_series_has_its_smooth_input_as_a_spline_and_tells(tmp_path: Path, smo
     there = simulate(model, times=T, inputs=run.inputs, rtol=1e-9)["theta"]
     plain = simulate(model, times=T, inputs={"u": (T, u)}, rtol=1e-9)["theta"]
     assert np.max(np.abs(there - exact)) < 0.02 * np.max(np.abs(plain - exact))
+
+
+DOUBLE = """\
+span: [0, 2]
+inputs: {u: {unit: N}}
+parameters: {m: {value: 2, unit: kg}}
+blocks:
+  x: {type: integrator, of: v, unit: m}
+  v: {type: integrator, of: force, unit: m/s}
+  force: {type: gain, of: u, k: 1/m}
+measured:
+  run: {file: run.csv, time: t, signals: {x: x}, inputs: {u: {column: u, hold: previous}}}
+"""
+AT = np.array([0.0, 0.3, 0.4, 1.1, 1.5, 2.0])
+U = np.array([1.0, -2.0, 0.5, 0.0, 3.0, 7.0])
+
+
+def held_exactly(t: Vector, mass: float = 2.0) -> tuple[Vector, Vector]:
+    """x and v of a mass from rest under the held drive."""
+    x, v = np.zeros(len(t)), np.zeros(len(t))
+    for k in range(len(AT) - 1):
+        late = np.clip(t - AT[k], 0, None)
+        during = np.clip(late, None, AT[k + 1] - AT[k])
+        v += U[k] / mass * during
+        x += U[k] / mass * (during**2 / 2 + during * (late - during))
+    return x, v
+
+
+def held_series(folder: Path, text: str = DOUBLE) -> Measured:
+    rows = np.stack([AT, AT, U], axis=1)
+    np.savetxt(folder / "run.csv", rows, delimiter=",", header="t,x,u", comments="")
+    (folder / "run.yaml").write_text(text, encoding="utf-8")
+    (run,) = load_measured(compile(read(folder / "run.yaml")))
+    return run
+
+
+def test_a_held_input_jumps_at_its_samples(tmp_path: Path) -> None:
+    run = held_series(tmp_path)
+    assert "input 'u' is held from sample to sample, as declared" in run.steps
+    model = compile(read(tmp_path / "run.yaml"))
+    t = np.linspace(0, 2, 57)
+    found = simulate(model, times=t, inputs=run.inputs, sensitivities=["m"])
+    x, v = held_exactly(t)
+    assert found["x"] == pytest.approx(x, abs=1e-13)
+    assert found["v"] == pytest.approx(v, abs=1e-13)
+    # x goes with 1/m
+    assert found.sensitivities["m"]["x"] == pytest.approx(-x / 2, abs=1e-12)
+    lines = simulate(model, times=t, inputs={"u": (AT, U)})
+    assert np.max(np.abs(lines["x"] - x)) > 0.1
+
+
+def test_a_declared_hold_wins_over_what_the_record_looks_like(tmp_path: Path) -> None:
+    rows = np.stack([T, np.sin(T), wave(T)], axis=1)
+    np.savetxt(tmp_path / "run.csv", rows, delimiter=",", header="t,theta,u", comments="")
+    for hold, how in {
+        "linear": "joined by straight lines, as declared",
+        "smooth": "smooth, as declared: a cubic spline, in 999 points",
+        "previous": "held from sample to sample, as declared",
+    }.items():
+        text = TEXT.replace("{u: u}", f"{{u: {{column: u, hold: {hold}}}}}")
+        (tmp_path / "run.yaml").write_text(text, encoding="utf-8")
+        (run,) = load_measured(compile(read(tmp_path / "run.yaml")))
+        assert f"input 'u' is {how}" in run.steps
+        assert isinstance(run.inputs["u"], Held) == (hold == "previous")
+
+
+def test_any_input_is_a_spline_where_that_is_declared(tmp_path: Path) -> None:
+    run = held_series(tmp_path, DOUBLE.replace("previous", "smooth"))
+    spline, fine = CubicSpline(AT, U), np.linspace(0, 2, 2000)
+    off = np.interp(fine, *run.inputs["u"]) - spline(fine)
+    lines = np.interp(fine, AT, U) - spline(fine)
+    assert np.std(off) < 0.05 * np.std(lines)
+
+
+@pytest.mark.parametrize("hold", ["", ", hold: linear"])
+def test_an_input_that_looks_held_gets_a_remark_unless_declared(tmp_path: Path, hold: str) -> None:
+    rows = np.stack([T, np.sin(T), np.asarray(square(3 * T))], axis=1)
+    np.savetxt(tmp_path / "run.csv", rows, delimiter=",", header="t,theta,u", comments="")
+    text = TEXT.replace("{u: u}", f"{{u: {{column: u{hold}}}}}")
+    (tmp_path / "run.yaml").write_text(text, encoding="utf-8")
+    (run,) = load_measured(compile(read(tmp_path / "run.yaml")))
+    told = [remark for remark in run.remarks if "looks held" in remark]
+    assert len(told) == (0 if hold else 1)
+    assert hold or "say hold: previous" in told[0]
+
+
+def test_coarse_readings_and_rest_do_not_look_held() -> None:
+    assert looks_held(np.repeat(RNG.standard_normal(50), 10))
+    assert not looks_held(np.round(wave(T), 2))
+    assert not looks_held(np.where(T > 4, wave(T), 0.0))
+    assert not looks_held(np.full(100, 3.0))
+
+
+def test_a_held_input_at_other_times_and_points() -> None:
+    held = Held(AT, U)
+    t = np.array([-1.0, 0.0, 0.29, 0.3, 1.4, 2.0, 5.0])
+    assert values_at(held, t).tolist() == [1.0, 1.0, 1.0, -2.0, 0.0, 7.0, 7.0]
+    assert values_at((AT, U), t)[2] == pytest.approx(1 - 0.29 * 10)
+    assert isinstance(with_points(held, AT + 1, U), Held)
+    assert not isinstance(with_points((AT, U), AT + 1, U), Held)

@@ -188,6 +188,7 @@ def test_the_time_of_the_diagram_begins_at_zero(file: Path) -> None:
         "time: from ms to s, as the header says",
         "window 1 ... 2 s of the file: 101 of 400 samples",
         "time: t = 0 is 0.5 s of the file",
+        "input 'drive' is joined by straight lines",
     )
 
 
@@ -305,6 +306,7 @@ def test_cleaning_is_done_in_its_order_and_told(file: Path) -> None:
         "theta: low pass 10 Hz",
         "input drive: low pass 10 Hz",
         "omega: derivative of theta",
+        "input 'drive' is joined by straight lines",
     ]
 
 

@@ -15,6 +15,8 @@ from tracewire.errors import DownloadError, Problem
 SEGMENTS = (*(f"id[{n}]" for n in (1, 2, 3, 4)), *(f"vad[{n}]" for n in (1, 2)))
 LARGE, SMALL = 5, 50  # every fifth of 1 kHz, every fiftieth of 10 kHz: 200 Hz
 SMALL_ENDS = 10.0  # s; it stands still from 5.5 s on
+COUNTS = 8192  # of the motor's encoder, on a turn
+PERIOD = 2500  # samples of a period of the two-mass bench, which takes 1 s
 DROPS = ("ball", "drop", "t_s", "height_m", "velocity_m_s")
 
 
@@ -64,3 +66,37 @@ def balls_dropped(folder: Path) -> str:
                 if drop is not None:
                     lines.append(f"{sheet.title},{drop:g}," + ",".join(f"{x:.6f}" for x in numbers))
     return "\n".join(lines) + "\n"
+
+
+def motor_turn(folder: Path, name: str) -> str:
+    """A record of the motor, an array 3 x N of numpy, as a table: time, angle, current.
+
+    A turn has 8192 counts. Nothing is dropped.
+    """
+    t, counts, current = np.load(folder / name, allow_pickle=False)
+    rows = zip(t, counts * (2 * math.pi / COUNTS), current, strict=True)
+    lines = (f"{a:.6f},{b:.7f},{c:.6f}\n" for a, b, c in rows)
+    return "t [s],angle [rad],current [A]\n" + "".join(lines)
+
+
+def bench_period(folder: Path, first: int, last: int) -> str:
+    """The mean of periods of the two-mass bench, `first` to `last`, as a table: 2500 rows, 1 s.
+
+    Time, current without its mean, and the speeds of motor and load, which are the derivatives of
+    the mean angles as Fourier series of the period (the bench turns nowhere, and the excitation has
+    whole periods). The load turns the other way in the file; here it turns with the motor.
+    """
+    columns = {"current": "iq_adx", "motor": "theta_mx", "load": "theta_my"}
+    record = read_columns(folder / "MultisineTypeA.mat", columns, every=1 / PERIOD)
+    mean = {
+        name: values.reshape(-1, PERIOD)[first - 1 : last].mean(axis=0)
+        for name, values in record.values.items()
+    }
+    omega = 2j * math.pi * np.arange(PERIOD // 2 + 1)  # rad/s: the period is 1 s
+    motor, load = (
+        np.fft.irfft(omega * np.fft.rfft(sign * mean[name]), PERIOD)
+        for name, sign in (("motor", 1), ("load", -1))
+    )
+    rows = zip(range(PERIOD), mean["current"] - mean["current"].mean(), motor, load, strict=True)
+    lines = (f"{n / PERIOD:.4f},{i:.6f},{a:.6f},{b:.6f}\n" for n, i, a, b in rows)
+    return "t [s],current [A],motor [rad/s],load [rad/s]\n" + "".join(lines)

@@ -69,7 +69,8 @@ def variables_of(content: bytes) -> dict[str, Value]:
             kind, data, _ = _element(_unpacked(data, left), 0, order)
         if kind == MATRIX and data:
             name, value = _matrix(data, order, 0)
-            found[name] = value
+            if name:  # what has no name is MATLAB's own store of its objects
+                found[name] = value
     return found
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -102,6 +103,16 @@ def read_columns(
 
 def column_unit(path: str | Path, column: str, delimiter: str | None = None) -> str:
     """The unit that the header gives to a column; '' where it gives none or cannot be read."""
+    try:
+        changed = Path(path).stat()
+    except OSError:
+        return ""
+    return _column_unit(Path(path), column, delimiter, changed.st_mtime_ns, changed.st_size)
+
+
+@lru_cache(maxsize=64)
+def _column_unit(path: Path, column: str, delimiter: str | None, changed: int, size: int) -> str:
+    """The same for a file as it was when it was `changed`, in ns, with so many bytes."""
     try:
         found = read_columns(path, {"it": column}, delimiter=delimiter, every=1.0)
     except (DataError, OptionError):

@@ -1,139 +1,21 @@
-"""Sets of real measurements: where each comes from, to the bit, and how a user gets it.
+"""Sets of real measurements, fetched for a user: files of their owners, and the diagrams on them.
 
-The files stay where their owners put them: each is fetched from its repository at one commit, and
-its SHA-256 must be the one below. What no reader of tracewire takes as it is, is written once more
-as a CSV beside it (`tracewire.data.made`).
+`tracewire.data.index` says which sets there are.
 """
 
 from __future__ import annotations
 
 import hashlib
 import importlib
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from pathlib import Path, PurePosixPath
+from collections.abc import Callable
+from pathlib import Path
 
-from tracewire.data.made import balls_dropped, swing_large, swing_small
+from tracewire.data.index import RAW, SETS, DataSet, Upstream
 from tracewire.errors import DownloadError, OptionError, Place, Problem, unknown
 from tracewire.shipped import shipped
 
-RAW = "https://raw.githubusercontent.com"
 DIAGRAMS = (".yaml", ".md")
 Tell = Callable[[str], None]
-
-
-@dataclass(frozen=True)
-class Upstream:
-    """A file of a repository: its path there, and the SHA-256 of its content."""
-
-    path: str
-    sha256: str
-
-    @property
-    def name(self) -> str:
-        """The name that it has on a user's disk."""
-        return PurePosixPath(self.path).name
-
-
-@dataclass(frozen=True)
-class DataSet:
-    """A set of measurements: its files at one commit of a repository, and what is made of them.
-
-    made: name of a CSV -> what gives its text from the folder with the files.
-    """
-
-    title: str
-    repository: str
-    commit: str
-    licence: str
-    files: tuple[Upstream, ...]
-    made: Mapping[str, Callable[[Path], str]] = field(default_factory=dict)
-
-    def address(self, file: Upstream, base: str = RAW) -> str:
-        """Where a file is fetched from."""
-        return f"{base}/{self.repository}/{self.commit}/{file.path}"
-
-
-SETS: Mapping[str, DataSet] = {
-    "multiarm_pendulum": DataSet(
-        "One arm of a pendulum on a locked cart, large and small free swing",
-        "dynamicslab/MultiArm-Pendulum",
-        "e99a7e13fe2adc8fc647321a156b6cb59a48a698",
-        "MIT, (c) 2022 dynamicslab",
-        (
-            Upstream(
-                "ParameterEstimation/SinglePendulum/SinglePendulumDataForParameterEstimation.mat",
-                "f3b8cdda4a6e86405ec37ff32b98be76fd37806a609cba7870628c1e40377a98",
-            ),
-            Upstream(
-                "Datas/SinglePendulum/SingleDataFreeSwing_1_Dt_0_0001.mat",
-                "5e6272350a91fb9fb99b6949bc49e3e63e21af977cc1f777310f5d8e9b0fc7e7",
-            ),
-        ),
-        {"swing_large.csv": swing_large, "swing_small.csv": swing_small},
-    ),
-    "mr_damper": DataSet(
-        "A magneto-rheological damper on a shaking table",
-        "labcontrol-data/mr-damper",
-        "e42439f08b227bb08e9923ee2736bedf2f4fe59a",
-        "MIT",
-        (
-            Upstream(
-                "data/data_simulation_4.1_MRdamper.mat",
-                "97d7735351c9907159aa3c7038712ec1371685f608eb61d6a793622dad486866",
-            ),
-            Upstream(
-                "data/data_simulation_4.2_MRdamper.mat",
-                "a607d78cd52a2e7ae0b1059bb08345def8ee0e1913645071d23d74686acc9046",
-            ),
-            Upstream(
-                "data/data_simulation_4.4_MRdamper.mat",
-                "fd4be6ad437614c8e68ed459f1f4172d28c4f448444b5df579ed3aaaf8f8fd90",
-            ),
-        ),
-    ),
-    "bicycle_wheel_pendulum": DataSet(
-        "A bicycle wheel that swings and twists, seen by a rate gyro",
-        "moorepants/resonance",
-        "f7f8550830e6a7e35f595acbbfaffad86174abd8",
-        "MIT",
-        (
-            Upstream(
-                "notebooks/03/bicycle-wheel-axial-inertia-rate-gyro-measurement.csv",
-                "b39bba20f420f4083010c44057a235e9ed66ca8542adf4d3158aacccefa70092",
-            ),
-            Upstream(
-                "notebooks/03/bicycle-wheel-radial-inertia-rate-gyro-measurement.csv",
-                "83981cc5a86907c4e3a0cd3ee75cdb5aeab32b506150ca757d472db79e5e6933",
-            ),
-        ),
-    ),
-    "tribometer_presliding": DataSet(
-        "Friction loops of a tribometer, with the way before it slips",
-        "jchristopherson/FrictionModels.jl",
-        "e60a4bd245dfc96aeb7045998a535f9bcb24cb0c",
-        "MIT",
-        (
-            Upstream(
-                "examples/test_data_2.txt",
-                "e0abf58da8288eebe180a8fe191f1f223a5e1c43025e37c3db7cfb03ce9488a5",
-            ),
-        ),
-    ),
-    "falling_balls": DataSet(
-        "Eleven balls dropped from a bridge, twice each",
-        "briandesilva/discovery-of-physics-from-data",
-        "b79c34317f049c9b47aaf2cc4c54c5ec7219f3d7",
-        "MIT",
-        (
-            Upstream(
-                "data/Ball_drops_data.xls",
-                "942b2d68abfff3828ca323de491435d4ec27c3a22e62cee0cbdf52c2e8d1c0ed",
-            ),
-        ),
-        {"drops.csv": balls_dropped},
-    ),
-}
 
 
 def data_set(name: str) -> DataSet:

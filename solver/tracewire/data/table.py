@@ -143,7 +143,7 @@ def layout_of(
             for i, row in enumerate(above)
             if full[i] or (any(numeric[i]) and len(row.cells) == width)
         )
-        first = next(odd, start)
+        first = next(odd, min(start, len(head) - 1))
         names = commented_header(lines, dialect.delimiter, comment, head[first], width)
     else:
         names, first = cells[at], at + 1

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from typing import get_args
 
 from tracewire.diagram.body import Body
-from tracewire.diagram.diagram import Channel, Diagram, Value
+from tracewire.diagram.diagram import Channel, Diagram, Hold, Value
 from tracewire.diagram.names import find_recorded, recordable
 from tracewire.diagram.problems import clip
 from tracewire.diagram.quantities import SECOND, read_above_zero, read_unit_like
@@ -17,6 +18,8 @@ from tracewire.formula import Number, Unit
 SENSOR = {"offset": 0.0, "gain": 1.0, "delay": 0.0, "quad": 0.0, "drift": 0.0}
 """What a sensor may do to its signal, and the value of each that does nothing."""
 OF_A_SIGNAL = ("sigma", "weight", "modulo", *SENSOR)
+OF_AN_INPUT = ("sigma", "hold")
+HOLDS: dict[str, Hold] = {word: word for word in get_args(Hold)}
 NO_UNIT = Unit("", 1.0)
 
 
@@ -33,7 +36,7 @@ def read_signals(node: Node, body: Body, diagram: Diagram, what: str) -> dict[st
         elif signal in found:
             problem = f"two definitions of the signal '{clip(name)}' in {what}"
             body.problems.add(problem, body.place(key), (), "Remove one.")
-        channel = _channel(signal or name, key, given, body, what, OF_A_SIGNAL)
+        channel = _channel(signal or name, key, given, body, what, "signal")
         if channel is not None:
             found[channel.signal] = channel
     if signals is not None and not signals.keys:
@@ -44,19 +47,21 @@ def read_signals(node: Node, body: Body, diagram: Diagram, what: str) -> dict[st
 def read_measured_inputs(node: Node, body: Body, diagram: Diagram, what: str) -> dict[str, Channel]:
     """`inputs` of a series: a mapping of the diagram's inputs to columns."""
     found: dict[str, Channel] = {}
-    inputs = body.entries(node, f"'inputs' of {what}", "{drive: {column: u, unit: N m}}")
+    inputs = body.entries(
+        node, f"'inputs' of {what}", "{drive: {column: u, unit: N m, sigma: 0.1}}"
+    )
     for name, key, given in inputs or ():
         if name not in diagram.inputs:
             hint = "An input of the diagram is named under 'inputs' at its top."
             body.problems.unknown("input", name, diagram.inputs, body.place(key), hint)
-        channel = _channel(name, key, given, body, what, ())
+        channel = _channel(name, key, given, body, what, "input")
         if channel is not None:
             found[name] = channel
     return found
 
 
 def _channel(
-    signal: str, key: Scalar, node: Node, body: Body, series: str, more: tuple[str, ...]
+    signal: str, key: Scalar, node: Node, body: Body, series: str, kind: str
 ) -> Channel | None:
     place = body.place(key)
     if isinstance(node, Scalar):
@@ -65,7 +70,7 @@ def _channel(
     entries = body.entries(node, what, "{column: angle, unit: deg}")
     if entries is None:
         return None
-    kind = "signal" if more else "input"
+    more = OF_A_SIGNAL if kind == "signal" else OF_AN_INPUT
     body.check_keys(entries, ("column", "unit", *more), f"key of a measured {kind}")
     column_node = body.required(entries, "column", what)
     column = None if column_node is None else body.text(column_node, "'column'")
@@ -98,6 +103,7 @@ def _channel(
     sensor = {
         name: _of_sensor(name, values[name], body, units[name]) for name in SENSOR if name in values
     }
+    hold = _hold(values["hold"], body) if "hold" in values else None
     if column is None:
         return None
     return Channel(
@@ -115,7 +121,17 @@ def _channel(
         modulo=scaled["modulo"],
         quad=sensor.get("quad"),
         drift=sensor.get("drift"),
+        hold=hold,
     )
+
+
+def _hold(node: Node, body: Body) -> Hold | None:
+    """How an input acts between its samples."""
+    word = body.text(node, "'hold'")
+    if word is not None and word not in HOLDS:
+        hint = "previous: each value acts until the next; linear: straight lines; smooth: a spline."
+        body.problems.unknown("hold", word, HOLDS, body.place(node), hint)
+    return HOLDS.get(word or "")
 
 
 def sensor_factor(kind: str, factor: float) -> float:

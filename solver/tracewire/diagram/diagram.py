@@ -13,6 +13,7 @@ from tracewire.library import Effect, Library
 
 Use = Literal["train", "gate", "validate"]
 Crosses = Literal["up", "down", "both"]
+Hold = Literal["previous", "linear", "smooth"]
 
 
 @dataclass(frozen=True)
@@ -116,7 +117,8 @@ class Channel:
     and the numbers of offset, quad and drift, are in SI where a unit is declared, else in the unit
     of the column. A column has gain*z + offset + quad*z^2 + drift*(t - t0), z = signal(t - delay),
     t0 the first sample. `weight` counts the signal in a criterion, and it is compared modulo
-    `modulo`. A channel without a column is made by a step of `clean`.
+    `modulo`. A channel without a column is made by a step of `clean`. `hold` says how an input acts
+    between its samples; None: as `tracewire.fit.inputs` finds it to be.
     """
 
     signal: str
@@ -133,6 +135,7 @@ class Channel:
     modulo: float | None = None
     quad: Value | None = None
     drift: Value | None = None
+    hold: Hold | None = None
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from tracewire.fit.files import series_from_files
 from tracewire.fit.fit import fit
 from tracewire.fit.fminsearch import Minimum, fminsearch
 from tracewire.fit.measured import Measured, load_measured
+from tracewire.fit.noise_estimate import NoiseEstimate, estimate_noise
 from tracewire.fit.optimset import Options, optimset
 from tracewire.fit.profile import Profile, profile
 from tracewire.fit.result import Comparison, Fit
@@ -23,6 +24,7 @@ __all__ = [
     "Fit",
     "Measured",
     "Minimum",
+    "NoiseEstimate",
     "Options",
     "Profile",
     "Progress",
@@ -32,6 +34,7 @@ __all__ = [
     "Unknown",
     "descend",
     "diagnose",
+    "estimate_noise",
     "fit",
     "fminsearch",
     "load_measured",

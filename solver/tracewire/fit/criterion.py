@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import cache
@@ -11,6 +11,7 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import solve_triangular
 
 from tracewire.compile import Model
 from tracewire.errors import DataError, OptionError, Problem, SimulationError, unknown
@@ -49,6 +50,8 @@ class Criterion:
     `parameters` holds what is fixed, by the names that unknowns have; `sigma` the noise of each
     signal instead of the declared one, `limits` what one run may cost. Where segments are
     `chained`, states that are not free go on from one to the next, where it begins at its end.
+    `covariance` gives, for a segment, the factor L of the covariance L L' of its residuals where
+    these are not white: the residuals and their derivatives are then L^-1 times the above.
 
     A segment whose run fails counts as 100 times the spread of its data, and is told in `failures`.
 
@@ -69,6 +72,7 @@ class Criterion:
         loss: str = "linear",
         limits: Limits = LIMITS,
         chained: bool = False,
+        covariance: Callable[[Segment], Matrix | None] | None = None,
     ) -> None:
         if loss not in LOSSES:
             raise OptionError([unknown("loss", loss, LOSSES)])
@@ -78,6 +82,7 @@ class Criterion:
         self.rtol, self.limits = rtol, limits
         self.weighting, self.loss = weighting, loss
         self.sigma = _sigma_of(self.segments, sigma, needed=loss != "linear")
+        self.covariance = covariance
         self.evaluations = 0
         self.runs, self.steps, self.budget = 0, 0, np.inf
         self.failure: SimulationError | None = None
@@ -113,7 +118,7 @@ class Criterion:
         """The same criterion on other segments, of the same series."""
         fresh = Criterion(
             self.model, segments, self.unknowns, self.parameters, self.rtol,
-            weighting=self.weighting, limits=self.limits,
+            weighting=self.weighting, limits=self.limits, covariance=self.covariance,
         )  # fmt: skip
         fresh.loss = self.loss
         fresh.sigma = {s.measured.name: self.sigma[s.measured.name] for s in segments}
@@ -261,7 +266,8 @@ class Criterion:
             self.runs += len(numbers)
             self.steps += group.steps
             self.warnings |= {(self.segments[numbers[0]].measured.name, w) for w in group.warnings}
-            found |= {numbers[place]: near for place, near in group.near.items()}
+            for place, near in group.near.items():
+                found[numbers[place]] = self._whitened(numbers[place], near)
         for n in starts.keys() - found.keys():
             found[n] = self._differences(n, named, starts[n])
         return found
@@ -331,7 +337,21 @@ class Criterion:
             _refuse_huge(self.segments[n], shown)
         except SimulationError as error:
             return self._penalty(n, error)
-        return self.difference(n, shown)
+        return self.whiten(n, self.difference(n, shown))
+
+    def whiten(self, n: int, rows: Vector) -> Vector:
+        """Rows (N, signals) or (N*signals, ...) of segment n, in sigma, as its residuals are."""
+        factor = None if self.covariance is None else self.covariance(self.segments[n])
+        if factor is None:
+            return rows
+        flat = rows.reshape(len(factor), -1)
+        return np.asarray(solve_triangular(factor, flat, lower=True).reshape(rows.shape))
+
+    def _whitened(self, n: int, near: Linearised) -> Linearised:
+        if self.covariance is None:
+            return near
+        residual, slopes = self.whiten(n, near.residual), self.whiten(n, near.slopes)
+        return replace(near, residual=residual, slopes=slopes)
 
     def _penalty(self, n: int, error: SimulationError) -> Vector:
         """The residuals of a run that failed."""

@@ -10,13 +10,15 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 from scipy.special import chdtrc, ndtr, ndtri
 
-from tracewire.errors import FormulaError
+from tracewire.errors import FormulaError, SimulationError
+from tracewire.fit.input_noise import run_noise
+from tracewire.fit.input_response import InputNoise
 from tracewire.fit.measured import Measured
-from tracewire.fit.noise import channel_noise, noise_of
+from tracewire.fit.noise import NoiseEstimate, estimate_noise, noise_of
 from tracewire.fit.result import Comparison, Fit
 from tracewire.fit.segment import of_diagram
 from tracewire.formula import Expression, evaluate, names_of
-from tracewire.solve import parameter_values
+from tracewire.solve import parameter_values, values_at
 
 Vector = NDArray[np.float64]
 
@@ -38,15 +40,16 @@ class Diagnosis:
     """What is left of one measured signal of one series after a fit.
 
     `residual` (N,) is measured - simulated of the samples that count, in SI, `size` its root mean
-    square and `noise` that of the sensor: `declared`, or estimated from the data. `step` is the
-    median time between samples in s. `correlation` (L,) is the autocorrelation at `lags` (L,) in
-    samples, white noise stays within +-`band` 95 % of the time, `memory` is the time in s after
-    which it has fallen to 1/e. `whiteness` is the probability that white noise looks as correlated
-    (Ljung and Box), `sign_changes` that it changes its sign as seldom or as often. `independence`
-    holds by measured input, by signal of time alone that drives the model, and by the simulated
-    signal itself, the probability that something independent of it follows it as closely.
-    `outliers` is the share of samples beyond 4 robust standard deviations. `words` says it in a
-    sentence.
+    square. `noise` is that of the sensor: `declared`, or from the data, as `estimate` says.
+    `driven` is what the declared noise of measured inputs makes of it, None where none is declared.
+    `step` is the median time between samples in s. `correlation` (L,) is the autocorrelation at
+    `lags` (L,) in samples, white noise stays within +-`band` 95 % of the time, `memory` is the time
+    in s after which it has fallen to 1/e. `whiteness` is the probability that white noise looks as
+    correlated (Ljung and Box), `sign_changes` that it changes its sign as seldom or as often.
+    `independence` holds by measured input, by signal of time alone that drives the model, and by
+    the simulated signal itself, the probability that something independent of it follows it as
+    closely. `outliers` is the share of samples beyond 4 robust standard deviations. `words` says it
+    in a sentence.
     """
 
     series: str
@@ -67,6 +70,8 @@ class Diagnosis:
     independence: Mapping[str, float]
     outliers: float
     words: str
+    driven: InputNoise | None = None
+    estimate: NoiseEstimate | None = None
 
     @property
     def is_white(self) -> bool:
@@ -80,8 +85,9 @@ def diagnose(fit: Fit) -> tuple[Diagnosis, ...]:
     Signals with fewer than 10 samples that count are left out. Samples count by their index.
     """
     series = {m.name: m for m in fit.measured}
+    driven = {m.name: _driven(fit, m) for m in fit.measured}
     return tuple(
-        _diagnosis(fit, one, series[one.series])
+        _diagnosis(fit, one, series[one.series], driven[one.series].get(one.signal))
         for one in fit.comparisons
         if np.count_nonzero(_counted(one)) >= LEAST
     )
@@ -161,7 +167,7 @@ def _counted(comparison: Comparison) -> NDArray[np.bool_]:
 
 def _drives(fit: Fit, measured: Measured, t: Vector) -> dict[str, Vector]:
     """What drives the model at times t (N,): its measured inputs, and signals of time alone."""
-    found = {name: np.interp(t, *known) for name, known in measured.inputs.items()}
+    found = {name: values_at(known, t) for name, known in measured.inputs.items()}
     flat = fit.model.flat
     given = {**fit.parameters, **of_diagram(fit.values, measured)}
     values = parameter_values(fit.model, given, measured.preset)
@@ -196,7 +202,22 @@ def _at(
     return evaluate(formula, known)
 
 
-def _diagnosis(fit: Fit, comparison: Comparison, measured: Measured) -> Diagnosis:
+def _driven(fit: Fit, measured: Measured) -> Mapping[str, InputNoise]:
+    """What the declared noise of a series' inputs makes of its signals, after a fit."""
+    if not measured.input_sigma:
+        return {}
+    values = {**fit.parameters, **fit.values}
+    fitted = list(fit.values) if measured.use == "train" else []
+    start = fit.starts.get(measured.name, {})
+    try:
+        return run_noise(fit.model, measured, values, start, fitted)
+    except SimulationError:
+        return {}
+
+
+def _diagnosis(
+    fit: Fit, comparison: Comparison, measured: Measured, driven: InputNoise | None
+) -> Diagnosis:
     rows = _counted(comparison)
     residual = comparison.residual_after[rows]
     t = comparison.t[rows]
@@ -207,6 +228,7 @@ def _diagnosis(fit: Fit, comparison: Comparison, measured: Measured) -> Diagnosi
     others[comparison.signal] = comparison.after[rows]
     spread = 1.4826 * float(np.median(np.abs(residual - np.median(residual))))
     far = np.abs(residual - np.median(residual)) > FAR * spread
+    estimate = estimate_noise([measured])[comparison.signal]
     found = Diagnosis(
         series=comparison.series,
         use=comparison.use,
@@ -214,7 +236,7 @@ def _diagnosis(fit: Fit, comparison: Comparison, measured: Measured) -> Diagnosi
         unit=comparison.unit,
         residual=residual,
         size=float(np.sqrt(np.mean(residual**2))),
-        noise=channel_noise([measured])[comparison.signal],
+        noise=estimate.level,
         declared=measured.sigma.get(comparison.signal) is not None,
         step=step,
         lags=lags.astype(np.float64),
@@ -228,8 +250,10 @@ def _diagnosis(fit: Fit, comparison: Comparison, measured: Measured) -> Diagnosi
         },
         outliers=float(np.mean(far)) if spread > 0 else 0.0,
         words="",
+        driven=driven,
+        estimate=estimate,
     )
-    return _with_words(found)
+    return _with_words(found, measured)
 
 
 def _memory(residual: Vector) -> int:
@@ -239,14 +263,32 @@ def _memory(residual: Vector) -> int:
     return int(below[0]) if len(below) else len(correlation)
 
 
-def _with_words(found: Diagnosis) -> Diagnosis:
-    times = found.size / found.noise
+def _with_words(found: Diagnosis, measured: Measured) -> Diagnosis:
+    noise, limit = found.noise, AT_NOISE * found.noise
     source = "declared noise" if found.declared else "noise"
+    if found.driven is not None:
+        noise = float(np.hypot(found.noise, found.driven.size))
+        limit = max(AT_NOISE * noise, float(np.hypot(found.noise, found.driven.high)))
+        source += " of sensor and inputs"
+    times = found.size / noise
+    estimate = found.estimate
+    doubtful = estimate is not None and not estimate.is_sure
     over = f"correlated over {found.memory:.2g} s"
-    if times > AT_NOISE and not found.is_white:
+    of_inputs = found.driven is not None and AT_NOISE * found.noise < found.size <= limit
+    if of_inputs:
+        names = " and ".join(f"'{name}'" for name in measured.input_sigma)
+        words = f"at the noise of the measured input {names}, which explains it; "
+        words += f"without that, the residual is {found.size / found.noise:.2g} times the noise"
+    elif estimate and doubtful and limit < found.size <= AT_NOISE * estimate.high:
+        words = (
+            f"the residual is {times:.2g} times the noise, which may be as large as that: it is "
+        )
+        words += f"between {estimate.low:.2g} and {estimate.high:.2g} (SI), {estimate.method}; "
+        words += f"say its `sigma:` where it is known; {over}"
+    elif found.size > limit and not found.is_white:
         words = f"the residual is {times:.2g} times the {source} and {over}: something is missing"
         words += "; `tracewire trace` looks for it"
-    elif times > AT_NOISE:
+    elif found.size > limit:
         words = f"the residual is {times:.2g} times the {source}, yet white: the noise is larger"
         words += " than declared" if found.declared else " than its differences tell"
     elif not found.is_white:
@@ -255,7 +297,13 @@ def _with_words(found: Diagnosis) -> Diagnosis:
         words = f"white, and {times:.2g} times the declared noise: sigma is declared too large"
     else:
         words = f"white, at the {source}"
-    depends = [n for n, p in found.independence.items() if p < DOUBT and n != found.signal]
+    # a residual that the noise of inputs makes follows these as they are measured
+    known = set(measured.input_sigma) if of_inputs else set()
+    depends = [
+        name
+        for name, p in found.independence.items()
+        if p < DOUBT and name != found.signal and name not in known
+    ]
     if depends:
         words += f"; it depends on {' and '.join(depends)}, which drives the model"
     if found.outliers > 0.005:

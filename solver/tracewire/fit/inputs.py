@@ -1,4 +1,4 @@
-"""Measured inputs between their samples: smooth ones follow a cubic spline."""
+"""Measured inputs between their samples: held, joined by straight lines, or on a cubic spline."""
 
 from __future__ import annotations
 
@@ -6,6 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.linalg import solveh_banded
+
+from tracewire.diagram import Hold
+from tracewire.solve import Driving, Held
 
 Vector = NDArray[np.float64]
 LEAST_SAMPLES = 9
@@ -16,7 +19,37 @@ VISIBLE = 1e-6
 FINE = 1e-3
 """The same for what may be left between the points."""
 FINEST = 8
+REPEATED, JUMP = 0.5, 0.02
+"""Samples that repeat the one before, and the least of the changes beside the range, from which on
+an input looks held."""
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(3)
+
+
+def between_samples(name: str, t: Vector, u: Vector, hold: Hold | None) -> tuple[Driving, str]:
+    """An input with samples u (N,) at times t (N,) as a run takes it, and how in words.
+
+    As `hold` says: each value acts until the next (`previous`), straight lines join the samples
+    (`linear`), or a cubic spline does (`smooth`). With None it is the spline where `smoothed`
+    finds the input smooth, else straight lines.
+    """
+    said = "" if hold is None else ", as declared"
+    if hold == "previous":
+        return Held(t, u), f"input '{name}' is held from sample to sample{said}"
+    points = smoothed(t, u) if hold is None else None
+    if hold == "smooth":
+        points = splined(t, u)
+    if points is None:
+        return (t, u), f"input '{name}' is joined by straight lines{said}"
+    return points, f"input '{name}' is smooth{said}: a cubic spline, in {len(points[0])} points"
+
+
+def looks_held(u: Vector) -> bool:
+    """Whether an input is constant for most of the time and jumps between, as one that is held."""
+    changes = np.abs(np.diff(u))
+    jumps = changes[changes > 0]
+    if not len(jumps) or np.mean(changes == 0) < REPEATED:
+        return False
+    return bool(np.median(jumps) > JUMP * np.ptp(u))
 
 
 def smoothed(t: Vector, u: Vector) -> tuple[Vector, Vector] | None:
@@ -36,18 +69,31 @@ def smoothed(t: Vector, u: Vector) -> tuple[Vector, Vector] | None:
     """
     if len(t) < LEAST_SAMPLES or not np.all(np.diff(t) > 0):
         return None
-    kept, left = slice(0, None, 2), slice(1, len(t) - 1, 2)
-    predicted = CubicSpline(t[kept], u[kept])(t[left])
-    error = float(np.max(np.abs(predicted - u[left])))
-    lines = float(np.max(np.abs(np.interp(t[left], t[kept], u[kept]) - u[left])))
-    size = float(np.ptp(u))
-    if not lines > VISIBLE * size or not error < BETTER * lines:
+    lines, spline = _errors(t, u)
+    if not lines > VISIBLE * float(np.ptp(u)) or not spline < BETTER * lines:
         return None
+    return splined(t, u)
+
+
+def splined(t: Vector, u: Vector) -> tuple[Vector, Vector]:
+    """The points whose straight lines come closest to the cubic spline through an input."""
+    lines, _ = _errors(t, u)
     # lines err by the square of the interval: a quarter of `lines` on all samples
+    size = float(np.ptp(u)) or 1.0
     factor = int(np.clip(np.ceil(np.sqrt(lines / (4 * FINE * size))), 1, FINEST))
     count = (len(t) - 1) * factor + 1
     times = np.interp(np.arange(count) / factor, np.arange(len(t)), t)
     return times, projected(CubicSpline(t, u), times)
+
+
+def _errors(t: Vector, u: Vector) -> tuple[float, float]:
+    """By how much straight lines, and a spline, miss every second sample, from the others."""
+    kept, left = slice(0, None, 2), slice(1, len(t) - 1, 2)
+    if len(t) < 4:
+        return 0.0, 0.0
+    lines = np.interp(t[left], t[kept], u[kept]) - u[left]
+    spline = CubicSpline(t[kept], u[kept])(t[left]) - u[left]
+    return float(np.max(np.abs(lines))), float(np.max(np.abs(spline)))
 
 
 def projected(spline: CubicSpline, times: Vector) -> Vector:

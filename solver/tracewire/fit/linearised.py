@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.fit.measured import LARGEST, Measured
-from tracewire.fit.segment import Segment, of_diagram, parameter_in
+from tracewire.fit.segment import Segment, absolute_tolerances, of_diagram, parameter_in
 from tracewire.fit.sensing import Sensing
 from tracewire.solve import Limits, Span, simulate_spans
 from tracewire.solve.interrupt import Halt
@@ -89,6 +89,7 @@ class Shooting:
             spans,
             parameters=of_diagram(values, measured),
             rtol=self.rtol,
+            atol=absolute_tolerances(self.model, measured, self.rtol),
             preset=measured.preset,
             inputs=measured.inputs,
             limits=self.limits,
@@ -97,8 +98,9 @@ class Shooting:
             halt=halt,
         )
         shown = sensing.shown(runs)
-        slopes = sensing.derivatives(runs, answers) / self.sigma[:, None]
-        residual = difference(measured, self.samples, shown) / self.sigma
+        with np.errstate(over="ignore"):  # what overflows is not usable
+            slopes = sensing.derivatives(runs, answers) / self.sigma[:, None]
+            residual = difference(measured, self.samples, shown) / self.sigma
         rows = np.cumsum([0, *(len(segment.rows) for segment in self.segments)])
         # squares of what is larger would be no numbers
         small = (np.abs(shown) < LARGEST).all(axis=1) & (np.abs(slopes) < LARGEST).all(axis=(1, 2))

@@ -15,11 +15,11 @@ from tracewire.compile import Model
 from tracewire.data import STEPS, Record, read_record
 from tracewire.diagram import SENSOR, Channel, Diagram, Series
 from tracewire.errors import DataError, OptionError, Place, Problem, TracewireError
-from tracewire.fit.inputs import smoothed
+from tracewire.fit.inputs import between_samples
 from tracewire.fit.remarks import check_quantities, remarks_on
 from tracewire.fit.sensor import PLAIN, Sensor, read_sensor
 from tracewire.formula import evaluate
-from tracewire.solve import parameter_values
+from tracewire.solve import Driving, parameter_values
 
 Vector = NDArray[np.float64]
 LARGEST = 1e100  # its square, and sums of such squares, are numbers still
@@ -34,7 +34,8 @@ class Measured:
     signals that are compared modulo it (2 pi for an angle). `weight` counts the whole series in the
     criterion, `weights` single signals. A drift counts from `drift_from` (s), the first sample
     unless given. Samples before `counts_from` (s) do not count. `inputs` maps a named input to its
-    times and values, a smooth one (`tracewire.fit.inputs`) to points of a spline. `start` holds
+    times and values, a smooth one (`tracewire.fit.inputs`) to points of a spline, and `input_sigma`
+    to the standard deviation of its noise, white from sample to sample. `start` holds
     start values of this series by state, None where free; without any, a run begins at the start of
     the diagram's span. `parameters` are those of the diagram that have a value of their own in this
     series, `free` the bounds of those that a fit may change. `series` is its name in the diagram,
@@ -52,7 +53,7 @@ class Measured:
     weight: float = 1.0
     weights: Mapping[str, float] = field(default_factory=dict)
     counts_from: float = -math.inf
-    inputs: Mapping[str, tuple[Vector, Vector]] = field(default_factory=dict)
+    inputs: Mapping[str, Driving] = field(default_factory=dict)
     start: Mapping[str, float | None] = field(default_factory=dict)
     parameters: Mapping[str, float] = field(default_factory=dict)
     free: Mapping[str, tuple[float, float]] = field(default_factory=dict)
@@ -62,6 +63,7 @@ class Measured:
     steps: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
     drift_from: float | None = None
+    input_sigma: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def zero(self) -> float:
@@ -161,10 +163,7 @@ def _measured(
     if t[rows[-1]] < counts_from:
         what = f"the series '{series.name}' ends within its burn_in of {series.burn_in:g} s"
         raise DataError([Problem(what, series.place, (), "Make burn_in shorter.")])
-    factors = {
-        name: record.unit(name).factor if channel.declared is None else 1.0
-        for name, channel in channels.items()
-    }
+    factors = {name: _factor(record, name, channel) for name, channel in channels.items()}
     used = record.t[rows]
     few = np.sum((read.t >= used[0]) & (read.t <= used[-1])) < 3
     seen = read if few else read.trim(used[0], used[-1])
@@ -192,6 +191,11 @@ def _measured(
         weights={name: c.weight for name, c in channels.items() if c.weight != 1.0},
         counts_from=counts_from,
         inputs=inputs,
+        input_sigma={
+            name: channel.sigma * _factor(record, f"input {name}", channel)
+            for name, channel in series.inputs.items()
+            if channel.sigma is not None
+        },
         start={
             name: None if value is None else evaluate(value.formula, values) * value.factor
             for name, value in series.start.items()
@@ -206,18 +210,19 @@ def _measured(
     )
 
 
-def _inputs(
-    series: Series, record: Record, t: Vector
-) -> tuple[dict[str, tuple[Vector, Vector]], list[str]]:
-    """The inputs of a record by name, to be joined by straight lines, and what was done to them."""
-    found: dict[str, tuple[Vector, Vector]] = {}
+def _factor(record: Record, name: str, channel: Channel) -> float:
+    """The factor to SI of the numbers that are said of a column."""
+    return record.unit(name).factor if channel.declared is None else 1.0
+
+
+def _inputs(series: Series, record: Record, t: Vector) -> tuple[dict[str, Driving], list[str]]:
+    """The inputs of a record by name, and how each acts between its samples."""
+    found: dict[str, Driving] = {}
     told = []
-    for name in series.inputs:
+    for name, channel in series.inputs.items():
         values = record.columns[f"input {name}"]
-        points = smoothed(t, values)
-        found[name] = (t, values) if points is None else points
-        if points is not None:
-            told.append(f"input '{name}' is smooth: a cubic spline, in {len(points[0])} points")
+        found[name], words = between_samples(name, t, values, channel.hold)
+        told.append(words)
     return found, told
 
 

@@ -4,66 +4,32 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import matmul_toeplitz, solve_banded
 
-from tracewire.fit.measured import Measured
+from tracewire.fit.noise_estimate import (
+    NoiseEstimate,
+    channel_noise,
+    estimate_noise,
+    noise_level,
+)
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-ORDER = 6
-QUARTIC = 4
-STRETCHES, SHORTEST, FEWEST = 15, 12, 3
-"""How many stretches a period has, how many samples a stretch at least, how many a series."""
 
-
-def noise_level(values: Vector) -> float:
-    """The standard deviation of the noise on a smooth signal, shape (N,).
-
-    1.4826 times the median absolute sixth difference over the norm of the binomial weights, which
-    is that of white noise; or what quartics leave in stretches of a fifteenth of the period, the
-    median over these, where that is more: of noise that a filter or an interpolation has smoothed.
-    """
-    weights = np.array([comb(ORDER, k) for k in range(ORDER + 1)], dtype=float)
-    if len(values) <= ORDER + 1:
-        return 0.0
-    fine = 1.4826 * np.median(np.abs(np.diff(values, ORDER))) / np.linalg.norm(weights)
-    return max(float(fine), _beside_quartics(values))
-
-
-def _beside_quartics(values: Vector) -> float:
-    """The median over stretches of what a quartic leaves, per degree of freedom."""
-    crossings = int(np.sum(np.diff(np.signbit(values - np.mean(values)))))
-    length = max(int(2 * len(values) / max(crossings, 2) / STRETCHES), SHORTEST)
-    count = len(values) // length
-    if count < FEWEST:
-        return 0.0
-    powers = np.vander(np.linspace(-1, 1, length), QUARTIC + 1)
-    basis, _ = np.linalg.qr(powers)
-    rows = values[: count * length].reshape(count, length).T
-    left = rows - basis @ (basis.T @ rows)
-    return float(np.sqrt(np.median(np.sum(left**2, axis=0)) / (length - QUARTIC - 1)))
-
-
-def channel_noise(measured: Sequence[Measured]) -> dict[str, float]:
-    """The noise of each measured signal: as declared, else estimated from the series.
-
-    At least the step of the sensor over the root of 12, where the readings stand on steps, and a
-    millionth of the signal's spread.
-    """
-    found: dict[str, list[float]] = {}
-    for series in measured:
-        for name, values in series.values.items():
-            declared = series.sigma.get(name)
-            if declared is None:
-                steps = np.diff(np.unique(values))
-                quantum = float(np.median(steps)) / 12**0.5 if len(steps) < len(values) / 4 else 0.0
-                declared = max(noise_level(values), quantum, 1e-6 * float(np.std(values)), 1e-300)
-            found.setdefault(name, []).append(declared)
-    return {name: float(np.median(levels)) for name, levels in found.items()}
+__all__ = [
+    "Noise",
+    "NoiseEstimate",
+    "channel_noise",
+    "degrees_of",
+    "estimate_noise",
+    "noise_in",
+    "noise_level",
+    "noise_of",
+    "noises_beside",
+]
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,7 @@ from tracewire.compile import Model
 from tracewire.data import Record, signal_remarks, time_remarks
 from tracewire.diagram import Series
 from tracewire.errors import DataError, FormulaError, Problem
+from tracewire.fit.inputs import looks_held
 from tracewire.formula import evaluate, same_quantity
 
 LARGEST_ANGLE = 20.0
@@ -71,7 +72,20 @@ def remarks_on(
                     f"{start:.4g} rad: is the angle measured from another line?"
                 )
     found += _on_rest(model, series, read)
+    found += _on_hold(series, read)
     return tuple(found)
+
+
+def _on_hold(series: Series, read: Record) -> list[str]:
+    """Inputs that look held, of which nothing is said."""
+    return [
+        f"the input {name} looks held: most of its samples repeat the one before; if it acts so, "
+        "say hold: previous, if not, hold: linear"
+        for name, channel in series.inputs.items()
+        if channel.hold is None
+        and (column := read.columns.get(f"input {name}")) is not None
+        and looks_held(column)
+    ]
 
 
 def _on_rest(model: Model, series: Series, read: Record) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -9,6 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.compile import Model
 from tracewire.fit.measured import Measured
 
 Vector = NDArray[np.float64]
@@ -49,7 +51,7 @@ class Segment:
     def start_scale(self, state: str) -> float:
         """The size of a free start value: what its signal, or the fastest rate of one, spreads."""
         spread = self.measured.spreads.get(state, self.measured.fastest)
-        return max(spread, abs(self.start[state]), 1e-12)
+        return max(spread, abs(self.start[state])) or 1.0
 
 
 @dataclass(frozen=True)
@@ -79,6 +81,19 @@ def of_diagram(values: Mapping[str, float], measured: Measured | None = None) ->
     known |= measured.parameters
     names = {name: own_name(name, measured) for name in measured.parameters}
     return known | {name: values[own] for name, own in names.items() if own in values}
+
+
+def absolute_tolerances(model: Model, measured: Measured, rtol: float) -> dict[str, float]:
+    """The absolute tolerance of each state in runs of a series, for `simulate_spans`.
+
+    rtol/1000 of the spread of its signal; of a state that is not measured, of the least spread of a
+    signal or of the fastest rate of one. Sizes are rounded down to a power of ten, and at most 1: a
+    record in m is run as exactly as the same record in mm.
+    """
+    sizes = {name: size for name, size in measured.spreads.items() if size > 0}
+    least = min([1.0, *sizes.values(), *([measured.fastest] if measured.fastest > 0 else [])])
+    known = {name: min(sizes.get(name, least), 1.0) for name in model.states}
+    return {name: rtol * 10.0 ** (math.floor(math.log10(size)) - 3) for name, size in known.items()}
 
 
 def own_name(parameter: str, measured: Measured) -> str:

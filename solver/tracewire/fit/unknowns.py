@@ -52,7 +52,7 @@ def sensor_unknowns(measured: Sequence[Measured]) -> list[Unknown]:
     found: dict[str, Unknown] = {}
     for series in measured:
         for signal, sensor in series.sensors.items():
-            spread = max(float(np.std(series.values[signal])) * 0.1, 1e-12)
+            spread = 0.1 * float(np.std(series.values[signal])) or 1.0
             largest = float(np.max(np.abs(series.values[signal])))
             sizes = {
                 "offset": spread,

@@ -88,6 +88,7 @@ Not there yet: delays; the rate of a state that is held by a stop is still a sta
 on it keeps its last side while the stop holds.
 """
 
+from tracewire.solve.held import Driving, Held, values_at, with_points
 from tracewire.solve.interrupt import Interrupted
 from tracewire.solve.limits import Limits
 from tracewire.solve.many import Runs, simulate_many
@@ -95,10 +96,13 @@ from tracewire.solve.observers import Section
 from tracewire.solve.passage import Passage
 from tracewire.solve.run import Event, Run, Sensitivities, Statistics
 from tracewire.solve.simulate import parameter_values, simulate
+from tracewire.solve.space import release
 from tracewire.solve.spans import Span, SpanRuns, simulate_spans
 
 __all__ = [
+    "Driving",
     "Event",
+    "Held",
     "Interrupted",
     "Limits",
     "Passage",
@@ -110,7 +114,10 @@ __all__ = [
     "SpanRuns",
     "Statistics",
     "parameter_values",
+    "release",
     "simulate",
     "simulate_many",
     "simulate_spans",
+    "values_at",
+    "with_points",
 ]

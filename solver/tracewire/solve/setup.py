@@ -39,6 +39,7 @@ from tracewire.solve.core.jit import invoke_at
 from tracewire.solve.core.locate import SAMPLES
 from tracewire.solve.core.methods import NAMES
 from tracewire.solve.core.methods.trial import DENSE, STAGES
+from tracewire.solve.held import Held
 
 Vector = NDArray[np.float64]
 MOST_STIFF = 64  # mode combinations of a run that are remembered as stiff
@@ -135,11 +136,15 @@ def starts(model: Model, flow: Flow) -> Vector:
 
 
 def packed(tables: Sequence[Table]) -> Vector:
-    """All tables in one array: their offsets, then of each its length, points, values, slopes."""
+    """All tables in one array: their offsets, then of each its length, points, values, slopes.
+
+    One that is held has slopes of 0: it jumps at its points.
+    """
     out = np.zeros(len(tables) + sum(3 * len(x) for x, _ in tables) + 1)
     steps: dict[int, Vector] = {}  # many tables have the same x
     offset = len(tables)
-    for number, (x, y) in enumerate(tables):
+    for number, table in enumerate(tables):
+        x, y = table
         count = len(x)
         if id(x) not in steps:
             steps[id(x)] = x[1:] - x[:-1]
@@ -147,7 +152,8 @@ def packed(tables: Sequence[Table]) -> Vector:
         out[offset + 1 : offset + 1 + count] = x
         out[offset + 1 + count : offset + 1 + 2 * count] = y
         slopes = out[offset + 1 + 2 * count : offset + 3 * count]
-        np.divide(y[1:] - y[:-1], steps[id(x)], out=slopes)
+        if not isinstance(table, Held):
+            np.divide(y[1:] - y[:-1], steps[id(x)], out=slopes)
         offset += 3 * count
     return out
 

@@ -16,6 +16,7 @@ from tracewire.solve.core.codes import SAMPLED
 from tracewire.solve.core.methods import NAMES
 from tracewire.solve.execute import Execution, Tell
 from tracewire.solve.failures import place_of
+from tracewire.solve.held import Held
 from tracewire.solve.interrupt import Interrupted
 from tracewire.solve.limits import Limits
 from tracewire.solve.run import EventLog, Run
@@ -67,8 +68,8 @@ def simulate(
     5), `rk4` (fixed `step` in s, order 4), or `auto`: dormand_prince, dop853 where rtol is
     1e-8 or less, and rosenbrock where a mode combination turns out to be stiff. `atol` is rtol/1000
     unless given, as a number or by state. `inputs` gives measured inputs as (times, values), joined
-    by straight lines. `progress` is told about ten times a second the part of the span that is
-    done, and the seconds that are left.
+    by straight lines; `Held(times, values)` holds each value until the next. `progress` is told
+    about ten times a second the part of the span that is done, and the seconds that are left.
     `sensitivities` names parameters and start values (`start.theta`) whose forward sensitivities
     are wanted.
 
@@ -283,7 +284,8 @@ def tables_of(
                 model.kept[key] = _table(name, flat.tables[name].x, flat.tables[name].y, {})
             tables.append(model.kept[key])
         elif name in inputs:
-            tables.append(_table(name, *inputs[name], times))
+            table = _table(name, *inputs[name], times)
+            tables.append(Held(*table) if isinstance(inputs[name], Held) else table)
         else:
             default = flat.inputs[name]
             if default is None:

@@ -118,5 +118,10 @@ def give_back(model: Model, space: Space) -> None:
     kept.setdefault(space.key, []).append(space)
 
 
+def release(model: Model) -> None:
+    """Free the memory that runs of a model keep for the next one."""
+    _kept(model).clear()
+
+
 def _kept(model: Model) -> dict[Key, list[Space]]:
     return cast(dict[Key, list[Space]], model.kept.setdefault("spaces", {}))

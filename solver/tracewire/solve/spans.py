@@ -81,6 +81,7 @@ def simulate_spans(
     *,
     parameters: Mapping[str, float] | None = None,
     rtol: float = 1e-6,
+    atol: Mapping[str, float] | None = None,
     preset: str = "",
     inputs: Mapping[str, tuple[ArrayLike, ArrayLike]] | None = None,
     limits: Limits | None = None,
@@ -103,7 +104,7 @@ def simulate_spans(
     limits = limits or Limits()
     space = space_for(model, values, tables, asked, moving, 0)
     arrays, progress = space.arrays, space.arrays.progress
-    tolerance = tolerance_of(model, rtol, None, "auto", None, np.inf)
+    tolerance = tolerance_of(model, rtol, atol, "auto", None, np.inf)
     set_up(progress, np.zeros(len(progress.x)), (0.0, 1.0), np.empty(0), "auto", tolerance)
     if asked:
         of_starts = arrays.sensitivity

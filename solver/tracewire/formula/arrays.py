@@ -1,0 +1,81 @@
+"""The values of a formula along samples: names stand for arrays of the same length."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import reduce
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.errors import FormulaError
+from tracewire.formula.expression import Expression, Name, Number
+from tracewire.formula.functions import CONSTANTS
+from tracewire.formula.text import to_text
+
+Vector = NDArray[np.float64]
+OPERATIONS: dict[str, Callable[..., Any]] = {
+    "+": np.add,
+    "-": np.subtract,
+    "*": np.multiply,
+    "/": np.divide,
+    "**": np.power,
+    "neg": np.negative,
+    "<": np.less,
+    "<=": np.less_equal,
+    ">": np.greater,
+    ">=": np.greater_equal,
+    "and": lambda *terms: reduce(np.logical_and, terms),
+    "or": lambda *terms: reduce(np.logical_or, terms),
+    "not": np.logical_not,
+    "abs": np.abs,
+    "sign": np.sign,
+    "min": lambda *terms: reduce(np.minimum, terms),
+    "max": lambda *terms: reduce(np.maximum, terms),
+    "floor": np.floor,
+    "mod": np.mod,
+    "dry": lambda u, slip, stick: slip * np.sign(u),
+    "if": lambda condition, then, other: np.where(condition, then, other),
+    "sin": np.sin,
+    "cos": np.cos,
+    "tan": np.tan,
+    "asin": np.arcsin,
+    "acos": np.arccos,
+    "atan": np.arctan,
+    "atan2": np.arctan2,
+    "sinh": np.sinh,
+    "cosh": np.cosh,
+    "tanh": np.tanh,
+    "exp": np.exp,
+    "log": np.log,
+    "sqrt": np.sqrt,
+}
+
+
+def evaluate_along(
+    expression: Expression, values: Mapping[str, float | Vector], count: int
+) -> Vector:
+    """The values (count,) of a formula at samples, given those of its names, (count,) or a number.
+
+    A sign, or a friction, of exactly 0 is 0. Raises FormulaError where a value is not finite, a
+    name has no value, or a function has no meaning for samples alone.
+    """
+    try:
+        with np.errstate(all="ignore"):  # the branch of a choice that is not taken
+            found = np.broadcast_to(_value(expression, values), (count,)).astype(float)
+    except KeyError as error:
+        what = f"'{to_text(expression)}' cannot be evaluated along samples: no '{error.args[0]}'"
+        raise FormulaError.one(what) from error
+    if not np.isfinite(found).all():
+        raise FormulaError.one(f"'{to_text(expression)}' is not finite at each sample")
+    return found
+
+
+def _value(node: Expression, values: Mapping[str, float | Vector]) -> float | Vector:
+    if isinstance(node, Number):
+        return node.value
+    if isinstance(node, Name):
+        return CONSTANTS[node.name] if node.name in CONSTANTS else values[node.name]
+    found: Vector = OPERATIONS[node.function](*(_value(a, values) for a in node.arguments))
+    return found
