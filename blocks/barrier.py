@@ -47,7 +47,7 @@ voigt_barrier = Block(
 OF = Input("of", doc="the coordinate of the body: rad, or m")
 STIFFNESS = Parameter("k", doc="N m/rad, or N/m", low=0.0)
 GAP = Parameter("gap", doc="where it begins: rad, or m", low=0.0)
-GAPS = Shape((0.3, 0.45, 0.6, 0.75, 0.85), of="Q")
+GAPS = Shape((0.3, 0.45, 0.6, 0.75, 0.85), of="Q", least=0.05, most=1.0)
 
 barrier = Block(
     name="barrier",
@@ -62,6 +62,24 @@ barrier = Block(
         ),
     ),
     effect=Effect("k", {"of": "q"}, sign=1, shapes={"gap": GAPS}),
+)
+
+overflow = Block(
+    name="overflow",
+    doc="What runs over above a level, in proportion to the excess.",
+    inputs=(Input("of", doc="the level: m, or what is stored"),),
+    parameters=(
+        Parameter("k", "1/s", "of what runs over to the excess", low=0.0),
+        Parameter("edge", doc="the level from which on it runs over", low=0.0),
+    ),
+    outputs=(Output("flow", "-k*(of - edge if of >= edge else 0)", doc="leaves what is stored"),),
+    effect=Effect(
+        "k",
+        {"of": "v"},
+        sign=1,
+        shapes={"edge": Shape((0.5, 0.7, 0.8, 0.9), of="top", least=0.2, most=1.0)},
+        lacking=("q",),
+    ),
 )
 
 barrier_hi = Block(

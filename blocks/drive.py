@@ -37,7 +37,105 @@ drive_lag = Block(
     parameters=(Parameter("tau", "s", "the time constant", low=0.0),),
     states=(State("w", "(of - w)/(tau if tau > 0 else 1)", "0"),),
     outputs=(Output("y", "w - of if tau > 0 else 0", doc="is added to the drive"),),
-    effect=Effect("tau", {"of": "u"}, sign=1, place="drive", at=Shape((2.0, 6.0), of="dt")),
+    effect=Effect(
+        "tau",
+        {"of": "u"},
+        sign=1,
+        place="drive",
+        at=Shape((2.0, 6.0), of="dt"),
+        alias=("sensor_delay", "drive_delay", "viscous"),
+    ),
+)
+
+drive_delay = Block(
+    name="drive_delay",
+    doc="What a drive that acts after a dead time lacks: a delay, less the record.",
+    inputs=(OF,),
+    parameters=(Parameter("tau", "s", "the dead time", low=0.0),),
+    # Pade, of second order: N(-s)/N(s) - 1 with N = 1 + s tau/2 + (s tau)^2/12; w is of behind 1/N
+    states=(
+        State("w", "wdot", "0"),
+        State("wdot", "(12*(of - w)/tau - 6*wdot)/tau if tau > 0 else of - w - wdot", "0"),
+    ),
+    outputs=(Output("y", "-tau*wdot", doc="is added to the drive"),),
+    effect=Effect(
+        "tau",
+        {"of": "u"},
+        sign=1,
+        place="drive",
+        at=Shape((2.0, 6.0), of="dt"),
+        alias=("sensor_delay",),
+    ),
+)
+
+drive_saturation = Block(
+    name="drive_saturation",
+    doc="What a drive lacks that cannot go beyond a limit.",
+    inputs=(OF,),
+    parameters=(
+        Parameter(
+            "share", doc="of what is beyond the limit that is lost; 1: all", low=0.0, high=1.0
+        ),
+        Parameter("limit", doc="of either sign, in the unit of the drive", low=0.0),
+    ),
+    outputs=(
+        Output(
+            "y",
+            "-share*(of - limit if of >= limit else (of + limit if of <= -limit else 0))",
+            doc="is added to the drive",
+        ),
+    ),
+    effect=Effect(
+        "share",
+        {"of": "u"},
+        sign=1,
+        shapes={"limit": Shape((0.5, 0.7, 0.85, 0.95), of="U", least=0.1, most=1.0)},
+        place="drive",
+        alias=("drive_3rd_harm",),
+    ),
+)
+
+drive_dead_zone = Block(
+    name="drive_dead_zone",
+    doc="What a drive lacks that does nothing near zero.",
+    inputs=(OF,),
+    parameters=(
+        Parameter("share", doc="of the zone that is lost; 1: all", low=0.0, high=1.0),
+        Parameter("zone", doc="of either sign, in the unit of the drive", low=0.0),
+    ),
+    outputs=(
+        Output(
+            "y",
+            "-share*(zone if of >= zone else (-zone if of <= -zone else of))",
+            doc="is added to the drive",
+        ),
+    ),
+    effect=Effect(
+        "share",
+        {"of": "u"},
+        sign=1,
+        shapes={"zone": Shape((0.05, 0.15, 0.3, 0.5), of="U", least=0.005, most=1.0)},
+        place="drive",
+        alias=("drive_3rd_harm", "drive_gain"),
+    ),
+)
+
+drive_quantiser = Block(
+    name="drive_quantiser",
+    doc="What a drive lacks that goes in steps: the nearest step, less the record.",
+    inputs=(OF,),
+    parameters=(
+        Parameter("share", doc="1: it goes in steps", low=0.0, high=1.0),
+        Parameter("step", doc="from one to the next, in the unit of the drive", low=0.0),
+    ),
+    outputs=(Output("y", "share*(step*floor(of/step + 0.5) - of)", doc="is added to the drive"),),
+    effect=Effect(
+        "share",
+        {"of": "u"},
+        sign=1,
+        shapes={"step": Shape((0.5, 0.25), of="U", least=0.02, most=1.0, wave=True)},
+        place="drive",
+    ),
 )
 
 drive_2nd_harm = Block(

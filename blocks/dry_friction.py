@@ -66,7 +66,12 @@ asym_coulomb = Block(
     # levels are then level_coulomb +- level, and the body sticks between just these. Only with a
     # width is it another law than a bias, as it then vanishes at rest.
     outputs=(Output("force", f"-level*({SMOOTHED}**2 if width > 0 else 1)", doc="on the body"),),
-    effect=Effect("level", {"rate": "v"}, shapes={"width": Shape((0.02, 0.1), of="V")}),
+    effect=Effect(
+        "level",
+        {"rate": "v"},
+        shapes={"width": Shape((0.02, 0.1), of="V")},
+        alias=("bias", "sensor_offset"),
+    ),
 )
 
 stribeck = Block(
@@ -83,7 +88,8 @@ stribeck = Block(
         "level",
         {"rate": "v"},
         sign=1,
-        shapes={"speed": Shape((0.15, 0.35, 0.8), of="V", low=1e-12), "width": WIDTHS},
+        shapes={"speed": Shape((0.0, 0.25, 0.5, 0.75, 0.95), of="rates"), "width": WIDTHS},
+        alias=("coulomb", "quad_drag", "cubic_damping"),
     ),
     source="The form of L. C. Bo, D. Pavelescu, The friction-speed relation, Wear 82 (1982) 277.",
 )
@@ -120,10 +126,11 @@ position_friction = Block(
         {"of": "q", "rate": "v"},
         sign=1,
         shapes={
-            "pitch": Shape((1.0, 2.0, 4.0), of="Q", low=1e-12),
+            "pitch": Shape((2.0, 1.0, 0.5), of="stroke", most=2.0, wave=True),
             "phase": Shape((0.0, 1.5708, 3.1416, -1.5708), low=-6.2832),  # quarters of a circle
             "width": Shape((0.0, 0.1), of="V"),
         },
+        alias=("coulomb",),
     ),
 )
 
@@ -133,5 +140,28 @@ friction_drift = Block(
     inputs=(RATE,),
     parameters=(Parameter("level", doc="growth in a second: N m/s, or N/s"), WIDTH),
     outputs=(Output("force", f"-level*t*{SIGN}", doc="acts on the body"),),
-    effect=Effect("level", {"rate": "v"}, shapes={"width": WIDTHS}),
+    effect=Effect(
+        "level", {"rate": "v"}, shapes={"width": WIDTHS}, alias=("coulomb", "viscous_drift")
+    ),
+)
+
+load_friction = Block(
+    name="load_friction",
+    doc="Dry friction whose level grows with a load, as of a seal under pressure or a loaded gear.",
+    inputs=(
+        Input(
+            "load", doc="what presses the surfaces together, of either sign: a drive, a pressure"
+        ),
+        RATE,
+    ),
+    parameters=(Parameter("share", doc="of the load: its level over the load", low=0.0), WIDTH),
+    outputs=(Output("force", f"-share*abs(load)*{SIGN}", doc="acts on the body"),),
+    effect=Effect(
+        "share",
+        {"load": "u", "rate": "v"},
+        sign=1,
+        shapes={"width": WIDTHS},
+        alias=("coulomb", "drive_gain"),
+    ),
+    source="Amontons: friction is in proportion to the load; a seal has a level of its own, too.",
 )

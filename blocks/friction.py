@@ -38,7 +38,7 @@ quad_drag = Block(
     inputs=(RATE,),
     parameters=(Parameter("c", doc="N m s^2/rad^2, or N s^2/m^2", low=0.0),),
     outputs=(Output("force", "-c*rate*abs(rate)", doc="acts on the body"),),
-    effect=Effect("c", {"rate": "v"}, sign=1),
+    effect=Effect("c", {"rate": "v"}, sign=1, alias=("cubic_damping", "viscous_drift")),
 )
 
 arctan_friction = Block(
@@ -128,5 +128,5 @@ viscous_drift = Block(
     inputs=(RATE,),
     parameters=(Parameter("c", doc="growth in a second: N m/rad, or N/m"),),
     outputs=(Output("force", "-c*t*rate", doc="acts on the body"),),
-    effect=Effect("c", {"rate": "v"}),
+    effect=Effect("c", {"rate": "v"}, alias=("cubic_damping", "friction_drift")),
 )

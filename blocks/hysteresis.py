@@ -13,7 +13,7 @@ DEFLECTION = Parameter(
     "deflection", doc="over which it grows to the full force: rad, or m", low=0.0
 )
 START = Parameter("start", doc="the share of the full force at the start", default=0.0)
-DEFLECTIONS = Shape((0.05, 0.15, 0.4), of="Q", low=1e-12)
+DEFLECTIONS = Shape((0.025, 0.075, 0.2), of="stroke", least=0.01, most=1.0)
 
 hysteresis = Block(
     name="hysteresis",
@@ -22,7 +22,13 @@ hysteresis = Block(
     parameters=(LEVEL, DEFLECTION, START),
     states=(State("z", "(rate - abs(rate)*z)/deflection", "start"),),
     outputs=(Output("force", "-level*z", doc="acts on the body"),),
-    effect=Effect("level", {"rate": "v"}, sign=1, shapes={"deflection": DEFLECTIONS}),
+    effect=Effect(
+        "level",
+        {"rate": "v"},
+        sign=1,
+        shapes={"deflection": DEFLECTIONS},
+        alias=("coulomb", "dahl", "lugre", "bouc_wen"),
+    ),
     source="P. Dahl, A solid friction model, The Aerospace Corporation, TOR-158(3107-18), 1968.",
 )
 
@@ -82,9 +88,9 @@ lugre = Block(
         {"rate": "v"},
         sign=1,
         shapes={
-            "deflection": Shape((0.02, 0.1), of="Q", low=1e-12),
+            "deflection": Shape((0.01, 0.05), of="stroke", least=0.01, most=1.0),
             "peak": Shape((0.5,)),
-            "speed": Shape((0.3,), of="V", low=1e-12),
+            "speed": Shape((0.3, 0.7), of="rates"),
         },
     ),
     source="C. Canudas de Wit, H. Olsson, K. J. Astrom, P. Lischinsky, A new model for control of"
@@ -145,6 +151,57 @@ play = Block(
         State("x", "0 if (x >= gap and rate > 0) or (x <= -gap and rate < 0) else rate", "start"),
     ),
     outputs=(Output("force", "-k*(of - x)", doc="acts on the body"),),
-    effect=Effect("k", {"of": "q", "rate": "v"}, shapes={"gap": Shape((0.1, 0.25, 0.5), of="Q")}),
+    effect=Effect(
+        "k",
+        {"of": "q", "rate": "v"},
+        shapes={"gap": Shape((0.1, 0.25, 0.5), of="Q", least=0.01, most=1.0)},
+    ),
     source="The play operator: M. A. Krasnosel'skii, A. V. Pokrovskii, Systems with Hysteresis.",
+)
+
+GAP = Parameter("gap", doc="half of the way that is free, in the unit of the coordinate", low=0.0)
+LAG = Parameter("lag", "s", "with which the end of the gap follows", low=0.0)
+FOLLOWS = State(
+    "w", "((of - gap) - w if of - w >= gap else ((of + gap) - w if of - w <= -gap else 0))/lag", "0"
+)
+# w follows within a fraction of a sample, which no record tells from at once
+OF_GAP = {
+    "gap": Shape((0.025, 0.075, 0.2), of="stroke", least=0.01, most=1.0),
+    "lag": Shape((0.3,), of="dt", fixed=True),
+}
+
+play_q = Block(
+    name="play_q",
+    doc="A spring behind a gap with friction, where nothing is known of the rate.",
+    inputs=(Input("of", doc="the coordinate, or the drive of an actuator"),),
+    parameters=(Parameter("k", doc="the output per unit of the coordinate"), GAP, LAG),
+    states=(FOLLOWS,),
+    outputs=(Output("force", "-k*w", doc="acts on the body"),),
+    effect=Effect(
+        "k",
+        {"of": "q"},
+        shapes=OF_GAP,
+        lacking=("v",),
+        alias=("stop_q", "sensor_delay", "drive_lag", "drive_delay"),
+    ),
+    source="The play operator: M. A. Krasnosel'skii, A. V. Pokrovskii, Systems with Hysteresis;"
+    " piezo actuators: K. Kuhnen, Modeling, identification and compensation of complex hysteretic"
+    " nonlinearities, Eur. J. Control 9 (2003) 407.",
+)
+
+stop_q = Block(
+    name="stop_q",
+    doc="A spring that slips at its full force, where nothing is known of the rate.",
+    inputs=(Input("of", doc="the coordinate, or the drive of an actuator"),),
+    parameters=(LEVEL, GAP, LAG),
+    states=(FOLLOWS,),
+    outputs=(Output("force", "-level*(of - w)/gap", doc="acts on the body"),),
+    effect=Effect(
+        "level",
+        {"of": "q"},
+        shapes=OF_GAP,
+        lacking=("v",),
+        alias=("sensor_delay", "drive_lag", "drive_delay"),
+    ),
+    source="The stop operator, an element of Prandtl and Ishlinskii: of - play(of).",
 )

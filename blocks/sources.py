@@ -16,7 +16,7 @@ bias = Block(
     doc="A constant torque or force that nothing else explains.",
     parameters=(Parameter("level", doc="the torque or force, of either sign"),),
     outputs=(Output("force", "level", doc="acts on the body"),),
-    effect=Effect("level"),
+    effect=Effect("level", alias=("sensor_offset",)),
 )
 
 harmonic = Block(
@@ -33,10 +33,11 @@ harmonic = Block(
     effect=Effect(
         "amplitude",
         shapes={
-            "period": Shape(tuple(1 / n for n in range(1, 61)), of="T", low=1e-9),
+            "period": Shape(tuple(1 / n for n in range(1, 61)), of="T", low=1e-9, most=1.0),
             "phase": Shape((0.0, QUARTER), low=-4 * QUARTER),  # sine and cosine
         },
         each=("phase",),
+        alias=("drive_2nd_harm", "drive_3rd_harm", "parametric"),
     ),
 )
 

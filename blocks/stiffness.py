@@ -4,7 +4,7 @@ A deflection is in rad and the output a torque in N m, or m and a force in N. Le
 the two sides: l where the signal that decides is zero or positive, r where it is negative.
 """
 
-from tracewire.library import Block, Effect, Input, Output, Parameter, Shape
+from tracewire.library import Block, Effect, Input, Output, Parameter, Shape, State
 
 QUARTER = 1.5707963267948966  # rad, of a wave: pi/2
 
@@ -16,8 +16,8 @@ PAPER = (
 OF = Input("of", doc="the deflection")
 # whole numbers of waves in the record, or on the way that is gone: what lies between two of them
 # is at most half a wave off at either end, so that no frequency is missed
-PERIODS = Shape(tuple(1 / n for n in range(1, 61)), of="T", low=1e-9)
-PITCHES = Shape(tuple(2 / n for n in range(1, 25)), of="Q", low=1e-12)
+PERIODS = Shape(tuple(1 / n for n in range(1, 61)), of="T", low=1e-9, most=1.0)
+PITCHES = Shape((1.0, 0.5, 0.25), of="stroke", most=1.0, wave=True)
 # sine and cosine; the sign of the amplitude does the other half of the circle
 PHASES = Shape((0.0, QUARTER), low=-4 * QUARTER)
 
@@ -45,7 +45,7 @@ cubic_stiffness = Block(
     inputs=(OF,),
     parameters=(Parameter("k", doc="N m/rad^3, or N/m^3; negative: softening"),),
     outputs=(Output("force", "-k*of**3", doc="acts on the body"),),
-    effect=Effect("k", {"of": "q"}),
+    effect=Effect("k", {"of": "q"}, alias=("barrier", "stiffness_drift")),
 )
 
 asym_stiffness = Block(
@@ -54,7 +54,7 @@ asym_stiffness = Block(
     inputs=(OF,),
     parameters=(Parameter("k", doc="half the difference of the stiffnesses: N m/rad, or N/m"),),
     outputs=(Output("force", "-k*abs(of)", doc="acts on the body"),),
-    effect=Effect("k", {"of": "q"}),
+    effect=Effect("k", {"of": "q"}, alias=("barrier_hi", "barrier_lo", "quad_stiffness")),
 )
 
 backlash = Block(
@@ -70,7 +70,13 @@ backlash = Block(
             "force", "k*(gap if of >= gap else (-gap if of <= -gap else of))", doc="on the body"
         ),
     ),
-    effect=Effect("k", {"of": "q"}, sign=1, shapes={"gap": Shape((0.1, 0.25, 0.5), of="Q")}),
+    effect=Effect(
+        "k",
+        {"of": "q"},
+        sign=1,
+        shapes={"gap": Shape((0.1, 0.25, 0.5), of="Q", least=0.01, most=1.0)},
+        alias=("stiffness", "barrier", "play"),
+    ),
 )
 
 stiffness_drift = Block(
@@ -137,7 +143,41 @@ inertia = Block(
     inputs=(Input("of", doc="the acceleration of the body: rad/s^2, or m/s^2"),),
     parameters=(Parameter("m", doc="kg m^2, or kg; negative where too much is declared"),),
     outputs=(Output("force", "-m*of", doc="acts on the body"),),
-    effect=Effect("m", {"of": "a"}),
+    effect=Effect("m", {"of": "a"}, alias=("drive_gain", "sensor_gain")),
+)
+
+elastic_load = Block(
+    name="elastic_load",
+    doc="A mass on a spring and a damper, such as a load behind a belt, a cable or a shaft.",
+    inputs=(Input("of", doc="the acceleration of the body: rad/s^2, or m/s^2"),),
+    parameters=(
+        Parameter("m", doc="the mass: kg m^2, or kg", low=0.0),
+        Parameter("period", "s", "of the mass where the body is held", low=0.0),
+        Parameter("damping", doc="ratio of the damper to the critical one", default=0.05, low=0.0),
+    ),
+    # x is by how much the mass is ahead of the body, xdot its rate: the force is that of the spring
+    states=(
+        State("x", "xdot", "0"),
+        State("xdot", "-of - (2*pi/period)**2*x - 2*damping*2*pi/period*xdot", "0"),
+    ),
+    outputs=(
+        Output(
+            "force",
+            "m*((2*pi/period)**2*x + 2*damping*2*pi/period*xdot)",
+            doc="acts on the body",
+        ),
+    ),
+    effect=Effect(
+        "m",
+        {"of": "a"},
+        sign=1,
+        shapes={
+            "period": Shape((8.0, 16.0, 32.0, 64.0, 128.0), of="dt", least=4.0),
+            "damping": Shape((0.05,)),
+        },
+        alias=("inertia", "drive_lag", "sensor_delay"),
+    ),
+    source="The equation of a dynamic absorber; at a period of 0 it is inertia.",
 )
 
 asymmetric_stiffness = Block(

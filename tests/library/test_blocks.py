@@ -23,13 +23,14 @@ FAMILIES = {
     "friction": "viscous cubic_damping quad_drag arctan_friction asymmetric_viscous"
     " asymmetric_arctan smoothed_stribeck asym_viscous viscous_drift",
     "dry_friction": "coulomb dry_friction asymmetric_coulomb asym_coulomb stribeck disp_friction"
-    " position_friction friction_drift",
-    "hysteresis": "hysteresis dahl lugre bouc_wen play",
+    " position_friction friction_drift load_friction",
+    "hysteresis": "hysteresis dahl lugre bouc_wen play play_q stop_q",
     "stiffness": "stiffness quad_stiffness cubic_stiffness asym_stiffness backlash stiffness_drift"
-    " parametric cogging coupling_q coupling_v inertia asymmetric_stiffness"
+    " parametric cogging coupling_q coupling_v inertia elastic_load asymmetric_stiffness"
     " asymmetric_cubic_spring",
-    "barrier": "voigt_barrier barrier barrier_hi barrier_lo hunt_crossley",
-    "drive": "drive_gain drive_lag drive_2nd_harm drive_3rd_harm",
+    "barrier": "voigt_barrier barrier overflow barrier_hi barrier_lo hunt_crossley",
+    "drive": "drive_gain drive_lag drive_delay drive_saturation drive_dead_zone drive_quantiser"
+    " drive_2nd_harm drive_3rd_harm",
     "memory": "relay play_operator latch toggle counter",
     "sampling": "sample_and_hold zero_order_hold",
     "limited": "limited_integrator reset_integrator rate_limiter",

@@ -272,3 +272,72 @@ def test_inertia_that_is_left_out_slows_an_oscillator_down() -> None:
     text = body("inertia, of: a, m: 0.44", rate=0.0)
     result = run(text)
     assert result["x"] == pytest.approx(1.05 * np.cos(result.t / 1.2), abs=1e-6)
+
+
+def test_a_drive_with_a_dead_time_is_the_drive_as_it_was() -> None:
+    tau, omega = 0.08, 5.0
+    text = f"""
+        span: [0, 4]
+        every: 0.01
+        record: [seen]
+        blocks:
+          u: {{type: sine, amplitude: 1, omega: {omega}}}
+          late: {{type: drive_delay, of: u, tau: {tau}}}
+          seen: {{type: sum, of: [u, late]}}
+        """
+    found = run(text)
+    settled = found.t > 1
+    exact = np.sin(omega * (found.t - tau))
+    np.testing.assert_allclose(found.signals["seen"][settled], exact[settled], atol=5e-5)
+    none = run(text.replace(f"tau: {tau}", "tau: 0"))
+    np.testing.assert_allclose(none.signals["seen"], np.sin(omega * none.t), atol=1e-12)
+
+
+def test_an_elastic_load_is_a_second_mass() -> None:
+    m, period, damping = 0.3, 0.25, 0.1
+    w = 2 * math.pi / period
+    both = f"""
+        span: [0, 3]
+        every: 0.01
+        record: [q]
+        blocks:
+          q: {{type: integrator, of: v, start: 0.5}}
+          v: {{type: integrator, of: a}}
+          spring: {{type: stiffness, of: q, k: 20}}
+          a: {{type: sum, of: [spring, load]}}
+          load: {{type: elastic_load, of: a, m: {m}, period: {period}, damping: {damping}}}
+        """
+    found = run(both)
+
+    def rates(_: float, x: Vector) -> list[float]:
+        q, v, there, rate = x.tolist()
+        pull = m * (w**2 * (there - q) + 2 * damping * w * (rate - v))
+        return [v, -20 * q + pull, rate, -pull / m]
+
+    exact = solve_ivp(
+        rates, (0, 3), [0.5, 0, 0.5, 0], t_eval=found.t, rtol=1e-10, atol=1e-12, max_step=0.01
+    )
+    np.testing.assert_allclose(found.signals["q"], exact.y[0], atol=1e-7)
+
+
+def test_play_and_stop_of_a_coordinate_alone_are_those_of_its_way() -> None:
+    gap = 0.2
+    text = f"""
+        span: [0, 9]
+        every: 0.005
+        record: [of, play, stop]
+        blocks:
+          of: {{type: expression, formula: "(0.5 + 0.1*t)*sin(3*t)"}}
+          play: {{type: play_q, of: of, k: 2, gap: {gap}, lag: 1e-4}}
+          stop: {{type: stop_q, of: of, level: 3, gap: {gap}, lag: 1e-4}}
+        """
+    found = run(text)
+    at, ends = 0.0, []
+    for x in found.signals["of"].tolist():
+        at = min(max(at, x - gap), x + gap)
+        ends.append(at)
+    ends = np.array(ends)
+    np.testing.assert_allclose(found.signals["play"], -2 * ends, atol=2e-3)
+    stopped = -3 * (found.signals["of"] - ends) / gap
+    np.testing.assert_allclose(found.signals["stop"], stopped, atol=2e-2)
+    assert np.max(np.abs(found.signals["stop"])) == pytest.approx(3.0, abs=1e-2)

@@ -15,11 +15,13 @@ from tracewire.library import Block
 POSITIVE_ONLY = (
     "viscous coulomb quad_drag cubic_damping stribeck disp_friction position_friction backlash"
     " barrier barrier_hi barrier_lo hunt_crossley hysteresis dahl lugre bouc_wen drive_lag"
+    " drive_delay drive_saturation drive_dead_zone drive_quantiser load_friction elastic_load"
+    " overflow"
 )
 OF_EITHER_SIGN = (
     "bias asym_coulomb asym_viscous stiffness cubic_stiffness quad_stiffness asym_stiffness"
     " harmonic parametric cogging stiffness_drift viscous_drift friction_drift coupling_q"
-    " coupling_v drive_gain drive_2nd_harm drive_3rd_harm inertia play"
+    " coupling_v drive_gain drive_2nd_harm drive_3rd_harm inertia play play_q stop_q"
 )
 EFFECTS = {block.name: block for block in library().effects()}
 EACH = pytest.mark.parametrize("block", EFFECTS.values(), ids=EFFECTS)
@@ -89,7 +91,13 @@ FORMULAS: dict[str, tuple[Callable[..., float], dict[str, float]]] = {
         {"size": 1.7, "period": 1.25, "start": 0.3, "phase": 0.5},
     ),
     "inertia": (lambda a, **_: -a, {}),
+    "load_friction": (lambda u, v, **_: -abs(u) * sign(v), {}),
+    "overflow": (lambda v, **_: -max(0, v - 0.4), {"edge": 0.4}),
+    "drive_saturation": (lambda u, **_: clip(u, 0.7) - u, {"limit": 0.7}),
+    "drive_dead_zone": (lambda u, **_: -clip(u, 0.2), {"zone": 0.2}),
+    "drive_quantiser": (lambda u, **_: 0.3 * math.floor(u / 0.3 + 0.5) - u, {"step": 0.3}),
 }
+SENSOR = {f"sensor_{kind}" for kind in ("offset", "gain", "delay", "quad", "drift")}
 
 
 def force(block: Block, coefficient: float, shapes: dict[str, float], **signals: float) -> float:
@@ -126,7 +134,8 @@ SMOOTHED = [name for name in FREE if "width" in EFFECTS[name].effect.shapes]  # 
 
 
 def test_coulomb_like_effects_have_a_width() -> None:
-    expected = "coulomb asym_coulomb stribeck disp_friction position_friction friction_drift"
+    expected = "coulomb asym_coulomb stribeck disp_friction position_friction friction_drift "
+    expected += "load_friction"
     assert set(SMOOTHED) == set(expected.split())
 
 
@@ -135,7 +144,7 @@ def test_coulomb_like_effects_have_a_width() -> None:
 def test_a_width_makes_the_sign_of_the_rate_a_tanh(
     name: str, q: float, v: float, width: float
 ) -> None:
-    shapes, signals = FORMULAS[name][1], {"q": q, "t": 3.0}
+    shapes, signals = FORMULAS[name][1], {"q": q, "t": 3.0, "u": 1 - q}
     sharp = force(EFFECTS[name], 1.0, shapes, v=math.copysign(v, 1) or 1e-300, **signals)
     found = force(EFFECTS[name], 1.0, shapes | {"width": width}, v=v, **signals)
     assert found == pytest.approx(sharp * math.tanh(v / width), rel=1e-9, abs=1e-12)
@@ -151,12 +160,13 @@ def test_asymmetric_coulomb_without_a_width_is_a_bias() -> None:
 
 
 FRICTION = "coulomb viscous quad_drag cubic_damping stribeck disp_friction position_friction"
+FRICTION += " load_friction"
 
 
 @pytest.mark.parametrize("name", FRICTION.split())
 @given(q=Q, v=V)
 def test_friction_takes_energy_out(name: str, q: float, v: float) -> None:
-    assert force(EFFECTS[name], 1.5, FORMULAS[name][1], q=q, v=v, t=1.0) * v <= 0
+    assert force(EFFECTS[name], 1.5, FORMULAS[name][1], q=q, v=v, u=2 - q, t=1.0) * v <= 0
 
 
 @given(st.floats(0.4, 2), V)
@@ -190,3 +200,20 @@ def test_the_frequencies_of_a_harmonic_lie_as_close_as_the_record_resolves_them(
     assert periods.of == "T"
     frequencies = [1 / at for at in periods.at]
     assert [b - a for a, b in pairwise(frequencies)] == pytest.approx([1.0] * 59)
+
+
+@EACH
+def test_aliases_are_other_effects(block: Block) -> None:
+    assert block.effect is not None
+    assert set(block.effect.alias) <= (EFFECTS.keys() | SENSOR) - {block.name}
+
+
+def test_effects_at_the_drive_are_what_they_take_away() -> None:
+    """The drive and what is added to it together: limited, without a middle, in steps."""
+    for u in (-2.0, -0.65, -0.1, 0.0, 0.16, 0.9, 3.0):
+        limited = u + output("drive_saturation", of=u, share=1, limit=0.7)
+        assert limited == pytest.approx(clip(u, 0.7))
+        rest = u + output("drive_dead_zone", of=u, share=1, zone=0.2)
+        assert rest == pytest.approx(0 if abs(u) <= 0.2 else u - math.copysign(0.2, u))
+        stepped = u + output("drive_quantiser", of=u, share=1, step=0.3)
+        assert stepped == pytest.approx(0.3 * round(u / 0.3), abs=1e-12)

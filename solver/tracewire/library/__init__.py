@@ -12,7 +12,7 @@ from tracewire.library.declare import (
     Transition,
 )
 from tracewire.library.describe import describe, describe_json, palette
-from tracewire.library.effect import SCALES, SYMBOLS, Effect, Shape, Tone
+from tracewire.library.effect import SCALES, SYMBOLS, Effect, Scale, Shape, Tone
 from tracewire.library.load import Library, load_library
 
 __all__ = [
@@ -27,6 +27,7 @@ __all__ = [
     "Mode",
     "Output",
     "Parameter",
+    "Scale",
     "Shape",
     "State",
     "Tone",

@@ -130,15 +130,28 @@ def _effect(block: Block) -> str:
     parts += [f"{port} reads {SYMBOLS[symbol]}" for port, symbol in effect.inputs.items()]
     parts += [f"shape {name} first {_tried(shape)}" for name, shape in effect.shapes.items()]
     parts += [f"{name} is the {of} of the drive in each series" for name, of in effect.tone.items()]
-    return f"An effect that a trace tries{where}: {'; '.join(parts)}."
+    if effect.lacking:
+        lacking = " or ".join(
+            SYMBOLS[symbol].removesuffix(" of the place") for symbol in effect.lacking
+        )
+        parts.append(f"only where the place lacks {lacking}")
+    told = f"An effect that a trace tries{where}: {'; '.join(parts)}."
+    return told + (
+        f"\nOn many records it looks like {', '.join(effect.alias)}." if effect.alias else ""
+    )
 
 
 def _tried(shape: Shape) -> str:
     """The values of a shape; of a long grid its ends."""
+    if shape.of == "rates":
+        return f"at {len(shape.at)} rates from the slowest to the fastest"
     values = [f"{value:.3g}" for value in shape.at]
     if len(values) > MOST_VALUES:
         values = [*values[:2], "...", f"{values[-1]} ({len(values)} values)"]
-    return ", ".join(values) + (f" times {SCALES[shape.of]}" if shape.of else "")
+    if shape.wave:
+        return f"at the best of all lengths up to {max(shape.at):.3g} times {SCALES[shape.of]}"
+    told = ", ".join(values) + (f" times {SCALES[shape.of]}" if shape.of else "")
+    return f"{told}, not fitted" if shape.fixed else told
 
 
 def _effect_json(effect: Effect) -> dict[str, object]:
@@ -149,6 +162,8 @@ def _effect_json(effect: Effect) -> dict[str, object]:
         "shapes": {name: asdict(shape) for name, shape in effect.shapes.items()},
         "place": effect.place,
         "at": None if effect.at is None else asdict(effect.at),
+        "alias": list(effect.alias),
+        "lacking": list(effect.lacking),
     }
 
 

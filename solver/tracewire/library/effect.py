@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 Symbol = Literal["q", "v", "a", "u", "other_q", "other_v"]
-Scale = Literal["", "Q", "V", "U", "T", "dt"]
+Scale = Literal["", "Q", "V", "U", "T", "dt", "stroke", "rates", "top"]
 Where = Literal["sum", "drive"]
 Tone = Literal["amplitude", "period", "phase"]
 
@@ -26,6 +26,9 @@ SCALES: dict[Scale, str] = {
     "U": "the largest |u| of the drive",
     "T": "the duration of the longest series",
     "dt": "the sample interval",
+    "top": "the largest rate of the place",
+    "stroke": "the longest way of the place in one direction",
+    "rates": "the rates of the place, by factors: 0 the slowest that is resolved, 1 the fastest",
 }
 
 
@@ -33,13 +36,21 @@ SCALES: dict[Scale, str] = {
 class Shape:
     """Where a trace first tries a parameter that sets the shape of an effect.
 
-    at: multiples of `of`; with an empty `of` the values themselves, in SI. low: the least value
-    that the parameter may take in a refit, in SI.
+    at: multiples of `of`; with an empty `of` the values themselves, in SI. Of the `rates` they are
+    the place in the range of rates, on a logarithmic scale. low: the least value that the parameter
+    may take in a refit, in SI. least, most: between which multiples of `of` the record can tell a
+    value. A `wave` is a length along the coordinate that comes back: it is at least a few samples
+    long, and those lengths are tried first that a scan of all finds best. A `fixed` shape has the
+    first of its values, and no fit changes it.
     """
 
     at: tuple[float, ...]
     of: Scale = ""
     low: float = 0.0
+    least: float | None = None
+    most: float | None = None
+    wave: bool = False
+    fixed: bool = False
 
 
 @dataclass(frozen=True)
@@ -57,6 +68,9 @@ class Effect:
     parameters that every series has of its own: amplitude, period (s) and phase (rad, at t = 0) of
     the sine that its measured drive is. Where a drive is no sine, the effect is not tried.
     each: shapes that every series has of its own, as the phase of a wave that no record follows.
+    alias: names of other effects, or of a sensor's (`sensor_offset`), that imitate this one on many
+    records; it counts both ways. lacking: the effect is tried only where a place has none of these
+    signals, since there is a better one for those that do.
     """
 
     coefficient: str
@@ -67,3 +81,5 @@ class Effect:
     at: Shape | None = None
     tone: Mapping[str, Tone] = field(default_factory=dict, hash=False)
     each: tuple[str, ...] = ()
+    alias: tuple[str, ...] = ()
+    lacking: tuple[Symbol, ...] = ()
