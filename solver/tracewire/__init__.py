@@ -44,8 +44,17 @@ if TYPE_CHECKING:
     )
     from tracewire.library import Block, Effect, Input, Output, Parameter, State, load_library
     from tracewire.show import optimplotfit, optimplotfval, optimplotx, report
-    from tracewire.solve import Interrupted, Limits, Run, Runs, Section, simulate, simulate_many
-    from tracewire.trace import Found, trace
+    from tracewire.solve import (
+        Held,
+        Interrupted,
+        Limits,
+        Run,
+        Runs,
+        Section,
+        simulate,
+        simulate_many,
+    )
+    from tracewire.trace import Found, TraceOptions, load, save, trace
 
 __version__ = "0.1.0"
 
@@ -55,6 +64,7 @@ __all__ = [
     "Effect",
     "Fit",
     "Found",
+    "Held",
     "Input",
     "Interrupted",
     "Limits",
@@ -68,6 +78,7 @@ __all__ = [
     "Section",
     "Sensor",
     "State",
+    "TraceOptions",
     "TracewireError",
     "bifurcation",
     "compile",
@@ -78,6 +89,7 @@ __all__ = [
     "growth_rate",
     "invariant_drift",
     "linearise",
+    "load",
     "load_library",
     "load_measured",
     "lyapunov",
@@ -90,6 +102,7 @@ __all__ = [
     "read",
     "read_text",
     "report",
+    "save",
     "scalogram",
     "section",
     "simulate",
@@ -110,8 +123,8 @@ ROOM_OF = {
     "fit": "Fit Measured Sensor diagnose fit fminsearch load_measured optimset profile",
     "library": "Block Effect Input Output Parameter State load_library",
     "show": "optimplotfit optimplotfval optimplotx report",
-    "solve": "Interrupted Limits Run Runs Section simulate simulate_many",
-    "trace": "Found trace",
+    "solve": "Held Interrupted Limits Run Runs Section simulate simulate_many",
+    "trace": "Found TraceOptions load save trace",
 }
 
 

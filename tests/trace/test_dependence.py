@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import sys
+import tracemalloc
 from collections.abc import Callable
 
 import numpy as np
@@ -11,14 +13,15 @@ from scipy.integrate import solve_ivp
 from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.fit import Measured
-from tracewire.trace.bases import Basis
+from tracewire.trace.bases import Basis, bases_of
 from tracewire.trace.dependence import Scored, smallest, where_what
 from tracewire.trace.found import Dependence, Missing
 from tracewire.trace.places import Place, find_places
 from tracewire.trace.tangent import Tangent
-from tracewire.trace.trial import Bench
+from tracewire.trace.trial import Bench, Trial
 from tracewire.trace.windows import Section, cut
 
+dependence = sys.modules[where_what.__module__]
 Law = Callable[[float, float, float], float]
 OSCILLATOR = """\
 span: [0, 6]
@@ -62,14 +65,46 @@ def record(number: int, law: Law, memory: Law) -> Measured:
 def mapped(
     law: Law, memory: Law = lambda q, v, z: 0.0
 ) -> tuple[tuple[Dependence, ...], Missing | None]:
+    return where_what(*tangent_of(law, memory))
+
+
+def tangent_of(law: Law, memory: Law = lambda q, v, z: 0.0) -> tuple[Tangent, Trial, list[Place]]:
     model = compile(read_text(OSCILLATOR), record=("q",))
     series = tuple(record(number, law, memory) for number in range(len(DRIVES)))
     bench = Bench(model, series, {"q": NOISE}, 1e-6)
     windows = [w for m in series for w in cut(model, Section(m, 0, len(T)), 40, ("q", "v"))]
     trial = bench.fitted((), windows, 40, {})
     places = [*find_places(model), Place("sensor.q", "sensor", "q")]
-    tangent = Tangent(trial.diagram, trial.windows, places, 1e-6)
-    return where_what(tangent, trial, places)
+    return Tangent(trial.diagram, trial.windows, places, 1e-6), trial, places
+
+
+def test_the_map_is_the_same_however_much_is_worked_on_at_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    given = tangent_of(lambda q, v, z: 0.8 * math.sin(12 * q))
+    shares, missing = where_what(*given)
+    monkeypatch.setattr(dependence, "TOGETHER", 10**9)
+    monkeypatch.setattr(dependence, "COLUMNS", 10**9)
+    whole, same = where_what(*given)
+    known = {(s.place, s.variables): s.share for s in whole}
+    found = {(s.place, s.variables): s.share for s in shares}
+    assert found == pytest.approx(known, rel=1e-9, abs=1e-9)
+    assert missing is not None and same is not None
+    np.testing.assert_allclose(missing.torque, same.torque, rtol=1e-6, atol=1e-9)
+
+
+def test_the_map_never_holds_the_columns_of_all_bases() -> None:
+    tangent, trial, places = tangent_of(lambda q, v, z: 0.8 * math.sin(12 * q))
+    sizes = [
+        sum(basis.columns[0].shape[1] for basis in bases_of(place, tangent.trajectories))
+        for place in places
+    ]
+    all_columns = 8 * tangent.size * max(sizes)
+    tracemalloc.start()
+    where_what(tangent, trial, places)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 3 * all_columns, "with all of them at hand it was eight times as much"
 
 
 def test_a_ripple_in_the_coordinate_depends_on_it_alone() -> None:

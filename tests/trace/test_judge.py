@@ -27,6 +27,11 @@ def test_what_halves_the_error_everywhere_passes() -> None:
     assert verdict.words == "gate: squared error falls by 50%, passed"
 
 
+def test_what_takes_nearly_all_of_the_error_is_not_said_to_take_all() -> None:
+    verdict = judged([1000.0] * WINDOWS, [1.0] * WINDOWS)
+    assert verdict.words == "gate: squared error falls by more than 99.5%, passed"
+
+
 def test_what_does_worse_is_refused() -> None:
     verdict = judged([10.0] * WINDOWS, [11.0] * WINDOWS)
     assert not verdict.passed

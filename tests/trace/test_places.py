@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
 from tracewire.compile import compile
 from tracewire.diagram import read, read_text
-from tracewire.trace.places import Place, find_places
+from tracewire.trace.candidates import find_candidates
+from tracewire.trace.levels import Level, Levels
+from tracewire.trace.places import Place, find_places, untried
 
 PENDULUM = Path(__file__).parents[2] / "diagrams/papers/a_torsion/pendulum.yaml"
+LEVELS = Levels({"u": Level(1.0, 2.0), "x": Level(2.0, 4.0)}, 10.0, 0.01)
 
 
 def places(text: str) -> list[Place]:
@@ -206,3 +210,72 @@ def test_a_sum_inside_a_subsystem_is_no_place_even_where_it_says_so() -> None:
         """
     )
     assert found == []
+
+
+def test_a_place_that_names_a_coordinate_alone_is_kept() -> None:
+    text = """
+        inputs: {u: {default: 0}}
+        blocks:
+          x: {type: sum, of: [pull], place: {q: u}}
+          pull: {type: gain, of: u, k: 2}
+        """
+    model = compile(read_text(text))
+    (place, _) = find_places(model)
+    assert place == Place("x", "sum", "x", "u", "", "", (), ("u",))
+    known = {c.effect: c for c in find_candidates(model, [place], LEVELS)}
+    assert {"cubic_stiffness", "backlash", "cogging", "play_q", "stop_q", "bias"} <= known.keys()
+    assert not known.keys() & {"coulomb", "viscous", "play", "hysteresis"}
+    assert known["play_q"].signals == {"of": "u"}
+
+
+def test_the_diagram_says_the_coordinate_of_a_sum_and_that_one_only() -> None:
+    (place,) = places(
+        """
+        blocks:
+          x: {type: integrator, of: v}
+          v: {type: integrator, of: force}
+          force: {type: sum, of: [-x], place: {q: x}}
+        """
+    )
+    assert (place.q, place.v) == ("x", "")
+
+
+def test_what_cannot_be_tried_at_a_place_is_said() -> None:
+    model = compile(
+        read_text(
+            """
+            inputs: {u: {default: 0}}
+            blocks:
+              h: {type: integrator, of: flow}
+              flow: {type: sum, of: [u, -h]}
+              x: {type: sum, of: [u], place: {q: u}}
+            """
+        )
+    )
+    flow, position = untried(model.diagram, find_places(model))
+    assert "'x' has no rate: " in flow + position
+    assert (
+        "are not tried there; name it, as in `place: {v: SIGNAL}`, where there is one"
+        in position + flow
+    )
+    assert "'flow' has no coordinate: " in position + flow
+
+
+def test_a_place_with_both_is_not_talked_about() -> None:
+    text = """
+        blocks:
+          x: {type: integrator, of: v}
+          v: {type: integrator, of: force}
+          force: {type: sum, of: [-x]}
+        """
+    model = compile(read_text(text))
+    assert untried(model.diagram, find_places(model)) == []
+
+
+def test_a_level_overflows_where_there_is_no_coordinate() -> None:
+    text = "blocks: {h: {type: integrator, of: flow}, flow: {type: sum, of: [-h]}}"
+    model = compile(read_text(text))
+    levels = Levels({"h": Level(1.0, 2.0), "flow": Level(1.0, 1.0)}, 10.0, 0.01)
+    known = {c.effect: c for c in find_candidates(model, find_places(model), levels)}
+    assert known["overflow"].signals == {"of": "h"}
+    assert known["overflow"].limits["edge"] == pytest.approx((0.4, 2.0))

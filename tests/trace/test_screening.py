@@ -74,6 +74,17 @@ def test_two_effects_promise_more_together_than_each_alone() -> None:
     assert [type(row.added) for row in pair.rows] == [Added, Added]
 
 
+def test_the_best_at_each_number_of_numbers_are_known() -> None:
+    screen = screen_of(lambda x, v: -0.1 * np.tanh(v / 1e-3) + 0.4)
+    found = screen.by_count(2)
+    assert list(found) == sorted(found)
+    assert all(len(same) <= 2 for same in found.values())
+    assert all(p.count == count for count, same in found.items() for p in same)
+    assert all(len(p.rows) == 1 for p in found[1]), "a pair takes two numbers at least"
+    best = max((p for p in screen.pairs() if p.count == 2), key=lambda p: p.gain)
+    assert found[2][0].gain >= best.gain
+
+
 def test_a_free_phase_is_fitted_by_sine_and_cosine_together() -> None:
     bench = bench_of(record())
     waves = [c for name, c in candidates_of(bench).items() if name.startswith("harmonic @ force")]

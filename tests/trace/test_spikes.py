@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from oracles.oscillator import model_of, record
 from tracewire.fit import Measured
+from tracewire.trace.options import TraceOptions
 from tracewire.trace.spikes import spikes, without_spikes
 from tracewire.trace.trace import begun
 
@@ -83,7 +84,7 @@ def test_a_trace_leaves_them_out_and_says_so() -> None:
     m = record()
     x = m.values["x"].copy()
     x[[150, 260]] -= 0.3
-    search = begun(model_of(), [replace(m, values={"x": x})], 1e-8, lambda text: None)
+    search = begun(model_of(), [replace(m, values={"x": x})], 1e-8, str, TraceOptions())
     assert len(search.bench.measured[0].t) == len(m.t) - 2
     assert any("2 single samples left out" in words for words in search.words)
     assert search.declared().s2 == pytest.approx(1.0, abs=0.25)

@@ -67,12 +67,14 @@ def test_bic_tells_an_effect_that_is_there_from_one_that_is_not() -> None:
 
 def test_an_effect_knows_the_names_of_its_unknowns() -> None:
     known = candidates_of(bench_of(record()))
-    coulomb = Added(known[COULOMB], {"level": 0.1, "width": 0.02})
+    coulomb = Added(known[COULOMB], {"level": 0.1, "width": 0.2})
     assert [coulomb.unknown(name) for name in coulomb.values] == ["coulomb.level", "coulomb.width"]
     offset = Added(known["sensor_offset @ sensor.x"], {"offset": 0.01})
     assert offset.unknown("offset") == "offset.x"
     moved = coulomb.at({"coulomb.level": 0.3, "k": 9.0})
-    assert moved.values == {"level": 0.3, "width": 0.02}
+    assert moved.values == {"level": 0.3, "width": 0.2}
+    sharp = coulomb.at({"coulomb.level": 0.3, "coulomb.width": 0.01})
+    assert sharp.values["width"] == 0.0, "as narrow as that it sticks, as far as the record shows"
 
 
 def test_what_is_fixed_is_not_fitted() -> None:

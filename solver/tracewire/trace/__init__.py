@@ -1,6 +1,9 @@
 """From a diagram and measured series to the effect that the diagram lacks."""
 
 from tracewire.trace.found import Found, FoundEffect
+from tracewire.trace.option_checks import check_options
+from tracewire.trace.options import TraceOptions
+from tracewire.trace.saved import load, save
 from tracewire.trace.trace import trace
 
-__all__ = ["Found", "FoundEffect", "trace"]
+__all__ = ["Found", "FoundEffect", "TraceOptions", "check_options", "load", "save", "trace"]

@@ -84,7 +84,7 @@ def compared(search: Search, declared: Trial, best: Trial) -> list[Compared]:
 
 
 def _compared(search: Search, use: str, section: Section, declared: Trial, best: Trial) -> Compared:
-    bench = search.bench
+    bench = replace(search.bench, inputs=None)  # residuals as they are, and not as they count
     windows = search.windows([section], search.short)
     (whole,) = search.windows([section], section.end - section.first)
     sigma = np.array([bench.sigma[name] for name in whole.signals])

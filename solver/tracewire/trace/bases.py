@@ -20,7 +20,7 @@ COARSE, MEDIUM, FINE = 11, 41, 121
 SLOPES = (0.05, 0.005)
 """Of the root mean square of a rate: where its asinh scale turns from linear to logarithmic."""
 LAGS = (0.03, 0.06, 0.12, 0.25, 0.5, 1.0)
-"""Time constants in s of low-passed signals."""
+"""Time constants of low-passed signals, as parts of the period of the motion."""
 PLAYS = (0.03, 0.08, 0.2, 0.4, 0.7)
 """Widths of stop operators as parts of the largest coordinate."""
 HARMONICS = 4
@@ -86,7 +86,7 @@ def bases_of(place: Place, runs: Sequence[Trajectory]) -> Iterator[Basis]:
         yield from _surfaces(("q", "v"), q, v)
     yield from _smooth("a", a)
     yield in_time(runs)
-    if v:
+    if q or v:
         yield _history(runs, q, v)
     for name in place.drive:
         of = f" of {name}" if len(place.drive) > 1 else ""
@@ -96,7 +96,7 @@ def bases_of(place: Place, runs: Sequence[Trajectory]) -> Iterator[Basis]:
         if phase and all(x is not None for x in phase):
             yield _harmonics(f"drive phase{of}", [x for x in phase if x is not None])
     for other_q, other_v in place.others:
-        of = f" of {other_v}" if len(place.others) > 1 else ""
+        of = f" of {other_v or other_q}" if len(place.others) > 1 else ""
         oq, ov = _values(runs, other_q), _values(runs, other_v)
         yield from _smooth(f"other_q{of}", oq)
         yield from _smooth(f"other_v{of}", ov, rate=True)
@@ -214,16 +214,27 @@ def _history(runs: Sequence[Trajectory], q: Sequence[Vector], v: Sequence[Vector
     on speed a sum of the latter (Prandtl and Ishlinskii).
     """
     size = max((float(np.max(np.abs(x - np.mean(x)))) for x in q), default=0.0)
+    period = _period(runs, v or [x - np.mean(x) for x in q])
     columns = []
     for n, run in enumerate(runs):
         own = [x[n] for x in (q, v) if x]
-        parts = [*own, *(lowpassed(run.t, x, lag) for x in own for lag in LAGS)]
+        parts = [*own, *(lowpassed(run.t, x, lag * period) for x in own for lag in LAGS)]
         if q:
             parts += [stopped(q[n], part * size) for part in PLAYS]
         columns.append(np.stack(parts, axis=1))
     whole = np.concatenate(columns)
     sizes = np.maximum(np.sqrt(np.mean(whole**2, axis=0)), 1e-300)
     return Basis(("history",), [part / sizes for part in columns])
+
+
+def _period(runs: Sequence[Trajectory], values: Sequence[Vector]) -> float:
+    """The period in s of a signal, from its changes of sign, the median over the series; a fifth of
+    the duration where it keeps its sign."""
+    found = []
+    for run, x in zip(runs, values, strict=True):
+        turns = int(np.sum(np.diff(np.signbit(x))))
+        found.append(float(run.t[-1] - run.t[0]) * (2 / turns if turns > 1 else 0.2))
+    return float(np.median(found))
 
 
 def lowpassed(t: Vector, x: Vector, lag: float) -> Vector:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from tracewire.fit.segment import Unknown
+from tracewire.library import Scale
 from tracewire.trace.places import Place
 
 
@@ -38,6 +39,16 @@ class Candidate:
     """The bounds of each unknown by its parameter."""
     own: Mapping[str, Mapping[str, float]] = field(default_factory=dict, hash=False)
     """What each series has of its own and no fit changes: by series and parameter."""
+    resolved: Mapping[str, float] = field(default_factory=dict, hash=False)
+    """The values of shapes, by parameter, up to which the record shows the same as at 0."""
+    scales: Mapping[str, Scale] = field(default_factory=dict, hash=False)
+    """What the shapes are sizes of, by parameter."""
+    fixed: tuple[str, ...] = ()
+    """Shapes that no fit changes."""
+    waves: tuple[str, ...] = ()
+    """Shapes that are lengths of a wave along the coordinate."""
+    alias: tuple[str, ...] = ()
+    """Effects that imitate this one on many records."""
     each: tuple[str, ...] = ()
     """Shapes that each series may have of its own: `phase@run_1` among values, not `phase`."""
 
@@ -58,8 +69,11 @@ def unknowns_of(candidate: Candidate, values: Mapping[str, float]) -> list[Unkno
     """
     start = values.get(candidate.parameter, candidate.neutral)
     low = candidate.limits.get(candidate.parameter, (-math.inf, math.inf))
-    found = [Unknown(candidate.coefficient, start, *low, candidate.scale)]
+    size = abs(start - candidate.neutral) or candidate.scale
+    found = [Unknown(candidate.coefficient, start, *low, size)]
     for name, grid in candidate.shapes.items():
+        if name in candidate.fixed:
+            continue
         own = {key: value for key, value in values.items() if key.startswith(f"{name}@")}
         found += [
             Unknown(f"{candidate.block}.{key}", value, *candidate.limits[name], 1.0)
@@ -73,6 +87,30 @@ def unknowns_of(candidate: Candidate, values: Mapping[str, float]) -> list[Unkno
     return found
 
 
+def aliases_of(candidate: Candidate, candidates: Sequence[Candidate]) -> list[Candidate]:
+    """The candidates that may imitate one: what its declaration names, or what names it.
+
+    At the same place; of a sensor, or a drive, at any.
+    """
+    return [
+        other
+        for other in candidates
+        if (other.effect in candidate.alias or candidate.effect in other.alias)
+        and (other.place == candidate.place or {other.place.kind, candidate.place.kind} != {"sum"})
+    ]
+
+
 def is_default(candidate: Candidate, shape: str, value: float) -> bool:
-    """Whether a shape is off at this value, as a width of 0: it is then not written, nor fitted."""
-    return value == 0.0 and 0.0 in candidate.shapes[shape] and candidate.limits[shape][0] >= 0.0
+    """Whether a shape is off at this value, as a width that is 0, or so small that the record does
+    not show it: it is then not written, nor fitted."""
+    if 0.0 not in candidate.shapes[shape] or candidate.limits[shape][0] < 0.0:
+        return False
+    return 0.0 <= value <= candidate.resolved.get(shape, 0.0)
+
+
+def without_defaults(candidate: Candidate, values: Mapping[str, float]) -> dict[str, float]:
+    """The values with 0 for each shape that is off."""
+    return {
+        name: 0.0 if name in candidate.shapes and is_default(candidate, name, value) else value
+        for name, value in values.items()
+    }

@@ -8,19 +8,38 @@ from collections.abc import Iterator, Mapping, Sequence
 from tracewire.compile import Model
 from tracewire.diagram import SENSOR, Diagram, EffectType, effects_of
 from tracewire.library import Effect, Shape
-from tracewire.trace.candidate import Candidate, is_default, unknowns_of
+from tracewire.trace.candidate import (
+    Candidate,
+    aliases_of,
+    is_default,
+    unknowns_of,
+    without_defaults,
+)
 from tracewire.trace.effects import bounds_of, scale_of
 from tracewire.trace.extend import extend
 from tracewire.trace.levels import Levels
 from tracewire.trace.places import Place
 from tracewire.trace.tones import Sine, own_values
+from tracewire.trace.waves import MOST_WAVES
 
-__all__ = ["Candidate", "extend", "find_candidates", "is_default", "unknowns_of"]
+__all__ = [
+    "Candidate",
+    "aliases_of",
+    "extend",
+    "find_candidates",
+    "is_default",
+    "unknowns_of",
+    "without_defaults",
+]
 
 WIDE = 10.0
 """The upper bound of a shape, in units of the largest value that is tried first."""
-NARROW = 0.5
+NARROW = 0.1
 """The lower bound of a shape that may not be zero, in units of the smallest one."""
+SAMPLES = 4.0
+"""Samples that a wave along the coordinate takes at least, at the median rate."""
+FEWEST = 0.01
+"""The least part of the largest rate that counts as resolved."""
 
 
 def find_candidates(
@@ -78,8 +97,11 @@ def _wirings(
     own = {"q": place.q, "v": place.v, "a": place.a}
     rooms: list[tuple[str, dict[str, str]]] = [("", own)]
     if symbols & {"other_q", "other_v"}:
-        named = {other.v: other.definition for other in places if other.kind == "sum"}
-        rooms = [(named.get(v, v), {**own, "other_q": q, "other_v": v}) for q, v in place.others]
+        named = {(other.q, other.v): other.definition for other in places if other.kind == "sum"}
+        rooms = [
+            (named.get((q, v), v or q), {**own, "other_q": q, "other_v": v})
+            for q, v in place.others
+        ]
     if "u" in symbols:
         many = len(place.drive) > 1
         rooms = [
@@ -88,6 +110,8 @@ def _wirings(
             for drive in place.drive
         ]
     for of, room in rooms:
+        if any(room.get(symbol) for symbol in effect.lacking):
+            continue
         signals = {port: room[symbol] for port, symbol in effect.inputs.items()}
         if all(signals.values()):
             yield of, signals
@@ -109,12 +133,21 @@ def _candidate(
     sizes = _sizes(effect, signals, place, levels)
     shapes: dict[str, tuple[float, ...]] = {}
     limits: dict[str, tuple[float, float]] = {}
+    resolved: dict[str, float] = {}
     for parameter, shape in effect.shapes.items():
         grid = _grid(shape, sizes)
         if grid is None:
             return None
+        low, high = _limits(shape, grid, bounds_of(kind, parameter), sizes)
+        if not low < high:
+            return None
+        if shape.of == "V" and 0.0 in grid:
+            resolved[parameter] = sizes["slowest"]
+            grid = tuple(value for value in grid if not 0.0 < value <= sizes["slowest"])
+        if shape.of in ("stroke", "rates"):
+            grid = tuple(dict.fromkeys(min(max(value, low), high) for value in grid))
         shapes[parameter] = grid
-        limits[parameter] = _limits(shape, grid, bounds_of(kind, parameter))
+        limits[parameter] = low, high
     at = 1.0
     if effect.at is not None:
         values = _grid(effect.at, sizes)
@@ -125,7 +158,7 @@ def _candidate(
     limits[effect.coefficient] = max(low, 0.0) if effect.sign else low, high
     base = levels.of(place.definition if place.kind == "drive" else place.name).rms
     inputs = {port: levels.of(signal) for port, signal in signals.items()}
-    scale = scale_of(kind, inputs, shapes, base, at)
+    scale = scale_of(kind, inputs, shapes, base, at, levels.duration)
     return Candidate(
         kind.name,
         place,
@@ -139,6 +172,11 @@ def _candidate(
         of=of,
         limits=limits,
         own=own,
+        resolved=resolved,
+        scales={name: shape.of for name, shape in effect.shapes.items()},
+        waves=tuple(name for name, shape in effect.shapes.items() if shape.wave),
+        fixed=tuple(name for name, shape in effect.shapes.items() if shape.fixed),
+        alias=effect.alias,
         each=effect.each,
     )
 
@@ -148,10 +186,17 @@ def _sizes(
 ) -> dict[str, float]:
     """What the shapes of an effect are multiples of."""
     read = {symbol: signals[port] for port, symbol in effect.inputs.items()}
+    q = levels.of(read.get("q") or read.get("other_q") or place.q)
+    v = levels.of(read.get("v") or read.get("other_v") or place.v)
     return {
         "": 1.0,
-        "Q": levels.of(read.get("q") or read.get("other_q") or place.q).max,
-        "V": levels.of(read.get("v") or read.get("other_v") or place.v).rms,
+        "Q": q.max,
+        "V": v.rms,
+        "stroke": q.stroke or 2 * q.max,
+        "step": q.step,
+        "rates": v.max,
+        "top": v.max,
+        "slowest": max(v.slowest, FEWEST * v.max),
         "U": levels.of(read.get("u") or "".join(place.drive[:1])).max,
         "T": levels.duration,
         "dt": levels.interval,
@@ -161,17 +206,32 @@ def _sizes(
 def _grid(shape: Shape, sizes: Mapping[str, float]) -> tuple[float, ...] | None:
     """The values of a shape that are tried first; None where they are sizes of nothing."""
     size = sizes[shape.of]
-    return tuple(at * size for at in shape.at) if size > 0 else None
+    if not size > 0:
+        return None
+    if shape.of == "rates":
+        return tuple(sizes["slowest"] * (size / sizes["slowest"]) ** at for at in shape.at)
+    return tuple(at * size for at in shape.at)
 
 
 def _limits(
-    shape: Shape, grid: Sequence[float], bounds: tuple[float, float]
+    shape: Shape,
+    grid: Sequence[float],
+    bounds: tuple[float, float],
+    sizes: Mapping[str, float],
 ) -> tuple[float, float]:
-    """Wide but finite bounds of a shape."""
-    wide = WIDE * max(map(abs, grid))
+    """Finite bounds of a shape: what the record can tell where that is known, else wide ones."""
+    if shape.of == "rates":
+        return max(sizes["slowest"], bounds[0]), min(sizes["rates"], bounds[1])
+    wide, size = WIDE * max(map(abs, grid)), sizes[shape.of]
     low, high = max(shape.low, bounds[0], -wide), min(bounds[1], wide)
-    if low >= 0.0 and min(grid) > 0:
+    if shape.most is not None:
+        high = min(bounds[1], shape.most * size)
+    if shape.least is not None:
+        low = max(low, shape.least * size)
+    elif low >= 0.0 and min(grid) > 0:
         low = max(low, NARROW * min(grid))
+    if shape.wave:
+        return max(shape.low, SAMPLES * sizes["step"], high / MOST_WAVES), high
     return low, max(high, *grid)
 
 

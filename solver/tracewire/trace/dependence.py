@@ -8,8 +8,8 @@ did not see. What share of the excess goes says whether the torque depends on th
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ from tracewire.trace.bases import Basis, bases_of
 from tracewire.trace.found import Dependence, Missing
 from tracewire.trace.missing import add_table, missing_table
 from tracewire.trace.places import Place
-from tracewire.trace.tangent import Tangent
+from tracewire.trace.tangent import Joined, Tangent
 from tracewire.trace.trial import Trial
 from tracewire.trace.windows import Projection, eliminated, projection
 
@@ -40,6 +40,8 @@ LEAST_FALL = 25.0
 SIMPLE = {"history": 3}
 """How many variables a set counts as, where that is not their number."""
 GRID = {1: 81, 2: 25}
+TOGETHER, COLUMNS = 2000, 200
+"""Residuals and columns that are worked on at once: fewer take longer, more take memory."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +74,7 @@ def where_what(
     found = [
         scored
         for place in places
-        for scored in _scored(problem, place, list(bases_of(place, tangent.trajectories)))
+        for scored in _scored(problem, place, bases_of(place, tangent.trajectories))
     ]
     best: dict[tuple[str, tuple[str, ...]], Scored] = {}
     for scored in found:
@@ -124,17 +126,33 @@ class Problem:
         rss = float(self.residual @ self.residual)
         return max(rss - self.freedom, 3 * float(np.sqrt(2 * self.freedom)))
 
-    def columns(self, place: Place, bases: Sequence[Basis]) -> Matrix:
-        """What all functions of some bases at a place do to the residuals, (M, K)."""
+    def products(self, place: Place, bases: Sequence[Basis]) -> Matrix:
+        """The scalar products by fold, (FOLDS, n + K + 1, n + K + 1), of the unknowns, of what all
+        functions of some bases at a place do to the residuals, and of the residual.
+
+        They are added up a few windows at a time: the columns of a long record are much memory.
+        """
         series = range(len(self.tangent.trajectories))
         given = [np.concatenate([b.columns[n] for b in bases], axis=1) for n in series]
-        if place.kind == "sensor":
-            matrix = _sensed(self.tangent, place.definition, given)
-        else:
-            matrix = self.tangent.answer({place.name: given})
-        sizes = np.cumsum([near.residual.size for near in self.tangent.windows.near])[:-1]
-        parts = np.split(matrix, sizes)
-        return np.concatenate([v.off(part) for v, part in zip(self.views, parts, strict=True)])
+        width = self.unknowns.shape[1] + given[0].shape[1] + 1
+        total = np.zeros((FOLDS, width, width))
+        first, waiting, rows = 0, list[Matrix](), 0
+        for n, (joined, view) in enumerate(zip(self.tangent.joined, self.views, strict=True)):
+            if place.kind == "sensor":
+                columns = _sensed(self.tangent, place.definition, joined, given)
+            else:
+                columns = self.tangent.window_answer(joined, {place.name: given})
+            last = first + rows + len(columns)
+            here = slice(first + rows, last)
+            known, left = self.unknowns[here], self.residual[here]
+            waiting.append(np.column_stack((known, view.off(columns), left)))
+            rows = last - first
+            if rows >= TOGETHER or n + 1 == len(self.views):
+                block, folds = np.concatenate(waiting), self.folds[first:last]
+                for fold in np.unique(folds).tolist():
+                    total[fold] += _gram(block[folds == fold])
+                first, waiting, rows = last, [], 0
+        return total
 
 
 def _problem(tangent: Tangent, trial: Trial) -> Problem:
@@ -172,33 +190,37 @@ def _folds(tangent: Tangent) -> NDArray[np.intp]:
     return np.concatenate(found)
 
 
-def _sensed(tangent: Tangent, signal: str, given: Sequence[Matrix]) -> Matrix:
-    """What a sensor's error of its signal (N, k) by series does to the residuals."""
+def _sensed(tangent: Tangent, signal: str, joined: Joined, given: Sequence[Matrix]) -> Matrix:
+    """What a sensor's error of its signal (N, k) by series does to the residuals of a window."""
     criterion = tangent.windows.criterion
-    names = list(dict.fromkeys(s.measured.name for s in criterion.segments))
+    name = criterion.segments[joined.window].measured.name
     at = tangent.outputs.index(signal)
-    parts = []
-    for joined in tangent.joined:
-        name = criterion.segments[joined.window].measured.name
-        error = given[names.index(name)][joined.samples[joined.counts]]
-        rows = np.zeros((len(error), len(tangent.outputs), error.shape[1]))
-        rows[:, at] = error / criterion.sigma[name][at]
-        parts.append(rows.reshape(-1, error.shape[1]))
-    return np.concatenate(parts)
+    error = given[tangent.series[joined.window]][joined.samples[joined.counts]]
+    rows = np.zeros((len(error), len(tangent.outputs), error.shape[1]))
+    rows[:, at] = error / criterion.sigma[name][at]
+    return criterion.whiten(joined.window, rows.reshape(-1, error.shape[1]))
 
 
-def _scored(problem: Problem, place: Place, bases: Sequence[Basis]) -> list[Scored]:
-    """Each basis at a place, cross-validated; from the scalar products of all columns by fold."""
-    if not bases:
-        return []
-    columns, excess = problem.columns(place, bases), problem.excess
-    whole = np.column_stack((problem.unknowns, columns, problem.residual))
-    products = np.stack([_gram(whole[problem.folds == fold]) for fold in range(FOLDS)])
+def _scored(problem: Problem, place: Place, bases: Iterator[Basis]) -> Iterator[Scored]:
+    """Each basis at a place, cross-validated."""
+    some: list[Basis] = []
+    for basis in bases:
+        some.append(basis)
+        if sum(b.columns[0].shape[1] for b in some) >= COLUMNS:
+            yield from _together(problem, place, some)
+            some = []
+    if some:
+        yield from _together(problem, place, some)
+
+
+def _together(problem: Problem, place: Place, bases: Sequence[Basis]) -> list[Scored]:
+    """Some bases at a place, each cross-validated: from scalar products of columns by fold."""
+    products, excess = problem.products(place, bases), problem.excess
     known = problem.unknowns.shape[1]
     first, found = known, []
     for basis in bases:
         last = first + basis.columns[0].shape[1]
-        chosen = [*range(known), *range(first, last), whole.shape[1] - 1]
+        chosen = [*range(known), *range(first, last), products.shape[1] - 1]
         own = products[:, chosen][:, :, chosen]
         left = _left_out(own, known)
         best = int(np.argmin(left))
@@ -206,7 +228,8 @@ def _scored(problem: Problem, place: Place, bases: Sequence[Basis]) -> list[Scor
         fall = before - float(left[best])
         share = min(max(fall / excess, 0.0), 1.0)
         (values,) = _solved(np.sum(own, axis=0), known, RIDGES[best : best + 1])
-        found.append(Scored(place, basis, share, fall, values[known:]))
+        # what a basis is made of does not matter any more, and is much memory
+        found.append(Scored(place, replace(basis, columns=()), share, fall, values[known:]))
         first = last
     return found
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
 from tracewire.trace.settling import (
-    CONVERGED,
     SETTLED,
+    SETTLING,
     consistent,
     ends_before,
     far_off,
@@ -41,19 +41,26 @@ PATIENCE, HOPE = 4, 2.0
 pace promises may still come."""
 
 
-def descended(windows: Windows, steps: int = 20, target: float = np.inf) -> tuple[Windows, bool]:
+def descended(
+    windows: Windows,
+    steps: int = 20,
+    target: float = np.inf,
+    creeps: float = CREEPS,
+    settling: int = SETTLING,
+) -> tuple[Windows, bool]:
     """The unknowns and all starts fitted by Levenberg and Marquardt; whether it converged.
 
     Each step comes from the problem without the starts, within the bounds of the unknowns. Windows
     that do worse than the step promised are settled for themselves before it is judged. It ends
     early where the sum of squares would not fall to `target` at its pace in the steps that are
-    left: it has lost against what reached that.
+    left: it has lost against what reached that. A step that gains less than the part `creeps` of
+    the sum is the last one; before the first the starts are fitted alone in `settling` steps.
     """
     unknowns = windows.criterion.unknowns
     low, high = np.array([u.low for u in unknowns]), np.array([u.high for u in unknowns])
     scales = np.array([u.scale for u in unknowns])
     damping, failures = FIRST_DAMPING, 0
-    windows = settled(windows)
+    windows = settled(windows, settling)
     if not len(unknowns):
         return windows, True
     gained, too_slow = np.inf, 0
@@ -65,11 +72,11 @@ def descended(windows: Windows, steps: int = 20, target: float = np.inf) -> tupl
         room = (low - values) / scales, (high - values) / scales
         refused = False
         while True:
-            step = _bounded(reduced, residual, damping, room)
+            step = bounded_step(reduced, residual, damping, room)
             left = residual + reduced @ step
             promised = float(residual @ residual - left @ left)
             start_gain = windows.rss - float(residual @ residual)
-            if promised + start_gain < max(SETTLED, CONVERGED * windows.rss):
+            if promised + start_gain < max(SETTLED, 0.2 * creeps * windows.rss):
                 return windows, True
             there = _moved(windows, views, step * scales)
             failures += there is None
@@ -79,13 +86,13 @@ def descended(windows: Windows, steps: int = 20, target: float = np.inf) -> tupl
                 # what was refused a moment ago would be refused again
                 damping = damping if refused else max(damping / 10, LEAST_DAMPING)
                 break
-            if there is not None and there.rss < (1 + CREEPS) * windows.rss:
+            if there is not None and there.rss < (1 + creeps) * windows.rss:
                 return windows, True  # as flat as the solver is exact
             damping = max(damping * (100 if refused else 10), FIRST_DAMPING)
             refused = True
             if damping > MOST_DAMPING or failures > MOST_FAILURES:
                 return windows, False
-        if gained < max(SETTLED, CREEPS * windows.rss):
+        if gained < max(SETTLED, creeps * windows.rss):
             return windows, True
         pace = min(gained / before, 1 - 1e-9)
         coming = HOPE * gained * min(left_over, pace / (1 - pace))
@@ -95,7 +102,7 @@ def descended(windows: Windows, steps: int = 20, target: float = np.inf) -> tupl
     return windows, False
 
 
-def _bounded(
+def bounded_step(
     reduced: Matrix, residual: Vector, damping: float, room: tuple[Vector, Vector]
 ) -> Vector:
     """The step that minimises the squares, damped by the sizes of its columns, within bounds."""
@@ -134,7 +141,8 @@ def _moved(windows: Windows, views: Sequence[Projection], step: Vector) -> Windo
     there = begun_at(there, {n: windows.starts[n] for n in lost})
     if not all(there.near[n].ran for n in lost):
         return None
-    limits = 2 * np.array(promised) + 2 * np.array([x.residual.size for x in there.near])
+    sizes = np.array([x.residual.size for x in there.near])
+    limits = 2 * np.array(promised) + windows.good * sizes
     far = np.flatnonzero(there.squares > np.maximum(limits, windows.squares)).tolist()
     return _rescued(there, {n: windows.starts[n] for n in far}) if far else there
 

@@ -30,11 +30,12 @@ def scale_of(
     shapes: Mapping[str, Sequence[float]],
     size: float,
     at: float,
+    duration: float,
 ) -> float:
     """The coefficient at which the output of an effect is about as large as `size`.
 
     The output of an effect without memory is looked at where its inputs have their usual size; of
-    others the coefficient is taken to be a force. inputs: by port.
+    others the coefficient is taken to be a force. inputs: by port. duration: of the record in s.
     """
     whole = size if size > 0 else 1.0
     if kind.block is not None and (kind.block.states or kind.block.modes):
@@ -43,7 +44,8 @@ def scale_of(
     numbers[kind.effect.coefficient] = at
     squares = []
     for part in PARTS:
-        given = {port: part * level.rms for port, level in inputs.items()} | {"t": abs(part)}
+        given = {port: part * level.rms for port, level in inputs.items()}
+        given["t"] = abs(part) * duration / 2
         try:
             squares.append(_output(kind, numbers, given) ** 2)
         except (TracewireError, ArithmeticError, ValueError, KeyError):

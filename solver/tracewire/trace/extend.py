@@ -36,6 +36,9 @@ def extend(diagram: Diagram, chosen: Sequence[tuple[Candidate, Mapping[str, floa
             own = [v for key, v in values.items() if key.startswith(f"{name}@")]
             if own:  # the value where a series says nothing
                 parts.append(f"{name}: {{value: {number_text(own[0])}}}")
+            elif name in candidate.fixed:
+                shown = number_text(float(f"{value / factor.get(name, 1.0):.6g}"))
+                parts.append(f"{name}: {shown}")
             elif not is_default(candidate, name, value):
                 ends = candidate.limits[name]
                 parts.append(f"{name}: {_setting(value, *ends, factor.get(name, 1.0))}")

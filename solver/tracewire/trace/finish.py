@@ -31,17 +31,18 @@ OPEN = 10.0
 @dataclass(frozen=True, eq=False)
 class Rival:
     """An effect in the place of one that was found: their correlation on the data, the rise of BIC
-    when it takes that place, and the trial where it does."""
+    when it takes that place, and the trial where it does. `near`: it predicts as well."""
 
     added: Added
     likeness: float
     trial: Trial
     rise: float
+    near: bool = False
 
     @property
     def tied(self) -> bool:
         """Whether these data cannot tell it from what was found."""
-        return self.rise < OPEN
+        return self.near or self.rise < OPEN
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.diagram import Diagram, difference
+from tracewire.trace.options import TraceOptions
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -187,11 +188,22 @@ class Experiment:
 
 
 @dataclass(frozen=True, eq=False)
+class Means:
+    """What is needed at a place in bins of one variable, in SI: where each bin is, the mean force
+    that the data ask for there, and its standard error, each (K,)."""
+
+    at: Vector
+    mean: Vector
+    error: Vector
+
+
+@dataclass(frozen=True, eq=False)
 class Force:
     """What is needed at a place over its coordinate and rate: torque histories (N,) that the
     data ask for beside the refitted declared terms, and those of the fitted effects; for the
     restoring picture.
-    `names` are the signals that q and v are."""
+    `names` are the signals that q and v are. `means` are over q and over v, estimated for all bins
+    at once in the windows of the fit; () where that was not done."""
 
     place: str
     q: Vector
@@ -199,6 +211,47 @@ class Force:
     needed: Vector
     fitted: Vector
     names: tuple[str, str] = ("q", "v")
+    means: tuple[Means, ...] = ()
+
+
+@dataclass(frozen=True)
+class Explained:
+    """The share of the excess error that the named effects explain on unseen data, and its 95 %
+    interval (jackknife over blocks of time). The excess is what the declared model leaves more than
+    the reachable floor: 1 is all of it, 0 nothing, less than 0 is worse than without."""
+
+    share: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Remainder:
+    """What is left of a signal with the effects, on data that no fit saw: its root mean square in
+    `unit` and in units of the sensor's noise, and as a share of that of the declared model; `floor`
+    is what a smooth map of position, rate and direction would leave (root mean square in `unit`,
+    nan where none was fitted)."""
+
+    signal: str
+    unit: str
+    rms: float
+    in_sigma: float
+    share: float
+    floor: float = float("nan")
+
+
+@dataclass(frozen=True, eq=False)
+class HeldOut:
+    """Errors on held-out blocks of time at one horizon: the start of each block in s (B,), the
+    series of each, and the root mean square error in units of the noise (B,) of the declared model,
+    of the one with effects, and of the floor map (empty where there is none)."""
+
+    horizon: float
+    series: tuple[str, ...]
+    begin: Vector
+    declared: Vector
+    best: Vector
+    floor: Vector
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,9 +266,14 @@ class Found:
     `s2_before` and `s2_after` are squared residuals per degree of freedom in units of the noise, on
     the fitted windows. `dropped` are declared parameters that went to zero, `values` the refitted
     and `declared` the fitted parameters of the diagram as it was. `paragraph` says it all in plain
-    words. `diagram` is the edited diagram. `units` are the SI units of signals and parameters by
+    words. `explained` is the share of the excess that the effects explain, `remainder` what is left
+    of each signal, `remainder_depends` on what that depends (the map of the remainder, the best
+    first), `held_out` the errors on held-out blocks at each horizon, all None or empty where the
+    residual is at the noise; `options` is what the user asked for.
+    `diagram` is the edited diagram. `units` are the SI units of signals and parameters by
     name, also of those that were added ('coulomb.level', 'offset.theta'). `interrupted`: the user
-    stopped the trace, and this is what was known by then.
+    stopped the trace, and this is what was known by then. `users_units` are the unit of a signal in
+    the user's files and its factor to SI, where they are not to be taken from `original`.
     """
 
     verdict: Verdict
@@ -244,6 +302,12 @@ class Found:
     diagram: Diagram
     units: Mapping[str, str] = field(default_factory=dict)
     interrupted: bool = False
+    explained: Explained | None = None
+    remainder: tuple[Remainder, ...] = ()
+    remainder_depends: tuple[Dependence, ...] = ()
+    held_out: tuple[HeldOut, ...] = ()
+    options: TraceOptions = field(default_factory=TraceOptions)
+    users_units: Mapping[str, tuple[str, float]] = field(default_factory=dict)
 
     @cached_property
     def forces(self) -> tuple[Force, ...]:
@@ -331,6 +395,24 @@ class Found:
                 }
                 for e in self.experiments
             ],
+            "explained": None if self.explained is None else vars(self.explained),
+            "remainder": [vars(left) for left in self.remainder],
+            "remainder_depends": [
+                {"place": d.place, "variables": list(d.variables), "share": d.share}
+                for d in self.remainder_depends
+            ],
+            "held_out": [
+                {
+                    "horizon": h.horizon,
+                    "series": list(h.series),
+                    "begin": h.begin.tolist(),
+                    "declared": h.declared.tolist(),
+                    "best": h.best.tolist(),
+                    "floor": h.floor.tolist(),
+                }
+                for h in self.held_out
+            ],
+            "options": vars(self.options),
             "paragraph": self.paragraph,
             "words": list(self.words),
         }

@@ -130,7 +130,12 @@ def _together(
             for variant, name in zip(variants, blocks, strict=True)
             for parameter, value in variant.candidate.own.get(run.series, {}).items()
         }
-        result = simulate(model, parameters=own, times=run.t, inputs=given, rtol=TOLERANCE)
+        sizes = [float(np.max(np.abs(x))) for _, x in given.values()]
+        least = min([1.0, *(size for size in sizes if size > 0)])
+        result = simulate(
+            model, parameters=own, times=run.t, inputs=given, rtol=TOLERANCE,
+            atol=1e-3 * TOLERANCE * least,
+        )  # fmt: skip
         for variant, name in zip(variants, outputs, strict=True):
             found[variant].append(result.signals[name] / variant.candidate.at)
     return found

@@ -64,7 +64,8 @@ def gate(
     harmless = -float(np.minimum(change, 0.0).sum()) < HARM * float(np.maximum(change, 0.0).sum())
     supported = z > 2 or improved > 0.75 or (fall > DECISIVE and (z > 1 or harmless))
     passed = drop > (LEAST_DROP if trial.s2 <= AT_NOISE else MATERIAL) and supported
-    words = f"gate: squared error {'falls' if drop > 0 else 'rises'} by {abs(drop):.0%}"
+    size = f"{abs(drop):.0%}" if not 0.995 <= drop < 1 else "more than 99.5%"
+    words = f"gate: squared error {'falls' if drop > 0 else 'rises'} by {size}"
     return Verdict(
         passed, drop, float(z), improved, words + (", passed" if passed else ", refused")
     )

@@ -88,6 +88,6 @@ def wires_of(place: Place) -> Mapping[str, str]:
     found |= {f"u of {name}" if many else "u": name for name in place.drive}
     several = len(place.others) > 1
     for q, v in place.others:
-        of = f" of {v}" if several else ""
+        of = f" of {v or q}" if several else ""
         found |= {f"other_q{of}": q, f"other_v{of}": v}
     return found

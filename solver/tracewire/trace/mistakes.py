@@ -17,7 +17,7 @@ from tracewire.fit.measured import Measured
 from tracewire.fit.noise import channel_noise
 from tracewire.fit.unknowns import free_unknowns, sensor_unknowns
 from tracewire.formula import Name, same_quantity
-from tracewire.solve import parameter_values
+from tracewire.solve import parameter_values, values_at, with_points
 from tracewire.trace.descent import descended
 from tracewire.trace.windows import Section, cut, opened
 
@@ -164,7 +164,7 @@ def _scaled(m: Measured, names: Sequence[str], factor: float) -> Measured:
 
 def _louder(m: Measured, name: str, factor: float) -> Measured:
     t, values = m.inputs[name]
-    return replace(m, inputs={**m.inputs, name: (t, values * factor)})
+    return replace(m, inputs={**m.inputs, name: with_points(m.inputs[name], t, values * factor)})
 
 
 def _shifts(
@@ -201,7 +201,8 @@ def _shifts(
 
 def shifted(m: Measured, lag: float) -> Measured:
     """A series whose inputs act later by `lag` (s)."""
-    return replace(m, inputs={name: (t + lag, values) for name, (t, values) in m.inputs.items()})
+    later = {n: with_points(known, known[0] + lag, known[1]) for n, known in m.inputs.items()}
+    return replace(m, inputs=later)
 
 
 def likely_lags(model: Model, m: Measured, most: int = 3) -> list[float]:
@@ -222,7 +223,7 @@ def likely_lags(model: Model, m: Measured, most: int = 3) -> list[float]:
     lags = step * np.arange(-reach, reach + 1)
     left = []
     for lag in lags:
-        drives = [np.interp(m.t - lag, at, u) for at, u in m.inputs.values()]
+        drives = [values_at(known, m.t - lag) for known in m.inputs.values()]
         columns = np.column_stack([np.convolve(u, bump, "valid") for u in drives])
         columns = columns - basis @ (basis.T @ columns)
         kept, _ = np.linalg.qr(columns)

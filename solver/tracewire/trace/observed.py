@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from tracewire.compile import Model
 from tracewire.fit.criterion import LIMITS
-from tracewire.fit.segment import Segment, of_diagram
+from tracewire.fit.segment import Segment, absolute_tolerances, of_diagram
 from tracewire.solve import Span, SpanRuns, simulate_spans
 from tracewire.trace.levels import Trajectory
 from tracewire.trace.windows import Windows
@@ -97,6 +97,7 @@ def runs_of(
         spans,
         parameters=of_diagram(values, segment.measured),
         rtol=rtol,
+        atol=absolute_tolerances(model, segment.measured, rtol),
         preset=segment.measured.preset,
         inputs={**segment.measured.inputs, **(inputs or {})},
         limits=LIMITS,

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
 from tracewire.compile import Flat, FlatBlock, FlatState, Model
-from tracewire.diagram import find_signal, split_index
+from tracewire.diagram import Diagram, find_signal, split_index
 from tracewire.formula import Name, names_of
 
 PASSED = ("sum", "gain", "divide")
+MOST_TOLD = 6
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,8 @@ def find_places(model: Model) -> list[Place]:
     Sums: from each state the search goes back through gains, divisions, sums and the ports of
     subsystems; the sums that it meets are places of the nearest state. A sum that only feeds
     another place of the same state says nothing new and is left out. Where the diagram itself says
-    which sum is the place of a rate (`place: {q: ..., v: ...}`), that sum is the only one. Sums
+    which sum is the place of a rate (`place: {q: ..., v: ...}`), that sum is the only one; it may
+    name a coordinate alone, where nothing has a rate (see `untried`). Sums
     inside subsystems are not tried: what the subsystem puts out enters a sum further up (where
     nothing but a subsystem feeds the rate, give it a sum of its own); nor are sums of vectors.
 
@@ -62,6 +64,25 @@ def find_places(model: Model) -> list[Place]:
     ]
 
 
+def untried(diagram: Diagram, places: Sequence[Place]) -> list[str]:
+    """What cannot be tried at sums that have no rate, or no coordinate, in words."""
+    found = []
+    effects = [block for block in diagram.library.effects() if block.effect is not None]
+    for place in places:
+        missing = [s for s, signal in (("q", place.q), ("v", place.v)) if not signal]
+        if place.kind != "sum" or not missing:
+            continue
+        needs = [b.name for b in effects if b.effect and {*missing} & {*b.effect.inputs.values()}]
+        lacks = " and no ".join({"q": "coordinate", "v": "rate"}[s] for s in missing)
+        shown = ", ".join(needs[:MOST_TOLD]) + (" ..." if len(needs) > MOST_TOLD else "")
+        adds = ", ".join(f"{s}: SIGNAL" for s in missing)
+        found.append(
+            f"'{place.name}' has no {lacks}: {shown} are not tried there; "
+            f"name it, as in `place: {{{adds}}}`, where there is one"
+        )
+    return found
+
+
 def _sums(flat: Flat, drives: tuple[str, ...]) -> list[Place]:
     coordinates = {s.rate.name: s.name for s in flat.states if isinstance(s.rate, Name)}
     states = {state.name: state for state in flat.states}
@@ -75,12 +96,12 @@ def _sums(flat: Flat, drives: tuple[str, ...]) -> list[Place]:
     told = {
         name: block
         for name, block in flat.blocks.items()
-        if block.type == "sum" and "v" in block.local and _at_top(name, block)
+        if block.type == "sum" and {"q", "v"} & block.local.keys() and _at_top(name, block)
     }
-    taken = {block.local["v"] for block in told.values()}
-    rates = {name: (block.local["v"], block.local.get("q", "")) for name, block in told.items()}
+    taken = {block.local["v"] for block in told.values() if "v" in block.local}
+    rates = {n: (b.local.get("v", ""), b.local.get("q", "")) for n, b in told.items()}
     for name, (_, fed) in nearest.items():
-        if fed in taken or not _at_top(name, flat.blocks[name]):
+        if name in told or fed in taken or not _at_top(name, flat.blocks[name]):
             continue
         if not _only_feeds(flat, name, fed, nearest):
             rates[name] = fed, coordinates.get(fed, "")
@@ -93,7 +114,7 @@ def _sums(flat: Flat, drives: tuple[str, ...]) -> list[Place]:
             q,
             v,
             _acceleration(v, states),
-            tuple(body for body in bodies if body[1] != v),
+            tuple(body for body in bodies if body != (q, v)),
             drives,
         )
         for name, (v, q) in rates.items()

@@ -9,7 +9,9 @@ import numpy as np
 
 from tracewire.errors import DiagramError, FitError
 from tracewire.fit.segment import Segment
+from tracewire.trace.descent import CREEPS
 from tracewire.trace.screening import Proposal
+from tracewire.trace.settling import SETTLING
 from tracewire.trace.trial import Added, Bench, Trial
 
 FAR = 30.0
@@ -155,6 +157,9 @@ class Refits:
         fixed: Mapping[str, float] | None = None,
         steps: int = STEPS,
         target: float = np.inf,
+        good: float = 2.0,
+        creeps: float = CREEPS,
+        settling: int = SETTLING,
     ) -> Trial | None:
         """The model with other effects, refitted from where it stood; None if it does not run."""
         known = now.windows.criterion.parameters
@@ -168,6 +173,9 @@ class Refits:
                 steps=steps,
                 budget=SLOWER * steps * len(segments) * now.cost,
                 target=target,
+                good=good,
+                creeps=creeps,
+                settling=settling,
             )
         except (FitError, DiagramError) as error:
             there = {str(effect) for effect in now.effects}

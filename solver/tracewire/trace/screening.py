@@ -11,21 +11,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.fit.segment import Unknown
+from tracewire.trace.answers import without, without_starts
 from tracewire.trace.candidates import Candidate, is_default
 from tracewire.trace.histories import Variant, histories
-from tracewire.trace.statistics import Columns
+from tracewire.trace.levels import Trajectory
+from tracewire.trace.statistics import HIDDEN, Columns
 from tracewire.trace.tangent import Tangent
 from tracewire.trace.trial import Added, Trial
-from tracewire.trace.windows import eliminated, projection
+from tracewire.trace.waves import as_measured, scanned
+from tracewire.trace.windows import Projection, eliminated, projection
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 PHASE = "phase"
 """A shape of this name turns a sine into a cosine: the two together span all phases."""
 NEAR = 1e-6
+SEEN = 1e-10
+"""The part of a column's square, beyond what window starts imitate, from which on it is seen."""
 QUADRATURE = (0.0, math.pi / 2)
 PAIRED = 24
 """How many single effects are paired with each other."""
+SMALL = 0.1
+"""The part of a promise of the wrong sign at which a refit begins with the right one."""
 TRUST = 0.7
 """The part of an expected coefficient at which a refit begins."""
 
@@ -48,9 +55,22 @@ class Row:
     """Those that have a phase of their own: there is a column for each, and each quadrature."""
 
     @property
+    def count(self) -> int:
+        """How many numbers the effect takes."""
+        return _count(self.candidate, self.shapes, self.series)
+
+    @property
     def added(self) -> Added:
-        """The effect as a refit begins it."""
-        return Added(self.candidate, self.values)
+        """The effect as a refit begins it, within the bounds of its numbers: a coefficient of the
+        wrong sign begins with a small one of the right sign."""
+        values = dict(self.values)
+        for name, (low, high) in self.candidate.limits.items():
+            if name in values:
+                values[name] = min(max(values[name], low), high)
+        name, neutral = self.candidate.parameter, self.candidate.neutral
+        if values[name] == neutral != self.values[name]:
+            values[name] = neutral + SMALL * abs(self.values[name] - neutral)
+        return Added(self.candidate, values)
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +79,11 @@ class Proposal:
 
     rows: tuple[Row, ...]
     gain: float
+
+    @property
+    def count(self) -> int:
+        """How many numbers the effects take."""
+        return sum(row.count for row in self.rows)
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +101,16 @@ class Screen:
             if row.possible and (known is None or row.gain > known.gain):
                 found[str(row.candidate)] = row
         return sorted(found.values(), key=lambda row: -row.gain)
+
+    def visible(self) -> dict[str, Row]:
+        """The best variant of each candidate that the unknowns do not imitate, of any sign, by its
+        name."""
+        found: dict[str, Row] = {}
+        for row in self.rows:
+            known = found.get(str(row.candidate))
+            if row.masked < 1 - HIDDEN and (known is None or row.fall > known.fall):
+                found[str(row.candidate)] = row
+        return found
 
     def chance(self) -> float:
         """The probability that noise alone looks as good as the best row does."""
@@ -96,14 +131,25 @@ class Screen:
             parts = (one, values[:split]), (other, values[split:])
             if all(_possible(row.candidate, part) for row, part in parts):
                 rows = tuple(_scored(row, part) for row, part in parts)
-                count = sum(_count(row.candidate, row.shapes, row.series) for row in (one, other))
-                found.append(Proposal(rows, self.columns.gain(fall, count)))
+                found.append(Proposal(rows, self.columns.gain(fall, one.count + other.count)))
         return sorted(found, key=lambda proposal: -proposal.gain)
+
+    def by_count(self, each: int) -> dict[int, list[Proposal]]:
+        """The most promising singles and pairs at each number of numbers, `each` of them.
+
+        What takes many numbers, as a wave does, then hides no simple pair.
+        """
+        singles = [Proposal((row,), row.gain) for row in self.best()]
+        found: dict[int, list[Proposal]] = {}
+        for proposal in sorted([*singles, *self.pairs()], key=lambda proposal: -proposal.gain):
+            same = found.setdefault(proposal.count, [])
+            if len(same) < each:
+                same.append(proposal)
+        return dict(sorted(found.items()))
 
 
 def screened(tangent: Tangent, trial: Trial, candidates: Sequence[Candidate]) -> Screen:
     """The score test of every variant of every candidate, at coefficient zero."""
-    matrix, variants = _matrix(tangent, candidates)
     windows = tangent.windows
     views = [projection(windows, n) for n in range(len(windows.near))]
     unknowns, residual = eliminated(windows, views)
@@ -111,30 +157,45 @@ def screened(tangent: Tangent, trial: Trial, candidates: Sequence[Candidate]) ->
     unknowns = unknowns[
         :, [not _on_bound(u, windows.values[u.name]) for u in windows.criterion.unknowns]
     ]
-    sizes = [near.residual.size for near in windows.near]
-    parts = np.split(matrix, np.cumsum(sizes)[:-1])
-    reduced = np.concatenate(
-        [view.off(part).T for view, part in zip(views, parts, strict=True)], axis=1
-    )
+    basis = _basis(unknowns)
+    residual = residual - basis @ (basis.T @ residual)
+
+    def answer(place: str, torques: Sequence[Matrix]) -> Matrix:
+        rows, _ = without_starts(tangent, views, {place: torques})
+        return without(rows, basis).T
+
+    model = windows.criterion.model
+    measured = as_measured(windows, tangent.trajectories)
+    candidates = scanned(model, candidates, measured, residual, answer)
+    reduced, whole, variants = _rows(tangent, views, candidates, measured)
+    reduced[_squares(reduced) < SEEN * whole] = 0.0
     reduced, variants = _by_series(tangent, reduced, variants)
     seen = _squares(reduced)
-    basis = _basis(unknowns)
-    left = reduced - (reduced @ basis) @ basis.T
+    left = without(reduced, basis)
     masked = 1 - _squares(left) / np.maximum(seen, 1e-300)
-    visible = seen > 1e-18 * max(float(seen.max(initial=0.0)), 1e-300)
-    masked = np.where(visible, np.clip(masked, 0.0, 1.0), 1.0)
-    columns = Columns(
-        residual - basis @ (basis.T @ residual), left.T, masked, trial.part, trial.freedom
-    )
+    masked = np.where(seen > 0, np.clip(masked, 0.0, 1.0), 1.0)
+    columns = Columns(residual, left.T, masked, trial.part, trial.freedom)
     names = tuple(run.series for run in tangent.trajectories)
     rows = [_row(columns, group, names) for group in _groups(variants)]
     return Screen(columns, tuple(rows))
 
 
-def _matrix(tangent: Tangent, candidates: Sequence[Candidate]) -> tuple[Matrix, list[Variant]]:
-    """The columns of all variants, d residual/d coefficient in sigma."""
+def _rows(
+    tangent: Tangent,
+    views: Sequence[Projection],
+    candidates: Sequence[Candidate],
+    measured: Sequence[Trajectory],
+) -> tuple[Matrix, Vector, list[Variant]]:
+    """What the coefficients of all variants do to the residuals in sigma, as rows (K, M) without
+    what the starts of windows imitate, and their squares (K,) with it.
+
+    Waves are taken along what is measured: a part of their length matters, and a fit far from the
+    noise is off by more than the noise.
+    """
     wired = [c for c in candidates if c.place.kind != "sensor"]
-    known = histories(tangent.windows.criterion.model, wired, tangent.trajectories)
+    model = tangent.windows.criterion.model
+    known = histories(model, [c for c in wired if not c.waves], tangent.trajectories)
+    known |= histories(model, [c for c in wired if c.waves], measured)
     by_place: dict[str, list[Variant]] = {}
     for variant in known:
         by_place.setdefault(variant.candidate.place.name, []).append(variant)
@@ -145,11 +206,18 @@ def _matrix(tangent: Tangent, candidates: Sequence[Candidate]) -> tuple[Matrix, 
         for name, group in by_place.items()
     }
     variants = [variant for group in by_place.values() for variant in group]
-    matrix = tangent.answer(given) if variants else np.zeros((tangent.size, 0))
+    del known
+    rows, whole = without_starts(tangent, views, given)
     sensors = [c for c in candidates if c.place.kind == "sensor"]
-    shown = [tangent.sensed(c.effect, c.place.definition) for c in sensors]
+    if not sensors:
+        return rows, np.maximum(whole, 1e-300), variants
+    shown = np.stack([tangent.sensed(c.effect, c.place.definition) for c in sensors], axis=1)
+    edges = np.cumsum([near.residual.size for near in tangent.windows.near])[:-1]
+    parts = zip(views, np.split(shown, edges), strict=True)
+    more = np.concatenate([view.off(part).T for view, part in parts], axis=1)
+    whole = np.concatenate((whole, np.einsum("ij,ij->j", shown, shown)))
     variants += [Variant(c, ()) for c in sensors]
-    return np.column_stack([matrix, *shown]) if shown else matrix, variants
+    return np.concatenate((rows, more)), np.maximum(whole, 1e-300), variants
 
 
 def _by_series(
@@ -240,7 +308,8 @@ def _count(candidate: Candidate, shapes: Mapping[str, float], series: Sequence[s
     """How many numbers an effect takes: a shape that keeps its default is none. The screen takes an
     amplitude and a phase in each series that has a phase of its own."""
     more = 2 * (len(series) - 1) if series else 0
-    return 1 + more + sum(not is_default(candidate, name, value) for name, value in shapes.items())
+    free = {name: value for name, value in shapes.items() if name not in candidate.fixed}
+    return 1 + more + sum(not is_default(candidate, name, value) for name, value in free.items())
 
 
 def _squares(rows: Matrix) -> Vector:

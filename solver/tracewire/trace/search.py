@@ -7,11 +7,12 @@ from dataclasses import dataclass, field, replace
 
 from tracewire.errors import FitError
 from tracewire.fit.segment import Segment
-from tracewire.trace.candidates import find_candidates
-from tracewire.trace.judge import MATERIAL, Verdict, gate
+from tracewire.trace.candidates import Candidate, find_candidates
+from tracewire.trace.judge import Verdict, gate
 from tracewire.trace.levels import levels_of
+from tracewire.trace.options import TraceOptions
 from tracewire.trace.places import Place
-from tracewire.trace.refits import AT_NOISE, FAR, FIRST_STEPS, NEAR, Refits, Tried, named
+from tracewire.trace.refits import FAR, FIRST_STEPS, Refits, Tried, named
 from tracewire.trace.repeated import comes_back, visible
 from tracewire.trace.screening import Screen, screened
 from tracewire.trace.shortlist import LEAST_GAIN, MANY, SINGLES, shortlist
@@ -21,14 +22,8 @@ from tracewire.trace.tangent import Tangent
 from tracewire.trace.trial import Bench, Trial
 from tracewire.trace.windows import Section
 
-MOST_EFFECTS = 3
 CHANCE = 1e-3
-LENGTHENED = 0.2
-LONGEST = 1000
-"""Samples of a section: a search on longer ones takes too long, as contacts do in such runs."""
 LONGER = 3
-RUNNER_UP = 0.9
-"""The part of the fall of BIC of the best effect from which another one is a runner-up."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +49,7 @@ class Search:
     values: Mapping[str, float]
     tell: Callable[[str], None]
     words: list[str]
+    options: TraceOptions = field(default_factory=TraceOptions)
     steps: list[Step] = field(default_factory=list)
     first: Trial | None = None
     best: Trial | None = None
@@ -148,93 +144,29 @@ class Search:
         return trial
 
     def run(self, declared: Trial) -> None:
-        """One effect after the other, from the declared fit."""
+        """One effect after the other, from the declared fit, until none passes the gate."""
         self.first = self.best = declared if self.is_part(declared) else self.climbed(declared)
-        self._stepped()
-        if self.first.s2 > FAR and self.best.s2 > NEAR and self.free:
-            self._lengthened()
-
-    def _stepped(self) -> None:
-        """Effects from the best model on, until none passes; then from runners-up of the first
-        step, where that does not reach the noise: a stand-in may have been ahead of the truth."""
-        first = len(self.steps)
         self._onward()
-        runners_up = self._runners_up(first)
-        for number, one in enumerate(runners_up, start=1):
-            if self.best is None or self.best.s2 < AT_NOISE:
-                break
-            self.tell(f"from the runner-up {one.trial.effects[-1]} ({number} of {len(runners_up)})")
-            known = self.best, self.steps[:]
-            step = self.steps[first]
-            words = f"accepted a runner-up: {named(one.trial, step.before)}"
-            self.steps = [*self.steps[:first], replace(step, after=one.trial, words=words)]
-            self.best = self.climbed(self.completed(one.trial))
-            self._onward()
-            shorter = self.best.length < known[0].length
-            if shorter or self.best.s2 > (1 - MATERIAL) * known[0].s2:
-                self.best, self.steps = known
 
     def _onward(self) -> None:
         """Effects from the best model on, until none passes."""
-        while self.best is not None and len(self.best.effects) < MOST_EFFECTS:
+        while self.best is not None and len(self.best.effects) < self.options.effects:
             found = self.step(self.best)
             if found is None:
                 break
             self.best = self.climbed(self.completed(found))
-
-    def _runners_up(self, number: int) -> list[Tried]:
-        """Single effects that did nearly as well in a step as the one that was accepted."""
-        if number >= len(self.steps):
-            return []
-        step = self.steps[number]
-        winner = next((one for one in step.tried if one.trial is step.after), None)
-        if winner is None:
-            return []
-        near = [one for one in step.tried if one.rise < RUNNER_UP * winner.rise]
-        return [one for one in near if one is not winner and len(one.proposal.rows) == 1]
-
-    def _lengthened(self) -> None:
-        """The search once more on whole sections, where short windows stay far above the noise.
-
-        What no effect explains at every sample then rules short windows, while what is missing adds
-        up in long ones. What is found there counts where it explains the greater part.
-        """
-        known = self.first, self.best, len(self.steps)
-        length = self.lengths[-1]
-        if length > LONGEST:
-            return
-        self.tell("searching on whole sections")
-        try:
-            first = self.bench.fitted(
-                (), self.windows(self.stretches.train, length), length, self.values
-            )
-        except FitError:
-            return
-        self.first = self.best = first
-        self._stepped()
-        if self.best.effects and self.best.s2 < LENGTHENED * first.s2:
-            self.words.append("short windows stay far above the noise: searched on whole sections")
-            del self.steps[: known[2]]
-        else:
-            self.first, self.best = known[0], known[1]
-            del self.steps[known[2] :]
+            if self.best.s2 > FAR:  # the noise is out of reach: models are compared otherwise
+                break
 
     def step(self, now: Trial) -> Trial | None:
         """One more effect, or a pair: screened, refitted, ranked, and passed by the gate."""
         self.tell("screening effects")
         tangent = Tangent(now.diagram, now.windows, self.places, self.bench.rtol)
-        taken = [effect.candidate for effect in now.effects]
-        levels = levels_of(tangent.trajectories)
-        candidates = find_candidates(
-            self.bench.declared, self.places, levels, taken, self.bench.tones
-        )
-        self.returns = comes_back(self.places, tangent.trajectories)
-        if not self.returns:
-            candidates = visible(self.bench.declared, candidates, tangent.trajectories)
+        candidates = self.candidates(tangent, [effect.candidate for effect in now.effects])
         screen = screened(tangent, now, candidates)
         chance = screen.chance()
         count = SINGLES if now.s2 < FAR else MANY
-        proposals = shortlist(screen, MOST_EFFECTS - len(now.effects), count)
+        proposals = shortlist(screen, self.options.effects - len(now.effects), count)
         if chance > CHANCE or not proposals:
             words = f"nothing stands out (p = {chance:.2g})"
             self.steps.append(Step(now, screen, chance, (), None, words))
@@ -253,6 +185,22 @@ class Search:
         after = None if winner is None else winner.trial
         self.steps.append(Step(now, screen, chance, tuple(tried), after, words))
         return after
+
+    def candidates(self, tangent: Tangent, taken: Sequence[Candidate]) -> list[Candidate]:
+        """The effects at places that may be tried beside those that are there."""
+        levels = levels_of(tangent.trajectories)
+        found = find_candidates(self.bench.declared, self.places, levels, taken, self.bench.tones)
+        self.returns = comes_back(self.places, tangent.trajectories)
+        if not self.returns:
+            found = visible(self.bench.declared, found, tangent.trajectories)
+        only, without = self.options.only, self.options.without
+        return [
+            c
+            for c in found
+            if (not only or c.place.name in only)
+            and c.effect not in without
+            and str(c) not in without
+        ]
 
     def judged(self, now: Trial, one: Tried, tried: Sequence[Tried]) -> Verdict:
         """What the gate says of a trial, of a pair also beside each effect alone."""

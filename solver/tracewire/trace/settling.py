@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.fit.linearised import Linearised
 from tracewire.trace.windows import Windows, begun_at, better, projection
 
 Vector = NDArray[np.float64]
@@ -20,15 +19,15 @@ SETTLED = 0.05
 """What is still to gain, in units of the noise's variance, where a fit has converged."""
 
 
-def settled(windows: Windows) -> Windows:
+def settled(windows: Windows, steps: int = SETTLING) -> Windows:
     """The starts alone fitted, each window for itself; the unknowns stay.
 
     A window whose start is led astray (a start inside a stiff barrier kicks it away) is tried from
     the end of the window before it.
     """
-    windows = settled_some(windows, range(len(windows.near)), SETTLING)
-    off = [n for n, near in enumerate(windows.near) if not _is_good(near)]
-    return consistent(from_ends(windows, off, SETTLING))
+    windows = settled_some(windows, range(len(windows.near)), steps)
+    off = [n for n in range(len(windows.near)) if not _is_good(windows, n)]
+    return consistent(from_ends(windows, off, steps))
 
 
 def from_ends(windows: Windows, rows: Sequence[int], steps: int) -> Windows:
@@ -36,7 +35,7 @@ def from_ends(windows: Windows, rows: Sequence[int], steps: int) -> Windows:
     one before has changed by that."""
     changed = {n - 1 for n in rows}
     while True:
-        off = [n for n in rows if n - 1 in changed and not _is_good(windows.near[n])]
+        off = [n for n in rows if n - 1 in changed and not _is_good(windows, n)]
         there = begun_at(windows, ends_before(windows, off))
         tried = [n for n in off if there.starts[n] is not windows.starts[n]]
         if not tried:
@@ -46,9 +45,10 @@ def from_ends(windows: Windows, rows: Sequence[int], steps: int) -> Windows:
         windows = found
 
 
-def _is_good(near: Linearised) -> bool:
-    """Whether a window is so near the noise that it is not astray."""
-    return near.square <= 2 * near.residual.size
+def _is_good(windows: Windows, n: int) -> bool:
+    """Whether a window is so near what the best models leave that it is not astray."""
+    near = windows.near[n]
+    return near.square <= windows.good * near.residual.size
 
 
 def consistent(windows: Windows) -> Windows:

@@ -6,7 +6,9 @@ from tracewire.trace.screening import Proposal, Row, Screen
 
 LEAST_GAIN = 5.0
 """Half the fall of BIC from which on an effect is worth a refit."""
-SINGLES, PAIRS = 6, 3
+SINGLES, PAIRS = 6, 4
+SIMPLE = 2
+"""Of the pairs: the best one at each of the smallest numbers of fitted numbers."""
 MANY = 10
 """Single effects that are refitted far from the noise, where the screen's promises are poor."""
 COPY = 1 - 1e-6
@@ -28,4 +30,8 @@ def shortlist(screen: Screen, room: int, count: int = SINGLES) -> list[Proposal]
     alone = {str(row.candidate): row.gain for row in screen.best()}
     best = max(alone.values(), default=0.0)
     pairs = [pair for pair in screen.pairs() if pair.gain > max(best, LEAST_GAIN) + LEAST_GAIN]
-    return found + pairs[:PAIRS]
+    best_of = {pair.count: pair for pair in reversed(pairs)}
+    # what takes many numbers, as waves do, hides no simple pair
+    simple = [best_of[count] for count in sorted(best_of)[:SIMPLE]]
+    others = [pair for pair in pairs if pair not in simple]
+    return found + simple + others[: PAIRS - len(simple)]

@@ -115,7 +115,7 @@ class Tangent:
             at = self.outputs.index(signal)
             sigma = self.windows.criterion.sigma[segment.measured.name][at]
             column[:, at] = shown[rows] / sigma
-            parts.append(column.ravel())
+            parts.append(self.windows.criterion.whiten(joined.window, column.ravel()))
         return np.concatenate(parts)
 
     def window_answer(self, joined: Joined, histories: Mapping[str, Sequence[Matrix]]) -> Matrix:
@@ -139,7 +139,8 @@ class Tangent:
             state = out[-1, m:]
         segment = self.windows.criterion.segments[joined.window]
         scale = self._shown(segment)[:, None]
-        return np.asarray((rows[joined.counts] * scale).reshape(-1, columns))
+        answer = (rows[joined.counts] * scale).reshape(-1, columns)
+        return self.windows.criterion.whiten(joined.window, answer)
 
     def _shown(self, segment: Segment) -> Vector:
         """By how many sigma the sensors show a change of each signal."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,48 +13,12 @@ from tracewire.fit.segment import SENSED
 from tracewire.trace.account import intervals
 from tracewire.trace.candidates import extend
 from tracewire.trace.finish import Final, Rival
-from tracewire.trace.found import Dependence, FoundEffect, Ranked, StepTold, Tie, Verdict
+from tracewire.trace.found import FoundEffect, Ranked, StepTold, Tie
 from tracewire.trace.search import Search, Step
 from tracewire.trace.trial import Added, Trial
 
 Matrix = NDArray[np.float64]
-AT_NOISE = 1.3
-EXPLAINED = 0.2
-SLOW = 30.0
 SHOWN = 12
-STRUCTURED = 0.5
-
-
-def verdict_of(
-    declared: Trial,
-    best: Trial,
-    gate: float,
-    dependences: Sequence[Dependence],
-    *,
-    returns: bool = True,
-) -> Verdict:
-    """`null` where the declared model reaches the noise on all that is not held back for the final
-    claim, `effect` where one with effects does so on fitted and on unseen windows.
-
-    `gate` is the squared residual per residual on unseen windows. Far above the noise effects are
-    named still where they leave less than a fifth of the squared residual and what is left depends
-    on no variable that was tried; else something is `unexplained`. Where
-    no body comes back to where it was (`returns`), slow noise of a sensor cannot be told from a
-    force: a residual that no effect explains, a few times the noise, is then no sign of one.
-    """
-    limit = max(AT_NOISE, 1 + 4 * (2 / best.freedom) ** 0.5)
-    if best.s2 < limit and not best.effects:
-        return "null"
-    if best.s2 < limit and gate < limit**2:
-        return "effect"
-    if not returns and best.s2 < SLOW:
-        return "effect" if best.effects else "null"
-    structured = max((d.share for d in dependences), default=0.0) > STRUCTURED
-    # residuals in windows of other lengths do not compare
-    part = best.s2 / declared.s2 if best.length >= declared.length else 1.0
-    if best.effects and part < EXPLAINED and not structured:
-        return "effect"
-    return "unexplained"
 
 
 def told_effects(search: Search, final: Final) -> tuple[FoundEffect, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
@@ -9,37 +10,46 @@ from functools import partial
 import numpy as np
 
 from tracewire.compile import Model
-from tracewire.errors import TracewireError
+from tracewire.errors import FitError, Problem, TracewireError
 from tracewire.fit.fit import with_measured_signals
+from tracewire.fit.input_noise import InputCovariance
 from tracewire.fit.measured import Measured, load_measured
 from tracewire.fit.noise import channel_noise
 from tracewire.fit.result import Fit
 from tracewire.trace.account import compared, met, moved, rmse
-from tracewire.trace.dependence import where_what
+from tracewire.trace.bounds import at_bounds
 from tracewire.trace.experiment import separating
 from tracewire.trace.finish import Final, finished
 from tracewire.trace.force import forces
-from tracewire.trace.found import Dependence, Experiment, Force, Found, Missing
+from tracewire.trace.found import Experiment, Force, Found
 from tracewire.trace.mistakes import refuse_mistakes
-from tracewire.trace.places import find_places
+from tracewire.trace.option_checks import check_options
+from tracewire.trace.options import TraceOptions
+from tracewire.trace.places import find_places, untried
 from tracewire.trace.power import powers
+from tracewire.trace.prediction import Prediction, predict
 from tracewire.trace.refusals import check_series, remarks
 from tracewire.trace.search import Search
 from tracewire.trace.spikes import without_spikes
 from tracewire.trace.stretches import share_out, shortest_window
 from tracewire.trace.tangent import Tangent
 from tracewire.trace.telling import paragraph_of
-from tracewire.trace.told import (
-    confusable,
-    edited,
-    told_effects,
-    told_steps,
-    verdict_of,
-)
-from tracewire.trace.tolerance import refuse_loose
+from tracewire.trace.told import confusable, edited, told_effects, told_steps
+from tracewire.trace.tolerance import is_loose, tightened
 from tracewire.trace.trial import Bench, Trial
+from tracewire.trace.verdict import (
+    Judgement,
+    is_at_noise,
+    is_slow_noise,
+    judge_at_noise,
+    judge_prediction,
+    raises_unseen,
+    residual_map,
+)
 
 EXPERIMENTS = 2
+TIGHTENED = 2
+"""How many times the solver's tolerance is tightened by ten where its error counts."""
 SUSPICIOUS = 3.0
 
 
@@ -47,6 +57,7 @@ def trace(
     subject: Model | Fit,
     measured: Sequence[Measured] | None = None,
     *,
+    options: TraceOptions | None = None,
     rtol: float = 1e-6,
     progress: Callable[[str], None] | None = None,
 ) -> Found:
@@ -55,37 +66,109 @@ def trace(
     Every effect of the library is tried at every place, first by a score test on one linearisation,
     then the best, and pairs of them, by a refit in the loop, ranked by BIC. It is accepted only if
     it improves stretches that the fit did not see; the errors reported come from a third stretch.
+    `options` says what is tried, and from when on an effect is believed.
     Ctrl-C ends it with what was found so far.
 
     Raises DataError where the series cannot be used, FitError where the model does not run, or
     where `rtol` is too loose for such small noise.
     """
+    options = options or TraceOptions()
     tell = progress or (lambda text: None)
-    search = begun(subject, measured, rtol, tell)
+    search = begun(subject, measured, rtol, within(options.budget, tell), options)
     interrupted = False
+    prediction: Prediction | None = None
     try:
-        declared = search.declared()
+        declared = _precise(search)
         search.run(declared)
-        final = finished(search, *search.standing)
-        if final.best.effects:
-            refuse_loose(search.bench, final.best)
-        _refuse_mistakes(search, declared, final)
-    except KeyboardInterrupt:
+        first, best = search.standing
+        if is_at_noise(search, best) or is_slow_noise(search, best):
+            judgement = judge_at_noise(search, finished(search, first, best))
+        else:
+            prediction = predict(search, first)
+            judgement = judge_prediction(search, prediction)
+        judgement = _checked(search, judgement)
+        _refuse_mistakes(search, declared, judgement)
+    except (KeyboardInterrupt, OutOfTime) as stopped:
         if search.best is None:
             raise
         interrupted = True
-        final = Final(*search.standing, {}, ())
-    return _found(search, final, interrupted)
+        if isinstance(stopped, OutOfTime):
+            search.words.append(f"the search ended after its budget of {options.budget:g} s")
+    search.tell = tell
+    if interrupted:
+        judgement = Judgement("unexplained", Final(*search.standing, {}, ()))
+    return _found(search, judgement, prediction, interrupted)
 
 
-def _refuse_mistakes(search: Search, declared: Trial, final: Final) -> None:
+class OutOfTime(FitError):
+    """A search has taken longer than the user allows."""
+
+
+def within(seconds: float, tell: Callable[[str], None]) -> Callable[[str], None]:
+    """A `tell` that raises OutOfTime where it is called after so many seconds."""
+    end = time.monotonic() + seconds
+
+    def told(text: str) -> None:
+        if time.monotonic() > end:
+            what = f"the declared model was not fitted within the budget of {seconds:g} s"
+            raise OutOfTime([Problem(what, hint="Give more with --budget.")])
+        tell(text)
+
+    return told
+
+
+def _precise(search: Search) -> Trial:
+    """The declared fit, with a tolerance at which the solver's error does not count."""
+    declared = search.declared()
+    for _ in range(TIGHTENED):
+        if not is_loose(search.bench, declared):
+            break
+        _tighten(search)
+        declared = search.declared()
+    return declared
+
+
+def _tighten(search: Search) -> None:
+    search.bench = tightened(search.bench)
+    search.words.append(
+        f"the solver's error counted beside the residual: rtol is {search.bench.rtol:.0e} now"
+    )
+
+
+def _checked(search: Search, judgement: Judgement) -> Judgement:
+    """The judgement where the solver is precise enough, and no effect raises the error on unseen
+    data; without the effects where they do."""
+    final = judgement.final
+    for _ in range(TIGHTENED):
+        if not (final.best.effects and is_loose(search.bench, final.best)):
+            break
+        _tighten(search)
+        declared, best = (
+            search.bench.again(trial, trial.windows.segments, trial.length)
+            for trial in (final.declared, final.best)
+        )
+        final = replace(final, declared=declared, best=best)
+    if final.best.effects:
+        lengths = sorted({min(search.short, final.best.length), final.best.length})
+        harm = raises_unseen(search, final, lengths)
+        if harm:
+            names = " and ".join(map(str, final.best.effects))
+            search.words.append(f"{names} is not named: it {harm}")
+            final = Final(final.declared, final.declared, {}, ())
+            dependences, missing = residual_map(search, final.declared)
+            return Judgement("unexplained", final, dependences, missing)
+    return replace(judgement, final=final)
+
+
+def _refuse_mistakes(search: Search, declared: Trial, judgement: Judgement) -> None:
     """Refuse records that a mistake explains better than what was found.
 
-    Only where the noise is not reached, or where what was found may itself be a mistake: a sensor
-    or a drive.
+    Only where no effect explains what is left far above the noise, or where what was found may
+    itself be a mistake: a sensor or a drive.
     """
-    suspicious = any(e.candidate.place.kind != "sum" for e in final.best.effects)
-    if suspicious or final.best.s2 > SUSPICIOUS:
+    best = judgement.final.best
+    suspicious = any(e.candidate.place.kind != "sum" for e in best.effects)
+    if suspicious or (judgement.verdict == "unexplained" and best.s2 > SUSPICIOUS):
         search.tell("looking for mistakes in the records")
         refuse_mistakes(
             search.bench.declared, search.bench.measured, declared.s2, search.bench.rtol
@@ -97,6 +180,7 @@ def begun(
     measured: Sequence[Measured] | None,
     rtol: float,
     progress: Callable[[str], None],
+    options: TraceOptions,
 ) -> Search:
     """The search on a subject, ready to run."""
     values: dict[str, float] = {}
@@ -107,32 +191,36 @@ def begun(
     model = with_measured_signals(subject, measured)
     series = tuple(load_measured(model) if measured is None else measured)
     check_series(model, series)
+    check_options(options, model)
     sigma = channel_noise([m for m in series if m.use != "validate"])
     series = tuple(without_spikes(m, sigma) for m in series)
-    bench = Bench(model, series, sigma, rtol)
     stretches = share_out(series)
+    inputs = InputCovariance(sigma, model, series, shortest_window(stretches))
+    bench = Bench(model, series, sigma, rtol, inputs)
+    places = find_places(model)
     words = [*remarks(series), *stretches.words]
+    words += untried(model.diagram, [place for place in places if place.q])
     return Search(
-        bench, stretches, find_places(model), shortest_window(stretches), values, progress, words
+        bench,
+        stretches,
+        places,
+        shortest_window(stretches),
+        values,
+        progress,
+        words,
+        options,
     )
 
 
-def _found(search: Search, final: Final, interrupted: bool) -> Found:
+def _found(
+    search: Search, judgement: Judgement, prediction: Prediction | None, interrupted: bool
+) -> Found:
     """The result of a search."""
     search.tell("checking on what played no part")
+    final = judgement.final
     final = replace(final, best=met(search, final.best))
     bench, declared, best = search.bench, final.declared, final.best
-    gate = _gate(search, best)
-    dependences: tuple[Dependence, ...] = ()
-    missing: Missing | None = None
-    before = verdict_of(declared, best, gate, (), returns=search.returns)
-    if before == "unexplained" or best.s2 > 2:
-        search.tell("where and on what the missing torque depends")
-        dependences, missing = _dependence(search, declared)
-        left, _ = _dependence(search, best) if best.effects else (dependences, None)
-    else:
-        left = ()
-    verdict = verdict_of(declared, best, gate, left, returns=search.returns)
+    search.words += dict.fromkeys(one.words for t in (declared, best) for one in at_bounds(t))
     parts = compared(search, declared, best)
     claimed = [part for part in parts if part.use == "validate"]
     values = {**best.values, **dict.fromkeys(final.dropped, 0.0)}
@@ -141,7 +229,7 @@ def _found(search: Search, final: Final, interrupted: bool) -> Found:
     units |= {name: p.unit for name, p in best.model.flat.parameters.items()}
     interval = float(np.median([np.median(np.diff(m.t)) for m in bench.measured]))
     found = Found(
-        verdict=verdict,
+        verdict=judgement.verdict,
         effects=told_effects(search, final),
         dropped=final.dropped,
         values=values,
@@ -153,10 +241,10 @@ def _found(search: Search, final: Final, interrupted: bool) -> Found:
         s2_after=best.s2,
         moved=tuple(moved(bench, declared, best, values)) if best.effects else (),
         errors=tuple(error for part in parts for error in part.errors(sigma, units)),
-        steps=told_steps(search, interval),
+        steps=(*told_steps(search, interval), *([prediction.told()] if prediction else [])),
         power=powers(search.steps[-1].screen) if search.steps else (),
-        dependences=dependences,
-        missing=missing if verdict == "unexplained" else None,
+        dependences=judgement.dependences,
+        missing=judgement.missing,
         experiments=() if interrupted else _experiments(search, final),
         confusable=confusable(search),
         curves=tuple(curve for part in parts for curve in part.curves(sigma, units)),
@@ -167,24 +255,13 @@ def _found(search: Search, final: Final, interrupted: bool) -> Found:
         diagram=edited(bench.declared, best, values),
         units=units,
         interrupted=interrupted,
+        options=search.options,
+        explained=judgement.explained,
+        remainder=judgement.remainder,
+        remainder_depends=judgement.remainder_depends,
+        held_out=judgement.held_out,
     )
     return replace(found, paragraph=paragraph_of(found))
-
-
-def _gate(search: Search, best: Trial) -> float:
-    """The squared residual per residual on windows that no fit saw, their starts counted."""
-    windows = search.windows(search.stretches.gate, search.short)
-    residuals = search.bench.on(best, windows)
-    count = sum(r.size for r in residuals) - sum(len(w.free) for w in windows)
-    return sum(float(np.sum(r**2)) for r in residuals) / max(count, 1)
-
-
-def _dependence(search: Search, trial: Trial) -> tuple[tuple[Dependence, ...], Missing | None]:
-    """The where/what map of a trial in short windows."""
-    length = search.short
-    short = search.bench.again(trial, search.windows(search.stretches.train, length), length)
-    tangent = Tangent(short.diagram, short.windows, search.places, search.bench.rtol)
-    return where_what(tangent, short, search.places)
 
 
 def _experiments(search: Search, final: Final) -> tuple[Experiment, ...]:
@@ -210,4 +287,5 @@ def _forces(search: Search, best: Trial) -> tuple[Force, ...]:
     bench = search.bench
     windows = bench.settled(best, search.windows(search.stretches.train, search.short))
     tangent = Tangent(best.diagram, windows, search.places, bench.rtol)
-    return forces(tangent, best, bench.rtol)
+    fitted = Tangent(best.diagram, best.windows, search.places, bench.rtol)
+    return forces(tangent, best, bench.rtol, fitted)

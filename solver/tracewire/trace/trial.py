@@ -14,14 +14,15 @@ from tracewire.compile import Model, compile
 from tracewire.diagram import Diagram
 from tracewire.errors import FitError
 from tracewire.fit.criterion import Criterion
+from tracewire.fit.input_noise import InputCovariance
 from tracewire.fit.measured import Measured
 from tracewire.fit.segment import Segment, Unknown
 from tracewire.fit.unknowns import free_unknowns, sensor_unknowns
 from tracewire.solve import Limits, parameter_values
-from tracewire.trace.candidates import Candidate, extend, unknowns_of
-from tracewire.trace.descent import descended
+from tracewire.trace.candidates import Candidate, extend, unknowns_of, without_defaults
+from tracewire.trace.descent import CREEPS, descended
 from tracewire.trace.phases import best_phase
-from tracewire.trace.settling import settled
+from tracewire.trace.settling import SETTLING, settled
 from tracewire.trace.statistics import bic, effective_part
 from tracewire.trace.tones import Sine, tones_of
 from tracewire.trace.windows import Windows, begun_before, eliminated, opened, projection
@@ -73,7 +74,7 @@ class Added:
     def at(self, named: Mapping[str, float]) -> Added:
         """The effect with the values that the unknowns of a fit have."""
         values = {n: named.get(self.unknown(n), value) for n, value in self.values.items()}
-        return replace(self, values=values)
+        return replace(self, values=without_defaults(self.candidate, values))
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,12 +148,14 @@ class Trial:
 
 @dataclass(frozen=True, eq=False)
 class Bench:
-    """What the trials of a trace share: the declared model, series, their noise, tolerance."""
+    """What the trials of a trace share: the declared model, series, their noise, tolerance, and
+    what the noise of their inputs does."""
 
     declared: Model
     measured: tuple[Measured, ...]
     sigma: Mapping[str, float]
     rtol: float
+    inputs: InputCovariance | None = None
 
     @cached_property
     def tones(self) -> dict[str, dict[str, Sine]]:
@@ -184,11 +187,16 @@ class Bench:
         steps: int = 20,
         budget: float = np.inf,
         target: float = np.inf,
+        good: float = 2.0,
+        creeps: float = CREEPS,
+        settling: int = SETTLING,
     ) -> Trial:
         """The declared diagram with effects fitted to windows, from the values given.
 
         `fixed` are parameters that are not fitted, `budget` the steps of all runs together. A fit
-        that is too slow to reach the sum of squares `target` ends early. Raises FitError where the
+        that is too slow to reach the sum of squares `target` ends early; windows whose squared
+        residual is at most `good` are not taken for astray; `creeps` and `settling` as in
+        `descended`. Raises FitError where the
         model cannot be simulated, DiagramError where an effect cannot be wired.
         """
         added = [(effect.candidate, effect.values) for effect in effects]
@@ -199,9 +207,9 @@ class Bench:
         segments = [_without_strange(segment, model) for segment in segments]
         criterion = self._criterion(model, self.with_own(segments, effects), unknowns, fixed)
         criterion.budget = budget
-        windows = opened(criterion)
+        windows = opened(criterion, good)
         _refuse_failed(criterion, windows)
-        windows, converged = descended(windows, steps, target)
+        windows, converged = descended(windows, steps, target, creeps, settling)
         _refuse_failed(criterion, windows)
         now = tuple(effect.at(windows.values) for effect in effects)
         return Trial(diagram, model, now, windows, length, converged)
@@ -210,7 +218,8 @@ class Bench:
         """A trial fitted to other windows, from where it stands."""
         fixed = trial.windows.criterion.parameters
         effects = self.met(trial, segments)
-        return self.fitted(effects, segments, length, trial.values, fixed=fixed)
+        good = trial.windows.good
+        return self.fitted(effects, segments, length, trial.values, fixed=fixed, good=good)
 
     def on(self, trial: Trial, segments: Sequence[Segment]) -> list[Vector]:
         """The residuals in sigma of a trial on other windows, where only starts are fitted."""
@@ -224,6 +233,21 @@ class Bench:
         """The criterion of a trial on other windows, with its values fixed."""
         segments = self.with_own(segments, self.met(trial, segments))
         return self._criterion(trial.model, segments, [], self.all_values(trial))
+
+    def warm(
+        self, trial: Trial, segments: Sequence[Segment], values: Mapping[str, float]
+    ) -> Criterion:
+        """The criterion of a trial on other windows, with its unknowns free from `values`."""
+        unknowns = [replace(u, value=values[u.name]) for u in trial.windows.criterion.unknowns]
+        fixed = trial.windows.criterion.parameters
+        return self._criterion(trial.model, segments, unknowns, fixed)
+
+    def at(
+        self, trial: Trial, segments: Sequence[Segment], values: Mapping[str, float]
+    ) -> Criterion:
+        """The criterion of a trial on other windows, with its unknowns fixed at `values`."""
+        fixed = {**trial.windows.criterion.parameters, **values}
+        return self._criterion(trial.model, segments, [], fixed)
 
     def met(self, trial: Trial, segments: Sequence[Segment]) -> tuple[Added, ...]:
         """The effects of a trial with what each series of other windows has of its own: a series
@@ -288,6 +312,7 @@ class Bench:
             self.sigma,
             weighting="sum",
             chained=True,
+            covariance=self.inputs.factor if self.inputs and self.inputs.series else None,
             limits=Limits(LEAST_STEPS + STEPS * longest, SECONDS, EVENTS * (longest + 10)),
         )
 

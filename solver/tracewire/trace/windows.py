@@ -88,12 +88,16 @@ def begun_before(model: Model, segment: Segment, delays: Mapping[str, float]) ->
 
 @dataclass(frozen=True, eq=False)
 class Windows:
-    """Windows at some values of the unknowns: their starts, and each of them linearised there."""
+    """Windows at some values of the unknowns: their starts, and each of them linearised there.
+
+    A window whose mean squared residual is at most `good`, in the noise's variance, is not astray.
+    """
 
     criterion: Criterion
     values: Mapping[str, float]
     starts: tuple[Mapping[str, float], ...]
     near: tuple[Linearised, ...]
+    good: float = 2.0
 
     @property
     def squares(self) -> Vector:
@@ -156,12 +160,13 @@ def eliminated(windows: Windows, views: Sequence[Projection]) -> tuple[Matrix, V
     return reduced, residual
 
 
-def opened(criterion: Criterion) -> Windows:
-    """The windows where their segments begin."""
+def opened(criterion: Criterion, good: float = 2.0) -> Windows:
+    """The windows where their segments begin; `good` as in Windows."""
     values = {u.name: u.value for u in criterion.unknowns}
     starts = [{name: s.start[name] for name in s.free} for s in criterion.segments]
     near = criterion.linearised(values, dict(enumerate(starts)))
-    return Windows(criterion, values, tuple(starts), tuple(near[n] for n in range(len(starts))))
+    linearised = tuple(near[n] for n in range(len(starts)))
+    return Windows(criterion, values, tuple(starts), linearised, good)
 
 
 def begun_at(windows: Windows, starts: Mapping[int, Mapping[str, float]]) -> Windows:

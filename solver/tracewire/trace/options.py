@@ -1,0 +1,115 @@
+"""What a user may ask of a trace, and every threshold of its choice, with meaning and source."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class TraceOptions:
+    """What a trace tries, and from when on it believes an effect.
+
+    The defaults of the choice are those of the study in which held-out log scores on blocks of time
+    chose right most often on 16 measured records (see `trace/selection.py`); tolerances of 5 to
+    10 % did equally well there, 2 % and 20 % worse.
+    """
+
+    only: tuple[str, ...] = ()
+    """Places that are tried (`sum`, `drive.u`, `sensor.y`); empty: all."""
+    without: tuple[str, ...] = ()
+    """Effects that are not tried, by name, or by name and place as `coulomb @ force`."""
+    effects: int = 3
+    """How many effects are added at most."""
+    horizon: float | None = None
+    """The longer of the two horizons in s; None: five periods of the slowest measured motion."""
+    budget: float = math.inf
+    """Seconds of wall time after which the search ends with what it has found by then."""
+
+    short_horizon: float = 0.3
+    """The shorter horizon in dominant periods of the measured motion."""
+    long_horizon: float = 5.0
+    """The longer horizon in dominant periods; it is shortened where the record has fewer blocks."""
+    shortest_window: int = 8
+    """Samples of a window of the shorter horizon, at least."""
+    least_blocks: int = 7
+    """Blocks of time at least: fewer have no standard error to speak of."""
+    most_blocks: int = 20
+    """Blocks of time at most: more cost time and correlate with their neighbours."""
+    still: float = 10.0
+    """A body rests where its signals change by no more than so many times their noise until the
+    record ends: about the range of white noise in 1e6 samples."""
+    still_part: float = 1e-3
+    """The same as a part of the range of the whole record."""
+    long_rest: float = 0.05
+    """The part of a record that a rest at its end takes at least."""
+    folds: int = 8
+    """Groups of scattered blocks that are left out in turn."""
+    thirds: int = 3
+    """Contiguous parts of the data, or groups of series, that are left out in turn."""
+    fold_steps: int = 3
+    """Steps of the refit without a fold, which begins at the fit to all data."""
+    near: float = 0.05
+    """The part of the error by which a model may be worse than the best and still count as near."""
+    sure: float = 3.0
+    """Standard errors over blocks by which a model must beat the declared one to be named."""
+    explained: float = 0.5
+    """The share of the excess error that named effects explain at least, less its standard error;
+    a wrong single effect had a share of about 0, right models had more than 0.75."""
+    map_gain: float = 0.05
+    """The part of the error that a smooth map of position, rate, time or history must gain on
+    unseen data for a rest to be called unexplained."""
+    harm: float = 0.02
+    """The part by which a model may raise the error on unseen data, as by chance, and be named."""
+    harm_few: float = 0.1
+    """The same where there are less than four windows, whose spread says nothing."""
+    harm_errors: float = 2.0
+    """Standard errors over windows by which a rise of that error is more than chance."""
+    at_noise: float = 1.3
+    """The reduced chi-square below which a residual is at the sensor's noise: there the noise is
+    white, likelihood is right, and BIC chooses."""
+    refused: int = 4
+    """Models that may be refused because they raise the error on unseen data, before none is
+    named."""
+    lost: float = 1.5
+    """The reduced chi-square on windows of three times the shortest length, from which on a model
+    that is at the noise on the shortest ones is not right."""
+    slow_noise: float = 30.0
+    """The reduced chi-square below which a rest is taken for slow noise of a sensor, where no body
+    comes back to where it was."""
+    uncommon: tuple[str, ...] = (
+        "harmonic", "parametric", "cogging", "position_friction", "sensor_quad", "sensor_gain",
+        "stiffness_drift", "viscous_drift", "friction_drift", "sensor_drift",
+    )  # fmt: skip
+    """Effects that come after common ones where both predict as well."""
+
+    singles: int = 20
+    """Single effects that are refitted, the most promising of the screens of all horizons."""
+    pairs: int = 2
+    """Pairs of a screen at each number of fitted numbers that may be refitted."""
+    seconds: int = 4
+    """Effects that are refitted beside each of the best smaller models."""
+    parents: tuple[int, int] = (2, 1)
+    """Single effects, and pairs, beside which a further effect is looked for."""
+    finalists: int = 2
+    """Models at each number of fitted numbers whose predictions are compared."""
+    first_steps: int = 5
+    """Steps of a first refit of a model, at the horizon whose screen proposed it."""
+    begun: int = 8
+    """How many of the models of the screens are refitted at all horizons after that."""
+    coarse: float = 5e-3
+    """The part of the squared error by which a step of such a refit must still lower it."""
+    steps: int = 12
+    """Steps of that refit."""
+    restart: float = 0.1
+    """The part of its promised coefficient at which an effect begins again where a refit from the
+    promise ends worse than without it."""
+    hopeful: float = 2.0
+    """The squared error, in units of the least one of a model of the same size, that a fit must
+    promise to reach at its pace, or be given up."""
+    most_steps: int = 10_000_000
+    """Steps of the solver after which no further models are refitted, about a minute."""
+    exchanged: int = 1
+    """Models of each size of which effects are exchanged for those that look alike."""
+    alike: int = 3
+    """How many effects are tried in the place of one in such an exchange."""

@@ -1,0 +1,65 @@
+"""A trace takes the declared noise of a measured input for noise, and for no missing effect."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tracewire.compile import compile
+from tracewire.diagram import read
+from tracewire.solve import simulate
+from tracewire.trace import trace
+
+CART = """\
+span: [0, 20]
+inputs: {F: {unit: N}}
+parameters:
+  c: {value: 5, unit: N s/m, fit: [0, 50]}
+LEVEL
+blocks:
+  x: {type: integrator, of: v, unit: m}
+  v: {type: integrator, of: a, unit: m/s}
+  viscous: {type: viscous, rate: v, c: c}
+COULOMB
+  force: {type: sum, of: [F, viscous OF], unit: N}
+  a: {type: gain, of: force, k: 1/1.2}
+measured:
+  run:
+    file: run.csv
+    time: t
+    signals: {x: {column: x, sigma: 2e-5}}
+    inputs: {F: {column: F, sigma: 0.02}}
+    start: {x: free, v: free}
+"""
+
+
+def text(friction: bool) -> str:
+    level = "  level: {value: 0.8, unit: N, fit: [0, 10]}" if friction else ""
+    coulomb = "  coulomb: {type: coulomb, rate: v, level: level}" if friction else ""
+    whole = CART.replace("LEVEL", level).replace("COULOMB", coulomb)
+    return whole.replace(" OF", ", coulomb" if friction else "")
+
+
+@pytest.mark.parametrize("declared", [True, False])
+def test_noise_of_a_force_is_no_effect_and_hides_none(tmp_path: Path, declared: bool) -> None:
+    rng = np.random.default_rng(6)
+    t = 0.01 * np.arange(1501)
+    force = 4 * np.sin(2.3 * t + 1) + 3 * np.sin(6.1 * t) + 2 * np.sin(11 * t + 2)
+    file = tmp_path / "cart.yaml"
+    noisy = force + 0.02 * rng.standard_normal(len(t))
+    np.savetxt(
+        tmp_path / "run.csv", np.stack([t, t, noisy], 1), delimiter=",", header="t,x,F", comments=""
+    )
+    file.write_text(text(True), encoding="utf-8")
+    true = {"c": 4.0, "level": 1.2}
+    run = simulate(compile(read(file)), parameters=true, times=t, inputs={"F": (t, force)})
+    x = run["x"] + 2e-5 * rng.standard_normal(len(t))
+    np.savetxt(
+        tmp_path / "run.csv", np.stack([t, x, noisy], 1), delimiter=",", header="t,x,F", comments=""
+    )
+    file.write_text(text(declared), encoding="utf-8")
+    found = trace(compile(read(file)))
+    assert found.verdict == ("null" if declared else "effect")
+    assert [str(effect) for effect in found.effects] == ([] if declared else ["coulomb @ force"])
+    assert found.s2_after == pytest.approx(1.0, abs=0.15)
