@@ -14,7 +14,7 @@ from tracewire.cli import main
 from tracewire.errors import DataError, FitError, Place, Problem
 
 SOLVER = Path(tracewire.__file__).parents[1]
-VERBS = ("check", "show", "run", "fit", "trace", "sweep", "blocks")
+VERBS = ("check", "show", "run", "fit", "trace", "report", "sweep", "blocks")
 
 
 def raising(error: BaseException) -> Callable[..., None]:

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 from tracewire.data import sets
-from tracewire.data.sets import SETS, DataSet
+from tracewire.data.index import SETS, DataSet
 
 Call = Callable[..., Any]
 

@@ -21,7 +21,7 @@ def test_the_demo_names_what_the_diagram_lacks(call: Any, tmp_path: Path) -> Non
     ):
         assert step in told.out
     assert f"figures and reports are in {folder}/" in told.out
-    for figure in ("torsion.png", "trace/trace_free_runs.png", "trace/trace_residuals.png"):
+    for figure in ("torsion.png", "trace/report_free_runs.png", "trace/report_law.png"):
         assert (folder / figure).read_bytes().startswith(b"\x89PNG")
     traced = (folder / "trace" / "report.md").read_text(encoding="utf-8")
     assert traced.startswith("# Trace of Double torsion pendulum, as first declared\n")

@@ -159,8 +159,8 @@ def test_report_is_written_with_its_figure(call: Any, decay: Path, ending: str) 
     for words in ("Fit of Decay", "fitted parameters", "standard error", "rmse after"):
         assert words in text
     if ending == ".md":
-        assert "(fit.png)" in text
-        assert report.with_name("fit.png").read_bytes().startswith(b"\x89PNG")
+        assert "(report_fit.png)" in text
+        assert report.with_name("report_fit.png").read_bytes().startswith(b"\x89PNG")
     else:
         assert 'src="data:image/png;base64,' in text
 
@@ -330,4 +330,4 @@ def test_the_fit_of_the_papers_appendix(call: Any, tmp_path: Path) -> None:
     assert len(data["values"]) == 9
     assert data["iterations"] <= 150
     assert data["criterion"] <= data["criterion_before"] / 100
-    assert (tmp_path / "fit.png").is_file()
+    assert (tmp_path / "report_fit.png").is_file()

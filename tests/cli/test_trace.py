@@ -17,6 +17,7 @@ from oracles import pendulum
 from tracewire.cli import main
 from tracewire.diagram import read
 from tracewire.errors import OptionError
+from tracewire.trace import TraceOptions
 
 DIAGRAM = """\
 title: Short swing   # to be traced
@@ -124,7 +125,7 @@ def test_the_patch_has_the_same_lines(traced: Traced) -> None:
 
 def test_the_report_has_verdict_ranking_change_and_figures(traced: Traced) -> None:
     report = traced.folder / "report.html"
-    assert traced.data["written"][0] == str(report)
+    assert traced.data["written"][-1] == str(report)
     text = report.read_text(encoding="utf-8")
     for words in ("Trace of Short swing", "VERDICT effect", "what was tried", "gate", APPLIED):
         assert words in text
@@ -142,7 +143,7 @@ def test_nothing_is_found_where_nothing_is_missing(call: Any, tmp_path: Path) ->
     file.write_text(text, encoding="utf-8")
     told = call("trace", file, "--apply")
     assert told.code == 0
-    assert told.out.startswith("VERDICT null: nothing is missing beyond the noise\n")
+    assert told.out.startswith("VERDICT null: nothing is missing that these data could show\n")
     assert "effects that were found" not in told.out
     assert file.read_text(encoding="utf-8") == text
 
@@ -180,6 +181,7 @@ def test_a_bad_record_is_told_with_its_line(call: Any, tmp_path: Path) -> None:
         (["--output", "no/a.patch"], "there is no folder 'no'. Make the folder first"),
         (["--patch", "a.txt"], "End the name of the patch in .patch or .diff"),
         (["--table", "a.txt"], "End the name of the table in .csv"),
+        (["--save", "a.pkl"], "End the name of the saved trace in .json"),
     ],
 )
 def test_a_target_that_cannot_be_written_is_told_before_the_work(
@@ -189,6 +191,60 @@ def test_a_target_that_cannot_be_written_is_told_before_the_work(
     assert (told.code, told.out) == (2, "")
     assert said in told.err
     assert told.err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (
+            ["--only", "aceleration"],
+            "unknown place 'aceleration'; there are: acceleration, sensor.theta. Did you mean",
+        ),
+        (["--without", "coulom"], "Did you mean 'coulomb'?"),
+        (["--without", "coulomb @ force"], "unknown place 'force'; there are: acceleration"),
+        (["--effects", "-1"], "a trace cannot add -1 effects"),
+        (["--horizon", "0"], "the horizon must be longer than 0 s, got 0 s"),
+        (["--budget", "0"], "the budget must be more than 0 s, got 0 s"),
+        (["--effects", "many"], "'--effects'"),
+    ],
+)
+def test_what_is_asked_for_and_does_not_exist_is_told_before_the_work(
+    call: Any, tmp_path: Path, arguments: list[str], said: str
+) -> None:
+    write_record(tmp_path)
+    (tmp_path / "swing.yaml").write_text(DIAGRAM, encoding="utf-8")
+    told = call("trace", tmp_path / "swing.yaml", *arguments)
+    assert (told.code, told.out) == (2, "")
+    assert said in told.err
+    assert told.err.count("\n") == 1
+
+
+def test_what_the_user_asks_for_reaches_the_trace(
+    tmp_path: Path, call: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write_record(tmp_path)
+    (tmp_path / "swing.yaml").write_text(DIAGRAM, encoding="utf-8")
+    seen = []
+
+    def only_look(model: Any, **options: Any) -> Any:
+        seen.append(options["options"])
+        raise OptionError.one("this is far enough")
+
+    monkeypatch.setattr(import_module("tracewire.trace"), "trace", only_look)
+    call("trace", tmp_path / "swing.yaml")
+    arguments = ["--only", "acceleration", "sensor.theta", "--without", "cogging"]
+    arguments += ["--without", "coulomb @ acceleration", "--effects", "1", "--horizon", "2.5"]
+    call("trace", *arguments, "--budget", "60", tmp_path / "swing.yaml")
+    assert seen == [
+        TraceOptions(),
+        TraceOptions(
+            only=("acceleration", "sensor.theta"),
+            without=("cogging", "coulomb @ acceleration"),
+            effects=1,
+            horizon=2.5,
+            budget=60.0,
+        ),
+    ]
 
 
 def test_files_named_beside_the_diagram(

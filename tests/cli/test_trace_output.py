@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 from dataclasses import replace
 from importlib import import_module
@@ -14,6 +15,7 @@ from show.traces import FOUND, NULL, TEXT, UNEXPLAINED, missing_of_two
 from tracewire.cli.progress import stages
 from tracewire.diagram import read, read_text
 from tracewire.trace import Found
+from tracewire.trace.found import Force
 
 CHANGED = TEXT.replace("[column, damper]}", "[column, damper, coulomb]}\n"
                        "  coulomb: {type: coulomb, rate: omega, level: {value: 0.25}}")  # fmt: skip
@@ -32,7 +34,7 @@ def traced(call: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
         changed = changed[: len(changed) - len(TEXT) + len(text)]  # as `text` ends
         result = replace(found, original=original, diagram=read_text(changed, file))
         module = import_module("tracewire.trace")
-        monkeypatch.setattr(module, "trace", lambda model, rtol, progress: result)
+        monkeypatch.setattr(module, "trace", lambda model, **options: result)
         return call("trace", file, *arguments)
 
     return command
@@ -101,6 +103,102 @@ def test_an_interrupted_trace_is_told_and_written(traced: Any, tmp_path: Path) -
     assert told.out.startswith("VERDICT effect (interrupted: what was known by then)")
     assert "written: so_far.md" in told.out
     assert (tmp_path / "so_far.md").is_file()
+
+
+def failing() -> tuple[Force, ...]:
+    raise KeyError("start.x")
+
+
+def test_a_figure_that_fails_costs_nothing_but_itself(traced: Any, tmp_path: Path) -> None:
+    broken = replace(FOUND, find_forces=failing)
+    told = traced(broken, "--report", "a.html", "--output", "b.yaml", "--save", "c.json")
+    assert told.code == 0
+    assert told.out.startswith("VERDICT effect")
+    assert told.out.endswith("written: c.json\nwritten: b.yaml\nwritten: a.html\n")
+    assert "could not be drawn: KeyError('start.x')." in told.err
+    text = (tmp_path / "a.html").read_text(encoding="utf-8")
+    assert "could not be drawn: KeyError(&#x27;start.x&#x27;)." in text
+    assert text.count('src="data:image/png') == 5
+
+
+@pytest.mark.parametrize("as_json", [False, True])
+def test_all_is_printed_saved_and_applied_before_anything_is_drawn(
+    traced: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any, as_json: bool
+) -> None:
+    seen: dict[str, Any] = {}
+
+    def look(*_: object) -> Any:
+        seen["out"] = capsys.readouterr().out
+        seen["files"] = sorted(file.name for file in tmp_path.iterdir())
+        seen["text"] = (tmp_path / "swing.yaml").read_text(encoding="utf-8")
+        raise MemoryError("no picture today")
+
+    monkeypatch.setattr(import_module("tracewire.show"), "report", look, raising=False)
+    told = traced(FOUND, "--report", "a.html", "--apply", "--patch", "b.patch", "--save", "c.json",
+                  *(["--json"] if as_json else []))  # fmt: skip
+    assert told.code == 1
+    assert "no picture today" in told.err
+    assert seen["files"] == ["b.patch", "c.json", "swing.yaml"]
+    assert seen["text"] == CHANGED
+    assert "coulomb" in seen["out"]
+    assert told.out == ""  # all of it was there before
+    if as_json:
+        assert json.loads(seen["out"])["verdict"] == "effect"
+
+
+@pytest.mark.parametrize("as_json", [False, True])
+def test_a_file_that_cannot_be_written_does_not_keep_others_from_it(
+    traced: Any, tmp_path: Path, as_json: bool
+) -> None:
+    (tmp_path / "c.json.part").mkdir()  # so that the result cannot be saved
+    told = traced(FOUND, "--save", "c.json", "--report", "a.md", "--patch", "b.patch",
+                  *(["--json"] if as_json else []))  # fmt: skip
+    assert told.code == 2
+    assert "c.json: the file cannot be written" in told.err
+    assert (tmp_path / "a.md").is_file()
+    assert (tmp_path / "b.patch").is_file()
+    if as_json:
+        assert told.data["not_written"] == ["the file cannot be written: Is a directory"]
+        assert told.data["written"] == ["b.patch", "a.md"]
+    else:
+        assert told.out.startswith("VERDICT effect")
+
+
+def test_a_saved_trace_is_reported_again_without_the_work(
+    traced: Any, call: Any, tmp_path: Path
+) -> None:
+    first = traced(FOUND, "--save", "c.json")
+    assert first.out.endswith("written: c.json\n")
+    told = call("report", "c.json")
+    assert told.code == 0
+    assert told.out in first.out
+    assert told.out.startswith("VERDICT effect: coulomb @ torque is missing\n")
+    told = call("report", "c.json", "--report", "d.md")
+    assert told.out == "written: d.md\n"
+    assert (tmp_path / "d_law.png").is_file()
+    data = call("report", "c.json", "--json").data
+    assert data["effects"][0]["name"] == "coulomb"
+    assert data["written"] == []
+
+
+def test_what_is_no_saved_trace_is_told_in_one_line(traced: Any, call: Any) -> None:
+    traced(FOUND)
+    for arguments, said in (
+        (("swing.yaml",), "swing.yaml: this is no saved trace. Name a file that"),
+        (("none.json",), "none.json: the saved trace cannot be read: No such file"),
+        (("c.json", "--report", "a.pdf"), "unknown file ending '.pdf'"),
+    ):
+        told = call("report", *arguments)
+        assert (told.code, told.out) == (2, "")
+        assert said in told.err
+        assert told.err.count("\n") == 1
+
+
+def test_a_remark_of_several_series_is_printed_once(traced: Any) -> None:
+    words = tuple(f"the last sixth of 'swing_{n}' is held back" for n in (1, 2, 3))
+    told = traced(replace(FOUND, words=words))
+    assert "note: the last sixth of 'swing_1', 'swing_2' and 'swing_3' is held back" in told.out
+    assert told.out.count("held back") == 1
 
 
 def test_stages_have_the_time_since_the_start_and_what_is_left_of_counted_parts(

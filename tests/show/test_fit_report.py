@@ -162,7 +162,7 @@ def test_the_report_tells_what_was_fitted_and_each_step(tmp_path: Path) -> None:
         "mean(residual²)/2",
     ):
         assert words in text
-    for figure in ("fit.png", "parameters.png", "correlation.png", "convergence.png"):
+    for figure in ("fit.png", "fit_parameters.png", "fit_correlation.png", "fit_convergence.png"):
         assert f"({figure})" in text
         assert (tmp_path / figure).is_file()
     assert not NOT_A_NUMBER.search(text)
@@ -213,7 +213,7 @@ def test_profiles_are_in_the_report_where_they_were_computed(tmp_path: Path) -> 
     one = Profile("k", 10 + x, x**2, {}, (8.0, 12.0), 4.0, "k lies between 8 and 12 (SI, 95 %)")
     text = report(FIT, profiles=[one]).write(tmp_path / "fit.md").read_text(encoding="utf-8")
     assert "- k lies between 8 and 12 (SI, 95 %)." in text
-    assert (tmp_path / "profiles.png").is_file()
+    assert (tmp_path / "fit_profiles.png").is_file()
     assert "profiles.png" not in report(FIT).markdown()
 
 

@@ -60,9 +60,9 @@ def test_a_report_is_markdown(tmp_path: Path) -> None:
     assert path.read_text(encoding="utf-8").splitlines() == [
         "# A < B", "", "## First", "", "One & one.", "", "**sizes**", "",
         "| name | size |", "| --- | ---: |", "| a\\|b | 1 |", "| \\<i> | 2 |", "",
-        "```", "x < y", "```", "", "![A figure](f.png)", "", "## Second",
+        "```", "x < y", "```", "", "![A figure](report_f.png)", "", "## Second",
     ]  # fmt: skip
-    assert (tmp_path / "f.png").read_bytes() == b"drawn"
+    assert (tmp_path / "report_f.png").read_bytes() == b"drawn"
 
 
 def test_a_report_is_html_with_escaped_text(tmp_path: Path) -> None:
@@ -116,6 +116,57 @@ def test_a_report_that_cannot_be_written_is_told_before_it_is_drawn(tmp_path: Pa
     with pytest.raises(OptionError, match="cannot be written"):
         Report("A", (Section("First", figures=(figure,)),)).write(tmp_path / "no" / "report.html")
     assert drawn == []
+
+
+def failing(path: Path) -> None:
+    raise KeyError("start.x")
+
+
+FAILING = Report(
+    "A",
+    (
+        Section("First", figures=(Figure("bad.png", "A bad one", failing),)),
+        Section(
+            "Second",
+            figures=(Figure("good.png", "A good one", lambda path: path.write_bytes(b"drawn")),),
+        ),
+    ),
+)
+
+
+@pytest.mark.parametrize("ending", ["md", "html"])
+def test_a_figure_that_fails_is_a_line_and_the_others_are_drawn(
+    tmp_path: Path, ending: str
+) -> None:
+    told: list[str] = []
+    text = FAILING.write(tmp_path / f"a.{ending}", told.append).read_text(encoding="utf-8")
+    assert told == ["The figure 'A bad one' could not be drawn: KeyError('start.x')."]
+    assert "A bad one" in text
+    assert "KeyError" in text
+    assert "bad.png" not in text
+    assert "a_good.png" in text if ending == "md" else text.count("data:image/png") == 1
+
+
+def test_an_older_report_stays_until_the_new_one_is_complete(tmp_path: Path) -> None:
+    def stop(path: Path) -> None:
+        raise KeyboardInterrupt
+
+    file = tmp_path / "a.html"
+    DOCUMENT.write(file)
+    old = file.read_bytes()
+    with pytest.raises(KeyboardInterrupt):
+        Report("B", (Section("First", figures=(Figure("f.png", "A", stop),)),)).write(file)
+    assert file.read_bytes() == old
+    assert list(tmp_path.iterdir()) == [file]
+
+
+def test_figures_of_two_reports_in_one_folder_keep_their_own(tmp_path: Path) -> None:
+    for name in ("one", "two"):
+        figure = Figure("f.png", "A", lambda path, name=name: path.write_text(name))
+        Report(name, (Section("First", figures=(figure,)),)).write(tmp_path / f"{name}.md")
+    assert (tmp_path / "one_f.png").read_text() == "one"
+    assert "(one_f.png)" in (tmp_path / "one.md").read_text(encoding="utf-8")
+    assert (tmp_path / "two_f.png").read_text() == "two"
 
 
 def test_another_ending_is_told(tmp_path: Path) -> None:

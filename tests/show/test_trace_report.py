@@ -12,20 +12,19 @@ import numpy as np
 import pytest
 from show.traces import FOUND, NULL, UNEXPLAINED, missing_of_two
 from tracewire.show import report
-from tracewire.show.trace_figures import (
-    plot_candidates,
-    plot_forces,
-    plot_free_runs,
-    plot_residuals,
-)
+from tracewire.show.trace_figures import plot_candidates, plot_free_runs, plot_residuals
+from tracewire.show.trace_law import plot_forces, plot_law
 from tracewire.show.trace_maps import (
     drawable,
     plot_confusable,
     plot_experiments,
     plot_missing,
+    plot_remainder_where,
     plot_where,
 )
+from tracewire.show.trace_shares import plot_held_out
 from tracewire.trace import Found
+from tracewire.trace.found import Dependence, Explained, Force, HeldOut, Means, Remainder
 
 Draw = Callable[[Found, Path], Path]
 
@@ -40,7 +39,13 @@ def drawn(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[[Draw, Fo
         kept.append(figure)
         return path
 
-    for module in ("trace_figures", "trace_maps", "comparison_figures"):
+    for module in (
+        "trace_figures",
+        "trace_law",
+        "trace_maps",
+        "trace_shares",
+        "comparison_figures",
+    ):
         monkeypatch.setattr(f"tracewire.show.{module}.save", save)
 
     def draw(function: Draw, found: Found) -> Any:
@@ -60,42 +65,104 @@ def figures(found: Found) -> list[str]:
     return [figure.name for figure in report(found).figures]
 
 
+HELD_OUT = (
+    HeldOut(0.5, ("swing_2",) * 6 + ("swing_3",) * 6, np.arange(12.0), np.full(12, 8.0),
+            np.full(12, 1.4), np.full(12, 1.1)),
+    HeldOut(5.0, ("swing_2",) * 3, np.arange(3.0), np.full(3, 40.0), np.full(3, 2.0), np.zeros(0)),
+)  # fmt: skip
+JUDGED = replace(
+    FOUND,
+    explained=Explained(0.98, 0.96, 0.99),
+    remainder=(Remainder("theta", "rad", 0.005, 1.25, 0.04, 0.0045),),
+    remainder_depends=(
+        Dependence("torque", ("q", "v"), 0.35), Dependence("torque", ("q",), 0.05),
+    ),
+    held_out=HELD_OUT,
+)  # fmt: skip
+"""With what held-out blocks say."""
+
+
 def test_an_effect_is_reported_with_the_answer_first(tmp_path: Path) -> None:
-    text = report(FOUND).write(tmp_path / "trace.md").read_text(encoding="utf-8")
-    assert text.startswith("# Trace of Swing & rest\n\n## What was found\n\n'Swing & rest' was")
+    text = report(FOUND).write(tmp_path / "swing.md").read_text(encoding="utf-8")
+    assert text.startswith(
+        "# Trace of Swing & rest\n\n## What was found\n\nThe diagram lacks 'coulomb' at the sum "
+    )
     for words in (
-        "- VERDICT effect: coulomb @ torque is missing",
+        "VERDICT effect: coulomb @ torque is missing",
         "- every third window of the train series is kept back as the gate.",
-        "| coulomb | torque | level | 0.25 | 0.243 to 0.257 | N m | 905.3 | 62 % | 0.97 |",
+        "| coulomb | torque | level | 0.2500 | 0.2430 to 0.2570 | N m | 62 % | 905.3 |",
         "step 2          windows of 1.5 s",
         "+  coulomb: {type: coulomb, rate: omega, level: {value: 0.25}}",
+        "![The force that the data need, and the law that was found](swing_law.png)",
     ):
         assert words in text
     for name in figures(FOUND):
-        assert (tmp_path / name).stat().st_size > 1000
+        assert (tmp_path / f"swing_{name}").stat().st_size > 1000
 
 
 def test_a_report_has_the_sections_that_there_is_something_to_say_in() -> None:
     assert headings(FOUND) == [
-        "What was found", "How well it predicts", "The effects", "What these data leave open",
-        "How it was found", "The change of the diagram", "What the words mean",
+        "What was found", "The effects", "In words", "How well it predicts",
+        "What these data leave open", "How it was found", "The change of the diagram",
+        "What the words mean",
+    ]  # fmt: skip
+    assert headings(JUDGED)[:4] == [
+        "What was found", "The effects", "How much of the error is explained", "What is left",
     ]  # fmt: skip
     assert headings(NULL) == [
-        "What was found", "How well it predicts", "What these data leave open", "How it was found",
-        "What the words mean",
+        "What was found", "In words", "How well it predicts", "What these data leave open",
+        "How it was found", "What the words mean",
     ]  # fmt: skip
     assert headings(UNEXPLAINED)[1] == "Where, and on what it depends"
 
 
 def test_a_figure_is_drawn_for_what_there_is() -> None:
     assert figures(FOUND) == [
-        "trace_free_runs.png", "trace_residuals.png", "trace_forces.png", "trace_confusable.png",
-        "trace_experiments.png", "trace_candidates.png",
+        "law.png", "forces.png", "free_runs.png", "residuals.png", "confusable.png",
+        "experiments.png", "candidates.png",
     ]  # fmt: skip
-    assert figures(NULL) == ["trace_free_runs.png", "trace_residuals.png"]
-    assert {"trace_where.png", "trace_missing.png"} < set(figures(UNEXPLAINED))
+    assert {"shares.png", "remainder.png"} < set(figures(JUDGED))
+    assert figures(NULL) == ["free_runs.png", "residuals.png"]
+    assert {"where.png", "missing.png"} < set(figures(UNEXPLAINED))
     bare = replace(NULL, curves=(), errors=(), power=(), steps=())
     assert figures(bare) == []
+
+
+def test_forces_that_cannot_be_computed_cost_their_figures_only(tmp_path: Path) -> None:
+    def fail() -> tuple[Force, ...]:
+        raise ZeroDivisionError("no window is left")
+
+    told: list[str] = []
+    broken = replace(FOUND, find_forces=fail)
+    text = report(broken).write(tmp_path / "a.md", told.append).read_text(encoding="utf-8")
+    said = "could not be drawn: ZeroDivisionError('no window is left')."
+    assert [line.endswith(said) for line in told] == [True, True]
+    assert told[0].startswith("The figure 'The force that the data need, and the law that was")
+    assert told[0] in text
+    assert "a_law.png" not in text
+    assert (tmp_path / "a_free_runs.png").is_file()
+
+
+def test_held_out_blocks_have_declared_best_and_floor_at_each_horizon(drawn: Any) -> None:
+    share, short, long = drawn(plot_held_out, JUDGED).axes
+    assert share.get_title(loc="left") == (
+        "explained: 98 % (95 % interval: 96 to 99 %) of the excess error"
+    )
+    labels = {line.get_label(): line.get_ydata() for line in short.lines}
+    assert list(labels["declared model"]) == [8.0] * 12
+    assert list(labels["with the effects"]) == [1.4] * 12
+    assert list(labels["floor: the best smooth map"]) == [1.1] * 12
+    assert "floor: the best smooth map" not in [line.get_label() for line in long.lines]
+    assert [text.get_text() for text in short.texts] == ["swing_2", "swing_3"]
+    assert "predicted over 5 s" in long.get_title(loc="left")
+    alone = drawn(plot_held_out, replace(JUDGED, explained=None)).axes
+    assert len(alone) == 2
+
+
+def test_the_map_of_the_remainder_has_its_shares(drawn: Any) -> None:
+    panel = drawn(plot_remainder_where, JUDGED).axes[0]
+    assert {"35 %", "5 %"} <= {text.get_text() for text in panel.texts}
+    assert list(panel.patches) == []
 
 
 def test_what_depends_on_no_number_has_no_curve() -> None:
@@ -140,16 +207,35 @@ def test_the_declared_model_alone_is_not_called_before(drawn: Any) -> None:
     assert [text.get_text() for text in panel.get_legend().texts] == ["declared model", "±2 σ"]
 
 
-def test_free_runs_are_those_on_data_that_played_no_part(drawn: Any) -> None:
+def test_free_runs_are_of_every_series_first_what_played_no_part(drawn: Any) -> None:
     figure = drawn(plot_free_runs, FOUND)
-    assert len(figure.axes) == 2
+    titles = [text.get_text().strip() for panel in figure.axes for text in panel.texts]
+    assert titles == ["validate: swing_3", "gate: swing_2", "train: swing_1"]
     lines = {line.get_label(): line.get_ydata() for line in figure.axes[0].lines}
     curve = FOUND.curves[2]
     np.testing.assert_allclose(lines["measured"], curve.measured)
     np.testing.assert_allclose(lines["before"], curve.before)
     np.testing.assert_allclose(lines["after"], curve.after)
-    train = drawn(plot_free_runs, replace(FOUND, curves=FOUND.curves[:2]))
-    assert [text.get_text().strip() for text in train.axes[0].texts] == ["gate: swing_2"]
+
+
+def test_free_runs_have_the_residual_before_and_after_on_one_scale(drawn: Any) -> None:
+    strip = drawn(plot_free_runs, FOUND).axes[1]
+    curve = FOUND.curves[2]
+    before, after = (line.get_ydata() for line in strip.lines if len(line.get_ydata()) > 2)
+    np.testing.assert_allclose(before, curve.measured - curve.before)
+    np.testing.assert_allclose(after, curve.measured - curve.after)
+    low, high = strip.get_ylim()
+    assert low < before.min()
+    assert before.max() < high
+    assert strip.get_yscale() == "symlog"  # they differ by a factor of 40
+
+
+def test_free_runs_are_in_the_unit_of_the_users_file(drawn: Any) -> None:
+    degrees = replace(FOUND, users_units={"theta": ("deg", np.pi / 180)})
+    upper, strip = drawn(plot_free_runs, degrees).axes[:2]
+    assert (upper.get_ylabel(), strip.get_ylabel()) == ("theta [deg]", "residual\n[deg]")
+    measured = next(line for line in upper.lines if line.get_label() == "measured")
+    np.testing.assert_allclose(measured.get_ydata(), np.degrees(FOUND.curves[2].measured))
 
 
 def test_candidates_have_bars_as_long_as_their_gain(drawn: Any) -> None:
@@ -167,37 +253,66 @@ def test_a_step_in_which_nothing_stands_out_is_drawn_only_alone(drawn: Any) -> N
     assert left.get_title(loc="left").startswith("step 1: nothing stands out")
 
 
-def test_the_needed_torque_stands_over_coordinate_and_rate(drawn: Any) -> None:
+def test_the_needed_force_stands_over_coordinate_and_rate(drawn: Any) -> None:
     left, right = drawn(plot_forces, FOUND).axes
     force = FOUND.forces[0]
     for panel, values in ((left, force.q), (right, force.v)):
-        np.testing.assert_array_equal(panel.lines[0].get_xdata(), values)
-        np.testing.assert_array_equal(panel.lines[0].get_ydata(), force.needed)
-        law = next(line for line in panel.lines if line.get_label() == "fitted effect")
-        np.testing.assert_array_equal(law.get_ydata(), force.fitted)
-    assert left.get_ylabel() == "missing at torque [N m]"
+        samples = next(x for x in panel.lines if x.get_label() == "needed at each sample")
+        np.testing.assert_array_equal(samples.get_xdata(), values)
+        np.testing.assert_array_equal(samples.get_ydata(), force.needed)
+        law = next(line for line in panel.lines if line.get_label() == "after: the fitted law")
+        order = np.argsort(values, kind="stable")
+        np.testing.assert_array_equal(law.get_ydata(), force.fitted[order])
+    assert left.get_ylabel() == "needed at torque [N m]"
     assert (left.get_xlabel(), right.get_xlabel()) == ("theta [rad]", "omega [rad/s]")
+
+
+def test_the_law_is_a_line_over_the_variable_on_which_it_depends(drawn: Any) -> None:
+    (panel,) = drawn(plot_law, FOUND).axes
+    assert panel.get_xlabel() == "omega [rad/s]"
+    law = next(line for line in panel.lines if line.get_label() == "after: the fitted law")
+    assert law.get_linestyle() == "-"
+    before = next(line for line in panel.lines if line.get_label().startswith("before"))
+    assert list(before.get_ydata()) == [0, 0]
+    over_q = drawn(plot_forces, FOUND).axes[0]
+    law = next(line for line in over_q.lines if line.get_label() == "after: the fitted law")
+    assert law.get_linestyle() == "None"  # dry friction is no function of the coordinate
 
 
 def test_the_mean_in_bins_is_that_of_the_law_within_its_error(drawn: Any) -> None:
     right = drawn(plot_forces, FOUND).axes[1]
     line, _, bars = right.containers[0]
     rates, means = line.get_xdata(), line.get_ydata()
-    assert len(rates) == 16
+    assert len(rates) == 24
     away = np.abs(rates) > 0.2
-    np.testing.assert_allclose(means[away], -0.25 * np.sign(rates[away]), atol=0.02)
+    np.testing.assert_allclose(means[away], -0.25 * np.sign(rates[away]), atol=0.03)
     ends = np.array([bar[:, 1] for bar in bars[0].get_segments()])
     np.testing.assert_allclose(ends.mean(axis=1), means)
 
 
-def test_one_spike_does_not_flatten_the_law(drawn: Any) -> None:
+def test_means_of_the_fit_are_drawn_in_place_of_those_of_samples(drawn: Any) -> None:
+    at = np.array([-1.0, 0.0, 1.0])
+    means = Means(at, np.array([0.25, 9.0, -0.25]), np.array([0.01, 5.0, 0.01]))
+    noise = 50 * np.random.default_rng(1).standard_normal(len(FOUND.forces[0].needed))
+    force = replace(FOUND.forces[0], means=(means, means))
+    found = replace(FOUND, find_forces=lambda: (replace(force, needed=noise),))
+    figure = drawn(plot_law, found)
+    (panel,) = figure.axes
+    np.testing.assert_array_equal(panel.containers[0][0].get_ydata(), means.mean)
+    assert panel.get_ylim()[1] < 1  # a mean of which little is known sets no limits
+    labels = [text.get_text() for text in figure.legends[0].texts]
+    assert "needed at each sample" not in labels  # all noise
+    figure = drawn(plot_law, replace(FOUND, find_forces=lambda: (force,)))
+    assert "needed at each sample" in [text.get_text() for text in figure.legends[0].texts]
+
+
+def test_axes_hold_the_means_and_the_law_and_not_the_scatter(drawn: Any) -> None:
     force = FOUND.forces[0]
-    needed = force.needed.copy()
-    needed[100] = 1e3
-    panel = drawn(
-        plot_forces, replace(FOUND, find_forces=lambda: (replace(force, needed=needed),))
-    ).axes[0]
-    assert panel.get_ylim()[1] < 1
+    noise = 5 * np.random.default_rng(1).standard_normal(len(force.needed))
+    noisy = replace(force, needed=force.needed + noise)
+    low, high = drawn(plot_law, replace(FOUND, find_forces=lambda: (noisy,))).axes[0].get_ylim()
+    assert np.max(noisy.needed) > 2 * high
+    assert low < -0.25 < 0.25 < high
 
 
 def test_the_map_has_the_share_of_each_place_and_set(drawn: Any) -> None:
@@ -213,10 +328,12 @@ def test_the_map_has_the_share_of_each_place_and_set(drawn: Any) -> None:
 
 def test_what_is_missing_is_drawn_over_one_and_two_variables(drawn: Any) -> None:
     panel = drawn(plot_missing, UNEXPLAINED).axes[0]
-    assert (panel.get_xlabel(), panel.get_ylabel()) == ("q", "missing at torque [N m]")
+    assert (panel.get_xlabel(), panel.get_ylabel()) == (
+        "theta [rad]", "missing at torque [N m]"
+    )  # fmt: skip
     both = replace(UNEXPLAINED, missing=missing_of_two())
     panel = drawn(plot_missing, both).axes[0]
-    assert (panel.get_xlabel(), panel.get_ylabel()) == ("q", "v")
+    assert (panel.get_xlabel(), panel.get_ylabel()) == ("theta [rad]", "omega [rad/s]")
 
 
 def test_effects_that_are_alike_are_outlined(drawn: Any) -> None:
@@ -231,7 +348,45 @@ def test_an_experiment_over_one_setting_is_a_curve_with_its_best(drawn: Any) -> 
     panel = drawn(plot_experiments, FOUND).axes[0]
     star = panel.lines[1]
     assert (star.get_xdata()[0], star.get_ydata()[0]) == (0.2, 6.9)
-    assert panel.get_xlabel() == "start.theta"
+    assert panel.get_xlabel() == "start.theta [rad]"
+
+
+def test_an_experiment_that_tells_nothing_apart_is_not_drawn() -> None:
+    assert drawable(FOUND.experiments[0])
+    assert not drawable(replace(FOUND.experiments[0], separation=0.001))
+
+
+def test_a_body_that_rests_does_not_make_a_map_pale(drawn: Any) -> None:
+    assert UNEXPLAINED.missing is not None
+    density = np.full(161, 30.0)
+    density[80] = 1e4
+    resting = replace(UNEXPLAINED, missing=replace(UNEXPLAINED.missing, density=density))
+    panel = drawn(plot_missing, resting).axes[0]
+    known = next(x for x in panel.lines if x.get_label() == "as the data ask for it").get_ydata()
+    assert np.isfinite(known).sum() == 161
+
+
+def test_of_an_experiment_only_what_is_like_the_best_is_drawn(drawn: Any) -> None:
+    """Releases and drives have other settings: each has a map of its own."""
+    rows = (
+        *({"start.theta": a, "start.x": 2 * a, "separation": a} for a in (0.1, 0.5, 1.0)),
+        *(
+            {"F amplitude": a, "F frequency": f, "separation": a * f}
+            for a in (1, 2)
+            for f in (1, 3)
+        ),
+    )
+    driven = replace(
+        FOUND.experiments[0], settings={"F amplitude": 2, "F frequency": 3}, separation=6, map=rows
+    )
+    units = {**FOUND.units, "F": "N"}
+    panel = drawn(plot_experiments, replace(FOUND, experiments=(driven,), units=units)).axes[0]
+    assert (panel.get_xlabel(), panel.get_ylabel()) == ("F amplitude [N]", "F frequency [Hz]")
+    assert len(panel.collections[0].get_array()) == 4
+    released = replace(driven, settings={"start.theta": 1.0, "start.x": 2.0}, separation=1.0)
+    panel = drawn(plot_experiments, replace(FOUND, experiments=(released,), units=units)).axes[0]
+    assert panel.get_xlabel() == "start.theta [rad]"
+    assert list(panel.lines[0].get_xdata()) == [0.1, 0.5, 1.0]
 
 
 def test_an_experiment_over_two_settings_is_a_map(drawn: Any) -> None:

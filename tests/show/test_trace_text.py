@@ -25,30 +25,32 @@ from tracewire.trace import Found
 def test_the_answer_to_an_effect() -> None:
     assert answer_lines(FOUND) == (
         "VERDICT effect: coulomb @ torque is missing",
-        "  coulomb @ torque: level = 0.25 N m (95 %: 0.243 to 0.257), width = 0.011 rad/s "
-        "(95 %: 0.004 to 0.018)",
-        "    cannot be told apart on these data: bias @ torque (0.991), "
-        "sensor_offset @ sensor.theta (0.987)",
-        "  free runs on unseen data: 46 σ -> 1.02 σ (theta 0.184 -> 0.00408 rad)",
-        "  had stood in for what was missing: c 0.3 -> 0.051 N m s/rad",
-        "  A swing that begins at theta = 0.2 rad would tell coulomb from bias by 6.9 σ",
+        "  coulomb @ torque: level = 0.2500 N m (95 %: 0.2430 to 0.2570), width = 0.0110 rad/s "
+        "(95 %: 0.0040 to 0.0180)",
+        "    these data cannot tell it from 'bias' at the sum 'torque' (1 fitted number fewer), "
+        "'sensor_offset' in the sensor of 'theta' (1 fitted number fewer)",
+        "  free runs on unseen data: 46 σ -> 1.02 σ (theta from 0.184 to 0.00408 rad)",
+        "  had absorbed part of the missing effect: 'c' moves from 0.3 to 0.051 N m s/rad",
+        "  To decide between coulomb @ torque and bias @ torque: release it from rest at theta = "
+        "0.2 rad and omega = 0 rad/s. The predictions then differ by 6.9 times the sensor noise "
+        "(by less than 0.1 to 7 at the settings that were searched).",
     )
 
 
 def test_the_answer_where_nothing_is_missing() -> None:
     assert answer_lines(NULL) == (
-        "VERDICT null: nothing is missing beyond the noise",
-        "  free runs on unseen data: 1.02 σ",
-        "  smallest coefficients that would have been seen: coulomb 0.0021, sensor_offset 0.0004, "
-        "bias 0.0013 (SI)",
+        "VERDICT null: nothing is missing that these data could show",
+        "  free runs on unseen data: 1.02 σ (0.00408 rad in theta)",
+        "  smallest coefficients that these data would show: coulomb level = 0.0021 N m, "
+        "sensor_offset offset = 0.0004 rad, bias level = 0.0013 N m",
     )
 
 
 def test_the_answer_where_nothing_explains_it() -> None:
     assert answer_lines(UNEXPLAINED)[0] == (
         "VERDICT unexplained: something is missing at the sum 'torque'; it depends on the "
-        "coordinate q (97 % of the excess; q, v @ torque 74 %; y @ sensor.theta 62 %), and no "
-        "effect of the library explains it"
+        "coordinate theta (97 % of the excess; theta, omega @ torque 74 %; theta @ sensor.theta "
+        "62 %), and no effect of the library explains it"
     )
     nowhere = answer_lines(replace(UNEXPLAINED, missing=None))[0]
     assert nowhere.endswith("something is missing, and no effect of the library explains it")
@@ -59,12 +61,12 @@ def test_the_answer_where_nothing_explains_it() -> None:
 
 def test_a_partial_approximation_is_called_so() -> None:
     line = answer_lines(replace(UNEXPLAINED, effects=FOUND.effects))[1]
-    assert line.startswith("  best approximation, not enough: coulomb @ torque: level = 0.25 N m")
+    assert line.startswith("  best approximation, not enough: coulomb @ torque: level = 0.2500 N m")
 
 
 def test_errors_of_data_that_chose_the_effects_are_not_called_unseen() -> None:
     lines = answer_lines(replace(FOUND, errors=errors(validated=False)))
-    assert "  no data played no part: these errors are of data that chose the effects" in lines
+    assert "  no data were kept back: these errors are of data that chose the effects" in lines
     assert not any("unseen" in line for line in lines)
 
 
@@ -77,7 +79,7 @@ def test_an_unknown_noise_is_not_divided_by() -> None:
 def test_the_steps_have_window_probability_and_what_the_gate_said() -> None:
     assert step_lines(FOUND) == (
         "noise (σ)       theta 0.004 rad",
-        "declared model  s2 = 81: rms 9 σ on short windows; 1 is the noise",
+        "declared model  s2 = 81: rms 9 σ on the fitted windows; 1 is the noise",
         "step 1          windows of 0.5 s, s2 = 81, p < 1e-12: accepted: coulomb @ torque",
         "                coulomb @ torque: masked 62 %, s2 -> 1.01, weight 0.97, gate: squared "
         "error falls by 99 %, passed",
@@ -87,15 +89,17 @@ def test_the_steps_have_window_probability_and_what_the_gate_said() -> None:
 
 def test_effects_have_a_row_for_each_parameter() -> None:
     assert effects_table(FOUND).rows == (
-        ("coulomb", "torque", "level", "0.25", "0.243 to 0.257", "N m", "905.3", "62 %", "0.97"),
-        ("", "", "width", "0.011", "0.004 to 0.018", "rad/s", "", "", ""),
+        ("coulomb", "torque", "level", "0.2500", "0.2430 to 0.2570", "N m", "62 %", "905.3"),
+        ("", "", "width", "0.0110", "0.0040 to 0.0180", "rad/s", "", ""),
     )
     assert effects_table(replace(FOUND, verdict="unexplained")).title == "best approximations"
 
 
 def test_ties_have_likeness_and_refitted_parameters() -> None:
     first, second = ties_table(FOUND).rows
-    assert first == ("coulomb @ torque", "bias @ torque", "0.991", "torque = -0.21", "+4.2")
+    assert first == (
+        "coulomb @ torque", "bias @ torque", "0.991", "-1", "level = -0.21", "+4.2"
+    )  # fmt: skip
     assert second[-1] == "+11.8"
 
 
@@ -110,7 +114,7 @@ def test_errors_begin_with_free_runs_on_data_that_played_no_part() -> None:
 def test_what_moved_is_marked() -> None:
     k, c = moved_table(FOUND).rows
     assert (k[0], k[3], k[-1]) == ("k", "-0.25 %", "")
-    assert (c[0], c[3], c[-1]) == ("c", "-83 %", "had stood in for what was missing")
+    assert (c[0], c[3], c[-1]) == ("c", "-83 %", "had absorbed part of the effect")
 
 
 def test_a_terminal_leaves_out_what_was_only_screened_and_long_lists() -> None:
@@ -119,8 +123,8 @@ def test_a_terminal_leaves_out_what_was_only_screened_and_long_lists() -> None:
         row.effects for row in TRIED[:4]
     ]
     assert power_table(NULL, 1).rows == (
-        ("coulomb", "torque", "level", "0.0021"),
-        ("and 2 more", "", "", ""),
+        ("coulomb", "torque", "level", "0.0021", "N m"),
+        ("and 2 more", "", "", "", ""),
     )
 
 
@@ -138,13 +142,17 @@ def test_what_was_only_screened_has_no_numbers_of_a_refit() -> None:
 
 def test_where_and_on_what_is_sorted_and_never_below_nothing() -> None:
     rows = where_table(UNEXPLAINED).rows
-    assert [row[1] for row in rows[:3]] == ["q", "q, v", "y"]
+    assert [row[1] for row in rows[:3]] == ["theta", "theta, omega", "theta"]
     assert rows[-1][-1] == "0 %"
 
 
 def test_experiments_have_their_settings() -> None:
     assert experiments_table(FOUND).rows == (
-        ("coulomb @ torque or bias @ torque", "start.theta = 0.2, start.omega = 0", "6.9"),
+        (
+            "coulomb @ torque or bias @ torque",
+            "start.theta = 0.2 rad, start.omega = 0 rad/s",
+            "6.9",
+        ),
     )
 
 

@@ -95,7 +95,7 @@ def missing_of_two() -> Missing:
     return Missing("torque", ("q", "v"), 0.91, (q, v), torque, density)
 
 
-TIES = (Tie("bias", "torque", 0.991, {"torque": -0.21}, 4.2), Tie("sensor_offset", "sensor.theta",
+TIES = (Tie("bias", "torque", 0.991, {"level": -0.21}, 4.2), Tie("sensor_offset", "sensor.theta",
         0.987, {"offset": 0.012}, 11.8))  # fmt: skip
 TRIED = (
     Ranked("coulomb @ torque", 812.0, 905.3, 0.97, 0.62, 1.01,
@@ -179,7 +179,7 @@ NULL = replace(
     values={"k": 4.0, "c": 0.05}, declared={"k": 4.0, "c": 0.05},
     steps=(StepTold(0.5, 1.02, 0.4, (), "nothing stands out (p = 0.4)"),), experiments=(),
     confusable=((), np.zeros((0, 0))), diagram=FOUND.original,
-    power=(Power("bias", "torque", "bias.torque", 0.0013),
+    power=(Power("bias", "torque", "bias.level", 0.0013),
            Power("coulomb", "torque", "coulomb.level", 0.0021),
            Power("sensor_offset", "sensor.theta", "offset.theta", 0.0004)),
 )  # fmt: skip

@@ -19,6 +19,7 @@ from tracewire.cli.demo import demo
 from tracewire.cli.fit import fit
 from tracewire.cli.output import INTERRUPTED, Cut, print_problems
 from tracewire.cli.paper import paper
+from tracewire.cli.report import report
 from tracewire.cli.run import run
 from tracewire.cli.several import Several
 from tracewire.cli.show import show
@@ -61,6 +62,7 @@ app.command()(show)
 app.command()(run)
 app.command()(fit)
 app.command(cls=Several)(trace)
+app.command()(report)
 app.command()(sweep)
 app.command()(paper)
 app.command()(blocks)

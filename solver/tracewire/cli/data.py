@@ -25,7 +25,7 @@ def list_(as_json: AsJson = False, debug: Debug = False) -> None:
     Example:
       tracewire data list
     """
-    from tracewire.data.sets import SETS
+    from tracewire.data.index import SETS
     from tracewire.show.summary import Table
 
     if as_json:

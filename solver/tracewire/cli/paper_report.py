@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tracewire.cli.output import check_target, print_json, print_table, print_text, working
+from tracewire.cli.output import check_target, note, print_json, print_table, print_text, working
 from tracewire.cli.progress import stages
 
 
@@ -16,7 +16,7 @@ def write_report(paper: str, report: str | None, full: bool, as_json: bool) -> N
 
         found = reproduce(paper, full=full, progress=stages(show))
     with working("drawing the figures"):
-        report_of(found).write(report)
+        report_of(found).write(report, note)
     if as_json:
         print_json({**data_of(found), "written": [report]})
         return

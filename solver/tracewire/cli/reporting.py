@@ -71,13 +71,16 @@ def check_home(diagram: Diagram, output: str | None) -> None:
 def write_report(
     subject: Fit | Found, path: str | None, profiles: Sequence[Profile] = ()
 ) -> list[str]:
-    """Write a report where one is asked for; the paths that were written."""
+    """Write a report where one is asked for; the paths that were written.
+
+    A figure that cannot be drawn is told on stderr, and the report says so where it would be.
+    """
     if path is None:
         return []
     with working("drawing"):
         from tracewire.show import report
 
-        report(subject, profiles).write(path)
+        report(subject, profiles).write(path, note)
     return [path]
 
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries, load_model
-from tracewire.cli.output import Cut, note, print_json, print_table, print_text, working
+from tracewire.cli.output import check_target, note, working
 from tracewire.cli.progress import stages
 from tracewire.cli.reporting import (
     Apply,
@@ -18,18 +17,10 @@ from tracewire.cli.reporting import (
     TableFile,
     check_home,
     check_targets,
-    patch_of,
-    store,
-    with_table,
-    write_report,
-    write_table,
 )
 
 if TYPE_CHECKING:
     from tracewire.compile import Model
-    from tracewire.diagram import Diagram
-    from tracewire.trace import Found
-
 
 Train = Annotated[
     list[str] | None,
@@ -45,12 +36,66 @@ Validate = Annotated[
 ]
 
 
+Only = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="PLACE ...",
+        help="Try effects only at these places: a sum, `drive.NAME` or `sensor.SIGNAL`.",
+        show_default=False,
+    ),
+]
+Without = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="EFFECT ...",
+        help="Do not try these effects: `coulomb`, or at one place `'coulomb @ force'`.",
+        show_default=False,
+    ),
+]
+Effects = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N", help="How many effects are added at most; without it 3.", show_default=False
+    ),
+]
+Horizon = Annotated[
+    float | None,
+    typer.Option(
+        metavar="SECONDS",
+        help="How far models must predict: the longer of the two horizons on which they are "
+        "compared. Without it: five periods of the slowest motion.",
+        show_default=False,
+    ),
+]
+Budget = Annotated[
+    float | None,
+    typer.Option(
+        metavar="SECONDS",
+        help="End the search after this time with what it has found by then.",
+        show_default=False,
+    ),
+]
+Save = Annotated[
+    str | None,
+    typer.Option(
+        metavar="FILE",
+        help="Save the result to this .json, for `tracewire report FILE` and tw.load(FILE).",
+    ),
+]
+
+
 def trace(
     diagram: DiagramPath,
     train: Train = None,
     gate: Gate = None,
     validate: Validate = None,
+    only: Only = None,
+    without: Without = None,
+    effects: Effects = None,
+    horizon: Horizon = None,
+    budget: Budget = None,
     report: ReportFile = None,
+    save: Save = None,
     apply: Apply = False,
     output: Output = None,
     patch: PatchFile = None,
@@ -63,72 +108,44 @@ def trace(
     """Fit a diagram, find what it lacks, and check that on data that played no part.
 
     The verdict is `null` (nothing is missing), `effect` (named, with its place and coefficient) or
-    `unexplained`. The exit code is 0 for each of them. Ctrl-C ends a trace with what it has found
-    by then, which is told as ever, with exit code 130.
+    `unexplained`. The exit code is 0 for each of them. Ctrl-C prints and writes the best result so
+    far, with exit code 130. The result is printed, saved and applied before the report is drawn.
 
     \b
     Examples:
       tracewire trace pendulum.yaml
-      tracewire trace pendulum.yaml --report trace.html
+      tracewire trace pendulum.yaml --report trace.html --save trace.json
       tracewire trace pendulum.yaml --apply
       tracewire trace pendulum.yaml --output with_friction.yaml --json
+      tracewire trace cart.yaml --only force drive.F --without cogging --effects 2 --budget 60
       tracewire trace pendulum.yaml --train a.csv b.csv --gate c.csv --validate d.csv
 
     Files that are named here take the place of all series of the diagram, whose columns they have.
     Without series in the diagram, columns are found by their names: t or time, signals, inputs.
     """
-    from tracewire.diagram import with_series_of
+    from tracewire.cli.delivery import Targets, deliver
+    from tracewire.trace import TraceOptions, check_options
     from tracewire.trace import trace as trace_model
 
     check_targets(report, output, patch, table)
+    check_target(save, (".json",), "saved trace")
+    asked: dict[str, Any] = {"effects": effects, "horizon": horizon, "budget": budget}
+    given = {name: value for name, value in asked.items() if value is not None}
+    options = TraceOptions(only=tuple(only or ()), without=tuple(without or ()), **given)
     model = load_model(diagram, library)
     own = model.diagram
     check_home(own, output)
     model = _with_files(model, {"train": train, "gate": gate, "validate": validate})
+    check_options(options, model)
     with working("tracing") as tell:
 
         def show(text: str) -> None:
             tell(text)
             note(text)
 
-        found = trace_model(model, rtol=rtol, progress=stages(show))
-    written = write_report(found, report)
-
-    tables = write_table(found, table)
-    empirical = None
-    if table is not None and tables:
-        home = own.file if output is None or output.endswith(".patch") else Path(output)
-        empirical = with_table(model, found, table, home.parent)
-
-    def edited() -> Diagram:
-        new = empirical or found.apply()
-        return with_series_of(new, own, Path(output) if output else None)
-
-    written += tables + store(own, edited, apply, output, patch)
-    if as_json:
-        print_json(found.as_json() | {"written": written})
-    else:
-        _print(found, patch_of(own, edited()), written)
-    if found.interrupted:
-        raise Cut
-
-
-def _print(found: Found, change: str, written: list[str]) -> None:
-    """The short answer, the same in plain words, the steps, tables, and the change."""
-    from tracewire.show.trace_tables import trace_tables
-    from tracewire.show.trace_text import answer_lines, step_lines
-
-    print_text("\n".join(answer_lines(found)))
-    print_text(f"\n{found.paragraph}\n")
-    print_text("\n".join(step_lines(found)))
-    for table in trace_tables(found):
-        print_table(table)
-    for text in found.words:
-        print_text(f"note: {text}")
-    if change:
-        print_text(f"the change of the diagram:\n{change.rstrip()}")
-    for path in written:
-        print_text(f"written: {path}")
+        found = trace_model(model, options=options, rtol=rtol, progress=stages(show))
+    targets = Targets(report, save, apply, output, patch, table)
+    deliver(found, model, own, targets, as_json)
 
 
 def _with_files(model: Model, files: dict[str, list[str] | None]) -> Model:

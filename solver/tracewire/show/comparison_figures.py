@@ -39,6 +39,12 @@ MANY_POINTS = 5000
 """A vector picture holds more points than this as pixels: its file would be slow to open."""
 FAR = 4.0
 """A model before the fit that is this many times as far away is left out of the axis' limits."""
+LEAST_LINEAR = 0.01
+"""Of the larger residual: up to this, at least, a bent axis is linear."""
+NOTHING = 1e-6
+"""A residual of less than this part of the noise is 0."""
+RESOLVED = 1e-9
+"""What changes by less than this part of its size is drawn as constant."""
 
 Vector = NDArray[np.float64]
 
@@ -47,8 +53,9 @@ def plot_comparisons(path: str | Path, comparisons: Sequence[Comparison], title:
     """Draw each measured signal of each series, the model before and after, and the residual.
 
     Samples that do not count are pale and their time is shaded; a signal that is compared modulo a
-    period is drawn on the branch of the measurement. The strip below is measured - simulated after
-    the fit, and before it where that is of like size, with +-2 sigma where sigma is known.
+    period is drawn on the branch of the measurement. The strip below is measured - simulated before
+    and after the fit on one scale, with +-2 sigma where sigma is known; the scale is logarithmic
+    far from 0 where the two differ much.
     Raises OptionError: no comparison, another ending of the file; OSError.
     """
     if not comparisons:
@@ -106,11 +113,12 @@ def limit(panel: Axes, shown: Sequence[Vector], far: Vector) -> None:
     if not len(near):
         return
     low, high = float(near.min()), float(near.max())
-    span = high - low or abs(high) or 1.0
+    size = max(abs(low), abs(high))
+    span = high - low if high - low > RESOLVED * size else size or 1.0
     if len(far):
         low = max(min(low, float(far.min())), low - FAR / 2 * span)
         high = min(max(high, float(far.max())), high + FAR / 2 * span)
-    margin = 0.05 * (high - low or span)
+    margin = 0.05 * max(high - low, span)
     panel.set_ylim(low - margin, high + margin)
 
 
@@ -129,21 +137,31 @@ def _draw_strip(
     sigma = compared.sigma
     if sigma is not None:
         panel.axhspan(-2 * sigma, 2 * sigma, color=BAND, linewidth=0, zorder=0.2, label="±2 σ")
-    alike = root_mean_square(before, compared.counts) <= FAR * root_mean_square(
-        after, compared.counts
-    )
-    if alike:
-        panel.plot(compared.t, before, color=BEFORE, linewidth=0.7, rasterized=many)
+    panel.plot(compared.t, before, color=BEFORE, linewidth=0.7, rasterized=many)
     panel.plot(compared.t, after, color=AFTER, linewidth=0.8, rasterized=many)
     panel.axhline(0.0, color=QUIET, linewidth=0.7)
     for edge in () if sigma is None else (-2 * sigma, 2 * sigma):
         panel.axhline(edge, color=MEASURED, linewidth=0.7, linestyle=":", zorder=3)
     edges = (0.0,) if sigma is None else (-2.5 * sigma, 2.5 * sigma)
     counted = after[compared.counts] if compared.counts.any() else after
-    limit(panel, (counted, np.array(edges)), before if alike else after)
+    old, new = (root_mean_square(x, compared.counts) for x in (before, after))
+    if np.isfinite(old) and old > FAR * new > 0:
+        _bend(panel, max(3 * new, 2 * (sigma or 0.0), LEAST_LINEAR * old), before)
+    else:
+        limit(panel, (counted, np.array(edges)), before)
     panel.set_ylabel(with_unit("residual", compared.unit).replace(" ", "\n", 1))
     if sigma is not None:
         panel.legend(loc="lower right", bbox_to_anchor=(1, 0.98), borderpad=0, handlelength=1.2)
+
+
+def _bend(panel: Axes, linear: float, largest: Vector) -> None:
+    """Make y linear up to a size, and logarithmic from there to the largest value."""
+    top = max(float(np.nanmax(np.abs(largest[np.isfinite(largest)]), initial=0.0)), 2 * linear)
+    panel.set_yscale("symlog", linthresh=linear, linscale=1.0)
+    decade = 10.0 ** np.floor(np.log10(top))
+    tick = next(decade * n for n in (5, 2, 1) if decade * n <= top)
+    panel.set_yticks([-tick, 0.0, tick])
+    panel.set_ylim(-1.3 * top, 1.3 * top)
 
 
 def _write_titles(upper: Axes, lower: Axes, compared: Comparison, now: str) -> None:
@@ -157,6 +175,8 @@ def _write_titles(upper: Axes, lower: Axes, compared: Comparison, now: str) -> N
     )
     before = root_mean_square(compared.residual_before, compared.counts)
     after = root_mean_square(compared.residual_after, compared.counts)
+    if compared.sigma and after < NOTHING * compared.sigma:
+        after = 0.0
     unit = f" {compared.unit}" if compared.unit else ""
     words = [
         f"{when}: " + (f"{value:.3g}{unit}" if np.isfinite(value) else "no run")

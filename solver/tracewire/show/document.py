@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import base64
 import html
+import os
 import re
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from tracewire.errors import OptionError, Problem, unknown
+from tracewire.errors import OptionError, Problem, TracewireError, unknown
 from tracewire.show.summary import Table
 
 STYLE = """body{font-family:sans-serif;max-width:56rem;margin:2rem auto;padding:0 1rem;color:#222;
@@ -40,6 +41,10 @@ class Figure:
     draw: Callable[[Path], object]
 
 
+Drawn = Mapping[str, Path | str]
+"""What became of each figure, by its name: the file, or a sentence that says why there is none."""
+
+
 @dataclass(frozen=True)
 class Section:
     """A heading and what stands under it: paragraphs, points, tables, code, figures, in this order.
@@ -62,24 +67,32 @@ class Report:
     title: str
     sections: tuple[Section, ...]
 
-    def write(self, path: str | Path) -> Path:
+    def write(self, path: str | Path, note: Callable[[str], None] | None = None) -> Path:
         """Write the report as .md, its figures beside it, or as .html, its figures inside it.
 
-        An HTML report is one file that can be mailed; Markdown has no way to hold a picture.
-        Returns the path of the report. Raises OptionError: another ending, a folder that does not
-        exist or cannot be written.
+        An HTML report is one file that can be mailed. The names of the figures of `trace.md` begin
+        with `trace`, so that reports in one folder keep their own. A figure that cannot be drawn
+        becomes a line of the report with the reason, and `note` gets that line, too. An older
+        report stays until the new one is complete.
+        Returns the path of the report.
+        Raises OptionError: another ending, a folder that does not exist or cannot be written.
         """
         path = Path(path)
-        writers = {".md": self.markdown, ".html": self.html}
-        if path.suffix not in writers:
-            what = f"'{path}': {unknown('file ending', path.suffix, writers).what}"
+        if path.suffix not in (".md", ".html"):
+            what = f"'{path}': {unknown('file ending', path.suffix, ('.md', '.html')).what}"
             raise OptionError([Problem(what, hint="End it in .md or .html.")])
         try:
-            path.touch()  # told before the figures are drawn
-            path.write_text(writers[path.suffix](), encoding="utf-8")
-            if path.suffix == ".md":
-                for figure in self.figures:
-                    figure.draw(path.parent / figure.name)
+            _part_of(path).touch()  # told before the figures are drawn
+            _part_of(path).unlink()
+            with tempfile.TemporaryDirectory() as folder:
+                drawn = _draw(self.figures, Path(folder), note or (lambda text: None))
+                if path.suffix == ".html":
+                    _replace(path, self.html(drawn).encode())
+                else:
+                    for name, file in drawn.items():
+                        if isinstance(file, Path):
+                            _replace(path.with_name(_beside(path.stem, name)), file.read_bytes())
+                    _replace(path, self.markdown(drawn, path.stem).encode())
         except OSError as error:
             what = f"the report '{path}' cannot be written: {error.strerror or error}"
             raise OptionError([Problem(what, hint="Name a folder that exists.")]) from error
@@ -90,8 +103,11 @@ class Report:
         """The figures of all sections."""
         return tuple(figure for section in self.sections for figure in section.figures)
 
-    def markdown(self) -> str:
-        """The document as Markdown; figures are named, and drawn by `write`."""
+    def markdown(self, drawn: Drawn | None = None, stem: str = "") -> str:
+        """The document as Markdown, which names its figures; `stem` begins their names.
+
+        `drawn` has what became of each figure; None: all will be drawn.
+        """
         lines = [f"# {_plain(self.title)}", ""]
         for section in self.sections:
             lines += [f"## {_plain(section.heading)}", ""]
@@ -106,11 +122,19 @@ class Report:
             if section.code:
                 lines += ["```", section.code.rstrip("\n"), "```", ""]
             for figure in section.figures:
-                lines += [f"![{_plain(figure.caption)}]({figure.name})", ""]
+                failed = (drawn or {}).get(figure.name)
+                shown = f"![{_plain(figure.caption)}]({_beside(stem, figure.name)})"
+                lines += [_plain(failed) if isinstance(failed, str) else shown, ""]
         return "\n".join(lines)
 
-    def html(self) -> str:
-        """The document as one HTML page, which holds its figures."""
+    def html(self, drawn: Drawn | None = None) -> str:
+        """The document as one HTML page, which holds its figures.
+
+        `drawn` has what became of each figure; None: they are drawn now.
+        """
+        if drawn is None:
+            with tempfile.TemporaryDirectory() as folder:
+                return self.html(_draw(self.figures, Path(folder), lambda text: None))
         parts = [f"<h1>{html.escape(self.title)}</h1>"]
         for section in self.sections:
             parts.append(f"<h2>{html.escape(section.heading)}</h2>")
@@ -121,7 +145,7 @@ class Report:
             parts += [_html_table(table) for table in section.tables]
             if section.code:
                 parts.append(f"<pre>{html.escape(section.code)}</pre>")
-            parts += [_html_figure(figure) for figure in section.figures]
+            parts += [_html_figure(figure, drawn[figure.name]) for figure in section.figures]
         head = (
             f'<!doctype html><html lang="en"><head><meta charset="utf-8">'
             f'<meta name="viewport" content="width=device-width">'
@@ -167,14 +191,54 @@ def _html_table(table: Table) -> str:
     return f"<table>{caption}<tr>{head}</tr>{''.join(rows)}</table>"
 
 
-def _html_figure(figure: Figure) -> str:
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / figure.name
-        figure.draw(file)
-        data = base64.b64encode(file.read_bytes()).decode("ascii")
-    kind = {".svg": "image/svg+xml"}.get(file.suffix, "image/png")
+def _html_figure(figure: Figure, drawn: Path | str) -> str:
+    if isinstance(drawn, str):
+        return f"<p>{_tagged(drawn)}</p>"
+    data = base64.b64encode(drawn.read_bytes()).decode("ascii")
+    kind = {".svg": "image/svg+xml"}.get(drawn.suffix, "image/png")
     caption = html.escape(figure.caption)
     return (
         f'<figure><img src="data:{kind};base64,{data}" alt="{caption}">'
         f"<figcaption>{caption}</figcaption></figure>"
     )
+
+
+def _draw(figures: Sequence[Figure], folder: Path, note: Callable[[str], None]) -> Drawn:
+    """Draw figures into a folder: the file of each, or in words why there is none.
+
+    Whatever fails in a figure costs that figure only: the work behind a report may have taken
+    hours.
+    """
+    drawn: dict[str, Path | str] = {}
+    for figure in figures:
+        file = folder / figure.name
+        try:
+            figure.draw(file)
+            drawn[figure.name] = file
+        except Exception as error:
+            reason = str(error) if isinstance(error, TracewireError) else repr(error)
+            text = f"The figure '{figure.caption}' could not be drawn: {reason.rstrip('.')}."
+            drawn[figure.name] = " ".join(text.split())
+            note(str(drawn[figure.name]))
+    return drawn
+
+
+def _beside(stem: str, name: str) -> str:
+    """The name of a figure beside the report of that stem."""
+    own = not stem or Path(name).stem == stem or name.startswith(f"{stem}_")
+    return name if own else f"{stem}_{name}"
+
+
+def _part_of(path: Path) -> Path:
+    return path.with_name(f"{path.name}.part")
+
+
+def _replace(path: Path, content: bytes) -> None:
+    """Write a file under another name first, so that an older one stays until this is complete."""
+    part = _part_of(path)
+    try:
+        part.write_bytes(content)
+        os.replace(part, path)
+    except OSError:
+        part.unlink(missing_ok=True)
+        raise

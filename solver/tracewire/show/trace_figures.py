@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,10 +26,10 @@ from tracewire.show.style import (
     save,
     shortened,
     styled,
-    with_unit,
 )
 from tracewire.trace import Found
-from tracewire.trace.found import Curve, Force, Ranked
+from tracewire.trace.found import Curve, Ranked
+from tracewire.trace.words import users_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,9 +38,6 @@ Vector = NDArray[np.float64]
 
 MOST_CURVES = 8
 MOST_CANDIDATES = 10
-MOST_FORCES = 3
-MOST_DOTS = 4000
-BINS, LEAST_IN_BIN = 16, 8
 UNLIKE = 8.0
 """Residuals that differ by more than this are drawn on an axis that is logarithmic far from 0."""
 LINEAR = 3.0
@@ -62,17 +59,21 @@ def plot_residuals(found: Found, path: Path) -> Path:
 
 
 def plot_free_runs(found: Found, path: Path) -> Path:
-    """Measured against simulated in free runs before and after: first what played no part."""
+    """Measured against simulated in free runs of every series, first what played no part.
+
+    The residuals before and after stand on one scale, in the unit of the user's files.
+    """
     order = {"validate": 0, "gate": 1, "train": 2}
-    curves = sorted(found.curves, key=lambda c: order.get(c.use, 3))
-    unseen = [c for c in curves if c.use == "validate"] or curves
-    compared = [
-        Comparison(
-            c.series, c.use, c.signal, c.unit, c.t, c.measured, c.before, c.after,
-            np.isfinite(c.measured), 0.0, found.sigma.get(c.signal),
-        )
-        for c in unseen
-    ]  # fmt: skip
+    compared = []
+    for c in sorted(found.curves, key=lambda c: order.get(c.use, 3)):
+        unit, factor = users_unit(found, c.signal)
+        sigma = found.sigma.get(c.signal)
+        compared.append(
+            Comparison(
+                c.series, c.use, c.signal, unit, c.t, c.measured / factor, c.before / factor,
+                c.after / factor, np.isfinite(c.measured), 0.0, sigma and sigma / factor,
+            )
+        )  # fmt: skip
     return plot_comparisons(path, compared, "Free runs")
 
 
@@ -96,21 +97,6 @@ def plot_candidates(found: Found, path: Path) -> Path:
         _explain_candidates(grid[0, 0])
         grid[-1, 0].set_xlabel("gain: half the fall of BIC")
         grid[-1, 1].set_xlabel("masked [%]")
-        return save(figure, path)
-
-
-def plot_forces(found: Found, path: Path) -> Path:
-    """What is needed at each place over its coordinate and its rate, with the fitted law on top."""
-    from matplotlib.figure import Figure
-
-    chosen = found.forces[:MOST_FORCES]
-    with styled():
-        figure = Figure(figsize=(9.0, 3.3 * len(chosen) + 0.5), layout="constrained")
-        grid = figure.subplots(len(chosen), 2, squeeze=False, sharey="row")
-        for (left, right), force in zip(grid, chosen, strict=True):
-            _draw_force(left, right, force, found)
-        lines, labels = grid[0, 0].get_legend_handles_labels()
-        figure.legend(lines, labels, loc="outside upper right", ncols=3, markerscale=1.5)
         return save(figure, path)
 
 
@@ -177,54 +163,6 @@ def _explain_candidates(panel: Axes) -> None:
         Patch(color="#9DB8CC", label="refitted"),
     ]
     panel.legend(handles=handles, loc="lower right", fontsize=8)
-
-
-def _draw_force(left: Axes, right: Axes, force: Force, found: Found) -> None:
-    every = max(1, math.ceil(len(force.q) / MOST_DOTS))
-    size = float(np.clip(70 / np.sqrt(max(len(force.q) / every, 1)), 1.5, 5))
-    dots: dict[str, Any] = {"linestyle": "", "marker": ".", "markersize": size, "rasterized": True}
-    for panel, values, name in (
-        (left, force.q, force.names[0]),
-        (right, force.v, force.names[1]),
-    ):
-        panel.plot(values[::every], force.needed[::every], color=MEASURED, alpha=0.35,
-                   label="needed by the data", **dots)  # fmt: skip
-        middles, means, errors = _binned(values, force.needed)
-        panel.errorbar(middles, means, 2 * errors, color=MEASURED, linestyle="", marker="o",
-                       markersize=4.5, markerfacecolor="white", zorder=5,
-                       label="its mean, ±2 standard errors")  # fmt: skip
-        if np.any(force.fitted):
-            panel.plot(values[::every], force.fitted[::every], color=AFTER, label="fitted effect",
-                       zorder=4, **dots)  # fmt: skip
-        panel.axhline(0.0, color=QUIET, linewidth=0.7)
-        panel.set_xlabel(with_unit(name, found.units.get(name, "")))
-    left.set_ylabel(with_unit(f"missing at {cut(force.place)}", found.units.get(force.place, "")))
-    left.set_ylim(*_limits(force))
-
-
-def _binned(values: Vector, needed: Vector) -> tuple[Vector, Vector, Vector]:
-    """Middles of bins with equally many samples, the mean there and its standard error.
-
-    What is needed has spikes where windows begin and end: the outermost twentieth on either side
-    is taken as far as the rest reaches.
-    """
-    known = np.isfinite(values) & np.isfinite(needed)
-    order = np.argsort(values[known], kind="stable")
-    parts = np.array_split(order, min(BINS, max(len(order) // LEAST_IN_BIN, 1)))
-    x, y = values[known], np.clip(needed[known], *np.quantile(needed[known], [0.05, 0.95]))
-    middles = np.array([np.median(x[part]) for part in parts])
-    means = np.array([np.mean(y[part]) for part in parts])
-    errors = np.array([np.std(y[part]) / math.sqrt(len(part)) for part in parts])
-    return middles, means, errors
-
-
-def _limits(force: Force) -> tuple[float, float]:
-    """Limits that hold the law and nearly all of what is needed: noise has spikes."""
-    needed = force.needed[np.isfinite(force.needed)]
-    shown = [*np.quantile(needed, [0.02, 0.98]), force.fitted.min(), force.fitted.max(), 0.0]
-    low, high = float(min(shown)), float(max(shown))
-    margin = 0.08 * (high - low or 1.0)
-    return low - margin, high + margin
 
 
 def _rms(values: Vector) -> float:

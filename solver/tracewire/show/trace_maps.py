@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,8 +22,10 @@ from tracewire.show.style import (
     with_unit,
 )
 from tracewire.trace import Found
-from tracewire.trace.found import Experiment, Missing
-from tracewire.trace.telling import percent
+from tracewire.trace.effect_units import signal_of
+from tracewire.trace.experiment_words import setting_unit
+from tracewire.trace.found import Dependence, Experiment, Missing
+from tracewire.trace.words import percent, unit_of_place
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,16 +39,31 @@ MOST_NINES = 3.0
 TIED = 0.985
 MOST_ALIKE = 16
 MOST_EXPERIMENTS = 3
-FEW = 0.05
-"""Where the density of samples is less than this part of its largest, a map is pale."""
+ALIKE_EVERYWHERE = 0.1
+"""Where the best experiment separates two effects by less sigma than this, its map is empty."""
+FEW, CROWDED = 0.05, 10.0
+"""Where the density of samples is less than this part of its largest, a map is pale. A body that
+rests piles them up: no density counts as more than this many times the median."""
 
 
 def plot_where(found: Found, path: Path) -> Path:
-    """The share of the excess that a smooth torque explains, by place and variables."""
-    places = list(dict.fromkeys(d.place for d in found.dependences))
-    sets = list(dict.fromkeys(d.variables for d in found.dependences))
+    """The share of the excess that a smooth force explains, by place and variables."""
+    best = found.missing
+    return _plot_shares(found.dependences, path, (best.place, best.variables) if best else None)
+
+
+def plot_remainder_where(found: Found, path: Path) -> Path:
+    """The share of what is left that a smooth force explains, by place and variables."""
+    return _plot_shares(found.remainder_depends, path)
+
+
+def _plot_shares(
+    dependences: Sequence[Dependence], path: Path, best: tuple[str, tuple[str, ...]] | None = None
+) -> Path:
+    places = list(dict.fromkeys(d.place for d in dependences))
+    sets = list(dict.fromkeys(d.variables for d in dependences))
     shares = np.full((len(places), len(sets)), np.nan)
-    for d in found.dependences:
+    for d in dependences:
         shares[places.index(d.place), sets.index(d.variables)] = d.share
     with styled():
         figure, panel = _square(2.4 + 0.85 * len(sets), 1.6 + 0.5 * len(places))
@@ -56,9 +74,8 @@ def plot_where(found: Found, path: Path) -> Path:
                 text = percent(max(share, 0))
                 color = "white" if share > DARK else "#333333"
                 panel.text(column, row, text, ha="center", va="center", color=color)
-        best = found.missing
-        if best is not None and best.variables in sets and best.place in places:
-            _outline(panel, (sets.index(best.variables), places.index(best.place)))
+        if best is not None and best[1] in sets and best[0] in places:
+            _outline(panel, (sets.index(best[1]), places.index(best[0])))
         panel.set_xticks(range(len(sets)), [cut(", ".join(names), 18) for names in sets])
         panel.set_yticks(range(len(places)), [cut(place) for place in places])
         panel.set_title("Share of the excess that a smooth function of these explains", loc="left")
@@ -73,16 +90,22 @@ def plot_missing(found: Found, path: Path) -> Path:
     assert missing is not None
     with styled():
         figure, panel = _square(7.0, 4.0)
-        unit = found.units.get(missing.place, "")
+        unit = unit_of_place(found, missing.place)
         label = with_unit(f"missing at {missing.place}", unit)
         if len(missing.variables) == 1:
             _draw_line(panel, missing)
             panel.set_ylabel(label)
         else:
             _draw_map(figure, panel, missing, label)
-            panel.set_ylabel(missing.variables[1])
-        panel.set_xlabel(missing.variables[0])
+            panel.set_ylabel(_variable(found, missing, 1))
+        panel.set_xlabel(_variable(found, missing, 0))
         return save(figure, path)
+
+
+def _variable(found: Found, missing: Missing, number: int) -> str:
+    """A variable of the map by the user's name, with its unit."""
+    name = signal_of(found, missing.place, missing.variables[number])
+    return with_unit(name, "s" if name == "t" else found.units.get(name, ""))
 
 
 def plot_confusable(found: Found, path: Path) -> Path:
@@ -131,23 +154,38 @@ def plot_experiments(found: Found, path: Path) -> Path:
 
 
 def drawable(experiment: Experiment) -> bool:
-    """Whether what was searched varies in a setting."""
-    return bool(_settings(experiment))
+    """Whether there is a setting that varied, and an experiment that tells the two apart."""
+    return experiment.separation > ALIKE_EVERYWHERE and bool(_settings(experiment))
+
+
+def _rows(experiment: Experiment) -> list[Mapping[str, float]]:
+    """What was searched of the kind of the best: releases, or sines on one drive."""
+    wanted = {*experiment.settings, "separation"}
+    return [row for row in experiment.map if {"separation"} < row.keys() <= wanted]
 
 
 def _settings(experiment: Experiment) -> list[str]:
-    """The settings that vary in a search, those with most values first."""
-    rows = experiment.map
-    names = [n for n in rows[0] if n != "separation"] if rows else []
-    counts = {n: len({row.get(n) for row in rows}) for n in names}
-    return sorted((n for n in names if counts[n] > 1), key=lambda n: -counts[n])
+    """At most two settings that vary in a search, those with most values first.
+
+    States that are released together are one setting.
+    """
+    rows = _rows(experiment)
+    shared = [n for n in experiment.settings if rows and all(n in row for row in rows)]
+    counts = {n: len({row[n] for row in rows}) for n in shared}
+    names = sorted((n for n in counts if counts[n] > 1), key=lambda n: -counts[n])[:2]
+    pairs = {tuple(row[n] for n in names) for row in rows}
+    return names[:1] if len(names) > 1 and len(pairs) == counts[names[0]] else names
+
+
+def _setting_label(name: str, found: Found) -> str:
+    return with_unit(name, setting_unit(found, name))
 
 
 def _draw_experiment(figure: Figure, panel: Axes, experiment: Experiment, found: Found) -> None:
-    names = _settings(experiment)[:2]
-    rows = experiment.map
+    names = _settings(experiment)
+    rows = _rows(experiment)
     separation = np.array([row["separation"] for row in rows])
-    first = np.array([row.get(names[0], np.nan) for row in rows])
+    first = np.array([row[names[0]] for row in rows])
     best = experiment.settings
     star: dict[str, Any] = {"marker": "*", "markersize": 16, "linestyle": "", "color": MARK,
                             "markeredgecolor": "white", "clip_on": False, "zorder": 5}  # fmt: skip
@@ -159,7 +197,7 @@ def _draw_experiment(figure: Figure, panel: Axes, experiment: Experiment, found:
         panel.set_ylabel("separation [σ]")
         panel.set_ylim(bottom=0)
     else:
-        second = np.array([row.get(names[1], np.nan) for row in rows])
+        second = np.array([row[names[1]] for row in rows])
         from matplotlib.colors import LogNorm
 
         top = max(float(np.nanmax(separation)), experiment.separation, 1e-6)
@@ -170,11 +208,11 @@ def _draw_experiment(figure: Figure, panel: Axes, experiment: Experiment, found:
         )  # fmt: skip
         figure.colorbar(dots, ax=panel, label="separation [σ]", format=lambda x, _: f"{x:g}")
         panel.plot([best[names[0]]], [best[names[1]]], **star)
-        panel.set_ylabel(with_unit(names[1], found.units.get(names[1], "")))
+        panel.set_ylabel(_setting_label(names[1], found))
         if _wide(second):
             panel.set_yscale("log")
             _few_numbers(panel.yaxis)
-    panel.set_xlabel(with_unit(names[0], found.units.get(names[0], "")))
+    panel.set_xlabel(_setting_label(names[0], found))
     if _wide(first):
         panel.set_xscale("log")
         _few_numbers(panel.xaxis)
@@ -200,7 +238,7 @@ def _wide(values: Matrix) -> bool:
 def _draw_line(panel: Axes, missing: Missing) -> None:
     x, torque = missing.grid[0], np.ravel(missing.torque)
     density = np.ravel(missing.density)
-    many = density > FEW * max(float(density.max()), 1e-300)
+    many = density > FEW * _usual(density)
     known = np.where(many, torque, np.nan)
     if not many.all():
         panel.plot(x, torque, color=QUIET, linewidth=1.0, linestyle="--", label="few samples")
@@ -218,9 +256,14 @@ def _draw_line(panel: Axes, missing: Missing) -> None:
     panel.set_xlim(float(x[0]), float(x[-1]))
 
 
+def _usual(density: Matrix) -> float:
+    """The largest density that counts."""
+    filled = density[density > 0]
+    return min(float(filled.max()), CROWDED * float(np.median(filled))) if filled.size else 1.0
+
+
 def _draw_map(figure: Figure, panel: Axes, missing: Missing, label: str) -> None:
-    density = missing.density / max(float(missing.density.max()), 1e-300)
-    known = np.where(density > FEW, missing.torque, np.nan)
+    known = np.where(missing.density > FEW * _usual(missing.density), missing.torque, np.nan)
     largest = float(np.nanmax(np.abs(known))) if np.isfinite(known).any() else 1.0
     picture = panel.pcolormesh(
         missing.grid[0], missing.grid[1], known.T, cmap="PuOr", vmin=-largest, vmax=largest,

@@ -8,65 +8,87 @@ from pathlib import Path
 
 from tracewire.show.document import Figure, Report, Section
 from tracewire.show.fit_tables import sentence
-from tracewire.show.trace_figures import (
-    plot_candidates,
-    plot_forces,
-    plot_free_runs,
-    plot_residuals,
-)
+from tracewire.show.trace_figures import plot_candidates, plot_free_runs, plot_residuals
+from tracewire.show.trace_law import plot_forces, plot_law
 from tracewire.show.trace_maps import (
     drawable,
     plot_confusable,
     plot_experiments,
     plot_missing,
+    plot_remainder_where,
     plot_where,
 )
+from tracewire.show.trace_shares import plot_held_out
 from tracewire.show.trace_tables import (
     effects_table,
     errors_table,
     experiments_table,
     moved_table,
     power_table,
+    remainder_table,
+    remainder_where_table,
     ties_table,
     tried_table,
     where_table,
 )
-from tracewire.show.trace_text import answer_lines, step_lines
+from tracewire.show.trace_text import answer_lines, remarks_of, step_lines
 from tracewire.trace import Found
-from tracewire.trace.telling import stood_in
+from tracewire.trace.experiment_words import experiment_words
+from tracewire.trace.telling import details_of, headline_of
+from tracewire.trace.words import stood_in
 
 ERRORS = (
-    "A windowed error is that of many short runs, each from a fitted start; a free run is one run "
-    "over the whole series, so that small errors add up. Only series of the use validate played no "
+    "A free run is one run over the whole series, so small errors add up. A windowed error is that "
+    "of many short runs, each from a fitted start. Only series of the use `validate` played no "
     "part in the fit and in the choice of effects: they are the honest test. σ is the noise of the "
-    "sensor, as estimated from the data: an error of 1 σ is as good as the data allow."
+    "sensor, as declared or as estimated from the data."
+)
+EFFECTS = (
+    "The interval holds the value with 95 % probability if the noise is white. 'masked' is the "
+    "part of the effect that the declared parameters imitate when they are fitted. 'gain' is half "
+    "the fall of BIC, a measure of the fit that charges for each further number; 5 is strong."
+)
+SHARES = (
+    "Held-out blocks of time were predicted by models that were fitted without them. The excess "
+    "error is what the declared model leaves above the floor, which is the error of the best "
+    "smooth function of position, rate and direction. The explained share is the part of the "
+    "excess that the effects take away: 100 % reaches the floor, 0 % is no better than without "
+    "them."
+)
+REMAINDER = (
+    "This is what the diagram with its effects still misses on data that no fit saw. The floor is "
+    "what a smooth function of position, rate and direction would leave."
 )
 STEPS = (
-    "In each step every effect of the library is tried at every place of the diagram. The screen "
-    "promises a gain for each; the best are put into the diagram and all free parameters are "
-    "fitted again. The gate compares on windows that the fit did not see, and accepts or refuses."
+    "In each step the screen estimates, from one linearisation, the gain of every effect of the "
+    "library at every place of the diagram. A place is a sum of forces, a drive or a sensor. The "
+    "best effects are put into the diagram and all free parameters are fitted again. An effect is "
+    "accepted only if it reduces the error on windows that the fit did not see: the gate."
 )
 MOVED = (
-    "A parameter that moves by more than two standard errors had stood in for what was missing: "
-    "its value before said less about the part that it is named after."
+    "A declared parameter that moves by more than two standard errors had absorbed part of the "
+    "missing effect: without the effect its value is biased."
 )
 TIES = (
-    "Effects whose signatures on these data are nearly the same cannot be told apart by any "
-    "analysis of them; only another experiment can."
+    "Two effects whose outputs on these data are nearly the same cannot be told apart by any "
+    "analysis of these data. Only another experiment can. The likeness is their correlation in "
+    "the screen: 1 is the same. A pair that is outlined in the map is no tie where a refit on "
+    "longer windows tells the two apart."
 )
 POWER = (
-    "An effect with a coefficient of this size or more would have stood out by five standard "
-    "errors at least; of smaller ones these data say nothing."
+    "A coefficient of this size is five standard errors: these data would have shown it. A "
+    "smaller one may be there unseen."
 )
 WHERE = (
-    "A smooth function of each set of variables was fitted at each place to what is above the "
-    "noise and tested on parts of the data that it was not fitted to. A large share says where "
-    "something is missing and on what it depends; the smallest set of variables that is nearly the "
-    "best is outlined."
+    "At each place a smooth function of each set of variables was fitted to the residual, and "
+    "tested on parts of the data that it was not fitted to. A large share says where something is "
+    "missing, and on what it depends. The outline marks the smallest set of variables that is "
+    "nearly the best. q, v and a are the coordinate, rate and acceleration at the place, u is the "
+    "drive, y the measured signal."
 )
 MISSING = (
-    "This curve is empirical: it says what these data ask for, not why, and nothing outside of "
-    "where there are samples. `tracewire trace ... --table FILE.csv` writes it for a `table` block."
+    "This curve is empirical: it says what these data need, and not why. It says nothing where "
+    "there are no samples. `tracewire trace ... --table FILE.csv` writes it for a `table` block."
 )
 GLOSSARY = (
     "s2: squared residual per degree of freedom in units of the noise; 1 is at the noise.",
@@ -82,12 +104,15 @@ GLOSSARY = (
 
 
 def trace_report(found: Found) -> Report:
-    """The report of a trace."""
+    """The report of a trace: the answer first, then how sure it is, then the way to it."""
     sections = (
         _answer(found),
-        _where(found),
-        _errors(found),
         _effects(found),
+        _shares(found),
+        _remainder(found),
+        _where(found),
+        Section("In words", points=(*details_of(found), *map(sentence, remarks_of(found)))),
+        _errors(found),
         _open(found),
         _way(found),
         _change(found),
@@ -98,11 +123,42 @@ def trace_report(found: Found) -> Report:
 
 
 def _answer(found: Found) -> Section:
-    return Section(
-        "What was found",
-        (found.paragraph,) if found.paragraph else (),
-        points=(*(line.strip() for line in answer_lines(found)), *map(sentence, found.words)),
+    figures = _figure(
+        _has_law(found), found, plot_law, "law.png",
+        "The force that the data need, and the law that was found",
+    )  # fmt: skip
+    missing = found.missing
+    figures += _figure(
+        missing is not None and len(missing.grid) in (1, 2), found, plot_missing, "missing.png",
+        "What is missing, as a smooth function of what it depends on",
+    )  # fmt: skip
+    return Section("What was found", (headline_of(found), answer_lines(found)[0]), figures=figures)
+
+
+def _has_law(found: Found) -> bool:
+    """Whether an effect was added to a sum, so that there is a force to be drawn."""
+    return any(effect.block and "drive." not in effect.place for effect in found.effects)
+
+
+def _shares(found: Found) -> Section | None:
+    figures = _figure(
+        bool(found.held_out), found, plot_held_out, "shares.png",
+        "The error of each held-out block: declared model, with the effects, and the floor",
+    )  # fmt: skip
+    return (
+        Section("How much of the error is explained", (SHARES,), figures=figures)
+        if figures
+        else None
     )
+
+
+def _remainder(found: Found) -> Section | None:
+    tables = tuple(t for t in (remainder_table(found), remainder_where_table(found)) if t.rows)
+    figures = _figure(
+        bool(found.remainder_depends), found, plot_remainder_where, "remainder.png",
+        "Where the rest is, and on what it depends",
+    )  # fmt: skip
+    return Section("What is left", (REMAINDER,), tables, figures=figures) if tables else None
 
 
 def _errors(found: Found) -> Section | None:
@@ -122,24 +178,20 @@ def _errors(found: Found) -> Section | None:
 def _effects(found: Found) -> Section | None:
     tables = tuple(t for t in (effects_table(found), moved_table(found)) if t.rows)
     figures = _figure(
-        bool(found.forces), found, plot_forces, "forces.png",
-        "What the data need at a place over its coordinate and rate, and the fitted effects",
+        _has_law(found), found, plot_forces, "forces.png",
+        "What the data need at a place over its coordinate and its rate, and the fitted law",
     )  # fmt: skip
     if not tables and not figures:
         return None
-    words = (MOVED,) if any(map(stood_in, found.moved)) else ()
-    return Section("The effects", words, tables, figures=figures)
+    words = (EFFECTS, MOVED) if any(map(stood_in, found.moved)) else (EFFECTS,)
+    return Section("The effects", words if found.effects else (), tables, figures=figures)
 
 
 def _where(found: Found) -> Section | None:
     if not found.dependences:
         return None
-    missing = found.missing
-    drawn = missing is not None and len(missing.grid) in (1, 2)
-    figures = (
-        *_figure(True, found, plot_where, "where.png", "Where, and on what"),
-        *_figure(drawn, found, plot_missing, "missing.png", "What is missing"),
-    )
+    figures = _figure(True, found, plot_where, "where.png", "Where, and on what")
+    drawn = found.missing is not None and len(found.missing.grid) in (1, 2)
     words = (WHERE, MISSING) if drawn else (WHERE,)
     return Section("Where, and on what it depends", words, (where_table(found),), "", figures)
 
@@ -158,7 +210,7 @@ def _open(found: Found) -> Section | None:
         return None
     words = [TIES] if figures or any(e.ties for e in found.effects) else []
     words += [POWER] if found.power else []
-    points = tuple(sentence(e.words) for e in found.experiments)
+    points = tuple(experiment_words(found, e) for e in found.experiments)
     return Section("What these data leave open", tuple(words), tables, "", figures, points)
 
 
@@ -181,4 +233,4 @@ def _change(found: Found) -> Section | None:
 def _figure(
     wanted: bool, found: Found, draw: Callable[[Found, Path], Path], name: str, caption: str
 ) -> tuple[Figure, ...]:
-    return (Figure(f"trace_{name}", caption, partial(draw, found)),) if wanted else ()
+    return (Figure(name, caption, partial(draw, found)),) if wanted else ()

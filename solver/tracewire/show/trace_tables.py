@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from tracewire.show.summary import Table, shown
 from tracewire.trace import Found
-from tracewire.trace.found import Ranked
-from tracewire.trace.telling import (
+from tracewire.trace.effect_units import signal_of
+from tracewire.trace.experiment_words import settings_words
+from tracewire.trace.found import Dependence, Ranked
+from tracewire.trace.words import (
     coefficient_of,
     common_powers,
     percent,
+    remainder_numbers,
     stood_in,
+    to_its_interval,
     unit_of,
+    unit_of_power,
+    users_unit,
 )
 
 MOST_POWERS, MOST_WHERE = 12, 8
@@ -28,9 +35,11 @@ def trace_tables(found: Found) -> tuple[Table, ...]:
     tables = (
         effects_table(found),
         ties_table(found),
+        remainder_table(found),
         errors_table(found),
         moved_table(found),
         where_table(found, MOST_WHERE),
+        remainder_where_table(found, MOST_WHERE),
         experiments_table(found),
         tried_table(found, screened=False),
         *([power_table(found, MOST_POWERS)] if found.verdict == "null" else []),
@@ -43,41 +52,56 @@ def effects_table(found: Found) -> Table:
     rows = []
     for effect in found.effects:
         first = effect.name, effect.place
-        last = _number(effect.gain, ".4g"), percent(effect.masked), _number(effect.weight, ".2f")
+        last = percent(effect.masked), _number(effect.gain, ".4g")
         for name, value in effect.params.items():
             low, high = effect.intervals.get(name, (math.nan, math.nan))
             known = math.isfinite(low) and math.isfinite(high)
-            interval = f"{low:.4g} to {high:.4g}" if known else ""
-            rows.append(
-                (*first, name, f"{value:.5g}", interval, unit_of(found, effect, name), *last)
-            )
-            first, last = ("", ""), ("", "", "")
-    header = ("effect", "place", "parameter", "value", "95 % interval", "unit", "gain", "masked",
-              "weight")  # fmt: skip
+            shown_value, *ends = to_its_interval(value, low, high)
+            interval = " to ".join(ends) if known else ""
+            rows.append((*first, name, shown_value, interval, unit_of(found, effect, name), *last))
+            first, last = ("", ""), ("", "")
+    header = ("effect", "place", "parameter", "value", "95 % interval", "unit", "masked",
+              "gain")  # fmt: skip
     title = "effects that were found" if found.verdict == "effect" else "best approximations"
-    return Table(title, header, tuple(rows), frozenset({3, 4, 6, 7, 8}))
+    return Table(title, header, tuple(rows), frozenset({3, 4, 6, 7}))
+
+
+def remainder_table(found: Found) -> Table:
+    """What is left of each signal on data that no fit saw, in its unit, in sigma, as a share."""
+    rows = tuple(
+        (left.signal, size, unit, _number(left.in_sigma, ".3g"), percent(left.share), floor)
+        for left in found.remainder
+        for size, floor, unit in [remainder_numbers(found, left)]
+    )
+    header = ("signal", "rms left", "unit", "in σ", "share of the error before", "floor")
+    return Table("what is left on unseen data", header, rows, frozenset({1, 3, 4, 5}))
 
 
 def ties_table(found: Found) -> Table:
     """What these data cannot tell from an effect, with how alike the two are on the data."""
     rows = tuple(
         (str(effect), str(tie), f"{tie.likeness:.3f}",
+         f"{len(tie.params) - len(effect.params):+d}" if tie.params else "",
          ", ".join(f"{name} = {value:.4g}" for name, value in tie.params.items()),
          _number(tie.rise, "+.3g"))
         for effect in found.effects
         for tie in effect.ties
     )  # fmt: skip
-    header = ("effect", "cannot be told from", "likeness", "its parameters, refitted", "BIC")
-    return Table("ties", header, rows, frozenset({2, 4}))
+    header = ("effect", "cannot be told from", "likeness", "fitted numbers more or fewer",
+              "its parameters, refitted", "BIC")  # fmt: skip
+    return Table("ties", header, rows, frozenset({2, 3, 5}))
 
 
 def errors_table(found: Found) -> Table:
-    """Root mean square errors before and after, by kind, series and signal, in SI and in sigma."""
+    """Root mean square errors before and after, by kind, series and signal, in the unit of the
+    user's files and in sigma."""
     kinds = sorted(found.errors, key=lambda e: (e.kind != "free run", e.use != "validate"))
     rows = tuple(
-        (e.kind, e.use, e.series, e.signal, e.unit, _number(e.before, ".4g"),
-         _number(e.after, ".4g"), _in_sigma(e.before, e.sigma), _in_sigma(e.after, e.sigma))
+        (e.kind, e.use, e.series, e.signal, unit, _number(e.before / factor, ".4g"),
+         _number(e.after / factor, ".4g"), _in_sigma(e.before, e.sigma),
+         _in_sigma(e.after, e.sigma))
         for e in kinds
+        for unit, factor in [users_unit(found, e.signal)]
     )  # fmt: skip
     header = ("kind", "use", "series", "signal", "unit", "rmse before", "rmse after",
               "before in σ", "after in σ")  # fmt: skip
@@ -89,7 +113,7 @@ def moved_table(found: Found) -> Table:
     rows = tuple(
         (m.name, shown(m.before), shown(m.after), _change(m.before, m.after),
          _number(m.error, ".2g"), m.unit,
-         "had stood in for what was missing" if stood_in(m) else "")
+         "had absorbed part of the effect" if stood_in(m) else "")
         for m in found.moved
     )  # fmt: skip
     header = (
@@ -117,29 +141,40 @@ def tried_table(found: Found, screened: bool = True) -> Table:
 def power_table(found: Found, most: int = ALL) -> Table:
     """The smallest coefficient of each effect that these data would have shown."""
     rows = [
-        (p.name, p.place, coefficient_of(p), _number(p.smallest, ".3g"))
+        (p.name, p.place, coefficient_of(p), _number(p.smallest, ".3g"), unit_of_power(found, p))
         for p in common_powers(found)[:most]
     ]
     if len(found.power) > most:
-        rows.append((f"and {len(found.power) - most} more", "", "", ""))
-    header = ("effect", "place", "coefficient", "smallest that these data would show (SI)")
+        rows.append((f"and {len(found.power) - most} more", "", "", "", ""))
+    header = ("effect", "place", "coefficient", "smallest that these data would show", "unit")
     return Table("what would have been seen", header, tuple(rows), frozenset({3}))
 
 
 def where_table(found: Found, most: int = ALL) -> Table:
-    """What a missing torque depends on, at which place, the best explanation first."""
-    best = sorted(found.dependences, key=lambda d: -d.share)[:most]
-    rows = tuple((d.place, ", ".join(d.variables), percent(max(d.share, 0.0))) for d in best)
+    """On what the residual of the declared model depends, at which place, the best first."""
+    return _depends(found, "where, and on what", found.dependences, most)
+
+
+def remainder_where_table(found: Found, most: int = ALL) -> Table:
+    """On what the residual that is left depends, at which place, the best first."""
+    return _depends(found, "what is left: where, and on what", found.remainder_depends, most)
+
+
+def _depends(found: Found, title: str, dependences: Sequence[Dependence], most: int) -> Table:
+    rows = tuple(
+        (d.place, ", ".join(signal_of(found, d.place, name) for name in d.variables),
+         percent(max(d.share, 0.0)))
+        for d in sorted(dependences, key=lambda d: -d.share)[:most]
+    )  # fmt: skip
     header = ("place", "depends on", "share of the excess that this explains")
-    return Table("where, and on what", header, rows, frozenset({2}))
+    return Table(title, header, rows, frozenset({2}))
 
 
 def experiments_table(found: Found) -> Table:
     """The experiments that would separate effects that these data do not."""
     rows = tuple(
         (f"{e.one} or {e.other}",
-         ", ".join(f"{name} = {value:.4g}" for name, value in e.settings.items()),
-         _number(e.separation, ".3g"))
+         settings_words(found, e.settings), _number(e.separation, ".3g"))
         for e in found.experiments
     )  # fmt: skip
     header = ("to tell apart", "experiment", "separation in σ")
@@ -169,4 +204,6 @@ def _in_sigma(value: float, sigma: float) -> str:
 
 def _change(before: float, after: float) -> str:
     change = after / before - 1 if before else math.nan
-    return f"{100 * change:+.2g} %" if abs(change) < 10 else ""
+    if not abs(change) < 10:
+        return ""
+    return f"{100 * change:+.0f} %" if abs(change) >= 0.1 else f"{100 * change:+.2g} %"

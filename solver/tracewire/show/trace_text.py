@@ -5,14 +5,24 @@ from __future__ import annotations
 import math
 
 from tracewire.trace import Found, FoundEffect
+from tracewire.trace.effect_units import signal_of
+from tracewire.trace.experiment_words import experiment_words
 from tracewire.trace.found import StepTold
-from tracewire.trace.telling import (
+from tracewire.trace.telling import ties_words
+from tracewire.trace.words import (
     chance_words,
+    coefficient_of,
     common_powers,
+    error_words,
     in_sigma,
+    moved_words,
     percent,
     place_words,
+    remainder_numbers,
+    share_words,
     stood_in,
+    told_once,
+    unit_of_power,
     unseen_errors,
     value_words,
     variables_words,
@@ -31,21 +41,28 @@ def answer_lines(found: Found) -> tuple[str, ...]:
         values = ", ".join(value_words(found, effect, name) for name in effect.params)
         lines.append(f"  {partial}{effect}: {values}")
         lines += _tie_lines(effect)
-    lines += [f"  {name} went to zero" for name in found.dropped]
+    lines += [f"  the fit sets {name} to zero" for name in found.dropped]
+    if found.explained is not None:
+        lines.append(f"  explained: {share_words(found.explained)} of the excess error")
     lines += _error_lines(found)
-    moved = [m for m in found.moved if stood_in(m)]
-    if moved:
-        shifts = ", ".join(
-            f"{m.name} {m.before:.4g} -> {m.after:.4g} {m.unit}".rstrip() for m in moved
-        )
-        lines.append(f"  had stood in for what was missing: {shifts}")
-    lines += [f"  {experiment.words}" for experiment in found.experiments]
+    lines += _remainder_lines(found)
+    shifts = [moved_words(m) for m in found.moved if stood_in(m) and m.name not in found.dropped]
+    if shifts:
+        lines.append(f"  had absorbed part of the missing effect: {', '.join(shifts)}")
+    lines += [f"  {experiment_words(found, experiment)}" for experiment in found.experiments]
     if found.verdict == "null" and found.power:
         least = ", ".join(
-            f"{p.name} {p.smallest:.2g}" for p in common_powers(found)[:MOST_CHANNELS]
+            f"{p.name} {coefficient_of(p)} = {p.smallest:.2g} {unit_of_power(found, p)}".rstrip()
+            for p in common_powers(found)[:MOST_CHANNELS]
         )
-        lines.append(f"  smallest coefficients that would have been seen: {least} (SI)")
+        lines.append(f"  smallest coefficients that these data would show: {least}")
     return tuple(lines)
+
+
+def remarks_of(found: Found) -> tuple[str, ...]:
+    """The remarks of a trace; one that is true of several series is told once with all of them."""
+    named = [*(e.series for e in found.errors), *(c.series for c in found.curves)]
+    return told_once(found.words, list(dict.fromkeys([*named, *found.original.measured])))
 
 
 def step_lines(found: Found) -> tuple[str, ...]:
@@ -55,7 +72,7 @@ def step_lines(found: Found) -> tuple[str, ...]:
     lines = [f"noise (σ)       {noise}"]
     lines.append(
         f"declared model  s2 = {found.s2_before:.4g}: rms {math.sqrt(found.s2_before):.3g} σ "
-        "on short windows; 1 is the noise"
+        "on the fitted windows; 1 is the noise"
     )
     for number, step in enumerate(found.steps, start=1):
         lines += _step(number, step)
@@ -65,7 +82,7 @@ def step_lines(found: Found) -> tuple[str, ...]:
 def _verdict(found: Found) -> str:
     if found.verdict == "null":
         so_far = ", but not all effects were tried" if found.interrupted else ""
-        return f"nothing is missing beyond the noise{so_far}"
+        return f"nothing is missing that these data could show{so_far}"
     if found.verdict == "effect":
         return f"{' and '.join(map(str, found.effects))} {_is(len(found.effects))} missing"
     none = "no effect was accepted by then" if found.interrupted else NONE
@@ -76,13 +93,16 @@ def _verdict(found: Found) -> str:
         key=lambda d: -d.share,
     )
     beside = [
-        f"{', '.join(d.variables)} @ {d.place} {percent(d.share)}"
+        f"{', '.join(signal_of(found, d.place, name) for name in d.variables)} @ {d.place} "
+        f"{percent(d.share)}"
         for d in others[:2]
         if d.share > 0
     ]
+    missing = found.missing
+    variables = variables_words(found, missing.place, missing.variables)
     text = (
-        f"something is missing {place_words(found.missing.place)}; it depends on "
-        f"{variables_words(found.missing.variables)} ({percent(found.missing.share)} of the excess"
+        f"something is missing {place_words(missing.place)}; it depends on {variables} "
+        f"({percent(missing.share)} of the excess"
     )
     return text + (f"; {'; '.join(beside)})" if beside else ")") + f", and {none}"
 
@@ -98,35 +118,38 @@ def _is(count: int) -> str:
 def _tie_lines(effect: FoundEffect) -> list[str]:
     if not effect.ties:
         return []
-    ties = ", ".join(f"{tie} ({tie.likeness:.3f})" for tie in effect.ties)
-    return [f"    cannot be told apart on these data: {ties}"]
+    return [f"    these data cannot tell it from {', '.join(ties_words(effect))}"]
 
 
 def _error_lines(found: Found) -> list[str]:
     errors = unseen_errors(found)
+    where = "on unseen data"
+    lines = []
     if not errors:
-        lines = ["  no data played no part: these errors are of data that chose the effects"]
+        lines = ["  no data were kept back: these errors are of data that chose the effects"]
         errors = tuple(e for e in found.errors if e.kind == "free run")
-    else:
-        lines = []
+        where = "on the series"
     before, after = in_sigma(errors, "before"), in_sigma(errors, "after")
     if not math.isfinite(after):
         return []
-    channels = dict.fromkeys((e.signal, e.unit) for e in errors)
-    parts = []
-    for signal, unit in list(channels)[:MOST_CHANNELS]:
-        own = [e for e in errors if e.signal == signal]
-        old, new = (
-            math.sqrt(sum(getattr(e, when) ** 2 for e in own) / len(own))
-            for when in ("before", "after")
+    if not found.effects:
+        signals = ", ".join(error_words(found, errors, both=False))
+        return [*lines, f"  free runs {where}: {after:.3g} σ ({signals})"]
+    signals = "; ".join(text.removeprefix("for ") for text in error_words(found, errors))
+    return [*lines, f"  free runs {where}: {before:.3g} σ -> {after:.3g} σ ({signals})"]
+
+
+def _remainder_lines(found: Found) -> list[str]:
+    lines = []
+    for left in found.remainder[:MOST_CHANNELS]:
+        size, floor, unit = remainder_numbers(found, left)
+        least = f"; a smooth map would leave {floor} {unit}".rstrip() if floor else ""
+        lines.append(
+            f"  left on unseen data: {size} {unit}".rstrip()
+            + f" of {left.signal} ({left.in_sigma:.3g} σ, {percent(left.share)} of the error "
+            f"before{least})"
         )
-        parts.append(f"{signal} {old:.4g} -> {new:.4g} {unit}".rstrip())
-    where = "on unseen data" if not lines else "on the series"
-    if found.effects:
-        text = f"  free runs {where}: {before:.3g} σ -> {after:.3g} σ ({'; '.join(parts)})"
-    else:
-        text = f"  free runs {where}: {after:.3g} σ"
-    return [*lines, text]
+    return lines
 
 
 def _step(number: int, step: StepTold) -> list[str]:

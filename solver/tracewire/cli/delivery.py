@@ -1,0 +1,134 @@
+"""What becomes of a trace: it is printed, saved and applied before any figure is drawn."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from tracewire.cli.output import (
+    Cut,
+    print_json,
+    print_problems,
+    print_table,
+    print_text,
+)
+from tracewire.cli.reporting import patch_of, store, with_table, write_report, write_table
+from tracewire.errors import FitError, Problem, TracewireError
+
+if TYPE_CHECKING:
+    from tracewire.compile import Model
+    from tracewire.diagram import Diagram
+    from tracewire.trace import Found
+
+
+@dataclass(frozen=True)
+class Targets:
+    """The files that a trace is to write; None: that one is not wanted."""
+
+    report: str | None = None
+    save: str | None = None
+    apply: bool = False
+    output: str | None = None
+    patch: str | None = None
+    table: str | None = None
+
+
+def deliver(found: Found, model: Model, own: Diagram, targets: Targets, as_json: bool) -> None:
+    """Print a trace, save it, write the edited diagram, and only then draw the report.
+
+    `own` is the diagram as its file has it. A file that cannot be written does not keep the others
+    from being written. Raises TracewireError for those, after all is done, and Cut where the trace
+    was interrupted.
+    """
+    written: list[str] = []
+    failed: list[TracewireError] = []
+
+    def attempt(step: Callable[[], list[str]]) -> None:
+        try:
+            written.extend(step())
+        except TracewireError as error:
+            failed.append(error)
+        except Exception as error:  # the result has been printed: what comes after cannot undo it
+            what = f"internal error ({error!r})"
+            hint = "Please report it; --debug shows the traceback."
+            problem = FitError.one(what, hint=hint)
+            problem.__cause__ = error
+            failed.append(problem)
+
+    if not as_json:
+        print_trace(found)
+        sys.stdout.flush()
+    attempt(lambda: _save(found, targets.save))
+    attempt(lambda: _edit(found, model, own, targets, quiet=as_json))
+    if as_json:
+        planned = [*written, *([targets.report] if targets.report else [])]
+        data = found.as_json() | {"written": planned}
+        wrong = [problem.what for error in failed for problem in error.problems]
+        print_json(data | {"not_written": wrong} if wrong else data)
+    else:
+        for path in written:
+            print_text(f"written: {path}")
+    sys.stdout.flush()
+    attempt(lambda: write_report(found, targets.report))
+    if not as_json and targets.report in written:
+        print_text(f"written: {targets.report}")
+    _raise(failed, as_json)
+    if found.interrupted:
+        raise Cut
+
+
+def print_trace(found: Found) -> None:
+    """The answer in one sentence and in short, the same in words, the steps, tables and remarks."""
+    from tracewire.show.trace_tables import trace_tables
+    from tracewire.show.trace_text import answer_lines, remarks_of, step_lines
+
+    print_text("\n".join(answer_lines(found)))
+    print_text(f"\n{found.paragraph}\n")
+    print_text("\n".join(step_lines(found)))
+    for table in trace_tables(found):
+        print_table(table)
+    for text in remarks_of(found):
+        print_text(f"note: {text}")
+
+
+def _save(found: Found, path: str | None) -> list[str]:
+    from tracewire.trace import save
+
+    return [] if path is None else [str(save(found, path))]
+
+
+def _edit(found: Found, model: Model, own: Diagram, targets: Targets, *, quiet: bool) -> list[str]:
+    """Write the table and the edited diagram, and print the change unless `quiet`."""
+    from tracewire.diagram import with_series_of
+
+    output, table = targets.output, targets.table
+    written = write_table(found, table)
+    empirical = None
+    if table is not None and written:
+        home = own.file if output is None or output.endswith(".patch") else Path(output)
+        empirical = with_table(model, found, table, home.parent)
+
+    def edited() -> Diagram:
+        new = empirical or found.apply()
+        return with_series_of(new, own, Path(output) if output else None)
+
+    change = "" if quiet else patch_of(own, edited())
+    if change:
+        print_text(f"the change of the diagram:\n{change.rstrip()}")
+    return written + store(own, edited, targets.apply, output, targets.patch)
+
+
+def _raise(failed: list[TracewireError], as_json: bool) -> None:
+    """Raise what could not be written as one error; after JSON tell it on stderr alone."""
+    if not failed:
+        return
+    problems: list[Problem] = [problem for error in failed for problem in error.problems]
+    if not as_json:
+        raise type(failed[0])(problems) from failed[0].__cause__
+    print_problems(problems)
+    raise typer.Exit(failed[0].exit_code)

@@ -1,0 +1,178 @@
+"""The law of a missing effect: what the data need at a place over its coordinate and its rate."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.errors import OptionError
+from tracewire.show.style import (
+    AFTER,
+    BEFORE,
+    MEASURED,
+    cut,
+    plain_numbers,
+    save,
+    styled,
+    with_unit,
+)
+from tracewire.trace import Found
+from tracewire.trace.found import Force
+from tracewire.trace.words import unit_of_place
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Vector = NDArray[np.float64]
+
+MOST_FORCES = 3
+MOST_DOTS = 4000
+BINS, LEAST_IN_BIN = 24, 8
+FINE = 60
+"""Bins in which it is asked whether the law is a function of one variable."""
+TIGHT, MOSTLY = 0.04, 0.9
+"""A law is drawn as a line where in most bins it varies by less than this part of its range."""
+SPIKES = 0.05
+NOISY = 0.5
+"""Samples that scatter by more than this part of the axis are noise, and are not drawn."""
+FAR = 3.0
+"""Means with an error of more than this many median errors set no limits."""
+
+
+def plot_law(found: Found, path: Path) -> Path:
+    """The law over the one variable on which it depends most, before and after."""
+    from matplotlib.figure import Figure
+
+    chosen = _chosen(found)
+    with styled():
+        figure = Figure(figsize=(8.0, 3.6 * len(chosen) + 0.6), layout="constrained")
+        grid = figure.subplots(len(chosen), 1, squeeze=False)
+        for (panel,), force in zip(grid, chosen, strict=True):
+            over = 0 if _held_by(force.q, force) > _held_by(force.v, force) else 1
+            _draw(panel, force, over, found)
+            panel.set_ylabel(_label(force, found))
+        _explain(figure, grid.flat)
+        return save(figure, path)
+
+
+def plot_forces(found: Found, path: Path) -> Path:
+    """What is needed at each place over its coordinate and over its rate, with the law on top."""
+    from matplotlib.figure import Figure
+
+    chosen = _chosen(found)
+    with styled():
+        figure = Figure(figsize=(9.0, 3.2 * len(chosen) + 0.7), layout="constrained")
+        grid = figure.subplots(len(chosen), 2, squeeze=False, sharey="row")
+        for panels, force in zip(grid, chosen, strict=True):
+            limits = [_draw(panel, force, over, found) for over, panel in enumerate(panels)]
+            panels[0].set_ylim(min(low for low, _ in limits), max(high for _, high in limits))
+            panels[0].set_ylabel(_label(force, found))
+        _explain(figure, grid.flat)
+        return save(figure, path)
+
+
+def _explain(figure: Figure, panels: Iterable[Axes]) -> None:
+    """One legend of what all panels have."""
+    entries: dict[str, Artist] = {}
+    for panel in panels:
+        for line, label in zip(*panel.get_legend_handles_labels(), strict=True):
+            entries.setdefault(str(label), line)
+    figure.legend(
+        list(entries.values()), list(entries), loc="outside upper right", ncols=2, markerscale=1.2
+    )
+
+
+def _chosen(found: Found) -> tuple[Force, ...]:
+    chosen = [force for force in found.forces if len(force.needed)]
+    if not chosen:
+        raise OptionError.one("no place of a sum has got an effect")
+    return tuple(chosen[:MOST_FORCES])
+
+
+def _label(force: Force, found: Found) -> str:
+    return with_unit(f"needed at {cut(force.place)}", unit_of_place(found, force.place))
+
+
+def _draw(panel: Axes, force: Force, over: int, found: Found) -> tuple[float, float]:
+    """Draw a force over q (0) or v (1); the limits that hold the law and the means."""
+    values = force.v if over else force.q
+    if force.means:
+        there = force.means[over]
+        middles, means, errors = there.at, there.mean, there.error
+    else:
+        middles, means, errors = binned(values, force.needed)
+    panel.axhline(0.0, color=BEFORE, linewidth=1.2, linestyle="--", zorder=2,
+                  label="before: not in the diagram")  # fmt: skip
+    panel.errorbar(middles, means, 2 * errors, color=MEASURED, linestyle="", marker="o",
+                   markersize=4.5, markerfacecolor="white", zorder=4,
+                   label="needed: mean, ±2 standard errors")  # fmt: skip
+    sure = errors <= FAR * np.median(errors)  # where there are few data, means are far off
+    shown = [*means[sure], *(means - errors)[sure], *(means + errors)[sure], *force.fitted, 0.0]
+    low, high = float(np.nanmin(shown)), float(np.nanmax(shown))
+    every = max(1, math.ceil(len(values) / MOST_DOTS))
+    if float(np.nanstd(force.needed - force.fitted)) < NOISY * (high - low):
+        size = float(np.clip(70 / np.sqrt(max(len(values) / every, 1)), 1.5, 5))
+        panel.plot(values[::every], force.needed[::every], color=MEASURED, alpha=0.25,
+                   linestyle="", marker=".", markersize=size, rasterized=True, zorder=1,
+                   label="needed at each sample")  # fmt: skip
+    if np.any(force.fitted):
+        order = np.argsort(values, kind="stable")
+        line = _is_function(values, force.fitted)
+        look = {"linewidth": 1.8} if line else {"linestyle": "", "marker": ".", "markersize": 2.5}
+        panel.plot(values[order][::every], force.fitted[order][::every], color=AFTER, zorder=3,
+                   label="after: the fitted law", **look)  # fmt: skip
+    name = force.names[over]
+    plain_numbers(panel.yaxis)
+    panel.set_xlabel(with_unit(name, found.units.get(name, "")))
+    margin = 0.1 * (high - low or 1.0)
+    panel.set_ylim(low - margin, high + margin)
+    return low - margin, high + margin
+
+
+def binned(values: Vector, needed: Vector, bins: int = BINS) -> tuple[Vector, Vector, Vector]:
+    """Middles of bins with equally many samples, the mean there and its standard error.
+
+    What is needed has spikes where windows begin and end: the outermost twentieth on either side
+    is taken as far as the rest reaches.
+    """
+    known = np.isfinite(values) & np.isfinite(needed)
+    order = np.argsort(values[known], kind="stable")
+    parts = np.array_split(order, min(bins, max(len(order) // LEAST_IN_BIN, 1)))
+    x, y = values[known], np.clip(needed[known], *np.quantile(needed[known], [SPIKES, 1 - SPIKES]))
+    middles = np.array([np.median(x[part]) for part in parts])
+    means = np.array([np.mean(y[part]) for part in parts])
+    errors = np.array([np.std(y[part]) / math.sqrt(len(part)) for part in parts])
+    return middles, means, errors
+
+
+def _is_function(values: Vector, law: Vector) -> bool:
+    """Whether a law is a function of one variable, jumps included."""
+    whole = float(np.ptp(law))
+    spreads = np.array([float(np.std(part)) for part in _fine(values, law)])
+    return bool(np.mean(spreads <= TIGHT * whole) >= MOSTLY)
+
+
+def _held_by(values: Vector, force: Force) -> float:
+    """The part of the law's variance that a function of one variable holds: 0 to 1."""
+    law = force.fitted
+    whole = float(np.sum((law - np.mean(law)) ** 2))
+    if not np.ptp(values) > 0:
+        return 0.0
+    if whole <= 1e-18 * float(np.sum(law**2)):
+        return 1.0
+    return (
+        1 - float(sum(np.sum((part - np.mean(part)) ** 2) for part in _fine(values, law))) / whole
+    )
+
+
+def _fine(values: Vector, law: Vector) -> list[Vector]:
+    """The law in narrow bins of a variable."""
+    order = np.argsort(values, kind="stable")
+    return np.array_split(law[order], min(FINE, max(len(law) // LEAST_IN_BIN, 1)))
