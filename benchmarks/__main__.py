@@ -17,16 +17,21 @@ from benchmarks.table import console, seconds, show, show_promises
 
 
 def main() -> int:
-    """Measure the cases that are named, or all; `tracing` has its own options."""
+    """Measure the cases that are named, or all; the benches of traces have their own options."""
     if sys.argv[1:2] == ["tracing"]:
         from benchmarks.tracing.run import main as tracing
 
         return tracing(sys.argv[2:])
+    if sys.argv[1:2] == ["tracing-real"]:
+        from benchmarks.tracing.real import main as tracing_real
+
+        return tracing_real(sys.argv[2:])
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks",
         description="Times of tracewire beside other solvers, at equal accuracy. "
         "A time is the least of several runs, taken in turn; ratios are of the same session. "
-        "What a trace finds is another bench: python -m benchmarks tracing --help.",
+        "What a trace finds is another bench: python -m benchmarks tracing --help, "
+        "and on measured records: python -m benchmarks tracing-real --help.",
     )
     parser.add_argument("case", nargs="*", help=f"of {', '.join(CASES)}; all if none is named")
     parser.add_argument("--quick", action="store_true", help="fewer runs, slow peers left out")

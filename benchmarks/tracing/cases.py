@@ -162,6 +162,9 @@ EXTRA = tuple(
         single("duffing", spec("drive_3rd_harm", "drive.u", absolute=0.12, psi="0.7")),
         single("duffing", spec("asym_viscous", share=0.08)),
         single("cart_smooth", spec("lugre", share=0.08, s="0.05Q", vs="0.4V", ratio="0.5")),
+        single("pendulum", spec("drive_saturation", "drive.u", absolute=0.6, limit="0.6U")),
+        single("duffing", spec("drive_dead_zone", "drive.u", absolute=0.6, zone="0.2U")),
+        single("torsion", spec("load_friction", share=0.06)),
         single("driven", spec("bouc_wen", share=0.06, s="0.15Q", n="1.5")),
         single("chain", spec("stiffness", 1, share=0.1)),
         single(
@@ -263,11 +266,15 @@ def nulls(count: int = NULLS) -> tuple[Case, ...]:
 
 
 def chosen(
-    pattern: str = "", null_count: int = NULLS, quick: bool = False, draw: int = 0
+    pattern: str = "",
+    null_count: int = NULLS,
+    quick: bool = False,
+    draw: int = 0,
+    further: Sequence[Case] = (),
 ) -> list[Case]:
     """The cases whose name matches a pattern such as `single/*@cart`; `quick`: a sample of all.
 
-    `draw` numbers repetitions with other random numbers.
+    `draw` numbers repetitions with other random numbers. `further` cases are of other files.
     """
     cases = [*SINGLES, *EXTRA, *DOUBLES, *OUTSIDE, *BAD, *nulls(null_count)]
     if quick:
@@ -279,6 +286,7 @@ def chosen(
             *nulls(min(10, null_count)),
         ]
         cases = [case for case in cases if case.system != "double_torsion"]
+    cases += further
     if pattern:
         every = pattern if any(c in pattern for c in "*?[") else f"*{pattern}*"
         cases = [case for case in cases if fnmatch.fnmatch(case.name, every)]

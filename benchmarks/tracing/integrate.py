@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,8 +34,27 @@ class Drive:
         )
 
 
+class Unmodelled(Protocol):
+    """A force at the first place that no block of the library has, with `states` of its own."""
+
+    states: int
+
+    def force(self, at: At, z: Sequence[float]) -> float:
+        """The force now."""
+
+    def rates(self, at: At, z: Sequence[float]) -> list[float]:
+        """The rates of its states."""
+
+    def begin(self, q: float, v: float) -> list[float]:
+        """Its states at the start of a record."""
+
+
 class Motion:
-    """A plant with hidden effects under a drive; `noise` is a random force at the first place."""
+    """A plant with hidden effects under a drive; `noise` is a random force at the first place.
+
+    `floor` is a force that depends on the state. With `control` (kp, kd) the drive is the reference
+    of a controller at the first place: u = kp*(drive - q) - kd*v.
+    """
 
     def __init__(
         self,
@@ -44,8 +63,11 @@ class Motion:
         hidden: Sequence[Hidden],
         drive: Drive,
         noise: Callable[[float], float] | None = None,
+        floor: Unmodelled | None = None,
+        control: tuple[float, float] | None = None,
     ) -> None:
         self.plant, self.values, self.drive, self.noise = plant, values, drive, noise
+        self.floor, self.control = floor, control
         self.n = len(plant.coordinates)
         self.acting = [h for h in hidden if h.effect.kind in ("sum", "drive")]
         self.memories = [h for h in self.acting if h.effect.memory or h.name == "drive_lag"]
@@ -69,10 +91,17 @@ class Motion:
         omega, phase = (d.omega[0], d.phase[0]) if d.omega else (0.0, 0.0)
         return At(t, y[place], y[n + place], u, y[other], y[n + other], z, omega, omega * t + phase)
 
+    def driven(self, t: float, y: Sequence[float]) -> float:
+        """What drives the plant: the drive itself, or a controller that follows it."""
+        if not self.control:
+            return self.drive(t)
+        kp, kd = self.control
+        return kp * (self.drive(t) - y[0]) - kd * y[self.n]
+
     def torques(self, t: float, y: Sequence[float]) -> tuple[list[float], list[float], list[float]]:
         """Forces without set-valued friction, its levels, and the rates of memory states."""
         n = self.n
-        measured = u = self.drive(t)
+        measured = u = self.driven(t, y)
         rates, zs = [], {}
         for number, h in enumerate(self.memories):
             z = y[2 * n + number]
@@ -102,6 +131,10 @@ class Motion:
                     level[h.place] += size
         if self.noise:
             force[0] += self.noise(t)
+        if self.floor:
+            at, own = self.at(t, y, 0, measured, 0.0), y[2 * n + len(self.memories) :]
+            force[0] += self.floor.force(at, own)
+            rates += self.floor.rates(at, own)
         return force, level, rates
 
     def solved(
@@ -132,12 +165,15 @@ class Motion:
     def run(self, start: Sequence[float], times: Array, begin: float, rtol: float = 1e-9) -> Array:
         """The states (N, 2n + memories) at `times` [s] from `start` at `begin`."""
         n = self.n
-        y = np.concatenate([start, np.zeros(len(self.memories))])
+        own = self.floor.states if self.floor else 0
+        y = np.concatenate([start, np.zeros(len(self.memories) + own)])
         for number, h in enumerate(self.memories):
             if h.name == "drive_lag":
                 y[2 * n + number] = self.drive(begin)
             elif h.name == "maxwell" and isinstance(h.place, int):
                 y[2 * n + number] = y[h.place]
+        if self.floor:  # what follows the body begins where the body is
+            y[2 * n + len(self.memories) :] = self.floor.begin(y[0], y[n])
         modes = [
             (self.mode_at_rest(begin, y, [1] * n, i) if y[n + i] == 0 else int(np.sign(y[n + i])))
             if self.rubs[i]

@@ -95,6 +95,9 @@ EFFECTS: dict[str, Effect] = {
     "drive_3rd_harm": Effect(
         lambda a, s: s["size"] * math.sin(3 * a.phase + s["psi"]), kind="drive"
     ),
+    "drive_saturation": Effect(lambda a, s: _clip(a.u, s["limit"]) - a.u, kind="drive"),
+    "drive_dead_zone": Effect(lambda a, s: -_clip(a.u, s["zone"]), kind="drive"),
+    "load_friction": Effect(level=lambda a, s: abs(a.u)),
     "inertia": Effect(kind="mass"),
     "sensor_offset": Effect(kind="sensor"),
     "sensor_gain": Effect(kind="sensor"),

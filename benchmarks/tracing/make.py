@@ -80,10 +80,10 @@ def _drives(case: Case, plant: Plant, rng: np.random.Generator) -> tuple[Series,
     return tuple(found)
 
 
-def _number(text: str, Q: float, V: float) -> float:
-    if text.endswith("Q"):
-        return float(text[:-1]) * Q
-    return float(text[:-1]) * V if text.endswith("V") else float(text)
+def number(text: str, Q: float, V: float, U: float) -> float:
+    """A number, or a multiple of the largest coordinate, the rms rate or the drive's amplitude."""
+    sizes = {"Q": Q, "V": V, "U": U}
+    return float(text[:-1]) * sizes[text[-1]] if text[-1] in sizes else float(text)
 
 
 def _sized(
@@ -102,7 +102,8 @@ def _sized(
     place = spec.place if isinstance(spec.place, int) else 0
     Q = float(np.max(np.abs(states[:, place])))
     V = float(np.sqrt(np.mean(states[:, n + place] ** 2)))
-    shapes = {name: _number(text, Q, V) for name, text in spec.shapes}
+    U = sum(series.drive.amplitude)
+    shapes = {name: number(text, Q, V, U) for name, text in spec.shapes}
     if spec.absolute:
         if spec.name.endswith("_harm"):
             shapes = {"size": series.drive.amplitude[0], "psi": shapes.get("psi", 0.0)}
@@ -261,17 +262,17 @@ def _written(setup: Setup, home: Path, diagram: Path) -> dict[str, Any]:
     diagram.write_text(declared + "\n".join(lines) + "\n")
     return {
         "values": setup.values,
-        "hidden": [asdict(h) | {"place": place_name(setup, h)} for h in setup.hidden],
+        "hidden": [asdict(h) | {"place": place_name(setup.plant, h)} for h in setup.hidden],
         "sigma": setup.sigma,
         "validate": clean,
     }
 
 
-def place_name(setup: Setup, hidden: Hidden) -> str:
+def place_name(plant: Plant, hidden: Hidden) -> str:
     """The place as a trace names it."""
     if hidden.effect.kind == "sensor":
         return f"sensor.{hidden.place}"
-    return setup.plant.places[hidden.place] if isinstance(hidden.place, int) else hidden.place
+    return plant.places[hidden.place] if isinstance(hidden.place, int) else hidden.place
 
 
 def _measured(setup: Setup, name: str, use: str) -> list[str]:

@@ -29,6 +29,20 @@ class _Window:
     shown: Array  # (N, channels), in sigma
 
 
+def sanity(case: Case) -> str:
+    """What refits by scipy and numpy leave of a case, in words."""
+    if case.group not in ("floor", "floor-null"):
+        return f"s2 {residual(case):10.4g}"
+    from benchmarks.tracing.floor.drawing import draw_rig
+
+    _, s = draw_rig(case)
+    return (
+        f"truth {s.truth:.3f} of the excess, {s.truth_long:.3f} in long windows; excess "
+        f"{s.excess:.2g} of the signal, floor {s.left:.2g}; {s.rival or 'no rival'} leaves "
+        f"{s.apart:.3g} times as much; a law takes {s.known:.2f} of the floor; draw {s.attempt + 1}"
+    )
+
+
 def residual(case: Case) -> float:
     """s2 of the declared model after the refit of its free parameters, with noisy records."""
     setup = set_up(case)

@@ -15,6 +15,8 @@ from typing import Any
 
 from benchmarks.table import console, show, show_promises
 from benchmarks.tracing.cases import NULLS, Case, chosen
+from benchmarks.tracing.floor import cases as floor
+from benchmarks.tracing.floor.score import floor_tables
 from benchmarks.tracing.score import tables
 
 ONE_CORE = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
@@ -26,8 +28,14 @@ def main(arguments: Sequence[str]) -> int:
         prog="python -m benchmarks tracing",
         description="Does a trace find what is hidden in generated records? One core a case.",
     )
-    parser.add_argument("--quick", action="store_true", help="a sample of about 25 cases")
-    parser.add_argument("--only", default="", help="a pattern of case names: 'double/*', 'chain'")
+    parser.add_argument("--quick", action="store_true", help="a sample of about 40 cases")
+    parser.add_argument("--only", default="", help="a pattern of names: 'floor/*', 'chain'")
+    parser.add_argument(
+        "--units",
+        choices=("si", "other", "both"),
+        default="si",
+        help="of floor cases: SI, others (mm, ms, deg), or SI and every fifth once more in others",
+    )
     parser.add_argument("--nulls", type=int, default=NULLS, help=f"how many; default {NULLS}")
     parser.add_argument("--draw", type=int, default=0, help="other random numbers; default 0")
     parser.add_argument("--jobs", type=int, default=2, help="processes; default 2")
@@ -35,10 +43,11 @@ def main(arguments: Sequence[str]) -> int:
     parser.add_argument("--folder", type=Path, help="keeps the records; default: a temporary one")
     parser.add_argument("--list", action="store_true", help="names of the cases, and nothing else")
     parser.add_argument("--generate", action="store_true", help="the files alone, no trace")
-    parser.add_argument("--sanity", action="store_true", help="s2 of a refit by scipy, no trace")
+    parser.add_argument("--sanity", action="store_true", help="what scipy refits leave, no trace")
     parser.add_argument("--score", type=Path, help="tables of an earlier --json file, no trace")
     options = parser.parse_args(arguments)
-    cases = chosen(options.only, options.nulls, options.quick, options.draw)
+    more = floor.quick() if options.quick else (*floor.floor_cases(), *floor.floor_nulls())
+    cases = chosen(options.only, options.nulls, options.quick, options.draw, more)
     screen = console()
     if options.list:
         screen.print("\n".join(case.name for case in cases))
@@ -54,7 +63,11 @@ def main(arguments: Sequence[str]) -> int:
                 parser.error("--generate needs a --folder")
             rows = _all(cases, folder, options)
     if rows:
-        results = tables(rows)
+        with_floor = [row for row in rows if "units" in row]
+        results = (
+            tables([r for r in rows if "units" not in r]) if len(with_floor) < len(rows) else []
+        )
+        results += floor_tables(with_floor)
         for result in results:
             show(result, screen)
         show_promises(results, screen)
@@ -62,9 +75,8 @@ def main(arguments: Sequence[str]) -> int:
 
 
 def _all(cases: Sequence[Case], folder: Path, options: Any) -> list[dict[str, Any]]:
-    from benchmarks.tracing.make import make
-    from benchmarks.tracing.refit import residual
-    from benchmarks.tracing.work import work
+    from benchmarks.tracing.refit import sanity
+    from benchmarks.tracing.work import generate, work
 
     rows: list[dict[str, Any]] = []
     for name in ONE_CORE:  # the processes inherit it
@@ -72,16 +84,19 @@ def _all(cases: Sequence[Case], folder: Path, options: Any) -> list[dict[str, An
     spawn = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(options.jobs, mp_context=spawn) as pool:
         if options.sanity:
-            left = {pool.submit(residual, case): case for case in cases if not case.bad}
+            left = {pool.submit(sanity, case): case for case in cases if not case.bad}
             for ready in as_completed(left):
-                print(f"{left[ready].name:48} s2 {ready.result():10.4g}", flush=True)
+                print(f"{left[ready].name:48} {ready.result()}", flush=True)
             return []
-        task: Any = make if options.generate else work
-        waiting = {pool.submit(task, case, folder): case for case in cases}
+        task: Any = generate if options.generate else work
+        waiting = {
+            pool.submit(task, case, folder, other): case
+            for case, other in floor.in_units(cases, options.units)
+        }
         for number, done in enumerate(as_completed(waiting), 1):
             case = waiting[done]
             if options.generate:
-                print(f"{number}/{len(cases)} {done.result()}", flush=True)
+                print(f"{number}/{len(waiting)} {done.result()}", flush=True)
                 continue
             row = done.result()
             rows.append(row)
@@ -89,7 +104,7 @@ def _all(cases: Sequence[Case], folder: Path, options: Any) -> list[dict[str, An
             words = " ".join(k for k, v in judged.items() if v is True)
             said = f"{judged['verdict']} {' + '.join(judged['named'])}"
             print(
-                f"{number}/{len(cases)} {case.name}: {said} [{words}] {row['wall']:.1f} s",
+                f"{number}/{len(waiting)} {case.name}: {said} [{words}] {row['wall']:.1f} s",
                 file=sys.stderr,
                 flush=True,
             )

@@ -44,7 +44,7 @@ def judge(case: Case, row: Row, coefficients: Mapping[str, str]) -> Row:
         allowed = right | set(case.alike)
         judged["exact"] = names == right
         judged["structural"] = names <= allowed and len(effects) == len(names) == len(right)
-        judged["both"] = all(_met(h, names, case) for h in truth)
+        judged["both"] = all(met(h, names, case) for h in truth)
     if case.group == "outside":
         missing = answer.get("missing") or {}
         variables = missing.get("variables", answer.get("depends_on") or ())
@@ -58,11 +58,11 @@ def judge(case: Case, row: Row, coefficients: Mapping[str, str]) -> Row:
         judged["false_alarm"] = verdict in ("effect", "unexplained")
     if case.group == "bad":
         judged["right"] = verdict in ("message", "unexplained", "null")
-    judged["errors"] = _errors(truth, effects, coefficients)
+    judged["errors"] = errors_of(truth, effects, coefficients)
     return judged
 
 
-def _met(hidden: Row, names: set[str], case: Case) -> bool:
+def met(hidden: Row, names: set[str], case: Case) -> bool:
     """Whether a hidden effect is named; a block that is alike stands for the one at its place."""
     alike = {a for a in case.alike if a.endswith(f"@ {hidden['place']}")}
     return label(hidden) in names or bool(alike & names)
@@ -72,7 +72,7 @@ def _same(variables: Sequence[str], options: Sequence[str]) -> bool:
     return {v.split()[0].split("_")[0] for v in variables} == {o.split()[0] for o in options}
 
 
-def _errors(
+def errors_of(
     truth: Sequence[Row], effects: Sequence[Row], coefficients: Mapping[str, str]
 ) -> list[float]:
     """Relative errors of the coefficients of the effects that are named exactly."""
@@ -97,7 +97,7 @@ def _share(rows: Sequence[Row], key: str) -> tuple[int, int]:
     return sum(bool(r["judged"].get(key)) for r in rows), len(rows)
 
 
-def _interval(k: int, n: int) -> str:
+def interval(k: int, n: int) -> str:
     """Clopper and Pearson's exact 95 % interval."""
     if not n:
         return "-"
@@ -119,7 +119,8 @@ def _reported(row: Row) -> tuple[float, float]:
     return float(np.mean(ratios)), float(np.mean([after[n] / sigma[n] for n in names]))
 
 
-def _quantile(values: Sequence[float], part: float) -> float:
+def quantile(values: Sequence[float], part: float) -> float:
+    """Of the finite values; NaN where there are none."""
     finite = [v for v in values if math.isfinite(v)]
     return float(np.quantile(finite, part)) if finite else math.nan
 
@@ -136,7 +137,7 @@ def tables(rows: Sequence[Row]) -> list[Result]:
         k, n = _share(groups.get(group, ()), key)
         if not n:
             return
-        counted.append([text, f"{k} of {n}", _interval(k, n)])
+        counted.append([text, f"{k} of {n}", interval(k, n)])
         if least:
             promises.append(Promise(text, 100 * k / n, 100 * least, "%"))
         if math.isfinite(most):
@@ -161,7 +162,7 @@ def tables(rows: Sequence[Row]) -> list[Result]:
     sizes: list[list[str]] = []
 
     def size(text: str, values: Sequence[float], most: tuple[float, float], unit: str) -> None:
-        middle, tail = (_quantile(values, part) for part in (0.5, 0.9))
+        middle, tail = (quantile(values, part) for part in (0.5, 0.9))
         finite = sum(map(math.isfinite, values))
         if not finite:
             return

@@ -15,6 +15,8 @@ from scipy.interpolate import CubicSpline
 from tracewire.fit.measured import series_parameters
 
 from benchmarks.tracing.cases import Case
+from benchmarks.tracing.floor.make import make_floor
+from benchmarks.tracing.floor.score import judge_floor
 from benchmarks.tracing.make import make
 from benchmarks.tracing.plants import PLANTS, Plant
 from benchmarks.tracing.score import judge
@@ -22,14 +24,26 @@ from benchmarks.tracing.score import judge
 Row = dict[str, Any]
 
 
-def work(case: Case, folder: Path) -> Row:
+def generate(case: Case, folder: Path, other_units: bool = False) -> Path:
+    """The files of a case; the path of its diagram."""
+    if case.group in ("floor", "floor-null"):
+        return make_floor(case, folder, other_units)
+    return make(case, folder)
+
+
+def work(case: Case, folder: Path, other_units: bool = False) -> Row:
     """The row of a case: truth, answer, judgement, seconds (CPU and wall) of the trace."""
     import tracewire as tw
 
-    row: Row = {"case": case.name, "group": case.group, "system": case.system}
-    path = make(case, folder)
+    row: Row = {"case": case.name, "group": case.group, "system": case.system, "draw": case.draw}
+    floor = case.group in ("floor", "floor-null")
+    if floor:
+        row["units"] = "other" if other_units else "si"
+    path = generate(case, folder, other_units)
     truth = json.loads((path.parent / "truth.json").read_text())
     row["truth"] = truth["hidden"]
+    if floor:
+        row |= {key: truth[key] for key in ("scenario", "shares")}
     wall, cpu = time.perf_counter(), time.process_time()
     found: Any = None
     try:
@@ -46,9 +60,11 @@ def work(case: Case, folder: Path) -> Row:
     if found is not None and not case.bad:
         try:
             row["free"] = _free_runs(found, truth, PLANTS[case.system])
+            if floor:
+                row["short"] = _free_runs(found, truth, PLANTS[case.system], truth["period"])
         except tw.TracewireError as error:
             row["free"] = {"error": str(error)}
-    row["judged"] = judge(case, row, _coefficients())
+    row["judged"] = (judge_floor if floor else judge)(case, row, _coefficients())
     return row
 
 
@@ -59,19 +75,27 @@ def _coefficients() -> dict[str, str]:
     return {b.name: b.effect.coefficient for b in load_library().effects() if b.effect}
 
 
-def _free_runs(found: Any, truth: Mapping[str, Any], plant: Plant) -> dict[str, float]:
+def _free_runs(
+    found: Any, truth: Mapping[str, Any], plant: Plant, window: float = math.inf
+) -> dict[str, float]:
     """Errors of the declared and of the found diagram on the validation record, in sigma.
 
     Simulated here from the true start state, so that they depend on no number of the report; the
-    noise of a measurement counts (1 is the best there is).
+    noise of a measurement counts (1 is the best there is). With `window` in s the record is run in
+    windows, each from the true state at its begin.
     """
     import tracewire as tw
 
     given = truth["validate"]
     names = (*plant.coordinates, *plant.rates)
     t = np.array(given["t"])
-    fine = np.linspace(t[0], t[-1], 20 * len(t))  # straight lines between samples would be an error
-    inputs = {plant.drive: (fine, CubicSpline(t, given["u"])(fine))} if plant.drive else None
+    if "fine" in given:
+        fine, u = np.array(given["fine"]), np.array(given["u"])
+    else:  # straight lines between samples would be an error
+        fine = np.linspace(t[0], t[-1], 20 * len(t))
+        u = CubicSpline(t, given["u"])(fine)
+    inputs = {plant.drive: (fine, u)} if plant.drive else None
+    count = len(t) - 1 if math.isinf(window) else max(8, round(window / (t[1] - t[0])))
     errors = {}
     for which, diagram in (("before", found.original), ("after", found.diagram)):
         model = tw.compile(diagram)
@@ -79,20 +103,24 @@ def _free_runs(found: Any, truth: Mapping[str, Any], plant: Plant) -> dict[str, 
         values = {n: v for n, v in own.items() if n in model.flat.parameters}
         if "validate" in diagram.measured:  # what the series has of its own
             values |= series_parameters(model, diagram.measured["validate"])
-        run = tw.simulate(
-            model,
-            parameters=values,
-            start=dict(zip(names, given["start"], strict=True)),
-            times=t,
-            inputs=inputs,
-            rtol=1e-8,
-        )
         squares = []
-        for name, shown in given["shown"].items():
-            y = np.asarray(run[name])
-            if which == "after":
-                y = _shown(found.as_json()["effects"], name, t, y)
-            squares.append(((y - np.array(shown)) / truth["sigma"][name]) ** 2)
+        for first in range(0, len(t) - count, count):
+            rows = slice(first, first + count + 1)
+            start = given["states"][first] if first else given["start"]
+            run = tw.simulate(
+                model,
+                parameters=values,
+                start=dict(zip(names, start, strict=True)),
+                span=(t[rows][0], t[rows][-1]),
+                times=t[rows],
+                inputs=inputs,
+                rtol=1e-8,
+            )
+            for name, shown in given["shown"].items():
+                y = np.asarray(run[name])
+                if which == "after":
+                    y = _shown(found.as_json()["effects"], name, t[rows], y)
+                squares.append(((y - np.array(shown[rows])) / truth["sigma"][name]) ** 2)
         errors[which] = math.sqrt(float(np.mean(squares)) + 1.0)
     return errors
 
@@ -110,5 +138,5 @@ def _shown(effects: list[Row], name: str, t: Any, y: Any) -> Any:
         gain * z
         + mine.get("sensor_offset", 0.0)
         + mine.get("sensor_quad", 0.0) * y**2
-        + mine.get("sensor_drift", 0.0) * (t - t[0])
+        + mine.get("sensor_drift", 0.0) * t  # from the record's begin, at 0
     )
