@@ -13,8 +13,13 @@ PACKAGE = ROOT / "solver" / "tracewire"
 BLOCKS = ROOT / "blocks"
 
 # a room may import itself and the rooms before it
-ROOMS = ["errors", "shipped", "formula", "library", "data", "diagram", "compile", "solve", "fit"]
-ROOMS += ["trace", "analyse", "show", "paper", "cli"]
+ROOMS = ["errors", "shipped", "formula", "library", "data", "diagram", "compile", "solve"]
+ROOMS += ["residual", "fit", "trace", "analyse", "show", "paper", "cli"]
+# the same for the stages of a trace, files and folders of that room
+STAGES = ["options", "found", "candidates", "trials", "check", "screen", "missing", "search"]
+STAGES += ["choose", "experiment", "words", "saved", "trace"]
+# a room of these is used by the others of these through its face alone, what its `__init__` names
+FACED = ("residual", "fit", "trace")
 FACADE = {"__init__", "__main__"}  # they stand above the rooms and may import each of them
 BLOCKS_MAY_IMPORT = {"__future__", "tracewire.library"}
 MOST_LINES = 500
@@ -57,6 +62,8 @@ def against_the_order(file: str, source: str) -> list[str]:
         return []
     if parts[0] not in ROOMS:
         return [f"{file}: the room '{parts[0]}' has no place in the order of ROOMS"]
+    if parts[0] == "trace" and parts[1] not in {*STAGES, *FACADE}:
+        return [f"{file}: the stage '{parts[1]}' has no place in the order of STAGES"]
     found = []
     for line, module in modules(source, ".".join(("tracewire", *parts[:-1]))):
         top, *rest = module.split(".")
@@ -67,7 +74,34 @@ def against_the_order(file: str, source: str) -> list[str]:
             found.append(f"{file}:{line}: {module}: name the room, not the package above it")
         elif top == "tracewire" and ROOMS.index(room) > ROOMS.index(parts[0]):
             found.append(f"{file}:{line}: {module}: '{room}' comes after '{parts[0]}'")
+        elif top == "tracewire" and room == parts[0] == "trace" and parts[1] not in FACADE:
+            stage = rest[1]
+            if stage not in STAGES:
+                found.append(f"{file}:{line}: {module}: name the stage, not the room above it")
+            elif STAGES.index(stage) > STAGES.index(parts[1]):
+                found.append(f"{file}:{line}: {module}: '{stage}' comes after '{parts[1]}'")
     return found
+
+
+def past_a_face(file: str, source: str, faces: Mapping[str, set[str]]) -> list[str]:
+    """The imports of `file`, of a room with a face, that take more of another one than its face."""
+    parts = Path(file).with_suffix("").parts
+    found = []
+    for line, module in modules(source, ".".join(("tracewire", *parts[:-1]))):
+        top, *rest = module.split(".")
+        if top != "tracewire" or not rest or rest[0] == parts[0]:
+            continue
+        if {rest[0], parts[0]} <= set(FACED) and not (len(rest) == 2 and rest[1] in faces[rest[0]]):
+            found.append(f"{file}:{line}: {module}: not in the face of '{rest[0]}'")
+    return found
+
+
+def face(source: str) -> set[str]:
+    """What the `__init__` of a room exports: its `__all__`."""
+    for node in ast.parse(source).body:
+        if isinstance(node, ast.Assign) and last_name(node.targets[0]) == "__all__":
+            return set(ast.literal_eval(node.value))
+    return set()
 
 
 def bases_of_classes(sources: Mapping[str, str]) -> dict[str, set[str]]:
@@ -144,6 +178,13 @@ def test_imports_run_one_way() -> None:
     assert [line for file, text in read.items() for line in against_the_order(file, text)] == []
 
 
+def test_fit_trace_and_residual_use_each_other_s_faces_alone() -> None:
+    read = sources()
+    faces = {room: face(read[f"{room}/__init__.py"]) for room in FACED}
+    assert all(faces.values())
+    assert [line for file, text in read.items() for line in past_a_face(file, text, faces)] == []
+
+
 def test_block_files_import_the_library_and_nothing_else() -> None:
     strangers = [
         f"{file.relative_to(ROOT)}:{line}: {module}"
@@ -197,6 +238,11 @@ def test_nothing_runs_text_as_code() -> None:
         ("library/load.py", "from tracewire.blocks import friction"),
         ("library/load.py", "import_module('tracewire.blocks.friction')"),
         ("cellar/wine.py", ""),
+        ("trace/cellar/wine.py", ""),
+        ("trace/found.py", "from tracewire.trace.screen.tangent import Tangent"),
+        ("trace/screen/tangent.py", "from ..search.search import Search"),
+        ("trace/screen/tangent.py", "from tracewire.trace import Found"),
+        ("fit/fit.py", "from tracewire.trace import Found"),
     ],
 )
 def test_an_import_against_the_order_is_found(file: str, source: str) -> None:
@@ -210,10 +256,26 @@ def test_an_import_against_the_order_is_found(file: str, source: str) -> None:
         ("solve/run.py", "from ..errors import Problem\nfrom . import steps"),
         ("compile/source.py", "from .tape import Tape\nimport compileall, trace, blocksworld"),
         ("__init__.py", "from tracewire.cli import main"),
+        ("trace/__init__.py", "from tracewire.trace.trace import trace"),
+        ("trace/search/search.py", "from tracewire.trace.screen.tangent import Tangent"),
     ],
 )
 def test_an_import_in_the_order_passes(file: str, source: str) -> None:
     assert against_the_order(file, source) == []
+
+
+@pytest.mark.parametrize(
+    ("source", "refused"),
+    [
+        ("from tracewire.fit import fit", 0),
+        ("from tracewire.compile.model import Model", 0),
+        ("from tracewire.fit.fit import fit", 1),
+        ("from tracewire.fit import secret", 1),
+        ("import tracewire.fit", 1),
+    ],
+)
+def test_an_import_past_a_face_is_found(source: str, refused: int) -> None:
+    assert len(past_a_face("trace/trace.py", source, {"fit": {"fit"}})) == refused
 
 
 @pytest.mark.parametrize(

@@ -22,9 +22,8 @@ from pathlib import Path
 
 import numpy as np
 import tracewire as tw
-from tracewire.fit import Criterion, Fit, Minimum, fminsearch, load_measured, optimset
-from tracewire.fit.starts import whole_segment
-from tracewire.fit.unknowns import free_unknowns
+from tracewire.fit import Fit, Minimum, fminsearch, optimset
+from tracewire.residual import Criterion, free_unknowns, load_measured, whole_segment
 from tracewire.solve import parameter_values
 
 from benchmarks.cases.paper_a import DIAGRAM

@@ -8,7 +8,8 @@ from collections.abc import Iterator
 
 import numpy as np
 import tracewire as tw
-from tracewire.fit import Measured, fit
+from tracewire.fit import fit
+from tracewire.residual import Measured
 
 from benchmarks.cases.paper_a import DIAGRAM
 from benchmarks.cases.sensitivities import NINE

@@ -15,7 +15,8 @@ import tracewire as tw
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from tracewire.errors import SimulationError
-from tracewire.fit import Measured, fit, optimset
+from tracewire.fit import fit, optimset
+from tracewire.residual import Measured
 from tracewire.solve import parameter_values
 
 from benchmarks.options import Options

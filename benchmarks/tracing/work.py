@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline
-from tracewire.fit.measured import series_parameters
+from tracewire.residual import series_parameters
 
 from benchmarks.tracing.cases import Case
 from benchmarks.tracing.floor.make import make_floor

@@ -31,18 +31,9 @@ if TYPE_CHECKING:
     from tracewire.compile import Model, compile
     from tracewire.diagram import Diagram, read, read_text
     from tracewire.errors import TracewireError
-    from tracewire.fit import (
-        Fit,
-        Measured,
-        Sensor,
-        diagnose,
-        fit,
-        fminsearch,
-        load_measured,
-        optimset,
-        profile,
-    )
+    from tracewire.fit import Fit, diagnose, fit, fminsearch, optimset, profile
     from tracewire.library import Block, Effect, Input, Output, Parameter, State, load_library
+    from tracewire.residual import Measured, Sensor, load_measured
     from tracewire.show import optimplotfit, optimplotfval, optimplotx, report
     from tracewire.solve import (
         Held,
@@ -120,8 +111,9 @@ ROOM_OF = {
     "compile": "compile Model",
     "diagram": "Diagram read read_text",
     "errors": "TracewireError",
-    "fit": "Fit Measured Sensor diagnose fit fminsearch load_measured optimset profile",
+    "fit": "Fit diagnose fit fminsearch optimset profile",
     "library": "Block Effect Input Output Parameter State load_library",
+    "residual": "Measured Sensor load_measured",
     "show": "optimplotfit optimplotfval optimplotx report",
     "solve": "Held Interrupted Limits Run Runs Section simulate simulate_many",
     "trace": "Found TraceOptions load save trace",

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from fit.models import OSCILLATOR, T, made, oscillation, series
+from residual.models import OSCILLATOR, T, made, oscillation, series
 from tracewire.errors import OptionError
 from tracewire.fit import Fit, fit, optimset
 from tracewire.fit.methods import METHODS

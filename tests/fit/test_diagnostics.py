@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fit.made_noise import autoregression
-from fit.models import LINE, T, made, series
 from numpy.typing import NDArray
+from residual.made_noise import autoregression
+from residual.models import LINE, T, made, series
 from tracewire.fit import Fit, fit
 from tracewire.fit.diagnostics import (
     Diagnosis,

@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fit.models import LINE, OSCILLATOR, PENDULUM, C, K, T, made, oscillation, series, swing
+from residual.models import LINE, OSCILLATOR, PENDULUM, C, K, T, made, oscillation, series, swing
 from tracewire.errors import DataError, FitError, OptionError
-from tracewire.fit import Fit, Measured, Progress, Sensor, fit, optimset
+from tracewire.fit import Fit, Progress, fit, optimset
+from tracewire.residual import Measured, Sensor
 
 METHODS = ("fminsearch", "least_squares")
 FINE = optimset(TolX=1e-7, TolFun=1e-16, Display="off")

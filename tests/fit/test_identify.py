@@ -6,13 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fit.models import T, made, oscillation, series
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from residual.models import T, made, oscillation, series
 from tracewire.compile import compile
 from tracewire.diagram import read
-from tracewire.fit import Fit, Measured, Sensor, fit
+from tracewire.fit import Fit, fit
 from tracewire.fit.uncertainty import Columns, Uncertainty, uncertainty_from
+from tracewire.residual import Measured, Sensor
 
 APPENDIX = Path(__file__).parents[2] / "diagrams" / "papers" / "a_torsion" / "pendulum.yaml"
 OPEN = ("alpha", "beta", "T_s2_l", "T_s2_r")

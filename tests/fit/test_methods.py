@@ -6,14 +6,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fit.models import OSCILLATOR, T, made, oscillation, series
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from residual.models import OSCILLATOR, T, made, oscillation, series
 from scipy.integrate import solve_ivp
 from tracewire.compile import Model, compile
 from tracewire.diagram import read_text
 from tracewire.errors import OptionError
-from tracewire.fit import Fit, Measured, fit, optimset
+from tracewire.fit import Fit, fit, optimset
+from tracewire.residual import Measured
 
 TRUE = {"k": 4.0, "c": 0.3}
 LONG = np.linspace(0.0, 60.0, 1201)

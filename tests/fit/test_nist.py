@@ -12,7 +12,8 @@ import pytest
 from fit import strd
 from tracewire.compile import Model, compile
 from tracewire.diagram import read_text
-from tracewire.fit import Fit, Measured, fit
+from tracewire.fit import Fit, fit
+from tracewire.residual import Measured
 from tracewire.solve import simulate
 
 LONG = ("Bennett5", 0)

@@ -9,8 +9,9 @@ import pytest
 from tracewire.compile import Model, compile
 from tracewire.diagram import add_own, read, read_text, set_sensors
 from tracewire.errors import DiagramError, OptionError
-from tracewire.fit import fit, load_measured
-from tracewire.fit.segment import of_diagram, parameter_in
+from tracewire.fit import fit
+from tracewire.residual import load_measured
+from tracewire.residual.segment import of_diagram, parameter_in
 
 TEXT = """\
 span: [0, 4]

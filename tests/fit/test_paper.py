@@ -9,9 +9,10 @@ import pytest
 from oracles import double_torsion, make_records
 from tracewire.compile import compile
 from tracewire.diagram import read
-from tracewire.fit import Criterion, Fit, fit, load_measured, optimset
-from tracewire.fit.starts import whole_segment
-from tracewire.fit.unknowns import free_unknowns
+from tracewire.fit import Fit, fit, optimset
+from tracewire.residual import Criterion, load_measured
+from tracewire.residual.starts import whole_segment
+from tracewire.residual.unknowns import free_unknowns
 from tracewire.solve import parameter_values
 
 DIAGRAM = Path(__file__).parents[2] / "diagrams" / "papers" / "a_torsion" / "pendulum.yaml"

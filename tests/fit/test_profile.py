@@ -6,10 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fit.models import LINE, OSCILLATOR, T, made, oscillation, series
+from residual.models import LINE, OSCILLATOR, T, made, oscillation, series
 from tracewire.errors import FitError, OptionError
-from tracewire.fit import Fit, Measured, fit
+from tracewire.fit import Fit, fit
 from tracewire.fit.profile import profile
+from tracewire.residual import Measured
 
 RELEASED = OSCILLATOR.replace("value: 0.9", "value: 1")
 

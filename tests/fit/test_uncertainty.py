@@ -6,15 +6,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fit.made_noise import autoregression
-from fit.models import LINE, made
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from residual.made_noise import autoregression
+from residual.models import LINE, made
 from scipy.stats import linregress
 from scipy.stats import t as student
-from tracewire.fit import Measured, fit
+from tracewire.fit import fit
 from tracewire.fit.uncertainty import Columns, Uncertainty, uncertainty_from
+from tracewire.residual import Measured
 
 Vector = NDArray[np.float64]
 COUNT = 200

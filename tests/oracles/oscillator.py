@@ -15,14 +15,14 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from tracewire.compile import Model, compile
 from tracewire.diagram import read_text
-from tracewire.fit import Measured
-from tracewire.trace.candidates import Candidate, find_candidates
-from tracewire.trace.levels import Level, Levels
-from tracewire.trace.places import find_places
-from tracewire.trace.search import Search
-from tracewire.trace.stretches import share_out
-from tracewire.trace.trial import Added, Bench, Trial
-from tracewire.trace.windows import Section, cut
+from tracewire.residual import Measured
+from tracewire.residual.windows import Section, cut
+from tracewire.trace.candidates.candidates import Candidate, find_candidates
+from tracewire.trace.candidates.levels import Level, Levels
+from tracewire.trace.candidates.places import find_places
+from tracewire.trace.search.search import Search
+from tracewire.trace.trials.stretches import share_out
+from tracewire.trace.trials.trial import Added, Bench, Trial
 
 DIAGRAM = """\
 span: [0, 12]

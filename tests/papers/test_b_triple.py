@@ -12,7 +12,8 @@ from oracles.triple_pendulum import PARAMETERS, STATES, solve
 from tracewire.compile import Model, compile
 from tracewire.diagram import read
 from tracewire.errors import SimulationError, TracewireError
-from tracewire.fit import Fit, Measured, fit
+from tracewire.fit import Fit, fit
+from tracewire.residual import Measured
 from tracewire.solve import parameter_values, simulate
 
 PENDULUM = Path(__file__).parents[2] / "diagrams/papers/b_triple/pendulum.yaml"

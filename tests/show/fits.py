@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 from tracewire.compile import Model, compile
 from tracewire.diagram import read_text
-from tracewire.fit import Comparison, Fit, Measured, Sensor
+from tracewire.fit import Comparison, Fit
 from tracewire.fit.result import Improvement
 from tracewire.fit.uncertainty import Uncertainty
+from tracewire.residual import Measured, Sensor
 
 TEXT = """\
 title: Swing & rest

@@ -18,7 +18,7 @@ from tracewire.errors import OptionError
 from tracewire.show import report
 from tracewire.trace import Found, TraceOptions
 from tracewire.trace.found import Dependence, Explained, Force, HeldOut, Remainder
-from tracewire.trace.telling import paragraph_of
+from tracewire.trace.words.telling import paragraph_of
 
 JUDGED = replace(
     FOUND,

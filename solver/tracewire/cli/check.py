@@ -30,7 +30,7 @@ def check(
     measured = []
     if model.diagram.measured:
         with working("reading the measured series"):
-            from tracewire.fit import load_measured
+            from tracewire.residual import load_measured
 
             measured = [series_contents(series) for series in load_measured(model)]
     found = contents(model)

@@ -91,7 +91,7 @@ def write_table(found: Found, path: str | None) -> list[str]:
     if found.missing is None:
         note(f"nothing is missing that a table could hold: '{path}' was not written")
         return []
-    from tracewire.trace.missing import missing_table
+    from tracewire.trace.missing.table import missing_table
 
     try:
         text = missing_table(found.missing)
@@ -110,8 +110,8 @@ def with_table(model: Model, found: Found, path: str, folder: Path) -> Diagram |
     do that.
     """
     from tracewire.diagram import set_sensors, set_values
-    from tracewire.trace.missing import add_table
-    from tracewire.trace.places import find_places
+    from tracewire.trace.candidates.places import find_places
+    from tracewire.trace.missing.table import add_table
 
     missing = found.missing
     assert missing is not None

@@ -178,7 +178,7 @@ def _series(model: Model, name: str) -> _Series:
         return {}, {}, "", None, {}
     if name not in model.diagram.measured:
         raise OptionError([unknown("measured series", name, model.diagram.measured)])
-    from tracewire.fit import load_measured
+    from tracewire.residual import load_measured
 
     # of a series with several windows the first
     measured = next(found for found in load_measured(model) if found.series == name)

@@ -154,7 +154,7 @@ def _with_files(model: Model, files: dict[str, list[str] | None]) -> Model:
     if not given:
         return model
     from tracewire.compile import compile
-    from tracewire.fit import series_from_files
+    from tracewire.residual import series_from_files
 
     diagram, remarks = series_from_files(model, given)
     for remark in remarks:

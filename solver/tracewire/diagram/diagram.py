@@ -118,7 +118,7 @@ class Channel:
     of the column. A column has gain*z + offset + quad*z^2 + drift*(t - t0), z = signal(t - delay),
     t0 the first sample. `weight` counts the signal in a criterion, and it is compared modulo
     `modulo`. A channel without a column is made by a step of `clean`. `hold` says how an input acts
-    between its samples; None: as `tracewire.fit.inputs` finds it to be.
+    between its samples; None: as `tracewire.residual.inputs` finds it to be.
     """
 
     signal: str

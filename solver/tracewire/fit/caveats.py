@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
-from tracewire.fit.criterion import Criterion
-from tracewire.fit.measured import Measured
 from tracewire.fit.result import Comparison
 from tracewire.fit.uncertainty import Uncertainty
+from tracewire.residual import Criterion, Measured
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]

@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.errors import OptionError, Place, Problem
-from tracewire.fit.criterion import Criterion
 from tracewire.fit.result import Improvement
 from tracewire.fit.search import Search
+from tracewire.residual import Criterion
 
 Vector = NDArray[np.float64]
 EVERY = 2.0

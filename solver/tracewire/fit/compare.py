@@ -9,12 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
-from tracewire.fit.criterion import Criterion
-from tracewire.fit.descent import descend
-from tracewire.fit.measured import Measured
 from tracewire.fit.result import Comparison
-from tracewire.fit.segment import Segment
-from tracewire.fit.unknowns import own_unknowns
+from tracewire.residual import Criterion, Measured, Segment, descend, own_unknowns
 
 Vector = NDArray[np.float64]
 

@@ -11,13 +11,17 @@ from numpy.typing import NDArray
 from scipy.special import chdtrc, ndtr, ndtri
 
 from tracewire.errors import FormulaError, SimulationError
-from tracewire.fit.input_noise import run_noise
-from tracewire.fit.input_response import InputNoise
-from tracewire.fit.measured import Measured
-from tracewire.fit.noise import NoiseEstimate, estimate_noise, noise_of
 from tracewire.fit.result import Comparison, Fit
-from tracewire.fit.segment import of_diagram
 from tracewire.formula import Expression, evaluate, names_of
+from tracewire.residual import (
+    InputNoise,
+    Measured,
+    NoiseEstimate,
+    estimate_noise,
+    noise_of,
+    of_diagram,
+    run_noise,
+)
 from tracewire.solve import parameter_values, values_at
 
 Vector = NDArray[np.float64]

@@ -12,13 +12,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.compile import Model, compile
+from tracewire.compile import Model
 from tracewire.errors import DataError, FitError, OptionError, Problem, unknown
 from tracewire.fit.caveats import caveats, starts_elsewhere, unfinished
 from tracewire.fit.checkpoint import Store, earlier, resume_from
 from tracewire.fit.compare import compared, shown_by_series
-from tracewire.fit.criterion import Criterion, half_square
-from tracewire.fit.measured import Measured, load_measured, measured_signals
 from tracewire.fit.methods import METHODS
 from tracewire.fit.optimset import Options, optimset
 from tracewire.fit.refusals import (
@@ -28,9 +26,16 @@ from tracewire.fit.refusals import (
 )
 from tracewire.fit.result import Comparison, Fit
 from tracewire.fit.search import Ended, Progress, Search, Stopped
-from tracewire.fit.starts import whole_segment
 from tracewire.fit.uncertainty import uncertainty_of
-from tracewire.fit.unknowns import chosen_unknowns
+from tracewire.residual import (
+    Criterion,
+    Measured,
+    chosen_unknowns,
+    half_square,
+    load_measured,
+    whole_segment,
+    with_measured_signals,
+)
 from tracewire.solve import parameter_values
 
 Vector = NDArray[np.float64]
@@ -172,20 +177,6 @@ def fit(
         interrupted=ended.interrupted,
         remarks=(*short, *starts_elsewhere(model, series, shown), *caveats(series, failures, last)),
     )
-
-
-def with_measured_signals(model: Model, series: Sequence[Measured] | None = None) -> Model:
-    """The model with every signal of the series, or of the diagram's, among the recorded ones.
-
-    Raises OptionError: a signal that the model does not have.
-    """
-    if series is None:
-        signals = measured_signals(model.diagram)
-    else:
-        signals = tuple(signal for m in series for signal in m.values)
-    if set(signals) <= set(model.recorded):
-        return model
-    return compile(model.diagram, record=[*model.recorded, *signals])
 
 
 def _searched(search: Search, method: str) -> Ended:

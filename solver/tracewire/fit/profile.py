@@ -10,12 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.errors import FitError, OptionError, Problem, unknown
-from tracewire.fit.criterion import Criterion
-from tracewire.fit.descent import descend
 from tracewire.fit.result import Fit
-from tracewire.fit.segment import Unknown
-from tracewire.fit.starts import whole_segment
 from tracewire.fit.uncertainty import criterion_unit
+from tracewire.residual import Criterion, Unknown, descend, whole_segment
 
 Vector = NDArray[np.float64]
 

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 
 from tracewire.compile import Model
 from tracewire.errors import DataError, OptionError, Problem
-from tracewire.fit.criterion import Criterion
-from tracewire.fit.measured import Measured
+from tracewire.residual import Criterion, Measured
 from tracewire.solve import parameter_values
 
 

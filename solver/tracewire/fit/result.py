@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
-from tracewire.fit.measured import Measured
 from tracewire.fit.uncertainty import Uncertainty
+from tracewire.residual import Measured
 
 Vector = NDArray[np.float64]
 

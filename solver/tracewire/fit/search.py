@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.fit.criterion import Criterion, half_square
 from tracewire.fit.optimset import OptimValues, Options
 from tracewire.fit.result import Comparison, Improvement
+from tracewire.residual import Criterion, half_square
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]

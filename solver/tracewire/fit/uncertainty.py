@@ -10,10 +10,8 @@ from numpy.typing import NDArray
 from scipy.special import stdtrit
 
 from tracewire.fit.combinations import Direction, Point, described, followers
-from tracewire.fit.criterion import Criterion
 from tracewire.fit.identify import Known, flat_directions
-from tracewire.fit.loss import LOSSES
-from tracewire.fit.noise import degrees_of, noise_in, noises_beside
+from tracewire.residual import LOSSES, Criterion, degrees_of, noise_in, noises_beside
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]

@@ -8,8 +8,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tracewire.compile import Model
-from tracewire.fit import Measured, fit, optimset
+from tracewire.fit import fit, optimset
 from tracewire.paper.runs import Systems
+from tracewire.residual import Measured
 from tracewire.solve import simulate
 
 NOISE = float(np.radians(0.05))

@@ -11,7 +11,7 @@ from tracewire.compile import Model
 from tracewire.diagram import Diagram
 
 if TYPE_CHECKING:
-    from tracewire.fit import Measured
+    from tracewire.residual import Measured
     from tracewire.solve import Run
 
 
@@ -74,7 +74,7 @@ def recorded_table(model: Model) -> Table:
 
 def places_table(model: Model) -> Table:
     """Places where an effect may be tried: the sum, its coordinate q and rate v."""
-    from tracewire.trace.places import find_places
+    from tracewire.trace.candidates.places import find_places
 
     sums = (place for place in find_places(model) if place.kind == "sum")
     rows = tuple((place.name, place.v, place.q) for place in sums)
@@ -83,7 +83,7 @@ def places_table(model: Model) -> Table:
 
 def overview(model: Model) -> dict[str, object]:
     """What `show` tells, as data."""
-    from tracewire.trace.places import find_places
+    from tracewire.trace.candidates.places import find_places
 
     flat, values = model.flat, _values(model)
     return {

@@ -23,7 +23,7 @@ from tracewire.show.style import (
 )
 from tracewire.trace import Found
 from tracewire.trace.found import Force
-from tracewire.trace.words import unit_of_place
+from tracewire.trace.words.words import unit_of_place
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

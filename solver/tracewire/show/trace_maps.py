@@ -22,10 +22,10 @@ from tracewire.show.style import (
     with_unit,
 )
 from tracewire.trace import Found
-from tracewire.trace.effect_units import signal_of
-from tracewire.trace.experiment_words import setting_unit
+from tracewire.trace.candidates.effect_units import signal_of
 from tracewire.trace.found import Dependence, Experiment, Missing
-from tracewire.trace.words import percent, unit_of_place
+from tracewire.trace.words.experiment_words import setting_unit
+from tracewire.trace.words.words import percent, unit_of_place
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -33,9 +33,9 @@ from tracewire.show.trace_tables import (
 )
 from tracewire.show.trace_text import answer_lines, remarks_of, step_lines
 from tracewire.trace import Found
-from tracewire.trace.experiment_words import experiment_words
-from tracewire.trace.telling import details_of, headline_of
-from tracewire.trace.words import stood_in
+from tracewire.trace.words.experiment_words import experiment_words
+from tracewire.trace.words.telling import details_of, headline_of
+from tracewire.trace.words.words import stood_in
 
 ERRORS = (
     "A free run is one run over the whole series, so small errors add up. A windowed error is that "

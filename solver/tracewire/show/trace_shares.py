@@ -11,7 +11,7 @@ import numpy as np
 from tracewire.show.style import AFTER, BAND, BEFORE, QUIET, cut, plain_log, save, styled
 from tracewire.trace import Found
 from tracewire.trace.found import Explained, HeldOut
-from tracewire.trace.words import share_words
+from tracewire.trace.words.words import share_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

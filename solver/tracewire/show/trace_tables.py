@@ -7,10 +7,10 @@ from collections.abc import Sequence
 
 from tracewire.show.summary import Table, shown
 from tracewire.trace import Found
-from tracewire.trace.effect_units import signal_of
-from tracewire.trace.experiment_words import settings_words
+from tracewire.trace.candidates.effect_units import signal_of
 from tracewire.trace.found import Dependence, Ranked
-from tracewire.trace.words import (
+from tracewire.trace.words.experiment_words import settings_words
+from tracewire.trace.words.words import (
     coefficient_of,
     common_powers,
     percent,

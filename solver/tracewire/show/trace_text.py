@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 from tracewire.trace import Found, FoundEffect
-from tracewire.trace.effect_units import signal_of
-from tracewire.trace.experiment_words import experiment_words
+from tracewire.trace.candidates.effect_units import signal_of
 from tracewire.trace.found import StepTold
-from tracewire.trace.telling import ties_words
-from tracewire.trace.words import (
+from tracewire.trace.words.experiment_words import experiment_words
+from tracewire.trace.words.telling import ties_words
+from tracewire.trace.words.words import (
     chance_words,
     coefficient_of,
     common_powers,

@@ -1,7 +1,7 @@
 """From a diagram and measured series to the effect that the diagram lacks."""
 
+from tracewire.trace.check.option_checks import check_options
 from tracewire.trace.found import Found, FoundEffect
-from tracewire.trace.option_checks import check_options
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.saved import load, save
 from tracewire.trace.trace import trace

@@ -11,7 +11,7 @@ class TraceOptions:
     """What a trace tries, and from when on it believes an effect.
 
     The defaults of the choice are those of the study in which held-out log scores on blocks of time
-    chose right most often on 16 measured records (see `trace/selection.py`); tolerances of 5 to
+    chose right most often on 16 measured records (see `choose/choice.py`); tolerances of 5 to
     10 % did equally well there, 2 % and 20 % worse.
     """
 

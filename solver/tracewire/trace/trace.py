@@ -11,33 +11,24 @@ import numpy as np
 
 from tracewire.compile import Model
 from tracewire.errors import FitError, Problem, TracewireError
-from tracewire.fit.fit import with_measured_signals
-from tracewire.fit.input_noise import InputCovariance
-from tracewire.fit.measured import Measured, load_measured
-from tracewire.fit.noise import channel_noise
-from tracewire.fit.result import Fit
-from tracewire.trace.account import compared, met, moved, rmse
-from tracewire.trace.bounds import at_bounds
-from tracewire.trace.experiment import separating
-from tracewire.trace.finish import Final, finished
-from tracewire.trace.force import forces
-from tracewire.trace.found import Experiment, Force, Found
-from tracewire.trace.mistakes import refuse_mistakes
-from tracewire.trace.option_checks import check_options
-from tracewire.trace.options import TraceOptions
-from tracewire.trace.places import find_places, untried
-from tracewire.trace.power import powers
-from tracewire.trace.prediction import Prediction, predict
-from tracewire.trace.refusals import check_series, remarks
-from tracewire.trace.search import Search
-from tracewire.trace.spikes import without_spikes
-from tracewire.trace.stretches import share_out, shortest_window
-from tracewire.trace.tangent import Tangent
-from tracewire.trace.telling import paragraph_of
-from tracewire.trace.told import confusable, edited, told_effects, told_steps
-from tracewire.trace.tolerance import is_loose, tightened
-from tracewire.trace.trial import Bench, Trial
-from tracewire.trace.verdict import (
+from tracewire.fit import Fit
+from tracewire.residual import (
+    InputCovariance,
+    Measured,
+    channel_noise,
+    load_measured,
+    with_measured_signals,
+)
+from tracewire.trace.candidates.places import find_places, untried
+from tracewire.trace.check.mistakes import refuse_mistakes
+from tracewire.trace.check.option_checks import check_options
+from tracewire.trace.check.refusals import check_series, remarks
+from tracewire.trace.check.spikes import without_spikes
+from tracewire.trace.check.tolerance import is_loose, tightened
+from tracewire.trace.choose.account import compared, met, moved, rmse
+from tracewire.trace.choose.prediction import Prediction, predict
+from tracewire.trace.choose.told import confusable, edited, told_effects, told_steps
+from tracewire.trace.choose.verdict import (
     Judgement,
     is_at_noise,
     is_slow_noise,
@@ -46,6 +37,18 @@ from tracewire.trace.verdict import (
     raises_unseen,
     residual_map,
 )
+from tracewire.trace.experiment.experiment import separating
+from tracewire.trace.experiment.power import powers
+from tracewire.trace.found import Experiment, Force, Found
+from tracewire.trace.missing.force import forces
+from tracewire.trace.options import TraceOptions
+from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.search.finish import Final, finished
+from tracewire.trace.search.search import Search
+from tracewire.trace.trials.bounds import at_bounds
+from tracewire.trace.trials.stretches import share_out, shortest_window
+from tracewire.trace.trials.trial import Bench, Trial
+from tracewire.trace.words.telling import paragraph_of
 
 EXPERIMENTS = 2
 TIGHTENED = 2

@@ -10,11 +10,8 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model, compile
 from tracewire.errors import SimulationError
-from tracewire.fit.criterion import LIMITS, Criterion
-from tracewire.fit.loss import LOSSES
 from tracewire.fit.methods.cutting import cut
-from tracewire.fit.segment import Segment, of_diagram, parameter_in
-from tracewire.fit.sensing import Sensing
+from tracewire.residual import LIMITS, LOSSES, Criterion, Segment, Sensing, of_diagram, parameter_in
 from tracewire.solve import Interrupted, Run, simulate
 
 Vector = NDArray[np.float64]

@@ -9,12 +9,9 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import SimulationError
-from tracewire.fit.criterion import LIMITS, Criterion
 from tracewire.fit.methods.following import PARTS, followed, spread_of
-from tracewire.fit.segment import Segment, of_diagram
-from tracewire.fit.sensing import Sensing
-from tracewire.fit.starts import start_from_data
 from tracewire.formula import evaluate
+from tracewire.residual import LIMITS, Criterion, Segment, Sensing, of_diagram, start_from_data
 from tracewire.solve import Interrupted, Run, parameter_values, simulate
 
 Vector = NDArray[np.float64]

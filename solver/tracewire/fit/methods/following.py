@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.fit.segment import Segment
+from tracewire.residual import Segment
 
 Vector = NDArray[np.float64]
 FOLLOWED = 0.2

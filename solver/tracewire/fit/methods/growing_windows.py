@@ -11,10 +11,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.fit.criterion import Criterion, half_square
-from tracewire.fit.descent import descend
 from tracewire.fit.methods.following import PARTS, followed, spread_of
 from tracewire.fit.search import Ended, Search
+from tracewire.residual import Criterion, descend, half_square
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]

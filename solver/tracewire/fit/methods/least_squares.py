@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from tracewire.fit.descent import descend
 from tracewire.fit.search import Ended, Search
+from tracewire.residual import descend
 
 MOST = 1_000_000
 EXACT, NOISY = 1e-14, 1e-2

@@ -11,10 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.errors import FitError, Problem, SimulationError
-from tracewire.fit.criterion import half_square
-from tracewire.fit.descent import descend
 from tracewire.fit.methods.chain import Chain
 from tracewire.fit.search import Ended, Search, Stopped
+from tracewire.residual import descend, half_square
 
 Vector = NDArray[np.float64]
 WEIGHTS = tuple(10.0**k for k in range(-1, 7))

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.errors import OptionError, Problem
-from tracewire.fit.descent import descend
 from tracewire.fit.methods.together import values_at
 from tracewire.fit.search import Ended, Search
+from tracewire.residual import descend
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]

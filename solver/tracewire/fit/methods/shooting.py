@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.fit.descent import descend
 from tracewire.fit.fminsearch import CONVERGED, fminsearch
 from tracewire.fit.methods.together import values_at
 from tracewire.fit.optimset import OptimValues, Options
 from tracewire.fit.search import Ended, Search
+from tracewire.residual import descend
 
 Vector = NDArray[np.float64]
 FIRST_RADIUS = 0.05

@@ -8,8 +8,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.fit.criterion import Criterion
 from tracewire.fit.search import Search
+from tracewire.residual import Criterion
 from tracewire.solve.many import cores
 
 Vector = NDArray[np.float64]

@@ -1,0 +1,107 @@
+"""Measured data beside a model: residuals, their derivatives, and the noise they are judged by."""
+
+from tracewire.residual.criterion import LIMITS, Criterion, half_square
+from tracewire.residual.descent import Descent, descend
+from tracewire.residual.files import series_from_files
+from tracewire.residual.input_noise import InputCovariance, run_noise
+from tracewire.residual.input_response import InputNoise
+from tracewire.residual.levenberg_marquardt import CREEPS, LEAST_DAMPING, bounded_step, descended
+from tracewire.residual.loss import LOSSES
+from tracewire.residual.measured import (
+    Measured,
+    load_measured,
+    series_parameters,
+    with_measured_signals,
+)
+from tracewire.residual.noise import (
+    channel_noise,
+    degrees_of,
+    noise_in,
+    noise_level,
+    noise_of,
+    noises_beside,
+)
+from tracewire.residual.noise_estimate import NoiseEstimate, estimate_noise
+from tracewire.residual.segment import (
+    OWN,
+    SENSED,
+    Segment,
+    Unknown,
+    absolute_tolerances,
+    of_diagram,
+    parameter_in,
+)
+from tracewire.residual.sensing import Sensing
+from tracewire.residual.sensor import Sensor
+from tracewire.residual.settling import SETTLING, settled
+from tracewire.residual.starts import start_from_data, whole_segment
+from tracewire.residual.unknowns import (
+    chosen_unknowns,
+    free_unknowns,
+    own_unknowns,
+    sensor_unknowns,
+)
+from tracewire.residual.windows import (
+    Projection,
+    Section,
+    Windows,
+    begun_before,
+    cut,
+    eliminated,
+    opened,
+    projection,
+)
+
+__all__ = [
+    "CREEPS",
+    "LEAST_DAMPING",
+    "LIMITS",
+    "LOSSES",
+    "OWN",
+    "SENSED",
+    "SETTLING",
+    "Criterion",
+    "Descent",
+    "InputCovariance",
+    "InputNoise",
+    "Measured",
+    "NoiseEstimate",
+    "Projection",
+    "Section",
+    "Segment",
+    "Sensing",
+    "Sensor",
+    "Unknown",
+    "Windows",
+    "absolute_tolerances",
+    "begun_before",
+    "bounded_step",
+    "channel_noise",
+    "chosen_unknowns",
+    "cut",
+    "degrees_of",
+    "descend",
+    "descended",
+    "eliminated",
+    "estimate_noise",
+    "free_unknowns",
+    "half_square",
+    "load_measured",
+    "noise_in",
+    "noise_level",
+    "noise_of",
+    "noises_beside",
+    "of_diagram",
+    "opened",
+    "own_unknowns",
+    "parameter_in",
+    "projection",
+    "run_noise",
+    "sensor_unknowns",
+    "series_from_files",
+    "series_parameters",
+    "settled",
+    "start_from_data",
+    "whole_segment",
+    "with_measured_signals",
+]

@@ -1,0 +1,424 @@
+"""How far a model is from measured data: residuals of segments, derivatives, the criterion."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from functools import cache
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import solve_triangular
+
+from tracewire.compile import Model
+from tracewire.errors import DataError, OptionError, Problem, SimulationError, unknown
+from tracewire.residual.linearised import Linearised, Shooting, Shots, difference
+from tracewire.residual.loss import LOSSES
+from tracewire.residual.measured import LARGEST
+from tracewire.residual.segment import Segment, Unknown, of_diagram
+from tracewire.residual.sensing import Sensing
+from tracewire.solve import Interrupted, Limits, simulate
+from tracewire.solve.interrupt import until_interrupted
+from tracewire.solve.limits import beyond_budget
+from tracewire.solve.many import cores
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+Weighting = Literal["mean", "sum"]
+STEP = 1e-4
+PENALTY = 100.0
+MANY = 3000
+"""Steps from which on series run in parallel: threads cost more than they save before."""
+LIMITS = Limits(steps=500_000, seconds=120.0)
+
+
+class Criterion:
+    """Residuals of a model on segments, as a function of unknowns and of the segments' free starts.
+
+    The vector of unknowns is scaled: parameters first, then the free starts of each segment. The
+    residual of a sample is (shown - measured)/sigma, where the sensor shows gain*y(t - delay) +
+    offset; of a signal with a period it is the shortest way around. The criterion is
+
+        value = 1/2 sum over segments, signals and samples of w^2 rho(residual^2)
+
+    with w^2 = weight of the series * weight of the signal, divided by the number of samples where
+    `weighting` is "mean", and rho the loss. So for one series and one signal it is
+    mean(residual^2)/2, the objective of paper A's appendix; for several, Eq 5 of paper B.
+    `parameters` holds what is fixed, by the names that unknowns have; `sigma` the noise of each
+    signal instead of the declared one, `limits` what one run may cost. Where segments are
+    `chained`, states that are not free go on from one to the next, where it begins at its end.
+    `covariance` gives, for a segment, the factor L of the covariance L L' of its residuals where
+    these are not white: the residuals and their derivatives are then L^-1 times the above.
+
+    A segment whose run fails counts as 100 times the spread of its data, and is told in `failures`.
+
+    Raises DataError where only some signals have a declared sigma, or none has and a robust loss
+    needs it; OptionError for a loss that does not exist.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        segments: Sequence[Segment],
+        unknowns: Sequence[Unknown],
+        parameters: Mapping[str, float],
+        rtol: float = 1e-7,
+        sigma: Mapping[str, float] | None = None,
+        *,
+        weighting: Weighting = "mean",
+        loss: str = "linear",
+        limits: Limits = LIMITS,
+        chained: bool = False,
+        covariance: Callable[[Segment], Matrix | None] | None = None,
+    ) -> None:
+        if loss not in LOSSES:
+            raise OptionError([unknown("loss", loss, LOSSES)])
+        self.model, self.unknowns = model, tuple(unknowns)
+        self.segments = tuple(segments)
+        self.parameters = dict(parameters)
+        self.rtol, self.limits = rtol, limits
+        self.weighting, self.loss = weighting, loss
+        self.sigma = _sigma_of(self.segments, sigma, needed=loss != "linear")
+        self.covariance = covariance
+        self.evaluations = 0
+        self.runs, self.steps, self.budget = 0, 0, np.inf
+        self.failure: SimulationError | None = None
+        self.failures: Counter[str] = Counter()
+        self.warnings: set[tuple[str, str]] = set()
+        self.scales = np.array(
+            [u.scale for u in self.unknowns]
+            + [s.start_scale(name) for s in self.segments for name in s.free]
+        )
+        self._samples = [segment.samples() for segment in self.segments]
+        self._weights: dict[int, Vector] = {}
+        self._following = (
+            {n for n in range(1, len(self.segments)) if self._follows(n)} if chained else set()
+        )
+        self._rates = any(u.name.startswith("delay.") for u in self.unknowns)
+
+    def _follows(self, n: int) -> bool:
+        """Whether segment n begins where the one before it ends."""
+        before, segment = self.segments[n - 1], self.segments[n]
+        near = int(before.rows[-1]) + 1 == int(segment.rows[0])
+        return bool(segment.free) and before.measured is segment.measured and near
+
+    def follows(self, n: int) -> bool:
+        """Whether segment n goes on where the one before it ends, and is chained to it."""
+        return n in self._following
+
+    @property
+    def remembers(self) -> bool:
+        """Whether states go on from one segment to the next, so that these run together."""
+        return any(set(self.model.states) - set(self.segments[n].free) for n in self._following)
+
+    def on(self, segments: Sequence[Segment]) -> Criterion:
+        """The same criterion on other segments, of the same series."""
+        fresh = Criterion(
+            self.model, segments, self.unknowns, self.parameters, self.rtol,
+            weighting=self.weighting, limits=self.limits, covariance=self.covariance,
+        )  # fmt: skip
+        fresh.loss = self.loss
+        fresh.sigma = {s.measured.name: self.sigma[s.measured.name] for s in segments}
+        return fresh
+
+    # --- unknowns -----------------------------------------------------------------------------
+
+    def begin(self) -> Vector:
+        """The scaled unknowns to begin with."""
+        values = [u.value for u in self.unknowns]
+        values += [s.start[name] for s in self.segments for name in s.free]
+        return np.asarray(np.array(values) / self.scales)
+
+    def bounds(self) -> tuple[Vector, Vector]:
+        """The scaled bounds; start values are free."""
+        extra = sum(len(s.free) for s in self.segments)
+        low = np.array([u.low for u in self.unknowns] + [-np.inf] * extra) / self.scales
+        high = np.array([u.high for u in self.unknowns] + [np.inf] * extra) / self.scales
+        return low, high
+
+    def split(self, z: Vector) -> tuple[dict[str, float], list[dict[str, float]]]:
+        """Scaled unknowns as values by name, and the free starts of each segment."""
+        values = (z * self.scales).tolist()
+        count = len(self.unknowns)
+        named = dict(zip((u.name for u in self.unknowns), values[:count], strict=True))
+        starts, at = [], count
+        for segment in self.segments:
+            starts.append(dict(zip(segment.free, values[at : at + len(segment.free)], strict=True)))
+            at += len(segment.free)
+        return named, starts
+
+    def moved(self, z: Vector) -> tuple[list[Unknown], list[Segment]]:
+        """The unknowns and segments with the values of z."""
+        named, starts = self.split(z)
+        unknowns = [replace(u, value=named[u.name]) for u in self.unknowns]
+        segments = [
+            replace(s, start={**s.start, **start})
+            for s, start in zip(self.segments, starts, strict=True)
+        ]
+        return unknowns, segments
+
+    # --- the criterion --------------------------------------------------------------------------
+
+    def value(self, z: Vector) -> float:
+        """The criterion."""
+        return half_square(self.vector(z))
+
+    def vector(self, z: Vector) -> Vector:
+        """What the criterion squares, shape (M,): value = 1/2 sum of squares."""
+        return self.weigh(self.residuals(z))
+
+    def both(self, z: Vector) -> tuple[Vector, Matrix]:
+        """`vector` (M,) and its derivatives (M, n), from one run with sensitivities."""
+        residuals, derivatives = self.residuals_and_derivatives(z)
+        return self.weigh(residuals), self.weigh_derivatives(residuals, derivatives)
+
+    def weigh(self, residuals: Sequence[Vector]) -> Vector:
+        """The residuals of all segments as `vector` has them."""
+        loss = LOSSES[self.loss]
+        return np.concatenate(
+            [(loss(r).residual * self.weights(n)).ravel() for n, r in enumerate(residuals)]
+        )
+
+    def weigh_derivatives(
+        self, residuals: Sequence[Vector], derivatives: Sequence[Matrix]
+    ) -> Matrix:
+        """The derivatives (M, n) of what `weigh` makes of the residuals."""
+        loss = LOSSES[self.loss]
+        rows = [
+            (loss(r).slope * self.weights(n)).reshape(-1, 1) * matrix
+            for n, (r, matrix) in enumerate(zip(residuals, derivatives, strict=True))
+        ]
+        return np.concatenate(rows)
+
+    def weights(self, n: int) -> Vector:
+        """The weights w (N, signals) of the residuals of segment n."""
+        if n in self._weights:
+            return self._weights[n]
+        measured, samples = self.segments[n].measured, self._samples[n]
+        counts = [measured.weights.get(name, 1.0) for name in measured.values]
+        shares = measured.weight * np.array(counts)
+        if self.weighting == "mean":
+            shares = shares / len(samples)
+        return self._weights.setdefault(n, np.broadcast_to(np.sqrt(shares), samples.shape))
+
+    # --- residuals ------------------------------------------------------------------------------
+
+    def residuals(self, z: Vector) -> list[Vector]:
+        """The residuals of each segment, shape (N, signals); a failed run counts as far away."""
+        self.evaluations += 1
+        named, starts = self.split(z)
+        return [self._residual(n, named, start) for n, start in enumerate(starts)]
+
+    def residuals_and_derivatives(self, z: Vector) -> tuple[list[Vector], list[Matrix]]:
+        """`residuals`, and d residuals/d scaled unknowns, for each segment (N*signals, n).
+
+        By forward sensitivities of one run for each segment, which counts as one evaluation and
+        one more for each unknown; by differences where such a run fails.
+        """
+        named, starts = self.split(z)
+        self.evaluations += 1 + len(self.unknowns) + max((len(s) for s in starts), default=0)
+        residuals, matrices = [], []
+        self.warnings = set()
+        linearised = self.linearised(named, dict(enumerate(starts)))
+        at = len(self.unknowns)
+        for n, start in enumerate(starts):
+            columns = [*range(len(self.unknowns)), *range(at, at + len(start))]
+            at += len(start)
+            near = linearised[n]
+            matrix = np.zeros((near.residual.size, len(z)))
+            matrix[:, columns] = near.slopes * self.scales[columns]
+            residuals.append(near.residual)
+            matrices.append(matrix)
+        return residuals, matrices
+
+    def linearised(
+        self, named: Mapping[str, float], starts: Mapping[int, Mapping[str, float]]
+    ) -> dict[int, Linearised]:
+        """Segments near these unknowns and starts, by number, each by the sensitivities of one run.
+
+        By differences where such a run fails. Many steps run in parallel.
+        """
+        rows = sum(len(self.segments[n].rows) for n in starts)  # about as many steps, at first
+        many = (len(starts) * self.steps / self.runs if self.runs else rows) > MANY
+        groups = self._groups(sorted(starts), halves=many and not self.remembers)
+        with until_interrupted() as halt:
+
+            def shots(numbers: Sequence[int]) -> Shots:
+                return self._shooting(numbers).linearised(
+                    named,
+                    self.parameters,
+                    [starts[n] for n in numbers],
+                    [self.follows(n) and n - 1 in starts for n in numbers],
+                    self.budget - self.steps,
+                    halt,
+                )
+
+            apart = _threads().map if many and cores() > 1 else map
+            try:
+                done = list(apart(shots, groups))
+            except Interrupted as error:  # no failed run: the whole search shall stop
+                raise KeyboardInterrupt from error
+        found: dict[int, Linearised] = {}
+        for numbers, group in zip(groups, done, strict=True):
+            self.runs += len(numbers)
+            self.steps += group.steps
+            self.warnings |= {(self.segments[numbers[0]].measured.name, w) for w in group.warnings}
+            for place, near in group.near.items():
+                found[numbers[place]] = self._whitened(numbers[place], near)
+        for n in starts.keys() - found.keys():
+            found[n] = self._differences(n, named, starts[n])
+        return found
+
+    def _groups(self, numbers: Sequence[int], halves: bool) -> list[list[int]]:
+        """Segments that run together: those of a series, or of half of it."""
+        series: dict[int, list[int]] = {}
+        for n in numbers:
+            series.setdefault(id(self.segments[n].measured), []).append(n)
+        if not halves:
+            return list(series.values())
+        middles = [(group, -(-len(group) // 2)) for group in series.values()]
+        parts = [part for group, at in middles for part in (group[:at], group[at:])]
+        return [part for part in parts if part]
+
+    def _shooting(self, numbers: Sequence[int]) -> Shooting:
+        """Segments of one series as they run together."""
+        segments = [self.segments[n] for n in numbers]
+        return Shooting(
+            self.model,
+            segments,
+            np.concatenate([self._samples[n] for n in numbers]),
+            self.sigma[segments[0].measured.name],
+            self.rtol,
+            self.limits,
+            self._rates,
+        )
+
+    def outputs(
+        self, segment: Segment, named: Mapping[str, float], start: Mapping[str, float]
+    ) -> Vector:
+        """What the sensors of a segment show in a run, shape (N, signals)."""
+        values = {**self.parameters, **named}
+        sensing = Sensing([segment], values)
+        if self.steps > self.budget:
+            raise beyond_budget(self.budget)
+        self.runs += 1
+        try:
+            run = simulate(
+                self.model,
+                parameters=of_diagram(values, segment.measured),
+                start={**segment.start, **start},
+                span=(sensing.begins[0], sensing.ends[0]),
+                times=sensing.times[0],
+                rtol=self.rtol,
+                preset=segment.measured.preset,
+                inputs=segment.measured.inputs,
+                limits=self.limits,
+            )
+        except Interrupted as error:  # no failed run: the whole search shall stop
+            raise KeyboardInterrupt from error
+        except SimulationError:
+            self.steps += self.limits.steps
+            raise
+        self.steps += run.statistics.steps
+        return sensing.shown(run)
+
+    def difference(self, n: int, shown: Vector) -> Vector:
+        """Residuals of what is shown: shown - measured in sigma, the shortest way around."""
+        measured = self.segments[n].measured
+        off = difference(measured, self._samples[n], shown)
+        return np.asarray(off / self.sigma[measured.name])
+
+    def _residual(self, n: int, named: Mapping[str, float], start: Mapping[str, float]) -> Vector:
+        try:
+            shown = self.outputs(self.segments[n], named, start)
+            _refuse_huge(self.segments[n], shown)
+        except SimulationError as error:
+            return self._penalty(n, error)
+        return self.whiten(n, self.difference(n, shown))
+
+    def whiten(self, n: int, rows: Vector) -> Vector:
+        """Rows (N, signals) or (N*signals, ...) of segment n, in sigma, as its residuals are."""
+        factor = None if self.covariance is None else self.covariance(self.segments[n])
+        if factor is None:
+            return rows
+        flat = rows.reshape(len(factor), -1)
+        return np.asarray(solve_triangular(factor, flat, lower=True).reshape(rows.shape))
+
+    def _whitened(self, n: int, near: Linearised) -> Linearised:
+        if self.covariance is None:
+            return near
+        residual, slopes = self.whiten(n, near.residual), self.whiten(n, near.slopes)
+        return replace(near, residual=residual, slopes=slopes)
+
+    def _penalty(self, n: int, error: SimulationError) -> Vector:
+        """The residuals of a run that failed."""
+        self.failure = error
+        self.failures[self.segments[n].measured.name] += 1
+        sigma = self.sigma[self.segments[n].measured.name]
+        spread = PENALTY * np.maximum(np.std(self._samples[n], axis=0), sigma)
+        return np.asarray(np.broadcast_to(spread / sigma, self._samples[n].shape))
+
+    def _differences(
+        self, n: int, named: Mapping[str, float], start: Mapping[str, float]
+    ) -> Linearised:
+        """The same by differences to one side, away from a bound; none where the run fails."""
+        failures = self.failures.total()
+        at = self._residual(n, named, start)
+        if self.failures.total() > failures:
+            return Linearised(at, np.zeros((at.size, len(named) + len(start))), {}, False)
+        parts = []
+        for u, scale in zip(self.unknowns, self.scales.tolist(), strict=False):
+            h = STEP * max(scale, abs(named[u.name]))
+            h = -h if named[u.name] + h > u.high else h
+            there = self._residual(n, {**named, u.name: named[u.name] + h}, start)
+            parts.append(((there - at) / h).ravel())
+        for state, value in start.items():
+            h = STEP * max(self.segments[n].start_scale(state), abs(value))
+            there = self._residual(n, named, {**start, state: value + h})
+            parts.append(((there - at) / h).ravel())
+        slopes = np.stack(parts, axis=1) if parts else np.zeros((at.size, 0))
+        return Linearised(at, slopes, {})
+
+
+@cache
+def _threads() -> ThreadPoolExecutor:
+    """Threads that wait for work: to begin them takes as long as hundreds of short runs."""
+    return ThreadPoolExecutor(cores(), thread_name_prefix="tracewire")
+
+
+def half_square(vector: Vector) -> float:
+    """Half the sum of squares: the criterion of its vector."""
+    return 0.5 * float(vector @ vector)
+
+
+def _refuse_huge(segment: Segment, shown: Vector) -> None:
+    """Raises SimulationError where squares of what is shown would be no numbers any more."""
+    if not (np.abs(shown) < LARGEST).all():
+        largest = float(np.max(np.abs(shown)))
+        what = f"the series '{segment.measured.name}' is simulated as large as {largest:.3g}"
+        raise SimulationError([Problem(what, hint="Begin elsewhere, or narrow `fit:` bounds.")])
+
+
+def _sigma_of(
+    segments: Sequence[Segment], given: Mapping[str, float] | None, needed: bool
+) -> dict[str, Vector]:
+    """The noise of the signals of each series: as given, else as declared, 1 where none is."""
+    known = {
+        (s.measured.name, signal): (s.measured.sigma if given is None else given).get(signal)
+        for s in segments
+        for signal in s.signals
+    }
+    missing = [f"{signal} in {series}" for (series, signal), x in known.items() if x is None]
+    if missing and (given is not None or len(missing) < len(known)):
+        what = f"no sigma is known of {', '.join(missing)}, but of others"
+        raise DataError([Problem(what, hint="Give every measured signal a sigma, or none.")])
+    if missing and needed:
+        what = f"a robust loss needs the noise, and no sigma is known of {', '.join(missing)}"
+        raise DataError([Problem(what, hint="Give every measured signal a `sigma:`.")])
+    return {
+        s.measured.name: np.array([known[s.measured.name, signal] or 1.0 for signal in s.signals])
+        for s in segments
+    }

@@ -1,0 +1,201 @@
+"""Least squares on a criterion: scipy's trust region with forward sensitivities."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
+from tracewire.residual.criterion import half_square
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+FAST = 0.9
+"""A step that leaves less than this part of the criterion lets the next one do without a run for
+its derivatives."""
+SLOW, UNSEEN, STEADY = 6, 0.1, 0.3
+"""So many steps that together gain less than this in units of the noise's variance end a search,
+where the last of them still gains this part of the first: it creeps, and does not converge."""
+
+
+class Squares(Protocol):
+    """What least squares needs to know of a criterion, or of a search on one."""
+
+    def bounds(self) -> tuple[Vector, Vector]: ...
+    def vector(self, z: Vector) -> Vector: ...
+    def both(self, z: Vector) -> tuple[Vector, Matrix]: ...
+
+
+@dataclass(frozen=True, eq=False)
+class Descent:
+    """Where least squares ended: scaled unknowns, vector and derivatives there, half the sum of
+    squares at the start and at the end, whether it converged, and why it ended."""
+
+    z: Vector
+    residual: Vector
+    jacobian: Matrix
+    before: float
+    after: float
+    converged: bool
+    message: str
+
+
+def descend(
+    criterion: Squares,
+    begin: Vector,
+    *,
+    steps: int = 30,
+    tolerance: float = 1e-6,
+    frugal: bool = True,
+    stepped: Callable[[Vector, float], None] | None = None,
+) -> Descent:
+    """Minimise half the sum of squares of the criterion's vector from `begin`, within the bounds.
+
+    `steps` limits the trial steps, `tolerance` is the relative change of the sum that ends it. The
+    first point costs one run with sensitivities, each trial a plain run, and each step one more
+    with sensitivities. A `frugal` search spares those after a step that gained a tenth of the
+    criterion: there the derivatives are corrected by what the step has shown (C. G. Broyden, Math.
+    Comp. 19, 1965, 577); and it ends where it creeps along, and the noise would hide what it gains.
+    `stepped` gets each point from which a step is made, and its value.
+    """
+    low, high = criterion.bounds()
+    room = np.where(np.isfinite(high - low), 1e-9 * (high - low), 1e-12)
+    z = np.clip(begin, low + room, high - room)  # scipy wants to begin inside
+    slopes = _Slopes(criterion, frugal, stepped)
+    before = half_square(slopes.vector(z))
+    message, left = "", steps
+    while len(z) and not message:
+        # derivatives that were corrected may end it early: only true ones tell the end
+        slopes.refresh(z)
+        slopes.trials = 1
+        try:
+            found = least_squares(
+                slopes.vector,
+                z,
+                jac=slopes.jacobian,
+                bounds=(low, high),
+                method="trf",
+                x_scale=np.maximum(np.abs(z), 0.1),
+                ftol=tolerance,
+                xtol=min(tolerance, 1e-9),
+                gtol=1e-15,
+                max_nfev=max(left, 1),
+            )
+        except _Settled:
+            z, message = slopes.best, "converged: what is still to gain is far below the noise"
+            break
+        except _Renewed:  # a trust region that corrected derivatives have narrowed is of no use
+            z, ended = slopes.best, False
+        else:
+            z, ended = np.asarray(found.x), found.status > 0
+        left -= slopes.trials
+        if ended and slopes.is_true(z):
+            message = "converged"
+        elif left <= 0:
+            message = f"stopped at the limit of {steps} steps"
+    residual, jacobian = slopes.true(z)
+    converged = not message.startswith("stopped")
+    return Descent(z, residual, jacobian, before, half_square(residual), converged, message)
+
+
+class _Settled(Exception):
+    """Many steps have gained next to nothing."""
+
+
+class _Renewed(Exception):
+    """There are true derivatives after corrected ones."""
+
+
+class _Slopes:
+    """Vector and derivatives at the last points, each run once."""
+
+    def __init__(
+        self, criterion: Squares, frugal: bool, stepped: Callable[[Vector, float], None] | None
+    ) -> None:
+        self.criterion, self.frugal, self.stepped = criterion, frugal, stepped
+        self.last: tuple[Vector, Vector] | None = None  # a point and its vector
+        self.at: tuple[Vector, Vector, Matrix] | None = None  # and the derivatives
+        self.is_fresh = False
+        self.trials = 0
+        self.values: list[float] = []
+        self.best = np.empty(0)
+
+    def vector(self, z: Vector) -> Vector:
+        """The criterion's vector; the first point comes with its derivatives."""
+        if self.at is None:
+            self.refresh(z)
+        if self.at is not None and np.array_equal(self.at[0], z):
+            return self.at[1]
+        if self.last is None or not np.array_equal(self.last[0], z):
+            self.last = z.copy(), self.criterion.vector(z)
+            self.trials += 1
+        return self.last[1]
+
+    def refresh(self, z: Vector) -> None:
+        """Have the true derivatives at a point."""
+        if not self.is_true(z):
+            residual, jacobian = self.criterion.both(z)
+            self.at, self.is_fresh = (z.copy(), residual, jacobian), True
+
+    def is_true(self, z: Vector) -> bool:
+        """Whether the derivatives are the true ones at a point."""
+        return self.at is not None and self.is_fresh and np.array_equal(self.at[0], z)
+
+    def true(self, z: Vector) -> tuple[Vector, Matrix]:
+        """Vector and true derivatives at a point."""
+        self.refresh(z)
+        if self.at is None:
+            raise AssertionError("refresh has made them")
+        return self.at[1], self.at[2]
+
+    def jacobian(self, z: Vector) -> Matrix:
+        """The derivatives from which the next step is made. Raises _Settled."""
+        renewed = False
+        if self.at is None or not np.array_equal(self.at[0], z):
+            residual = self.vector(z)
+            if self.frugal and self.at is not None and _fell(self.at[1], residual):
+                self.at, self.is_fresh = _corrected(self.at, z, residual), False
+            else:
+                renewed = self.at is not None and not self.is_fresh
+                self.refresh(z)
+        if self.at is None:
+            raise AssertionError("there are derivatives by now")
+        value = half_square(self.at[1])
+        if not self.values or value < self.values[-1]:
+            self.values.append(value)
+            self.best = z.copy()
+            if self.stepped is not None:
+                self.stepped(z, value)
+        if self.frugal and len(self.values) > SLOW:
+            gains = -np.diff(self.values[-1 - SLOW :]) * len(self.at[1])
+            if gains.sum() < UNSEEN * value and gains[-1] > STEADY * gains[0]:
+                raise _Settled
+        if renewed:
+            raise _Renewed
+        return self.at[2]
+
+
+def _fell(before: Vector, after: Vector) -> bool:
+    return half_square(after) < FAST * half_square(before)
+
+
+def _corrected(
+    at: tuple[Vector, Vector, Matrix], z: Vector, residual: Vector
+) -> tuple[Vector, Vector, Matrix]:
+    """The derivatives with what the step to z has shown of them.
+
+    The step is measured by how far each unknown alone moves the vector, so that the sizes in which
+    unknowns are counted do not matter.
+    """
+    before, known, jacobian = at
+    step = z - before
+    surprise = residual - known - jacobian @ step
+    weighed = np.sum(jacobian**2, axis=0) * step
+    size = float(weighed @ step)
+    if size > 0:
+        jacobian = jacobian + np.outer(surprise, weighed) / size
+    return z.copy(), residual, jacobian

@@ -1,0 +1,150 @@
+"""The unknowns and the starts of windows fitted together, by Levenberg and Marquardt."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import lsq_linear
+
+from tracewire.residual.settling import (
+    SETTLED,
+    SETTLING,
+    consistent,
+    ends_before,
+    far_off,
+    from_ends,
+    settled,
+    settled_some,
+)
+from tracewire.residual.windows import Projection, Windows, begun_at, better, eliminated, projection
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+RESCUING = 2
+"""Steps of the start of a window that was led astray."""
+CREEPS = 5e-4
+"""A step that gains less than this part of the sum of squares is the last one."""
+FIRST_DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-9, 1e6
+MOST_FAILURES = 8
+PATIENCE, HOPE = 4, 2.0
+"""Steps in a row that are too slow until a fit is given up, and how many times the gain that its
+pace promises may still come."""
+
+
+def descended(
+    windows: Windows,
+    steps: int = 20,
+    target: float = np.inf,
+    creeps: float = CREEPS,
+    settling: int = SETTLING,
+) -> tuple[Windows, bool]:
+    """The unknowns and all starts fitted by Levenberg and Marquardt; whether it converged.
+
+    Each step comes from the problem without the starts, within the bounds of the unknowns. Windows
+    that do worse than the step promised are settled for themselves before it is judged. It ends
+    early where the sum of squares would not fall to `target` at its pace in the steps that are
+    left: it has lost against what reached that. A step that gains less than the part `creeps` of
+    the sum is the last one; before the first the starts are fitted alone in `settling` steps.
+    """
+    unknowns = windows.criterion.unknowns
+    low, high = np.array([u.low for u in unknowns]), np.array([u.high for u in unknowns])
+    scales = np.array([u.scale for u in unknowns])
+    damping, failures = FIRST_DAMPING, 0
+    windows = settled(windows, settling)
+    if not len(unknowns):
+        return windows, True
+    gained, too_slow = np.inf, 0
+    for left_over in reversed(range(steps)):
+        views = [projection(windows, n) for n in range(len(windows.near))]
+        reduced, residual = eliminated(windows, views)
+        reduced = reduced * scales
+        values = np.array([windows.values[u.name] for u in unknowns])
+        room = (low - values) / scales, (high - values) / scales
+        refused = False
+        while True:
+            step = bounded_step(reduced, residual, damping, room)
+            left = residual + reduced @ step
+            promised = float(residual @ residual - left @ left)
+            start_gain = windows.rss - float(residual @ residual)
+            if promised + start_gain < max(SETTLED, 0.2 * creeps * windows.rss):
+                return windows, True
+            there = _moved(windows, views, step * scales)
+            failures += there is None
+            if there is not None and there.rss < windows.rss:
+                before, gained = gained, windows.rss - there.rss
+                windows = there
+                # what was refused a moment ago would be refused again
+                damping = damping if refused else max(damping / 10, LEAST_DAMPING)
+                break
+            if there is not None and there.rss < (1 + creeps) * windows.rss:
+                return windows, True  # as flat as the solver is exact
+            damping = max(damping * (100 if refused else 10), FIRST_DAMPING)
+            refused = True
+            if damping > MOST_DAMPING or failures > MOST_FAILURES:
+                return windows, False
+        if gained < max(SETTLED, creeps * windows.rss):
+            return windows, True
+        pace = min(gained / before, 1 - 1e-9)
+        coming = HOPE * gained * min(left_over, pace / (1 - pace))
+        too_slow = too_slow + 1 if windows.rss - coming > target else 0
+        if too_slow >= PATIENCE:
+            return windows, False
+    return windows, False
+
+
+def bounded_step(
+    reduced: Matrix, residual: Vector, damping: float, room: tuple[Vector, Vector]
+) -> Vector:
+    """The step that minimises the squares, damped by the sizes of its columns, within bounds."""
+    corner = np.asarray(np.linalg.qr(np.column_stack((reduced, residual)), mode="r"))
+    count = reduced.shape[1]
+    sizes = np.linalg.norm(reduced, axis=0)
+    damped = np.diag(np.sqrt(damping) * np.maximum(sizes, 1e-12 * max(sizes.max(), 1e-300)))
+    matrix = np.vstack((corner[:, :count], damped))
+    target = np.concatenate((-corner[:, count], np.zeros(count)))
+    low, high = np.minimum(room[0], 0.0), np.maximum(room[1], 0.0)
+    high = np.maximum(high, low + 1e-12)
+    sizes = np.maximum(np.linalg.norm(matrix, axis=0), 1e-300)
+    found = lsq_linear(matrix / sizes, target, (low * sizes, high * sizes), method="bvls")
+    return np.asarray(found.x / sizes)
+
+
+def _moved(windows: Windows, views: Sequence[Projection], step: Vector) -> Windows | None:
+    """The windows after a step of the unknowns, their starts following by the linear answer; None
+    where one does not run."""
+    count = len(windows.values)
+    names = windows.values
+    values = {name: windows.values[name] + float(d) for name, d in zip(names, step, strict=True)}
+    for u in windows.criterion.unknowns:
+        values[u.name] = min(max(values[u.name], u.low), u.high)
+    starts: dict[int, Mapping[str, float]] = {}
+    promised = []
+    for n, (view, old) in enumerate(zip(views, windows.near, strict=True)):
+        expected = old.residual.ravel() + old.slopes[:, :count] @ step
+        moved = np.array(list(windows.starts[n].values())) - view.answer @ expected
+        start: Mapping[str, float] = dict(zip(windows.starts[n], moved.tolist(), strict=True))
+        starts[n] = windows.starts[n] if far_off(windows, n, start) else start
+        promised.append(float(np.sum(view.off(expected) ** 2)))
+    there = begun_at(replace(windows, values=values), starts)
+    # a start that is led into a barrier is kicked away
+    lost = [n for n, old in enumerate(windows.near) if old.ran and not there.near[n].ran]
+    there = begun_at(there, {n: windows.starts[n] for n in lost})
+    if not all(there.near[n].ran for n in lost):
+        return None
+    sizes = np.array([x.residual.size for x in there.near])
+    limits = 2 * np.array(promised) + windows.good * sizes
+    far = np.flatnonzero(there.squares > np.maximum(limits, windows.squares)).tolist()
+    return _rescued(there, {n: windows.starts[n] for n in far}) if far else there
+
+
+def _rescued(windows: Windows, before: Mapping[int, Mapping[str, float]]) -> Windows:
+    """Some windows from where they were `before`, or from the ends of those before them, where that
+    does better."""
+    rows = list(before)
+    tried = better(windows, begun_at(windows, before), rows)
+    ends = ends_before(tried, rows)
+    tried = better(tried, begun_at(tried, ends), list(ends))
+    return consistent(from_ends(settled_some(tried, rows, RESCUING), rows, RESCUING))

@@ -1,0 +1,343 @@
+"""From the series that a diagram names to arrays: measured signals, inputs, start values."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import Model, compile
+from tracewire.data import STEPS, Record, read_record
+from tracewire.diagram import SENSOR, Channel, Diagram, Series
+from tracewire.errors import DataError, OptionError, Place, Problem, TracewireError
+from tracewire.formula import evaluate
+from tracewire.residual.inputs import between_samples
+from tracewire.residual.remarks import check_quantities, remarks_on
+from tracewire.residual.sensor import PLAIN, Sensor, read_sensor
+from tracewire.solve import Driving, parameter_values
+
+Vector = NDArray[np.float64]
+LARGEST = 1e100  # its square, and sums of such squares, are numbers still
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """One measured series in SI: times `t` (N,) in s, and `values` (N,) of each measured signal.
+
+    `sigma` is the standard deviation of the noise by signal (None: not known), `sensors` what
+    channels with an offset, gain, delay, quad or drift have of these, `periods` the period of
+    signals that are compared modulo it (2 pi for an angle). `weight` counts the whole series in the
+    criterion, `weights` single signals. A drift counts from `drift_from` (s), the first sample
+    unless given. Samples before `counts_from` (s) do not count. `inputs` maps a named input to its
+    times and values, a smooth one (`residual.inputs`) to points of a spline, and `input_sigma`
+    to the standard deviation of its noise, white from sample to sample. `start` holds
+    start values of this series by state, None where free; without any, a run begins at the start of
+    the diagram's span. `parameters` are those of the diagram that have a value of their own in this
+    series, `free` the bounds of those that a fit may change. `series` is its name in the diagram,
+    which is not `name` where it has several windows. `steps` tells what was done to the data since
+    they were read, `remarks` what is odd about them.
+    """
+
+    name: str
+    use: str
+    t: Vector
+    values: Mapping[str, Vector]
+    sigma: Mapping[str, float | None] = field(default_factory=dict)
+    sensors: Mapping[str, Sensor] = field(default_factory=dict)
+    periods: Mapping[str, float] = field(default_factory=dict)
+    weight: float = 1.0
+    weights: Mapping[str, float] = field(default_factory=dict)
+    counts_from: float = -math.inf
+    inputs: Mapping[str, Driving] = field(default_factory=dict)
+    start: Mapping[str, float | None] = field(default_factory=dict)
+    parameters: Mapping[str, float] = field(default_factory=dict)
+    free: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    preset: str = ""
+    file: str = ""
+    series: str = ""
+    steps: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
+    drift_from: float | None = None
+    input_sigma: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def zero(self) -> float:
+        """The time t0 in s from which the drift of a sensor counts."""
+        return float(self.t[0]) if self.drift_from is None else self.drift_from
+
+    @cached_property
+    def spreads(self) -> Mapping[str, float]:
+        """The standard deviation of each measured signal."""
+        return {name: float(np.std(values)) for name, values in self.values.items()}
+
+    @cached_property
+    def fastest(self) -> float:
+        """The largest standard deviation of a measured signal's rate."""
+        return max(float(np.std(np.gradient(v, self.t))) for v in self.values.values())
+
+    def sensor(self, signal: str) -> Sensor:
+        """The sensor of a signal; it shows the signal itself where nothing is said of it."""
+        return self.sensors.get(signal, PLAIN)
+
+
+def measured_signals(diagram: Diagram) -> tuple[str, ...]:
+    """Every signal that a series of the diagram measures, once."""
+    names = (name for series in diagram.measured.values() for name in series.channels)
+    return tuple(dict.fromkeys(names))
+
+
+def load_measured(model: Model, uses: Iterable[str] = ()) -> tuple[Measured, ...]:
+    """The measured series of a model's diagram, read from their files; all, or those of some uses.
+
+    A series with several windows gives one for each, as `swing (train)`. What `clean` says is done
+    in its order; then the windows cut the record, in the file's own time, and that time is put to
+    the diagram's.
+
+    Raises DataError: no series, a file or column that is missing or cannot be used, a column of
+    another quantity than its signal, a step that cannot be done, a window without samples.
+    """
+    wanted = set(uses)
+    chosen = [
+        series
+        for series in model.diagram.measured.values()
+        if not wanted or wanted & {series.use, *series.windows}
+    ]
+    if not chosen:
+        what = "the diagram names no measured series" + (f" for {sorted(wanted)}" if wanted else "")
+        hint = "Add one under `measured:` with file, time and signals."
+        raise DataError([Problem(what, Place(str(model.diagram.file)), (), hint)])
+    problems: list[Problem] = []
+    loaded: list[Measured] = []
+    for series in chosen:
+        try:
+            loaded += _load(model, series, wanted)
+        except TracewireError as error:
+            problems += error.problems
+    if problems:
+        raise DataError(problems)
+    return tuple(loaded)
+
+
+def _load(model: Model, series: Series, uses: Collection[str]) -> list[Measured]:
+    read = _read(series)
+    record = _cleaned(series, read)
+    check_quantities(model, series, record)
+    _check_size(series, record)
+    if not series.windows:
+        ends = (_or(series.begin, -math.inf), _or(series.end, math.inf))
+        return [_measured(model, series, read, record, series.use, ends)]
+    return [
+        _measured(model, series, read, record, use, ends)
+        for use, ends in series.windows.items()
+        if not uses or use in uses
+    ]
+
+
+def _measured(
+    model: Model,
+    series: Series,
+    read: Record,
+    record: Record,
+    use: str,
+    ends: tuple[float, float],
+) -> Measured:
+    """The part of a record in a window, in the time of the diagram."""
+    channels = series.channels
+    own = series_parameters(model, series)
+    values = parameter_values(model, own, series.preset)
+    rows = _window(series, record, ends)
+    zero = series.time.zero * record.time_unit.factor
+    if len(rows) < len(record.t):
+        some = f"{len(rows)} of {len(record.t)} samples"
+        used_up = f"window {record.t[rows[0]]:g} ... {record.t[rows[-1]]:g} s of the file: {some}"
+        record = replace(record, steps=(*record.steps, used_up))
+    steps = record.shift(zero).steps
+    t = record.t - zero
+    inputs, told = _inputs(series, record, t)
+    counts_from = t[rows[0]] + series.burn_in if series.burn_in else -math.inf
+    if t[rows[-1]] < counts_from:
+        what = f"the series '{series.name}' ends within its burn_in of {series.burn_in:g} s"
+        raise DataError([Problem(what, series.place, (), "Make burn_in shorter.")])
+    factors = {name: _factor(record, name, channel) for name, channel in channels.items()}
+    used = record.t[rows]
+    few = np.sum((read.t >= used[0]) & (read.t <= used[-1])) < 3
+    seen = read if few else read.trim(used[0], used[-1])
+    return Measured(
+        name=f"{series.name} ({use})" if series.windows else series.name,
+        series=series.name,
+        use=use,
+        t=t[rows],
+        values={name: record.columns[name][rows] for name in channels},
+        sigma={
+            name: None if channel.sigma is None else channel.sigma * factors[name]
+            for name, channel in channels.items()
+        },
+        sensors={
+            name: read_sensor(channel, values, factors[name])
+            for name, channel in channels.items()
+            if any(getattr(channel, kind) is not None for kind in SENSOR)
+        },
+        periods={
+            name: channel.modulo * factors[name]
+            for name, channel in channels.items()
+            if channel.modulo is not None
+        },
+        weight=series.weight,
+        weights={name: c.weight for name, c in channels.items() if c.weight != 1.0},
+        counts_from=counts_from,
+        inputs=inputs,
+        input_sigma={
+            name: channel.sigma * _factor(record, f"input {name}", channel)
+            for name, channel in series.inputs.items()
+            if channel.sigma is not None
+        },
+        start={
+            name: None if value is None else evaluate(value.formula, values) * value.factor
+            for name, value in series.start.items()
+        },
+        drift_from=float(t[_window(series, record, _whole(series))[0]]),
+        parameters=own,
+        free={name: v.fit for name, v in series.parameters.items() if v.fit is not None},
+        preset=series.preset,
+        file=str(series.file),
+        steps=(*steps, *told),
+        remarks=remarks_on(model, series, replace(seen, remarks=read.remarks), values, zero),
+    )
+
+
+def _factor(record: Record, name: str, channel: Channel) -> float:
+    """The factor to SI of the numbers that are said of a column."""
+    return record.unit(name).factor if channel.declared is None else 1.0
+
+
+def _inputs(series: Series, record: Record, t: Vector) -> tuple[dict[str, Driving], list[str]]:
+    """The inputs of a record by name, and how each acts between its samples."""
+    found: dict[str, Driving] = {}
+    told = []
+    for name, channel in series.inputs.items():
+        values = record.columns[f"input {name}"]
+        found[name], words = between_samples(name, t, values, channel.hold)
+        told.append(words)
+    return found, told
+
+
+def series_parameters(model: Model, series: Series) -> dict[str, float]:
+    """The values in SI that a series gives to parameters of the diagram."""
+    known = parameter_values(model, {}, series.preset)
+    return {
+        name: evaluate(value.formula, known) * value.factor
+        for name, value in series.parameters.items()
+    }
+
+
+def _read(series: Series) -> Record:
+    """The columns of a series in SI; those to be calibrated as they stand in the file."""
+    channels = _columns(series)
+    clock, form = series.time, series.format
+    return read_record(
+        series.file,
+        {name: channel.column for name, channel in channels.items()},
+        clock.column or None,
+        units={n: c.declared for n, c in channels.items() if c.declared is not None},
+        time_unit=clock.unit,
+        raw=[str(s.options.get("signal")) for s in series.clean if s.step == "calibrate"],
+        delimiter=form.delimiter,
+        decimal=form.decimal,
+        comment=form.comment,
+        every=clock.every,
+        where=series.where,
+        place=series.place,
+    )
+
+
+def _columns(series: Series) -> dict[str, Channel]:
+    """The channels that are columns of the file, by their names in the record."""
+    inputs = {f"input {name}": channel for name, channel in series.inputs.items()}
+    return {n: c for n, c in {**series.channels, **inputs}.items() if c.column}
+
+
+def _cleaned(series: Series, record: Record) -> Record:
+    """The record after the steps of `clean`."""
+    channels = _columns(series)
+    for step in series.clean:
+        options: dict[str, object] = dict(step.options)
+        try:
+            if step.step == "calibrate":
+                signal = str(options["signal"])
+                gain, offset = (
+                    cast(float, options.get(name, default))
+                    for name, default in (("gain", 1.0), ("offset", 0.0))
+                )
+                unit = channels[signal].declared or ""
+                record = record.calibrate(signal, gain, offset, unit)
+                continue
+            for name, option in STEPS[step.step].items():
+                if option.kind == "size" and name in options:
+                    factor = record.unit(str(options["signal"])).factor
+                    options[name] = cast(float, options[name]) * factor
+            record = record.clean(step.step, options)
+        except OptionError as error:
+            where = f"'{step.step}' of series '{series.name}'"
+            problems = [
+                replace(p, what=f"{where}: {p.what}", place=step.place) for p in error.problems
+            ]
+            raise DataError(problems) from None
+    return record
+
+
+def _check_size(series: Series, record: Record) -> None:
+    problems = []
+    for name, channel in series.channels.items():
+        largest = float(np.abs(record.columns[name]).max())
+        if largest > LARGEST:
+            what = f"'{name}' of the series '{series.name}' reaches {largest:.3g}, too large to fit"
+            hint = f"Correct the column '{channel.column}', or its unit."
+            problems.append(Problem(what, series.place, (), hint))
+    if problems:
+        raise DataError(problems)
+
+
+def _window(series: Series, record: Record, ends: tuple[float, float]) -> NDArray[np.intp]:
+    """The rows in a window; a sample at the common end of two windows belongs to the later."""
+    low, high = ends
+    inside = (record.t >= low) & (record.t <= high)
+    if any(begin == high for begin, _ in series.windows.values()):
+        inside &= record.t < high
+    rows = np.flatnonzero(inside)
+    if len(rows) < 2:
+        what = (
+            f"the series '{series.name}' has {len(rows)} samples between {low:g} and {high:g} s; "
+            f"the file covers {record.t[0]:g} to {record.t[-1]:g} s"
+        )
+        hint = "Correct the windows of `use`." if series.windows else "Correct `from` and `to`."
+        raise DataError([Problem(what, series.place, (), hint)])
+    return rows
+
+
+def _whole(series: Series) -> tuple[float, float]:
+    """From the begin of the first window, or of the series, on: a drift goes on over windows."""
+    begin = min((low for low, _ in series.windows.values()), default=_or(series.begin, -math.inf))
+    return begin, math.inf
+
+
+def _or(value: float | None, default: float) -> float:
+    return default if value is None else value
+
+
+def with_measured_signals(model: Model, series: Sequence[Measured] | None = None) -> Model:
+    """The model with every signal of the series, or of the diagram's, among the recorded ones.
+
+    Raises OptionError: a signal that the model does not have.
+    """
+    if series is None:
+        signals = measured_signals(model.diagram)
+    else:
+        signals = tuple(signal for m in series for signal in m.values)
+    if set(signals) <= set(model.recorded):
+        return model
+    return compile(model.diagram, record=[*model.recorded, *signals])

@@ -1,0 +1,136 @@
+"""What is odd about a measured series beside its model: units, time scale, angles."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from tracewire.compile import Model
+from tracewire.data import Record, signal_remarks, time_remarks
+from tracewire.diagram import Series
+from tracewire.errors import DataError, FormulaError, Problem
+from tracewire.formula import evaluate, same_quantity
+from tracewire.residual.inputs import looks_held
+
+LARGEST_ANGLE = 20.0
+MUCH_LONGER = 100.0
+FAR = 10.0
+NEAR_PI = 0.3
+RESTING = 5
+"""Samples of exactly zero that are no passage through zero."""
+
+
+def check_quantities(model: Model, series: Series, record: Record) -> None:
+    """Raise DataError where a column measures another quantity than its signal or input."""
+    wanted = {name: model.flat.units.get(name, "") for name in series.channels}
+    wanted |= {f"input {name}": model.diagram.inputs[name].unit for name in series.inputs}
+    problems = []
+    for name, unit in wanted.items():
+        given = record.unit(name).text
+        if unit and given and unit != given and not _same(unit, given):
+            channel = series.channels.get(name) or series.inputs[name.removeprefix("input ")]
+            column = f"its column '{channel.column}'" if channel.column else "its measurement"
+            what = f"'{name}' is in {unit} in the diagram, and {column} in {given}"
+            hint = "Name another column, or correct the unit."
+            problems.append(Problem(what, channel.place, hint=hint))
+    if problems:
+        raise DataError(problems)
+
+
+def remarks_on(
+    model: Model, series: Series, read: Record, values: Mapping[str, float], zero: float
+) -> tuple[str, ...]:
+    """What is odd about a record as it was read, in SI and in the file's own time, and its units.
+
+    values: the parameters of the diagram; zero: the time in the file that is t = 0.
+    """
+    found = list(read.remarks)
+    if series.time.every is None:
+        found += time_remarks(read.t)
+    for name, column in read.columns.items():
+        found += signal_remarks(name, read.t, column, read.unit(name).text)
+    found += _on_span(model, series, read, values, zero)
+    states = {state.name: state for state in model.flat.states}
+    for name in series.channels:
+        unit = read.unit(name)
+        angle = unit.text or model.flat.units.get(name, "")
+        if name not in read.columns or angle != "rad":
+            continue
+        column = read.columns[name]
+        if unit.factor == 1.0 and float(np.ptp(column)) > LARGEST_ANGLE:
+            found.append(
+                f"{name} goes from {column.min():.4g} to {column.max():.4g} rad: "
+                "is the column in degrees? Then say unit: deg"
+            )
+        elif name in states and name not in series.start:
+            start = evaluate(states[name].start, values)
+            if abs(abs(float(column[0]) - start) - math.pi) < NEAR_PI:
+                found.append(
+                    f"{name} begins at {column[0]:.4g} rad, about pi from the diagram's start at "
+                    f"{start:.4g} rad: is the angle measured from another line?"
+                )
+    found += _on_rest(model, series, read)
+    found += _on_hold(series, read)
+    return tuple(found)
+
+
+def _on_hold(series: Series, read: Record) -> list[str]:
+    """Inputs that look held, of which nothing is said."""
+    return [
+        f"the input {name} looks held: most of its samples repeat the one before; if it acts so, "
+        "say hold: previous, if not, hold: linear"
+        for name, channel in series.inputs.items()
+        if channel.hold is None
+        and (column := read.columns.get(f"input {name}")) is not None
+        and looks_held(column)
+    ]
+
+
+def _on_rest(model: Model, series: Series, read: Record) -> list[str]:
+    """Inputs that rest at exactly zero where a sign or a friction asks for their side."""
+    found = []
+    guards = {mode.text: mode.signal for mode in model.modes}
+    for name in series.inputs:
+        column = read.columns.get(f"input {name}")
+        if column is None or name not in guards:
+            continue
+        still = np.concatenate(([0], (column == 0.0).astype(int), [0]))
+        edges = np.flatnonzero(np.diff(still))
+        first, last = edges[::2], edges[1::2] - 1
+        if len(first) and (longest := int(np.argmax(last - first))) >= 0:
+            a, b = int(first[longest]), int(last[longest])
+            if b - a >= RESTING:
+                found.append(
+                    f"the input {name} is exactly zero from {read.t[a]:g} to {read.t[b]:g} s: "
+                    f"there '{guards[name]}' keeps one side, as if it moved; cut such stretches "
+                    "off (from:), or do not count them (burn_in:)"
+                )
+    return found
+
+
+def _on_span(
+    model: Model, series: Series, read: Record, values: Mapping[str, float], zero: float
+) -> list[str]:
+    begin, end = (float(evaluate(side, values)) for side in model.flat.span)
+    first, last = (float(t) - zero for t in (read.t[0], read.t[-1]))
+    found = []
+    if last - first > MUCH_LONGER * (end - begin) and series.time.every is None:
+        found.append(
+            f"the record is {last - first:g} s long, and the diagram's span {end - begin:g} s: "
+            "is the time in ms? Then say time: {column: ..., unit: ms}"
+        )
+    if abs(first - begin) > FAR * max(last - first, end - begin):
+        found.append(
+            f"the first sample is at t = {first:.6g} s, far from the begin of the diagram at "
+            f"{begin:g} s: say which time is t = 0, as in time: {{column: ..., zero: ...}}"
+        )
+    return found
+
+
+def _same(one: str, other: str) -> bool:
+    try:
+        return same_quantity(one, other)
+    except FormulaError:
+        return True  # a unit of a library block that is not known cannot be compared

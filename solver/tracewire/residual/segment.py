@@ -1,0 +1,112 @@
+"""What a criterion compares and what it may change: stretches of series, and unknown numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import Model
+from tracewire.residual.measured import Measured
+
+Vector = NDArray[np.float64]
+SENSED = ("offset.", "gain.", "delay.", "quad.", "drift.")
+"""What the names of a sensor's unknowns begin with; all other names are the diagram's."""
+OWN = "@"
+"""Stands between a parameter and the series that has it of its own: `harmonic.phase@run_1`."""
+
+
+@dataclass(frozen=True, eq=False)
+class Segment:
+    """A stretch of a measured series that one run is compared with.
+
+    The run begins at `begin` with the states of `start` (those not named: the diagram's); the
+    states in `free` are unknowns. `rows` are the samples of the series that count.
+    """
+
+    measured: Measured
+    begin: float
+    rows: NDArray[np.intp]
+    start: Mapping[str, float] = field(default_factory=dict)
+    free: tuple[str, ...] = ()
+
+    @cached_property
+    def t(self) -> Vector:
+        """The sample times, shape (N,) in s."""
+        return self.measured.t[self.rows]
+
+    @property
+    def signals(self) -> tuple[str, ...]:
+        """The measured signals."""
+        return tuple(self.measured.values)
+
+    def samples(self) -> Vector:
+        """The measured values, shape (N, signals) in SI."""
+        return np.stack([v[self.rows] for v in self.measured.values.values()], axis=1)
+
+    def start_scale(self, state: str) -> float:
+        """The size of a free start value: what its signal, or the fastest rate of one, spreads."""
+        spread = self.measured.spreads.get(state, self.measured.fastest)
+        return max(spread, abs(self.start[state])) or 1.0
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """A number to be found: its name, value, bounds, and the size by which it is scaled.
+
+    The name is that of a parameter, or of a sensor: `offset.SIGNAL`, `gain.SIGNAL`, `delay.SIGNAL`,
+    `quad.SIGNAL`, `drift.SIGNAL`; or that of a parameter in one series, `harmonic.phase@run_1`.
+    """
+
+    name: str
+    value: float
+    low: float = -np.inf
+    high: float = np.inf
+    scale: float = 1.0
+
+
+def of_diagram(values: Mapping[str, float], measured: Measured | None = None) -> dict[str, float]:
+    """The parameters of the diagram among named unknowns: all but those of sensors.
+
+    In a run of a series, those that it has of its own go before: as it gives them, and as an
+    unknown of that series (`harmonic.phase@run_1`) says. Unknowns of other series are left out.
+    """
+    known = {n: v for n, v in values.items() if not n.startswith(SENSED) and OWN not in n}
+    if measured is None:
+        return known
+    known |= measured.parameters
+    names = {name: own_name(name, measured) for name in measured.parameters}
+    return known | {name: values[own] for name, own in names.items() if own in values}
+
+
+def absolute_tolerances(model: Model, measured: Measured, rtol: float) -> dict[str, float]:
+    """The absolute tolerance of each state in runs of a series, for `simulate_spans`.
+
+    rtol/1000 of the spread of its signal; of a state that is not measured, of the least spread of a
+    signal or of the fastest rate of one. Sizes are rounded down to a power of ten, and at most 1: a
+    record in m is run as exactly as the same record in mm.
+    """
+    sizes = {name: size for name, size in measured.spreads.items() if size > 0}
+    least = min([1.0, *sizes.values(), *([measured.fastest] if measured.fastest > 0 else [])])
+    known = {name: min(sizes.get(name, least), 1.0) for name in model.states}
+    return {name: rtol * 10.0 ** (math.floor(math.log10(size)) - 3) for name, size in known.items()}
+
+
+def own_name(parameter: str, measured: Measured) -> str:
+    """The name of the unknown that a parameter is where a series has it of its own."""
+    return f"{parameter}{OWN}{measured.series or measured.name}"
+
+
+def parameter_in(unknown: str, measured: Measured) -> str:
+    """The parameter of the diagram that an unknown is in a run of a series; '' where it is none, as
+    of a sensor or another series, or where the series has a value of its own."""
+    if unknown.startswith(SENSED):
+        return ""
+    parameter, _, series = unknown.partition(OWN)
+    if not series:
+        return "" if parameter in measured.parameters else parameter
+    return parameter if own_name(parameter, measured) == unknown else ""

@@ -1,0 +1,143 @@
+"""From runs to what the sensors of segments show, and its derivatives.
+
+A sensor shows gain*z + offset + quad*z^2 + drift*(t - t0) of its signal y, with z = y(t - delay).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.diagram import SENSOR
+from tracewire.residual.segment import Segment
+from tracewire.residual.sensor import Sensor
+from tracewire.solve import Sensitivities
+
+Vector = NDArray[np.float64]
+Cube = NDArray[np.float64]
+STEP = 1e-3
+"""Of a sample interval: how far to each side a signal is sampled for its rate."""
+
+
+class Seen(Protocol):
+    """A run, or runs over many spans: what sensors look at."""
+
+    @property
+    def sensitivities(self) -> Sensitivities:
+        """The derivatives of the signals."""
+
+    def __getitem__(self, name: str) -> Vector:
+        """The samples of a signal."""
+
+
+class Sensing:
+    """The sensors of segments of one series with the values of unknowns, and when they look at
+    their signals.
+
+    `named` holds unknowns by name (`offset.SIGNAL` ...), which replace those of the series. With
+    `rates`, signals are sampled for d y/dt, too. `times` are the sample times that a run of each
+    segment needs; a sensor that looks back before its begin sees the signal there.
+    """
+
+    def __init__(
+        self, segments: Sequence[Segment], named: Mapping[str, float], rates: bool = False
+    ) -> None:
+        self.segments, self.rates = segments, rates
+        self.signals = segments[0].signals
+        self.sensors = [_sensor(segments[0], signal, named) for signal in self.signals]
+        self.since = np.concatenate([segment.t for segment in segments])
+        self.since -= segments[0].measured.zero
+        self.begins = [min(segment.begin, float(segment.t[0])) for segment in segments]
+        self.at: Sequence[slice | NDArray[np.intp]]
+        if not rates and not any(sensor.delay for sensor in self.sensors):
+            self.times = [segment.t for segment in segments]
+            self.at = [slice(len(self.since))] * len(self.sensors)
+            return
+        self.times, parts, first = [], [], 0
+        for segment, begin in zip(segments, self.begins, strict=True):
+            looks = self._looks(segment.t)
+            times, at = np.unique(np.maximum(looks, begin), return_inverse=True)
+            self.times.append(times)
+            parts.append(first + at.reshape(looks.shape))
+            first += len(times)
+        self.at = list(np.concatenate(parts, axis=1))
+
+    def _looks(self, t: Vector) -> Vector:
+        """When the sensors look to show what they do at times (N,): (looks, N)."""
+        looks: Vector = np.array([t - sensor.delay for sensor in self.sensors])
+        if not self.rates:
+            return looks
+        step = STEP * float(np.median(np.diff(t))) if len(t) > 1 else STEP
+        return np.concatenate([looks, looks - step, looks + step])
+
+    @property
+    def ends(self) -> list[float]:
+        """Where runs may end: at the last time that is looked at, and after the begin."""
+        return [
+            float(times[-1]) if times[-1] > begin else float(segment.t[-1])
+            for segment, times, begin in zip(self.segments, self.times, self.begins, strict=True)
+        ]
+
+    def shown(self, run: Seen) -> Vector:
+        """What the sensors show, shape (N, signals)."""
+        columns = [
+            sensor.shown(run[signal][at], self.since)
+            for signal, sensor, at in zip(self.signals, self.sensors, self.at, strict=False)
+        ]
+        return np.stack(columns, axis=1)
+
+    def derivatives(self, run: Seen, unknowns: Mapping[str, str]) -> Cube:
+        """d shown/d unknowns, shape (N, signals, unknowns).
+
+        `unknowns` gives each unknown by name the name under which the run has the derivatives of
+        the signals in it; of a sensor it is ''.
+        """
+        found = np.zeros((len(self.since), len(self.signals), len(unknowns)))
+        rows = {name: row for row, name in enumerate(run.sensitivities)}
+        moving = [column for column, name in enumerate(unknowns.values()) if name]
+        moved = [rows[name] for name in unknowns.values() if name]
+        for number, (signal, sensor) in enumerate(zip(self.signals, self.sensors, strict=True)):
+            at = self.at[number]
+            if moved:
+                slopes = run.sensitivities.array[moved, run.sensitivities.signals.index(signal)]
+                found[:, number, moving] = (self._slope(sensor, run[signal][at]) * slopes[:, at]).T
+            for column, name in enumerate(unknowns):
+                kind, _, of = name.partition(".")
+                if of == signal and not unknowns[name]:
+                    found[:, number, column] = self._of_sensor(kind, run, number)
+        return found
+
+    def _of_sensor(self, kind: str, run: Seen, number: int) -> Vector | float:
+        """d shown/d an unknown of the sensor of a signal."""
+        signal = self.signals[number]
+        delayed = run[signal][self.at[number]]
+        if kind == "delay":
+            return -self._slope(self.sensors[number], delayed) * self._rate(run, signal, number)
+        known: dict[str, Vector | float] = {
+            "offset": 1.0,
+            "gain": delayed,
+            "quad": delayed**2,
+            "drift": self.since,
+        }
+        return known.get(kind, 0.0)
+
+    def _slope(self, sensor: Sensor, delayed: Vector) -> Vector | float:
+        """d shown/d y(t - delay)."""
+        return sensor.gain + 2 * sensor.quad * delayed if sensor.quad else sensor.gain
+
+    def _rate(self, run: Seen, signal: str, column: int) -> Vector:
+        count, times = len(self.signals), np.concatenate(self.times)
+        down, up = self.at[count + column], self.at[2 * count + column]
+        width = np.maximum(times[up] - times[down], 1e-300)
+        return np.asarray((run[signal][up] - run[signal][down]) / width)
+
+
+def _sensor(segment: Segment, signal: str, named: Mapping[str, float]) -> Sensor:
+    own = segment.measured.sensor(signal)
+    names = {kind: f"{kind}.{signal}" for kind in SENSOR}
+    changed: dict[str, Any] = {k: named[name] for k, name in names.items() if name in named}
+    return replace(own, **changed) if changed else own

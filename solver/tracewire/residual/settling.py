@@ -1,0 +1,111 @@
+"""The starts of windows fitted, each for itself, while the unknowns stay."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.residual.windows import Windows, begun_at, better, projection
+
+Vector = NDArray[np.float64]
+SETTLING = 8
+"""Steps of the starts."""
+FAR_OFF = 100.0
+"""A start this many scales of its state away from the one that the data show."""
+CONVERGED = 1e-4
+SETTLED = 0.05
+"""What is still to gain, in units of the noise's variance, where a fit has converged."""
+
+
+def settled(windows: Windows, steps: int = SETTLING) -> Windows:
+    """The starts alone fitted, each window for itself; the unknowns stay.
+
+    A window whose start is led astray (a start inside a stiff barrier kicks it away) is tried from
+    the end of the window before it.
+    """
+    windows = settled_some(windows, range(len(windows.near)), steps)
+    off = [n for n in range(len(windows.near)) if not _is_good(windows, n)]
+    return consistent(from_ends(windows, off, steps))
+
+
+def from_ends(windows: Windows, rows: Sequence[int], steps: int) -> Windows:
+    """Some windows from the ends of those before them, where that does better; once more, where the
+    one before has changed by that."""
+    changed = {n - 1 for n in rows}
+    while True:
+        off = [n for n in rows if n - 1 in changed and not _is_good(windows, n)]
+        there = begun_at(windows, ends_before(windows, off))
+        tried = [n for n in off if there.starts[n] is not windows.starts[n]]
+        if not tried:
+            return windows
+        found = better(windows, settled_some(there, tried, steps), tried)
+        changed = {n for n in tried if found.starts[n] is not windows.starts[n]}
+        windows = found
+
+
+def _is_good(windows: Windows, n: int) -> bool:
+    """Whether a window is so near what the best models leave that it is not astray."""
+    near = windows.near[n]
+    return near.square <= windows.good * near.residual.size
+
+
+def consistent(windows: Windows) -> Windows:
+    """The windows with memories as they are after starts of some have moved."""
+    remembers = windows.criterion.remembers
+    return begun_at(windows, dict(enumerate(windows.starts))) if remembers else windows
+
+
+def ends_before(windows: Windows, rows: Sequence[int]) -> dict[int, Mapping[str, float]]:
+    """The ends of the windows before some, which are starts for these, by number."""
+    found: dict[int, Mapping[str, float]] = {}
+    for n in rows:
+        ends = windows.near[n - 1].final if windows.criterion.follows(n) else {}
+        if ends:
+            found[n] = {name: ends[name] for name in windows.starts[n]}
+    return found
+
+
+def settled_some(windows: Windows, rows: Sequence[int], steps: int) -> Windows:
+    """The starts of some windows fitted by damped Gauss-Newton steps, each for itself."""
+    share = {n: 1.0 for n in rows if windows.starts[n]}
+    answers: dict[int, Vector] = {}
+    for _ in range(steps):
+        moved: dict[int, Mapping[str, float]] = {}
+        for n in list(share):
+            near = windows.near[n]
+            if n not in answers:
+                view = projection(windows, n)
+                gain = float(np.sum((view.basis.T @ near.residual.ravel()) ** 2))
+                if gain < max(SETTLED, CONVERGED * near.square):
+                    del share[n]
+                    continue
+                answers[n] = -view.answer @ near.residual.ravel()
+            start = np.array(list(windows.starts[n].values())) + share[n] * answers[n]
+            moved[n] = dict(zip(windows.starts[n], start.tolist(), strict=True))
+            if far_off(windows, n, moved[n]):
+                share[n] /= 4
+                del moved[n]
+        if not share:
+            break
+        there = begun_at(windows, moved)
+        for n in moved:
+            if not there.near[n].ran:
+                del share[n]
+            elif there.near[n].square < windows.near[n].square:
+                share[n] = min(2 * share[n], 1.0)
+                del answers[n]
+            else:
+                share[n] /= 4
+        windows = better(windows, there, list(moved))
+    return windows
+
+
+def far_off(windows: Windows, n: int, start: Mapping[str, float]) -> bool:
+    """Whether a start is where no body of this record can be: no run is worth its time there."""
+    segment = windows.criterion.segments[n]
+    return any(
+        not abs(value - segment.start.get(name, 0.0)) < FAR_OFF * segment.start_scale(name)
+        for name, value in start.items()
+    )

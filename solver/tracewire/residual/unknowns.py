@@ -1,0 +1,125 @@
+"""What a fit may change: parameters with bounds, and what sensors do to their signals."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from tracewire.compile import Model
+from tracewire.errors import OptionError, Problem, unknown
+from tracewire.residual.measured import Measured
+from tracewire.residual.segment import Unknown, own_name
+
+TINY = 1e-6
+"""Of the width between its bounds: a value closer to zero says nothing of its size."""
+
+
+def free_unknowns(
+    model: Model, free: Sequence[str] | None, values: Mapping[str, float]
+) -> list[Unknown]:
+    """The parameters that a fit may change, begun at `values`: those with `fit:` bounds, or those
+    that `free` names.
+
+    Raises OptionError: a name does not exist, a start outside the bounds.
+    """
+    flat = model.flat
+    names = [n for n, p in flat.parameters.items() if p.fit is not None] if free is None else free
+    problems = [unknown("parameter", n, flat.parameters) for n in names if n not in flat.parameters]
+    if problems:
+        raise OptionError(problems)
+    unknowns = []
+    for name in dict.fromkeys(names):
+        parameter, value = flat.parameters[name], values[name]
+        low, high = parameter.fit or (-np.inf, np.inf)
+        if not low <= value <= high:
+            what = f"'{name}' begins at {value:g}, outside its bounds {low:g} to {high:g} (SI)"
+            hint = "Begin inside them, or widen `fit:`."
+            problems.append(Problem(what, parameter.place, hint=hint))
+        width = high - low if np.isfinite(high - low) else 0.0
+        size = max(abs(value), TINY * width) if value else 0.1 * (width or 1.0)
+        unknowns.append(Unknown(name, value, low, high, size))
+    if problems:
+        raise OptionError(problems)
+    return unknowns
+
+
+def sensor_unknowns(measured: Sequence[Measured]) -> list[Unknown]:
+    """The free numbers of sensors, one for each signal, named `offset.SIGNAL`, `gain.SIGNAL` ...
+
+    They begin at those of the first series that has them.
+    """
+    found: dict[str, Unknown] = {}
+    for series in measured:
+        for signal, sensor in series.sensors.items():
+            spread = 0.1 * float(np.std(series.values[signal])) or 1.0
+            largest = float(np.max(np.abs(series.values[signal])))
+            sizes = {
+                "offset": spread,
+                "gain": max(abs(sensor.gain), 1e-3),
+                "delay": float(np.median(np.diff(series.t))),
+                "quad": spread / (largest**2 or 1.0),
+                "drift": spread / float(series.t[-1] - series.t[0]),
+            }
+            for kind, (low, high) in sensor.free.items():
+                name = f"{kind}.{signal}"
+                value = float(getattr(sensor, kind))
+                found.setdefault(name, Unknown(name, value, low, high, sizes[kind]))
+    return list(found.values())
+
+
+def own_unknowns(measured: Sequence[Measured]) -> list[Unknown]:
+    """The parameters that some series have of their own, with bounds: `harmonic.phase@run_1`.
+
+    Raises OptionError: a start outside the bounds.
+    """
+    found: dict[str, Unknown] = {}
+    problems = []
+    for series in measured:
+        for parameter, (low, high) in series.free.items():
+            name, value = own_name(parameter, series), series.parameters[parameter]
+            if not low <= value <= high:
+                what = f"'{name}' begins at {value:g}, outside its bounds {low:g} to {high:g} (SI)"
+                problems.append(Problem(what, hint="Begin inside them, or widen `fit:`."))
+            width = high - low if np.isfinite(high - low) else 0.0
+            size = max(abs(value), TINY * width) if value else 0.1 * (width or 1.0)
+            found.setdefault(name, Unknown(name, value, low, high, size))
+    if problems:
+        raise OptionError(problems)
+    return list(found.values())
+
+
+def chosen_unknowns(
+    model: Model,
+    measured: Sequence[Measured],
+    values: Mapping[str, float],
+    free: Sequence[str] | None,
+    fixed: Sequence[str],
+) -> list[Unknown]:
+    """What a fit of some series may change: all that is free in the diagram, or what `free` names,
+    without what `fixed` names; with numbers of sensors and what single series have of their own.
+
+    Raises OptionError: nothing is free, a name does not exist, a start outside the bounds.
+    """
+    sensors = {u.name: u for u in (*sensor_unknowns(measured), *own_unknowns(measured))}
+    known = [*model.flat.parameters, *sensors]
+    problems = [
+        unknown("parameter", name, known)
+        for name in dict.fromkeys([*(free or ()), *fixed])
+        if name not in known
+    ]
+    if problems:
+        raise OptionError(problems)
+    own = None if free is None else [name for name in free if name not in sensors]
+    if own is None:
+        own = [n for n, p in model.flat.parameters.items() if p.fit is not None]
+    found = free_unknowns(model, [name for name in own if name not in fixed], values)
+    found += [
+        sensor
+        for name, sensor in sensors.items()
+        if name not in fixed and (free is None or name in free)
+    ]
+    if not found:
+        hint = "Give a parameter bounds, as in k: {value: 1, fit: [0, 10]}, or name it as free."
+        raise OptionError([Problem("no parameter of the diagram is free", hint=hint)])
+    return found

@@ -1,0 +1,192 @@
+"""Windows: a series cut into short runs whose start states are free.
+
+A window begins at the last sample of the one before it, so that the end of one is a start for the
+next. Its start states are eliminated where it stands: what is left of the residual and of the
+derivatives when all that a start could explain is taken away (variable projection).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import Model
+from tracewire.residual.criterion import Criterion
+from tracewire.residual.linearised import Linearised
+from tracewire.residual.measured import Measured
+from tracewire.residual.segment import Segment
+from tracewire.residual.starts import start_from_data, whole_segment
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+UNSEEN = 1e-7
+"""A direction of a window's start that moves its residual less than this part of the strongest."""
+AHEAD = 2.0
+"""How many delays of a sensor a window's run begins ahead of its first sample: a fit may find a
+longer delay than it began with."""
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """Samples `first` to `end` of a series, which are cut into windows."""
+
+    measured: Measured
+    first: int
+    end: int
+
+
+def cut(model: Model, section: Section, length: int, free: Sequence[str]) -> list[Segment]:
+    """A section as windows of about `length` samples, each with free starts of the states `free`.
+
+    A window that begins where the series does begins as the series says; where that start is
+    declared, it is not free. Where no state is free at all, as with a prescribed motion, there is
+    one window, whose run begins where the series does: what has a memory keeps it.
+    """
+    measured = section.measured
+    whole = whole_segment(model, measured)
+    first = max(section.first, int(whole.rows[0]))
+    if not free and not whole.free:
+        return [replace(whole, rows=np.arange(first, section.end))]
+    count = max(round((section.end - first) / length), 1)
+    edges = np.linspace(first, section.end, count + 1).astype(int).tolist()
+    windows = []
+    for a, b in pairwise(edges):
+        if a == int(whole.rows[0]):
+            start = {name: whole.start[name] for name in free if name in whole.start}
+            start |= {name: whole.start.get(name, 0.0) for name in whole.free}
+            windows.append(Segment(measured, whole.begin, np.arange(a, b), start, whole.free))
+            continue
+        told = start_from_data(model, measured, a - 1)
+        start = {**whole.start, **{name: told[name] for name in free if name in told}}
+        for name in free:
+            start.setdefault(name, 0.0)
+        begin = float(measured.t[a - 1])
+        windows.append(Segment(measured, begin, np.arange(a, b), start, tuple(free)))
+    return windows
+
+
+def begun_before(model: Model, segment: Segment, delays: Mapping[str, float]) -> Segment:
+    """A window whose run begins so early that its first samples are seen through delays in s, by
+    the name of the sensor's unknown; where its start is not free, as it is."""
+    measured, first = segment.measured, float(segment.t[0])
+    signals = segment.signals
+    delay = max(delays.get(f"delay.{name}", measured.sensor(name).delay) for name in signals)
+    begin = first - AHEAD * delay
+    if not segment.free or segment.begin <= begin:
+        return segment
+    row = int(np.searchsorted(measured.t, begin, side="right")) - 1
+    if row < 0:
+        return replace(segment, begin=begin)
+    told = start_from_data(model, measured, row)
+    start = {name: told[name] for name in segment.free if name in told}
+    return replace(segment, begin=float(measured.t[row]), start={**segment.start, **start})
+
+
+@dataclass(frozen=True, eq=False)
+class Windows:
+    """Windows at some values of the unknowns: their starts, and each of them linearised there.
+
+    A window whose mean squared residual is at most `good`, in the noise's variance, is not astray.
+    """
+
+    criterion: Criterion
+    values: Mapping[str, float]
+    starts: tuple[Mapping[str, float], ...]
+    near: tuple[Linearised, ...]
+    good: float = 2.0
+
+    @property
+    def squares(self) -> Vector:
+        """The sum of squared residuals of each window, in sigma."""
+        return np.array([near.square for near in self.near])
+
+    @property
+    def rss(self) -> float:
+        """The sum of squared residuals."""
+        return float(np.sum(self.squares))
+
+    @property
+    def residuals(self) -> list[Vector]:
+        """The residuals in sigma by window, shape (N, signals)."""
+        return [near.residual for near in self.near]
+
+    @property
+    def segments(self) -> list[Segment]:
+        """The windows with their fitted starts, and memories as the window before has left them."""
+        found = []
+        for n, segment in enumerate(self.criterion.segments):
+            left = self.near[n - 1].final if self.criterion.follows(n) else {}
+            start = {**segment.start, **left, **self.starts[n]}
+            found.append(replace(segment, start=start))
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Projection:
+    """A window without what its start can explain: an orthonormal basis of that, (N*signals, r),
+    and the start's answer to a residual, (states, N*signals)."""
+
+    basis: Matrix
+    answer: Matrix
+
+    def off(self, columns: Matrix) -> Matrix:
+        """Columns without what the start can explain."""
+        return np.asarray(columns - self.basis @ (self.basis.T @ columns))
+
+
+def projection(windows: Windows, n: int) -> Projection:
+    """What the start of window n can explain."""
+    segment = windows.criterion.segments[n]
+    scales = np.array([segment.start_scale(name) for name in segment.free])
+    moved = windows.near[n].slopes[:, len(windows.values) :] * scales
+    if not moved.size:
+        return Projection(np.zeros((len(moved), 0)), np.zeros((0, len(moved))))
+    left, singular, right = np.linalg.svd(moved, full_matrices=False)
+    kept = singular > UNSEEN * max(float(singular[0]), 1e-300)
+    answer = (scales[:, None] * right[kept].T / singular[kept]) @ left[:, kept].T
+    return Projection(left[:, kept], answer)
+
+
+def eliminated(windows: Windows, views: Sequence[Projection]) -> tuple[Matrix, Vector]:
+    """Derivatives (M, unknowns) in SI and residuals (M,) without what the starts can explain."""
+    count = len(windows.values)
+    pairs = list(zip(views, windows.near, strict=True))
+    reduced = np.concatenate([view.off(near.slopes[:, :count]) for view, near in pairs])
+    residual = np.concatenate([view.off(near.residual.ravel()) for view, near in pairs])
+    return reduced, residual
+
+
+def opened(criterion: Criterion, good: float = 2.0) -> Windows:
+    """The windows where their segments begin; `good` as in Windows."""
+    values = {u.name: u.value for u in criterion.unknowns}
+    starts = [{name: s.start[name] for name in s.free} for s in criterion.segments]
+    near = criterion.linearised(values, dict(enumerate(starts)))
+    linearised = tuple(near[n] for n in range(len(starts)))
+    return Windows(criterion, values, tuple(starts), linearised, good)
+
+
+def begun_at(windows: Windows, starts: Mapping[int, Mapping[str, float]]) -> Windows:
+    """The windows with other starts of some, by number; the unknowns stay.
+
+    Where memories go on from one to the next all of them run, else those.
+    """
+    if not starts:
+        return windows
+    there = {**dict(enumerate(windows.starts)), **starts}
+    run = there if windows.criterion.remembers else starts
+    found = windows.criterion.linearised(windows.values, run)
+    near = tuple(found.get(n, old) for n, old in enumerate(windows.near))
+    return replace(windows, starts=tuple(there[n] for n in range(len(near))), near=near)
+
+
+def better(windows: Windows, other: Windows, rows: Sequence[int]) -> Windows:
+    """The windows with those of some others where these do better."""
+    starts, near = list(windows.starts), list(windows.near)
+    for n in rows:
+        if other.near[n].square < near[n].square:
+            starts[n], near[n] = other.starts[n], other.near[n]
+    return replace(windows, starts=tuple(starts), near=tuple(near))

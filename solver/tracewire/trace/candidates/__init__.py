@@ -1,0 +1,1 @@
+"""What is tried: effects of the library at the places of a diagram."""

@@ -1,0 +1,264 @@
+"""Candidates: an effect at a place, wired to the signals that are there."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+
+from tracewire.compile import Model
+from tracewire.diagram import SENSOR, Diagram, EffectType, effects_of
+from tracewire.library import Effect, Shape
+from tracewire.trace.candidates.candidate import (
+    Candidate,
+    aliases_of,
+    is_default,
+    unknowns_of,
+    without_defaults,
+)
+from tracewire.trace.candidates.effects import bounds_of, scale_of
+from tracewire.trace.candidates.extend import extend
+from tracewire.trace.candidates.levels import Levels
+from tracewire.trace.candidates.places import Place
+from tracewire.trace.candidates.tones import Sine, own_values
+from tracewire.trace.candidates.waves import MOST_WAVES
+
+__all__ = [
+    "Candidate",
+    "aliases_of",
+    "extend",
+    "find_candidates",
+    "is_default",
+    "unknowns_of",
+    "without_defaults",
+]
+
+WIDE = 10.0
+"""The upper bound of a shape, in units of the largest value that is tried first."""
+NARROW = 0.1
+"""The lower bound of a shape that may not be zero, in units of the smallest one."""
+SAMPLES = 4.0
+"""Samples that a wave along the coordinate takes at least, at the median rate."""
+FEWEST = 0.01
+"""The least part of the largest rate that counts as resolved."""
+
+
+def find_candidates(
+    model: Model,
+    places: Sequence[Place],
+    levels: Levels,
+    taken: Sequence[Candidate] = (),
+    tones: Mapping[str, Mapping[str, Sine]] | None = None,
+) -> list[Candidate]:
+    """Every effect at every place that has the signals it needs.
+
+    Effects are blocks of the library and subsystems of the diagram that say so; one that reads
+    another body is tried for each. `taken` are effects that the model has already got from the
+    trace. An offset, gain ... of a sensor that the diagram gives, free or not, is no candidate. An
+    effect whose shapes are sizes of a signal that is always zero is left out, and so is one that
+    follows the tone of its drive where that has none in `tones` (by drive and series).
+    """
+    diagram = model.diagram
+    found: list[Candidate] = []
+    have = {(c.effect, c.place.name, c.of) for c in taken}
+    names = set().union(diagram.blocks, diagram.parameters, diagram.inputs, diagram.subsystems)
+    kinds = effects_of(diagram)
+    several = {kind: sum(p.kind == kind for p in places) > 1 for kind in ("sum", "drive")}
+    for place in places:
+        if place.kind == "sensor":
+            found += _sensor_candidates(diagram, place, levels)
+            continue
+        for kind in kinds:
+            name = kind.name
+            if kind.effect.place != place.kind:
+                continue
+            wanted = f"{name}_{place.name.rpartition('.')[2]}" if several[place.kind] else name
+            for of, signals in _wirings(kind.effect, place, places):
+                block = free_name(f"{wanted}_{of}" if of else wanted, names)
+                candidate = _candidate(kind, place, block, of, signals, levels, tones or {})
+                if candidate is not None:
+                    names.add(block)
+                    found.append(candidate)
+    return [c for c in found if (c.effect, c.place.name, c.of) not in have]
+
+
+def free_name(wanted: str, taken: set[str]) -> str:
+    """The name, with a number behind it where it is taken."""
+    name, number = wanted, 2
+    while name in taken:
+        name, number = f"{wanted}_{number}", number + 1
+    return name
+
+
+def _wirings(
+    effect: Effect, place: Place, places: Sequence[Place]
+) -> Iterator[tuple[str, dict[str, str]]]:
+    """The signals by port for each other body or drive that the effect may read, and its name."""
+    symbols = set(effect.inputs.values())
+    own = {"q": place.q, "v": place.v, "a": place.a}
+    rooms: list[tuple[str, dict[str, str]]] = [("", own)]
+    if symbols & {"other_q", "other_v"}:
+        named = {(other.q, other.v): other.definition for other in places if other.kind == "sum"}
+        rooms = [
+            (named.get((q, v), v or q), {**own, "other_q": q, "other_v": v})
+            for q, v in place.others
+        ]
+    if "u" in symbols:
+        many = len(place.drive) > 1
+        rooms = [
+            ("_".join(part for part in (of, drive if many else "") if part), {**room, "u": drive})
+            for of, room in rooms
+            for drive in place.drive
+        ]
+    for of, room in rooms:
+        if any(room.get(symbol) for symbol in effect.lacking):
+            continue
+        signals = {port: room[symbol] for port, symbol in effect.inputs.items()}
+        if all(signals.values()):
+            yield of, signals
+
+
+def _candidate(
+    kind: EffectType,
+    place: Place,
+    block: str,
+    of: str,
+    signals: dict[str, str],
+    levels: Levels,
+    tones: Mapping[str, Mapping[str, Sine]],
+) -> Candidate | None:
+    effect = kind.effect
+    own = own_values(effect.tone, tones.get(place.definition)) if effect.tone else {}
+    if effect.tone and not own:
+        return None
+    sizes = _sizes(effect, signals, place, levels)
+    shapes: dict[str, tuple[float, ...]] = {}
+    limits: dict[str, tuple[float, float]] = {}
+    resolved: dict[str, float] = {}
+    for parameter, shape in effect.shapes.items():
+        grid = _grid(shape, sizes)
+        if grid is None:
+            return None
+        low, high = _limits(shape, grid, bounds_of(kind, parameter), sizes)
+        if not low < high:
+            return None
+        if shape.of == "V" and 0.0 in grid:
+            resolved[parameter] = sizes["slowest"]
+            grid = tuple(value for value in grid if not 0.0 < value <= sizes["slowest"])
+        if shape.of in ("stroke", "rates"):
+            grid = tuple(dict.fromkeys(min(max(value, low), high) for value in grid))
+        shapes[parameter] = grid
+        limits[parameter] = low, high
+    at = 1.0
+    if effect.at is not None:
+        values = _grid(effect.at, sizes)
+        if values is None:
+            return None
+        at = values[0]
+    low, high = bounds_of(kind, effect.coefficient)
+    limits[effect.coefficient] = max(low, 0.0) if effect.sign else low, high
+    base = levels.of(place.definition if place.kind == "drive" else place.name).rms
+    inputs = {port: levels.of(signal) for port, signal in signals.items()}
+    scale = scale_of(kind, inputs, shapes, base, at, levels.duration)
+    return Candidate(
+        kind.name,
+        place,
+        block,
+        signals,
+        f"{block}.{effect.coefficient}",
+        effect.sign,
+        shapes,
+        scale,
+        at,
+        of=of,
+        limits=limits,
+        own=own,
+        resolved=resolved,
+        scales={name: shape.of for name, shape in effect.shapes.items()},
+        waves=tuple(name for name, shape in effect.shapes.items() if shape.wave),
+        fixed=tuple(name for name, shape in effect.shapes.items() if shape.fixed),
+        alias=effect.alias,
+        each=effect.each,
+    )
+
+
+def _sizes(
+    effect: Effect, signals: Mapping[str, str], place: Place, levels: Levels
+) -> dict[str, float]:
+    """What the shapes of an effect are multiples of."""
+    read = {symbol: signals[port] for port, symbol in effect.inputs.items()}
+    q = levels.of(read.get("q") or read.get("other_q") or place.q)
+    v = levels.of(read.get("v") or read.get("other_v") or place.v)
+    return {
+        "": 1.0,
+        "Q": q.max,
+        "V": v.rms,
+        "stroke": q.stroke or 2 * q.max,
+        "step": q.step,
+        "rates": v.max,
+        "top": v.max,
+        "slowest": max(v.slowest, FEWEST * v.max),
+        "U": levels.of(read.get("u") or "".join(place.drive[:1])).max,
+        "T": levels.duration,
+        "dt": levels.interval,
+    }
+
+
+def _grid(shape: Shape, sizes: Mapping[str, float]) -> tuple[float, ...] | None:
+    """The values of a shape that are tried first; None where they are sizes of nothing."""
+    size = sizes[shape.of]
+    if not size > 0:
+        return None
+    if shape.of == "rates":
+        return tuple(sizes["slowest"] * (size / sizes["slowest"]) ** at for at in shape.at)
+    return tuple(at * size for at in shape.at)
+
+
+def _limits(
+    shape: Shape,
+    grid: Sequence[float],
+    bounds: tuple[float, float],
+    sizes: Mapping[str, float],
+) -> tuple[float, float]:
+    """Finite bounds of a shape: what the record can tell where that is known, else wide ones."""
+    if shape.of == "rates":
+        return max(sizes["slowest"], bounds[0]), min(sizes["rates"], bounds[1])
+    wide, size = WIDE * max(map(abs, grid)), sizes[shape.of]
+    low, high = max(shape.low, bounds[0], -wide), min(bounds[1], wide)
+    if shape.most is not None:
+        high = min(bounds[1], shape.most * size)
+    if shape.least is not None:
+        low = max(low, shape.least * size)
+    elif low >= 0.0 and min(grid) > 0:
+        low = max(low, NARROW * min(grid))
+    if shape.wave:
+        return max(shape.low, SAMPLES * sizes["step"], high / MOST_WAVES), high
+    return low, max(high, *grid)
+
+
+def _sensor_candidates(diagram: Diagram, place: Place, levels: Levels) -> Iterator[Candidate]:
+    signal = place.definition
+    level = levels.of(signal)
+    scales = {
+        "offset": level.rms,
+        "gain": 1.0,
+        "delay": levels.interval,
+        "quad": 1 / level.max if level.max > 0 else 1.0,
+        "drift": level.rms / levels.duration,
+    }
+    channels = [s.channels[signal] for s in diagram.measured.values() if signal in s.channels]
+    for kind in SENSOR:
+        values = [getattr(channel, kind) for channel in channels]
+        if any(value is not None for value in values):
+            continue
+        low = 0.0 if kind in ("delay", "gain") else -math.inf
+        yield Candidate(
+            f"sensor_{kind}",
+            place,
+            "",
+            {"y": signal},
+            f"{kind}.{signal}",
+            int(kind == "delay"),
+            scale=max(scales[kind], 1e-300),
+            neutral=float(kind == "gain"),
+            limits={kind: (low, math.inf)},
+        )

@@ -1,0 +1,227 @@
+"""The unit of every parameter of an effect: it follows from the formulas and from the place.
+
+A formula is of one kind on both sides: what is added or compared has one unit, and the argument of
+`exp` or `sin` has none. With the units of the place (of its sum, its coordinate, s) these are
+linear equations for the exponents of each parameter, which are solved for all at once.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+
+import numpy as np
+
+from tracewire.compile import compile
+from tracewire.diagram import EffectType, effects_of
+from tracewire.errors import TracewireError
+from tracewire.formula import Call, Expression, Name, Number
+from tracewire.trace.candidates.places import Place, find_places
+from tracewire.trace.found import Found
+
+BASES = 3
+"""Of exponents: what is summed at the place, its coordinate, and time."""
+SYMBOL_UNITS = {
+    "q": (0, 1, 0), "v": (0, 1, -1), "a": (0, 1, -2), "other_q": (0, 1, 0),
+    "other_v": (0, 1, -1), "u": (1, 0, 0),
+}  # fmt: skip
+SAME = {"+", "-", "min", "max", "mod", "clip", "hypot"}
+COMPARED = {"<", "<=", ">", ">=", "==", "!="}
+KEPT = {"neg", "abs", "floor", "ceil"}
+NO_UNIT = {"sign"}
+"""The argument may have any unit, the value has none."""
+PART = re.compile(r"([A-Za-z]+|1)(?:\s*(?:\^|\*\*)\s*(-?\d+(?:\.\d+)?))?")
+
+Term = dict[str, float]
+"""Exponents of unknown names that multiply; '' + base number for those that are known."""
+
+
+def unit_at(found: Found, place: str) -> str:
+    """The SI unit of what is missing at a place; '' where it is not known."""
+    kind, _, signal = place.partition(".")
+    if kind in ("sensor", "drive") and signal:
+        return found.units.get(signal, "")
+    if found.units.get(place):
+        return found.units[place]
+    known = _places(found).get(place)
+    return _units_of(found, known)[0] if known else ""
+
+
+def signal_of(found: Found, place: str, variable: str) -> str:
+    """The user's name of a variable at a place, as `omega` for v; the variable where none is."""
+    if variable == "y" and place.startswith("sensor."):
+        return place.partition(".")[2]
+    known = _places(found).get(place)
+    if known is None:
+        return variable
+    names = {"q": known.q, "v": known.v, "a": known.a}
+    if len(known.drive) == 1:
+        names["u"] = known.drive[0]
+    return names.get(variable) or variable
+
+
+def unit_of_effect(found: Found, effect: str, place: str, parameter: str) -> str:
+    """The SI unit of a parameter of an effect at a place; '' where none follows."""
+    known = _places(found).get(place)
+    kinds = {kind.name: kind for kind in effects_of(found.original)}
+    if known is None or effect not in kinds:
+        return ""
+    exponents = _exponents(kinds[effect]).get(parameter)
+    units = _units_of(found, known)
+    if exponents is None or any(e and not u for e, u in zip(exponents, units, strict=True)):
+        return ""
+    return _product(zip(units, exponents, strict=True))
+
+
+def _places(found: Found) -> Mapping[str, Place]:
+    if not found.original.blocks:
+        return {}
+    try:
+        model = compile(found.original, backend="quick")
+    except TracewireError:
+        return {}
+    return {place.name: place for place in find_places(model)}
+
+
+def _units_of(found: Found, place: Place) -> tuple[str, str, str]:
+    """The units of the sum (or drive), of the coordinate, and of time."""
+    units = found.units
+    if place.kind != "sum":
+        return units.get(place.definition, ""), "", "s"
+    rate = units.get(place.v, "")
+    coordinate = units.get(place.q, "") or (_product([(rate, 1.0), ("s", 1.0)]) if rate else "")
+    own = units.get(place.name, "")
+    if not own and place.a == place.name and coordinate:
+        own = _product([(coordinate, 1.0), ("s", -2.0)])
+    return own, coordinate, "s"
+
+
+# --- exponents ----------------------------------------------------------------------------------
+
+
+def _exponents(kind: EffectType) -> dict[str, tuple[float, ...]]:
+    """The exponents of (sum, coordinate, time) of each parameter that its formulas determine."""
+    block = kind.block
+    if block is None or block.modes:
+        return {}
+    equations: list[Term] = []
+    known: dict[str, tuple[float, ...]] = {"t": (0.0, 0.0, 1.0), "pi": (0.0,) * BASES}
+    for port, symbol in kind.effect.inputs.items():
+        known[port] = tuple(map(float, SYMBOL_UNITS[symbol]))
+    for parameter in block.parameters:
+        if parameter.unit in ("s", "rad", "1"):
+            known[parameter.name] = (0.0, 0.0, float(parameter.unit == "s"))
+    for formula in block.formulas.values():
+        _equal(_term(formula, known, equations), {"\0F": 1.0}, equations)
+    for state in block.states:
+        rate = _term(block.rates[state.name], known, equations)
+        _equal(rate, {state.name: 1.0, "\0T": -1.0}, equations)
+        _equal(_term(block.starts[state.name], known, equations), {state.name: 1.0}, equations)
+    names = sorted({n for e in equations for n in e if not n.startswith("\0")})
+    if not names:
+        return {}
+    matrix = np.array([[e.get(n, 0.0) for n in names] for e in equations])
+    right = np.array([[-e.get(f"\0{b}", 0.0) for b in "FQT"] for e in equations])
+    solution, _, rank, _ = np.linalg.lstsq(matrix, right, rcond=None)
+    if not np.allclose(matrix @ solution, right, atol=1e-6):
+        return {}  # the formulas do not agree on units
+    null = np.linalg.svd(matrix)[2][rank:]
+    free = np.linalg.norm(null, axis=0) > 1e-6 if len(null) else np.zeros(len(names), bool)
+    return {
+        name: tuple(float(round(x, 6)) for x in row)
+        for name, row, open_ in zip(names, solution, free, strict=True)
+        if not open_
+    }
+
+
+def _equal(one: Term | None, other: Term | None, equations: list[Term]) -> None:
+    if one is not None and other is not None:
+        equations.append(_times(one, other, -1.0))
+
+
+def _times(one: Term, other: Term, power: float = 1.0) -> Term:
+    found = dict(one)
+    for name, exponent in other.items():
+        found[name] = found.get(name, 0.0) + power * exponent
+    return found
+
+
+def _term(
+    node: Expression, known: Mapping[str, tuple[float, ...]], equations: list[Term]
+) -> Term | None:
+    """The exponents of a formula; None: a plain 0, or what may have any unit."""
+    if isinstance(node, Number):
+        return {} if node.value else None
+    if isinstance(node, Name):
+        if node.name in known:
+            return {f"\0{b}": e for b, e in zip("FQT", known[node.name], strict=True) if e}
+        return {node.name: 1.0}
+    terms = [_term(argument, known, equations) for argument in node.arguments]
+    name = node.function
+    if name == "*":
+        return None if None in terms else _times(terms[0] or {}, terms[1] or {})
+    if name == "/":
+        return None if None in terms else _times(terms[0] or {}, terms[1] or {}, -1.0)
+    if name == "**":
+        return _power(node, terms, equations)
+    if name == "sqrt":
+        return None if terms[0] is None else {n: e / 2 for n, e in terms[0].items()}
+    if name in KEPT:
+        return terms[0]
+    if name in NO_UNIT or name in ("and", "or", "not"):
+        return {}
+    if name == "if":
+        branches = node.arguments[1:]
+        known_branches = [
+            term  # a number may stand for any unit beside what has one
+            for term, branch in zip(terms[1:], branches, strict=True)
+            if not isinstance(branch, Number)
+        ]
+        if len(known_branches) == 2:
+            _equal(known_branches[0], known_branches[1], equations)
+        return next((term for term in known_branches if term is not None), terms[1])
+    if name in SAME or name in COMPARED:
+        for other in terms[1:]:
+            _equal(terms[0], other, equations)
+        first = next((term for term in terms if term is not None), None)
+        return {} if name in COMPARED else first
+    for term in terms:  # exp, sin, tanh ...: a number of a number
+        _equal(term, {}, equations)
+    return {}
+
+
+def _power(node: Call, terms: list[Term | None], equations: list[Term]) -> Term | None:
+    base, exponent = terms
+    last = node.arguments[1]
+    if isinstance(last, Number):
+        return None if base is None else {n: e * last.value for n, e in base.items()}
+    _equal(exponent, {}, equations)
+    _equal(base, {}, equations)
+    return {}
+
+
+# --- texts --------------------------------------------------------------------------------------
+
+
+def _product(parts: Iterable[tuple[str, float]]) -> str:
+    """The text of a product of units with exponents: `N m s/rad`."""
+    powers: dict[str, float] = {}
+    for text, exponent in parts:
+        for symbol, power in _symbols(text):
+            powers[symbol] = powers.get(symbol, 0.0) + exponent * power
+    above = [_powered(s, p) for s, p in powers.items() if p > 1e-9]
+    below = [_powered(s, -p) for s, p in powers.items() if p < -1e-9]
+    if not above and not below:
+        return ""
+    return "/".join([" ".join(above) or "1", *below])
+
+
+def _symbols(text: str) -> Iterator[tuple[str, float]]:
+    for n, part in enumerate(re.split(r"/", text)):
+        for symbol, power in PART.findall(part):
+            if symbol != "1":
+                yield symbol, (float(power) if power else 1.0) * (1 if n == 0 else -1)
+
+
+def _powered(symbol: str, power: float) -> str:
+    return symbol if abs(power - 1) < 1e-9 else f"{symbol}^{power:g}"

@@ -1,0 +1,166 @@
+"""What candidate effects would have put out along recorded signals."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import Model, compile
+from tracewire.diagram import BlockUse, Diagram, InputPort, Value, Wire
+from tracewire.errors import Place as Spot
+from tracewire.errors import TracewireError
+from tracewire.formula import Number
+from tracewire.solve import Interrupted, simulate
+from tracewire.trace.candidates.candidates import Candidate
+from tracewire.trace.candidates.levels import Trajectory
+
+Vector = NDArray[np.float64]
+MOST_VARIANTS = 128
+"""Of one candidate."""
+TOLERANCE = 1e-4
+"""Of memories: it leaves a thousandth of them, which no screen sees."""
+
+__all__ = ["Trajectory", "Variant", "histories", "variants_of"]
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A candidate with one choice of its shapes: (parameter, value in SI)."""
+
+    candidate: Candidate
+    shapes: tuple[tuple[str, float], ...] = ()
+
+    def __str__(self) -> str:
+        shapes = ", ".join(f"{name} {value:.3g}" for name, value in self.shapes)
+        return f"{self.candidate}" + (f" ({shapes})" if shapes else "")
+
+
+def variants_of(candidate: Candidate) -> list[Variant]:
+    """The choices of shapes that are tried first: all, or with the longest grids thinned out."""
+    counts = {name: len(grid) for name, grid in candidate.shapes.items()}
+    while math.prod(counts.values()) > MOST_VARIANTS:
+        longest = max(counts, key=counts.__getitem__)
+        others = math.prod(counts.values()) // counts[longest]
+        counts[longest] = max(MOST_VARIANTS // others, counts[longest] // 2, 1)
+    grids = (
+        [grid[number] for number in np.linspace(0, len(grid) - 1, counts[name]).round().astype(int)]
+        for name, grid in candidate.shapes.items()
+    )
+    choices = itertools.product(*grids)
+    return [Variant(candidate, tuple(zip(counts, chosen, strict=True))) for chosen in choices]
+
+
+def histories(
+    model: Model,
+    candidates: Sequence[Candidate],
+    trajectories: Sequence[Trajectory],
+    tell: Callable[[str], None] | None = None,
+) -> dict[Variant, list[Vector]]:
+    """The output of each variant of each candidate along each trajectory, shape (N,).
+
+    The output is that of the coefficient 1; where it is not linear in the coefficient, that of
+    `candidate.at`, divided by it. The blocks run on the recorded signals, joined by straight
+    lines, memory and all. Candidates at sensors are passed over, and so are variants that put out
+    nothing; one that cannot be computed is left out, and `tell` gets the reason. Raises
+    Interrupted: Ctrl-C.
+    """
+    variants = [v for c in candidates if c.place.kind != "sensor" for v in variants_of(c)]
+    found: dict[Variant, list[Vector]] = {}
+    # memories need shorter steps, and may fail: the others shall not pay for that
+    groups: dict[str, list[Variant]] = {}
+    for variant in variants:
+        groups.setdefault(_memory(model.diagram, variant.candidate.effect), []).append(variant)
+    queue = list(groups.values())
+    while queue:
+        group = queue.pop()
+        try:
+            found |= _together(model.diagram, group, trajectories)
+        except Interrupted:
+            raise
+        except TracewireError as error:
+            if len(group) > 1:  # one of them cannot be computed: find out which
+                middle = len(group) // 2
+                queue += [group[:middle], group[middle:]]
+            elif tell is not None:
+                tell(f"{group[0]} was not tried: {error.problems[0].what}")
+    return {v: found[v] for v in variants if any(x.any() for x in found.get(v, ()))}
+
+
+def _memory(diagram: Diagram, effect: str) -> str:
+    """What an effect remembers: nothing, states, modes, or what its subsystem holds."""
+    if effect in diagram.subsystems:
+        return effect
+    block = diagram.library[effect]
+    return "modes" if block.modes else "states" if block.states else ""
+
+
+def _together(
+    diagram: Diagram, variants: Sequence[Variant], trajectories: Sequence[Trajectory]
+) -> dict[Variant, list[Vector]]:
+    """The outputs of several variants, in one small diagram whose inputs are the signals."""
+    signals = dict.fromkeys(s for v in variants for s in v.candidate.signals.values())
+    inputs = {signal: f"input_{number}" for number, signal in enumerate(signals)}
+    blocks = [f"output_{number}" for number in range(len(variants))]
+    small = Diagram(
+        name="histories",
+        file=Path("histories"),
+        text="",
+        library=diagram.library,
+        inputs={name: InputPort(name, default=_number(0.0)) for name in inputs.values()},
+        blocks={
+            name: _use(name, variant, inputs, diagram)
+            for name, variant in zip(blocks, variants, strict=True)
+        },
+        subsystems=diagram.subsystems,
+    )
+    outputs = [_output(small, name) for name in blocks]
+    small = Diagram(**{**vars(small), "record": dict.fromkeys(outputs, Spot())})
+    model = compile(small, backend="quick")
+    found: dict[Variant, list[Vector]] = {variant: [] for variant in variants}
+    for run in trajectories:
+        given = {name: (run.t, run.signals[signal]) for signal, name in inputs.items()}
+        own = {
+            f"{name}.{parameter}": value
+            for variant, name in zip(variants, blocks, strict=True)
+            for parameter, value in variant.candidate.own.get(run.series, {}).items()
+        }
+        sizes = [float(np.max(np.abs(x))) for _, x in given.values()]
+        least = min([1.0, *(size for size in sizes if size > 0)])
+        result = simulate(
+            model, parameters=own, times=run.t, inputs=given, rtol=TOLERANCE,
+            atol=1e-3 * TOLERANCE * least,
+        )  # fmt: skip
+        for variant, name in zip(variants, outputs, strict=True):
+            found[variant].append(result.signals[name] / variant.candidate.at)
+    return found
+
+
+def _use(name: str, variant: Variant, inputs: Mapping[str, str], diagram: Diagram) -> BlockUse:
+    candidate = variant.candidate
+    values = {candidate.parameter: candidate.at, **dict(variant.shapes)}
+    first: Mapping[str, float] = next(iter(candidate.own.values()), {})
+    own = {parameter: Value(Number(value), named=True) for parameter, value in first.items()}
+    return BlockUse(
+        name,
+        candidate.effect,
+        {port: (Wire(inputs[signal]),) for port, signal in candidate.signals.items()},
+        {parameter: _number(value) for parameter, value in values.items()} | own,
+        subsystem=diagram.subsystems.get(candidate.effect),
+    )
+
+
+def _output(diagram: Diagram, name: str) -> str:
+    use = diagram.blocks[name]
+    if use.subsystem is None:
+        return name
+    return f"{name}.{next(iter(use.subsystem.outputs))}"
+
+
+def _number(value: float) -> Value:
+    return Value(Number(value))

@@ -1,0 +1,117 @@
+"""Signals along a fitted run, and their sizes, by which shapes and coefficients are scaled."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.trace.candidates.places import Place
+
+Vector = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """The signals of a model along one series: times t (N,) in s, and each signal (N,) in SI."""
+
+    t: Vector
+    signals: Mapping[str, Vector]
+    series: str = ""
+
+
+RESOLVED = 0.01
+"""The part of the samples, of those that move, below whose rates nothing is resolved."""
+MOVES = 1e-3
+"""Of the largest rate: what is slower rests."""
+
+
+@dataclass(frozen=True)
+class Level:
+    """The size of a signal: its root mean square and its largest absolute value.
+
+    stroke: the longest way in one direction. step: the way from one sample to the next, the median
+    of those that move. slowest: of a rate the smallest absolute value that is resolved.
+    """
+
+    rms: float
+    max: float
+    stroke: float = 0.0
+    step: float = 0.0
+    slowest: float = 0.0
+
+
+@dataclass(frozen=True)
+class Levels:
+    """The sizes of signals, the duration of the longest series and the sample interval in s."""
+
+    signals: Mapping[str, Level]
+    duration: float
+    interval: float
+
+    def of(self, name: str) -> Level:
+        """The size of a signal; 0 where it is not known."""
+        return self.signals.get(name, Level(0.0, 0.0))
+
+
+def signals_at(places: Sequence[Place]) -> tuple[str, ...]:
+    """The signals that the levels and histories of candidates at these places need."""
+    found: dict[str, None] = {}
+    for place in places:
+        own = place.name if place.kind == "sum" else place.definition
+        others = [signal for body in place.others for signal in body]
+        found |= dict.fromkeys((own, place.q, place.v, place.a, *others, *place.drive))
+    return tuple(name for name in found if name)
+
+
+def levels_of(trajectories: Sequence[Trajectory]) -> Levels:
+    """The sizes of all signals over all series."""
+    names = dict.fromkeys(name for run in trajectories for name in run.signals)
+    whole = {
+        name: np.concatenate([run.signals[name] for run in trajectories if name in run.signals])
+        for name in names
+    }
+    ways = {
+        name: np.concatenate(
+            [_ways(run.signals[name]) for run in trajectories if name in run.signals]
+        )
+        for name in names
+    }
+    steps = {
+        name: np.abs(
+            np.concatenate(
+                [np.diff(run.signals[name]) for run in trajectories if name in run.signals]
+            )
+        )
+        for name in names
+    }
+    return Levels(
+        {
+            name: Level(
+                float(np.sqrt(np.mean(x**2))),
+                float(np.max(np.abs(x))),
+                float(np.max(ways[name], initial=0.0)),
+                float(np.median(_moving(steps[name]))),
+                float(np.quantile(_moving(np.abs(x)), RESOLVED)),
+            )
+            for name, x in whole.items()
+        },
+        max(float(run.t[-1] - run.t[0]) for run in trajectories),
+        float(np.median(np.concatenate([np.diff(run.t) for run in trajectories]))),
+    )
+
+
+def _ways(x: Vector) -> Vector:
+    """The ways that a signal goes from one turn to the next."""
+    steps = np.diff(x)
+    steps = steps[steps != 0]
+    turns = np.flatnonzero(np.diff(np.signbit(steps))) + 1
+    return np.abs([float(np.sum(part)) for part in np.split(steps, turns)])
+
+
+def _moving(sizes: Vector) -> Vector:
+    """Absolute values without those of rest; [0] where there are none."""
+    kept = sizes[sizes > MOVES * float(np.max(sizes, initial=0.0))]
+    return kept if kept.size else np.zeros(1)

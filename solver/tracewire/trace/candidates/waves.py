@@ -1,0 +1,146 @@
+"""Waves along a coordinate: which lengths of a wave a record shows, by a scan of all of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import Model
+from tracewire.errors import TracewireError
+from tracewire.formula.arrays import evaluate_along
+from tracewire.residual import Windows
+from tracewire.trace.candidates.candidate import Candidate
+from tracewire.trace.candidates.levels import Trajectory
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+Answer = Callable[[str, Sequence[Matrix]], Matrix]
+"""What torques (N, k) by series at a place, by its name, do to the residuals, (M, k), without what
+the starts of windows and the unknowns imitate."""
+MOST_WAVES = 400
+"""In the longest way of the coordinate."""
+PER_WAVE = 2
+"""Lengths that are scanned for each wave more on the way."""
+PEAKS = 6
+"""Lengths of the best waves that are tried first."""
+TEETH = 48
+"""The most teeth, slots or poles of a turn that are tried one by one."""
+TOGETHER = 64
+"""Lengths that are scanned at once: what the columns of all would take is much memory."""
+
+
+def scanned(
+    model: Model,
+    candidates: Sequence[Candidate],
+    runs: Sequence[Trajectory],
+    residual: Vector,
+    answer: Answer,
+) -> list[Candidate]:
+    """The candidates, those with a wave with the lengths that promise most in place of their grid.
+
+    All lengths between the bounds are scored, PER_WAVE of them for each wave more on the way, and
+    where the coordinate is an angle also 2 pi/n; the peaks of the score are kept. A candidate that
+    cannot be computed along samples alone keeps its grid.
+    """
+    found = []
+    for candidate in candidates:
+        for shape in candidate.waves:
+            try:
+                grid = _peaks(model, candidate, shape, runs, residual, answer)
+            except TracewireError:
+                continue
+            candidate = replace(candidate, shapes={**candidate.shapes, shape: grid})
+        found.append(candidate)
+    return found
+
+
+def as_measured(windows: Windows, runs: Sequence[Trajectory]) -> list[Trajectory]:
+    """The trajectories with measured signals as their sensors show them, where nothing is declared
+    of the sensor."""
+    names = list(dict.fromkeys(s.measured.name for s in windows.criterion.segments))
+    series = {s.measured.name: s.measured for s in windows.criterion.segments}
+    found = []
+    for name, run in zip(names, runs, strict=True):
+        plain = {n: x for n, x in series[name].values.items() if n not in series[name].sensors}
+        known = {
+            n: x for n, x in plain.items() if n in run.signals and n not in series[name].periods
+        }
+        found.append(replace(run, signals={**run.signals, **known}))
+    return found
+
+
+def _peaks(
+    model: Model,
+    candidate: Candidate,
+    shape: str,
+    runs: Sequence[Trajectory],
+    residual: Vector,
+    answer: Answer,
+) -> tuple[float, ...]:
+    """The lengths at the highest peaks of the score, the best first."""
+    angle = model.flat.units.get(candidate.place.q) == "rad"
+    lengths = _lengths(*candidate.limits[shape], angle)
+    falls = []
+    for first in range(0, len(lengths), TOGETHER):
+        some = lengths[first : first + TOGETHER]
+        torques = [_outputs(model, candidate, shape, some, run) for run in runs]
+        columns = answer(candidate.place.name, torques)
+        falls += [_fall(part, residual) for part in np.split(columns, len(some), axis=1)]
+    scores = np.array(falls)
+    ahead = np.r_[-np.inf, scores[:-1]], np.r_[scores[1:], -np.inf]
+    peaks = np.flatnonzero((scores >= ahead[0]) & (scores >= ahead[1]))
+    best = peaks[np.argsort(-scores[peaks])][:PEAKS]
+    return tuple(lengths[best].tolist())
+
+
+def _lengths(low: float, high: float, angle: bool) -> Vector:
+    """Lengths between two bounds, evenly in waves on the way, the longest first."""
+    most = min(high / low, MOST_WAVES)
+    waves = np.arange(1.0, most + 1e-9, 1 / PER_WAVE)
+    lengths = set((high / waves).tolist())
+    if angle:
+        turns = (2 * math.pi / n for n in range(1, TEETH + 1))
+        lengths |= {length for length in turns if low <= length <= high}
+    return np.array(sorted(lengths, reverse=True))
+
+
+def _outputs(
+    model: Model, candidate: Candidate, shape: str, lengths: Vector, run: Trajectory
+) -> Matrix:
+    """The outputs (N, lengths * phases) of the effect, with each length and each other shape."""
+    block = model.diagram.library[candidate.effect]
+    (formula,) = block.formulas.values()
+    defaults = {p.name: p.default for p in block.parameters if isinstance(p.default, float | int)}
+    signals = {port: run.signals[name] for port, name in candidate.signals.items()}
+    known: dict[str, float | Vector] = {
+        **defaults,
+        candidate.parameter: candidate.at,
+        **signals,
+        "t": run.t,
+    }
+    rest = {n: g for n, g in candidate.shapes.items() if n != shape}
+    # all phases, which may be negative, but of a width only the first
+    grids = [grid if candidate.limits[n][0] < 0 else grid[:1] for n, grid in rest.items()]
+    columns = [
+        evaluate_along(
+            formula, {**known, shape: length, **dict(zip(rest, chosen, strict=True))}, len(run.t)
+        )
+        for length, chosen in product(lengths.tolist(), list(product(*grids)))
+    ]
+    return np.stack(columns, axis=1) / candidate.at
+
+
+def _fall(columns: Matrix, residual: Vector) -> float:
+    """By how much columns together lower the sum of squares of a residual."""
+    sizes = np.linalg.norm(columns, axis=0)
+    kept = columns[:, sizes > 0] / sizes[sizes > 0]
+    if not kept.size:
+        return 0.0
+    left, singular, _ = np.linalg.svd(kept, full_matrices=False)
+    basis = left[:, singular > 1e-6 * singular[0]]
+    return float(np.sum((basis.T @ residual) ** 2))

@@ -1,0 +1,279 @@
+"""Mistakes of a record that look like missing effects: other units, a drive shifted in time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import chain
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import Model
+from tracewire.errors import DataError, FormulaError, Problem, TracewireError
+from tracewire.formula import Name, same_quantity
+from tracewire.residual import (
+    Criterion,
+    Measured,
+    Section,
+    channel_noise,
+    cut,
+    descended,
+    free_unknowns,
+    opened,
+    sensor_unknowns,
+)
+from tracewire.solve import parameter_values, values_at, with_points
+
+Vector = NDArray[np.float64]
+FAR = 30.0
+"""RSS per degree of freedom from which on a record may hold a mistake of this kind."""
+AT_NOISE = 2.0
+NEARER = 30.0
+"""How many times less must be left when the mistake is undone: then it is certain."""
+SAMPLES = 250
+LENGTH = 25
+FEW_STEPS = 4
+HOPEFUL = 5.0
+MOST_STEPS = 10
+POINTS = 9
+LONGEST = 2.0
+"""The longest lag in s that is looked for."""
+LEAST_BEFORE, LEAST_AFTER = 4, 15
+"""Samples by which a response comes before its drive, or after it, that no effect explains."""
+
+
+@dataclass(frozen=True, eq=False)
+class Mistake:
+    """What may be wrong with a record, in words, and how it is undone."""
+
+    what: str
+    hint: str
+    undone: Callable[[Measured], Measured]
+
+
+def refuse_mistakes(
+    model: Model, measured: Sequence[Measured], s2: float = np.inf, rtol: float = 1e-6
+) -> None:
+    """Refuse a record that the declared model explains once a mistake in it is undone.
+
+    Tried are: a drive that is shifted in time against the response, angles in degrees for radians,
+    lengths in mm for m, an input in thousandths, and the reverse of each; on the first samples of
+    the first train series, in short windows. A mistake is told only where a record far from the
+    noise comes nearer by a factor of 30 without it: no effect of the library does that.
+
+    s2: RSS per degree of freedom of the declared model in short windows, where it is known; below
+    30 nothing is tried. Raises DataError.
+    """
+    train = [m for m in measured if m.use == "train" and len(m.t) > LENGTH]
+    if s2 < FAR or not train:
+        return
+    m = _beginning(model, train[0])
+    before = declared_s2(model, [m], rtol)
+    if before < FAR:
+        return
+    best, found = np.inf, None
+    for mistake in chain(_shifts(model, train[0], m, before, rtol), _units(model, m)):
+        after = declared_s2(model, [mistake.undone(m)], rtol, FEW_STEPS)
+        if after < best:
+            best, found = after, mistake
+        if best < AT_NOISE:
+            break
+    if found is not None and best * NEARER < before:
+        what = f"the series '{m.name}' is explained {before / best:.0f} times better {found.what}"
+        raise DataError([Problem(what, hint=found.hint)])
+
+
+def declared_s2(model: Model, measured: Sequence[Measured], rtol: float, steps: int = 8) -> float:
+    """RSS per degree of freedom of the declared model, fitted to short windows with free starts.
+
+    Infinity where it cannot be simulated.
+    """
+    try:
+        segments = [
+            window
+            for m in measured
+            for window in cut(model, Section(m, 0, len(m.t)), LENGTH, model.states)
+        ]
+        unknowns = [
+            replace(u, value=min(max(u.value, u.low), u.high))
+            for u in [
+                *free_unknowns(model, None, parameter_values(model, {})),
+                *sensor_unknowns(measured),
+            ]
+        ]
+        sigma = channel_noise(measured)
+        criterion = Criterion(model, segments, unknowns, {}, rtol, sigma, weighting="sum")
+        windows, _ = descended(opened(criterion), steps)
+    except TracewireError:
+        return np.inf
+    count = sum(r.size for r in windows.residuals)
+    fitted = len(windows.values) + sum(len(start) for start in windows.starts)
+    return windows.rss / max(count - fitted, 1)
+
+
+def _beginning(model: Model, m: Measured) -> Measured:
+    """The first samples of a series, from a free start."""
+    rows = slice(0, SAMPLES)
+    values = {name: column[rows] for name, column in m.values.items()}
+    start = dict.fromkeys(model.states)
+    return replace(m, t=m.t[rows], values=values, start=start, drift_from=m.zero)
+
+
+def _units(model: Model, m: Measured) -> Iterator[Mistake]:
+    """Signals and inputs in another unit than is declared."""
+    units = model.flat.units
+    degrees = np.pi / 180
+    angles = [name for name in m.values if _is(units.get(name, ""), "rad", "rad/s")]
+    lengths = [name for name in m.values if _is(units.get(name, ""), "m", "m/s")]
+    for names, factors in (
+        (angles, {degrees: "degrees, and not radians", 1 / degrees: "radians, and not degrees"}),
+        (lengths, {1e-3: "thousandths of m (mm)", 1e3: "m, and not mm"}),
+    ):
+        for factor, meaning in factors.items() if names else ():
+            shown = " and ".join(f"'{name}'" for name in names)
+            verb = "is" if len(names) == 1 else "are"
+            yield Mistake(
+                f"if {shown} {verb} in {meaning}",
+                "Say the unit of the column: in its header, or in the diagram.",
+                partial(_scaled, names=names, factor=factor),
+            )
+    for name in m.inputs:
+        for factor, meaning in ((1e-3, "thousandths of"), (1e3, "thousands of")):
+            yield Mistake(
+                f"if the input '{name}' is in {meaning} its unit",
+                "Say the unit of the column: in its header, or in the diagram.",
+                partial(_louder, name=name, factor=factor),
+            )
+
+
+def _is(unit: str, *others: str) -> bool:
+    """Whether a unit is that of one of the quantities; a plain number is no angle."""
+    if not unit or ("rad" in others and "rad" not in unit and "deg" not in unit):
+        return False
+    try:
+        return any(same_quantity(unit, other) for other in others)
+    except FormulaError:
+        return False
+
+
+def _scaled(m: Measured, names: Sequence[str], factor: float) -> Measured:
+    values = {name: v * factor if name in names else v for name, v in m.values.items()}
+    sigma = {
+        name: None if s is None else s * factor if name in names else s
+        for name, s in m.sigma.items()
+    }
+    return replace(m, values=values, sigma=sigma)
+
+
+def _louder(m: Measured, name: str, factor: float) -> Measured:
+    t, values = m.inputs[name]
+    return replace(m, inputs={**m.inputs, name: with_points(m.inputs[name], t, values * factor)})
+
+
+def _shifts(
+    model: Model, m: Measured, part: Measured, before: float, rtol: float
+) -> Iterator[Mistake]:
+    """A drive that stands too late or too early in time beside the response.
+
+    The lag is told by the whole series, and to a sample by the declared model on a part of it.
+    """
+    step = float(np.median(np.diff(m.t)))
+
+    def left(lag: float) -> float:
+        return declared_s2(model, [shifted(part, lag)], rtol, FEW_STEPS)
+
+    def hopeful(s2: float) -> bool:
+        return AT_NOISE < s2 < before / HOPEFUL
+
+    for begun in likely_lags(model, m):
+        if -LEAST_BEFORE < begun / step < LEAST_AFTER:
+            continue
+        lag, least = begun, left(begun)
+        for side in (-step, step):
+            while hopeful(least) and (there := left(lag + side)) < 0.9 * least:
+                lag, least = lag + side, there
+                if abs(lag - begun) > MOST_STEPS * step:
+                    break
+        when = f"about {abs(lag):.2g} s {'after' if lag > 0 else 'before'} its drive"
+        yield Mistake(
+            f"if its signals come {when}",
+            "Are drive and signals from one clock? Put them to the same time.",
+            partial(shifted, lag=lag),
+        )
+
+
+def shifted(m: Measured, lag: float) -> Measured:
+    """A series whose inputs act later by `lag` (s)."""
+    later = {n: with_points(known, known[0] + lag, known[1]) for n, known in m.inputs.items()}
+    return replace(m, inputs=later)
+
+
+def likely_lags(model: Model, m: Measured, most: int = 3) -> list[float]:
+    """The lags in s by which the response may follow the inputs, the most likely first.
+
+    Where the accelerations are explained best by a polynomial of the signals, their rates, and the
+    inputs that long ago; all weighed over short stretches with a smooth bump, whose derivatives
+    stand for those of the signals. Positive: the response comes after.
+    """
+    step = float(np.median(np.diff(m.t)))
+    if not m.inputs or len(m.t) < 8 * POINTS:
+        return []
+    target, basis = _weighed(model, m, step)
+    basis, _ = np.linalg.qr(basis)
+    target = target - basis @ (basis.T @ target)
+    bump, _, _ = _bump(step)
+    reach = int(min(len(m.t) // 3, LONGEST / step))
+    lags = step * np.arange(-reach, reach + 1)
+    left = []
+    for lag in lags:
+        drives = [values_at(known, m.t - lag) for known in m.inputs.values()]
+        columns = np.column_stack([np.convolve(u, bump, "valid") for u in drives])
+        columns = columns - basis @ (basis.T @ columns)
+        kept, _ = np.linalg.qr(columns)
+        left.append(float(np.sum(target**2) - np.sum((kept.T @ target) ** 2)))
+    rest = np.array(left)
+    lowest = np.flatnonzero((rest[1:-1] <= rest[:-2]) & (rest[1:-1] <= rest[2:])) + 1
+    found = []
+    for i in sorted(lowest, key=lambda i: rest[i])[:most]:  # the vertex of a parabola through three
+        bend = rest[i - 1] - 2 * rest[i] + rest[i + 1]
+        off = 0.5 * (rest[i - 1] - rest[i + 1]) / bend if bend > 0 else 0.0
+        found.append(float(lags[i] + off * step))
+    return found
+
+
+def _weighed(model: Model, m: Measured, step: float) -> tuple[Vector, Vector]:
+    """Accelerations (N, signals), and what they may depend on (N, n)."""
+    bump, first, second = _bump(step)
+    rates = {state.name: state.rate for state in model.flat.states}
+    columns: list[Vector] = [np.ones(len(m.t))]
+    targets: list[Vector] = []
+    for name, values in m.values.items():
+        rate = rates.get(name)
+        order = 2 if isinstance(rate, Name) and rate.name in rates else 1
+        y = (values - np.mean(values)) / (float(np.std(values)) or 1.0)
+        target = np.convolve(y, second if order == 2 else first, "valid")
+        targets.append(target / (float(np.std(target)) or 1.0))
+        v = np.convolve(np.pad(y, POINTS, mode="edge"), first / np.sum(bump), "valid")
+        v = v / (float(np.std(v)) or 1.0)
+        own = [y, y**2, y**3, y**5]
+        if order == 2:
+            own += [v, v**2, v**3, y * v, y**2 * v, y * v**2, np.sign(v), np.abs(v) * v]
+        else:
+            own += [np.sign(values), np.abs(values) * y]
+        columns += own
+    basis = [np.convolve(column, bump, "valid") for column in columns]
+    return np.column_stack(targets), np.column_stack(basis)
+
+
+def _bump(step: float) -> tuple[Vector, Vector, Vector]:
+    """(1 - s^2)^4 over 2 POINTS + 1 samples, and its derivatives in time."""
+    polynomial = np.polynomial.Polynomial([1.0, 0.0, -1.0]) ** 4
+    s = np.linspace(-1, 1, 2 * POINTS + 1)
+    width = step * POINTS
+    return (
+        polynomial(s),
+        polynomial.deriv()(s) / width,
+        polynomial.deriv(2)(s) / width**2,
+    )

@@ -1,0 +1,182 @@
+"""Series that nothing can be traced in: each is told with what is wrong, before the work begins."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import cumulative_trapezoid
+
+from tracewire.compile import Model
+from tracewire.errors import DataError, Problem
+from tracewire.formula import Name
+from tracewire.residual import Measured, noise_level
+
+Vector = NDArray[np.float64]
+LEAST_SAMPLES = 40
+ABOVE_NOISE = 1.5
+"""A signal that spreads less than this many times its noise shows nothing else."""
+NEIGHBOURS = 8.0
+"""By how much, over the root of N, the mean square of differences may fall below that of noise."""
+SURE = 0.9
+"""The part of a signal that the integral of its rate must explain before their ratio counts."""
+NEAR = 0.02
+FACTORS = {
+    180 / np.pi: "degrees beside radians",
+    1000.0: "a unit and its thousandth, such as m and mm or s and ms",
+    60.0: "a unit in a minute and in a second",
+    2 * np.pi: "turns beside radians, or Hz beside rad/s",
+    100.0: "m beside cm",
+}
+
+
+def check_series(model: Model, measured: Sequence[Measured]) -> None:
+    """Refuse series that nothing can be traced in.
+
+    Raises DataError with all that is wrong: no series to train on, times or values that are no
+    numbers, series that are too short, constant or nothing but noise, inputs that are not known
+    over the whole series, a signal and its measured rate in units that do not belong together.
+    """
+    if not any(m.use == "train" for m in measured):
+        given = ", ".join(f"{m.name} ({m.use})" for m in measured)
+        what = "no series is for training" + (f": {given}" if given else "")
+        raise DataError.one(what, hint="Give one `use: train`, or name one with --train.")
+    problems = [problem for m in measured for problem in _broken(m)]
+    if problems:
+        raise DataError(problems)
+    for m in measured:
+        found = [*_short(m), *_still(m), *_inputs(m)]
+        problems += found or _rates(model, m)
+    problems += _dead_channels(measured) if not problems else []
+    if problems:
+        raise DataError(problems)
+
+
+def remarks(measured: Sequence[Measured]) -> tuple[str, ...]:
+    """What is odd about series, and no reason to refuse them: signals that are nothing but noise in
+    some series, and what was remarked when they were read."""
+    found = [f"{m.name}: {remark}" for m in measured for remark in m.remarks]
+    for m in measured:
+        quiet = [name for name in m.values if _is_noise(m, name)]
+        found += [f"{m.name}: {name} shows nothing above its noise" for name in quiet]
+    return tuple(dict.fromkeys(found))
+
+
+def _broken(m: Measured) -> Iterator[Problem]:
+    """What is no record at all."""
+    columns: Mapping[str, Vector] = {
+        "the time": m.t,
+        **{f"'{name}'": values for name, values in m.values.items()},
+    }
+    if not m.values:
+        yield Problem(f"the series '{m.name}' measures nothing", hint="Name a signal.")
+    for name, column in columns.items():
+        if len(column) != len(m.t):
+            what = f"{name} of '{m.name}' has {len(column)} samples, and the time {len(m.t)}"
+            yield Problem(what, hint="Give one value for each time.")
+            continue
+        bad = int(np.sum(~np.isfinite(column)))
+        if bad:
+            some = "all samples" if bad == len(column) else f"{bad} of {len(column)} samples"
+            what = f"{name} of '{m.name}' is not finite in {some}"
+            yield Problem(what, hint="Leave these rows out.")
+    if np.all(np.isfinite(m.t)) and np.any(np.diff(m.t) <= 0):
+        yield Problem(f"the time of '{m.name}' does not increase", hint="Sort the rows.")
+    for name, (t, values) in m.inputs.items():
+        if len(t) != len(values) or not (np.all(np.isfinite(t)) and np.all(np.isfinite(values))):
+            what = f"the input '{name}' of '{m.name}' is not a finite value for each time"
+            yield Problem(what, hint="Leave these rows out.")
+
+
+def _short(m: Measured) -> Iterator[Problem]:
+    if len(m.t) < LEAST_SAMPLES:
+        what = f"the series '{m.name}' has {len(m.t)} samples, too few to trace anything"
+        yield Problem(what, hint=f"At least {LEAST_SAMPLES} are needed.")
+
+
+def _still(m: Measured) -> Iterator[Problem]:
+    """Constant signals, and series in which no signal shows more than noise."""
+    constant = [name for name, values in m.values.items() if np.ptp(values) == 0]
+    for name in constant:
+        what = f"'{name}' of '{m.name}' is constant: {m.values[name][0]:.6g} in every sample"
+        yield Problem(what, hint="Is the sensor connected? Leave the signal or the series out.")
+    if not constant and all(_is_noise(m, name) for name in m.values):
+        names = " and ".join(f"'{name}'" for name in m.values)
+        what = f"the series '{m.name}' shows nothing above the noise of {names}"
+        yield Problem(what, hint="Nothing moves in it, or the noise hides it: leave it out.")
+
+
+def _dead_channels(measured: Sequence[Measured]) -> Iterator[Problem]:
+    """Signals that show nothing but noise in every series."""
+    for name in dict.fromkeys(name for m in measured for name in m.values):
+        having = [m for m in measured if name in m.values]
+        if all(_is_noise(m, name) for m in having):
+            what = f"'{name}' shows nothing above its noise in any series"
+            yield Problem(what, hint="Is the sensor connected? Leave the signal out.")
+
+
+def _is_noise(m: Measured, name: str) -> bool:
+    """Whether a signal is nothing but white noise, or stays within its declared noise.
+
+    White noise has a mean square of differences of twice its variance (von Neumann, 1941).
+    """
+    values = m.values[name]
+    spread = float(np.std(values))
+    declared = m.sigma.get(name)
+    if declared is not None and spread < declared:
+        return True
+    if len(np.unique(values)) <= 2:
+        return True  # a reading that flips between two steps
+    ratio = float(np.mean(np.diff(values) ** 2)) / max(spread**2, 1e-300)
+    white = ratio > 2 - NEIGHBOURS / np.sqrt(len(values))
+    return bool(white and spread < ABOVE_NOISE * noise_level(values))
+
+
+def _inputs(m: Measured) -> Iterator[Problem]:
+    """Inputs that are not known over the whole series, or are in another time."""
+    step = float(np.median(np.diff(m.t))) if len(m.t) > 1 else 0.0
+    for name, (t, _) in m.inputs.items():
+        if len(t) and t[0] <= m.t[0] + 1.5 * step and t[-1] >= m.t[-1] - 1.5 * step:
+            continue
+        known = f"from {t[0]:g} to {t[-1]:g} s" if len(t) else "at no time"
+        what = (
+            f"the input '{name}' of '{m.name}' is known {known}, and its signals are measured from "
+            f"{m.t[0]:g} to {m.t[-1]:g} s"
+        )
+        yield Problem(what, hint="Put both into one time, or cut the series.")
+
+
+def _rates(model: Model, m: Measured) -> Iterator[Problem]:
+    """A measured signal whose measured rate is not its rate: in other units, or turned round."""
+    for state in model.flat.states:
+        rate = state.rate
+        if not isinstance(rate, Name) or not {state.name, rate.name} <= set(m.values):
+            continue
+        ratio = rate_ratio(m.t, m.values[state.name], m.values[rate.name])
+        if ratio is None or m.sensor(state.name).free or m.sensor(rate.name).free:
+            continue
+        what = f"in '{m.name}' the rate of '{state.name}' is {ratio:.4g} times '{rate.name}'"
+        if ratio < 0 and abs(abs(ratio) - 1) < NEAR:
+            yield Problem(what, hint="One of them has the wrong sign: gain: -1 turns it round.")
+        for factor, meaning in FACTORS.items():
+            if any(abs(abs(ratio) / f - 1) < NEAR for f in (factor, 1 / factor)):
+                hint = f"Are their units, or that of time, mixed up: {meaning}?"
+                yield Problem(what, hint=hint)
+
+
+def rate_ratio(t: Vector, values: Vector, rates: Vector) -> float | None:
+    """How many times `rates` the rate of `values` (N,) is; None where they do not belong together.
+
+    By least squares of the values on the integral of the rates, a constant and a straight line: an
+    offset of either does not count, and no noise is amplified.
+    """
+    steps = cumulative_trapezoid(rates, t, initial=0)
+    basis = np.column_stack((np.ones_like(t), t - t[0]))
+    left, moved = (y - basis @ np.linalg.lstsq(basis, y, rcond=None)[0] for y in (values, steps))
+    size = float(moved @ moved)
+    if size <= 0 or float(left @ left) <= 0:
+        return None
+    ratio = float(left @ moved) / size
+    explained = ratio * float(left @ moved) / float(left @ left)
+    return ratio if explained > SURE else None

@@ -1,0 +1,84 @@
+"""What a motion that never comes back cannot show."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from tracewire.compile import Model
+from tracewire.errors import TracewireError
+from tracewire.formula import Expression, evaluate, names_of
+from tracewire.library import Block
+from tracewire.trace.candidates.candidates import Candidate
+from tracewire.trace.candidates.levels import Trajectory
+from tracewire.trace.candidates.places import Place
+
+AGAIN = 1.2
+"""The way a body goes over the range of its coordinate, from which on it has come back."""
+PITCH = "pitch"
+
+
+def comes_back(places: Sequence[Place], trajectories: Sequence[Trajectory]) -> bool:
+    """Whether in some series some body is twice at the same coordinate."""
+    coordinates = {place.q for place in places if place.kind == "sum" and place.q}
+    known = [(run, q) for run in trajectories for q in coordinates if q in run.signals]
+    for run, q in known:
+        way = float(np.sum(np.abs(np.diff(run.signals[q]))))
+        if way > AGAIN * float(np.ptp(run.signals[q])):
+            return True
+    return not known
+
+
+def visible(
+    model: Model, candidates: Sequence[Candidate], trajectories: Sequence[Trajectory]
+) -> list[Candidate]:
+    """The candidates that a motion without return can show.
+
+    Where a body is nowhere twice, as in one fall, time tells nothing that its coordinate does not:
+    effects that read the time are left out, and so are memories, which show in what is different
+    when the body comes back, and what is more in one direction than in the other. A wave over the
+    coordinate must fit into its range.
+    """
+    found = []
+    for candidate in candidates:
+        block = model.diagram.library.blocks.get(candidate.effect)
+        timed = block is not None and any(_reads_time(f) for f in block.formulas.values())
+        if block is not None and block.effect and _even(block):
+            continue
+        if timed or (block is not None and (block.states or block.modes)):
+            continue
+        of = candidate.place.q
+        if PITCH in candidate.shapes and of:
+            ranges = [float(np.ptp(run.signals[of])) for run in trajectories if of in run.signals]
+            widest = max(ranges, default=0.0)
+            grid = tuple(pitch for pitch in candidate.shapes[PITCH] if pitch <= widest)
+            low, _ = candidate.limits[PITCH]
+            if not grid or low >= widest:
+                continue
+            candidate = replace(
+                candidate,
+                shapes={**candidate.shapes, PITCH: grid},
+                limits={**candidate.limits, PITCH: (low, widest)},
+            )
+        found.append(candidate)
+    return found
+
+
+def _reads_time(formula: Expression) -> bool:
+    return "t" in names_of(formula)
+
+
+def _even(block: Block) -> bool:
+    """Whether an effect of the rate alone is the same in both directions."""
+    if [*block.effect.inputs.values()] != ["v"] or block.states or block.modes:  # type: ignore[union-attr]
+        return False
+    (rate,) = (port.name for port in block.inputs)
+    (formula,) = block.formulas.values()
+    values = {parameter.name: 1.0 for parameter in block.parameters}
+    try:
+        ahead, back = (evaluate(formula, {**values, rate: v, "t": 1.0}) for v in (0.5, -0.5))
+    except TracewireError:
+        return False
+    return ahead == back

@@ -1,0 +1,52 @@
+"""Stray windows: few that are far from all others, and that would lead a declared fit astray.
+
+Where a body hits a barrier a sample earlier than the model does, the residual is a thousand times
+that of a missing effect: such windows rule the fit, and it ends where no window is right.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tracewire.errors import FitError
+from tracewire.residual import Segment
+from tracewire.trace.trials.judge import AT_NOISE
+from tracewire.trace.trials.trial import Bench, Trial
+
+STRAY = 30.0
+"""A window with this many times the squared residual of the middle one is a stray."""
+LEFT, MOST_LEFT = 0.5, 0.8
+"""The part of the windows that stays at least; and of a fit that converged: windows that are many
+and far off show what is missing."""
+ROUNDS = 4
+LEAST_LED = 30.0
+"""RSS per degree of freedom from which on strays may lead a fit."""
+
+
+def without_strays(bench: Bench, trial: Trial, segments: Sequence[Segment], steps: int) -> Trial:
+    """A declared fit that ended far from the noise, without the windows that led it astray.
+
+    It is fitted in rounds of some `steps`. All windows are used again where they are near the noise
+    from there, and where the others are at it: then what is missing shows in the strays alone.
+    """
+    kept, best = list(range(len(segments))), trial
+    least = (MOST_LEFT if trial.converged else LEFT) * len(segments)
+    try:
+        for _ in range(ROUNDS):
+            sizes = best.windows.squares / [max(r.size, 1) for r in best.windows.residuals]
+            near = np.flatnonzero(sizes <= STRAY * np.median(sizes)).tolist()
+            if best.s2 < LEAST_LED or len(near) == len(kept) or len(near) < least:
+                break
+            kept = [kept[n] for n in near]
+            starts = [best.windows.segments[n] for n in near]
+            best = bench.fitted((), starts, trial.length, best.values, steps=steps)
+        if best is trial:
+            return trial
+        fitted = dict(zip(kept, best.windows.segments, strict=True))
+        whole_segments = [fitted.get(n, segment) for n, segment in enumerate(segments)]
+        whole = bench.fitted((), whole_segments, trial.length, best.values, steps=steps)
+    except FitError:
+        return trial
+    return whole if min(whole.s2 / LEAST_LED, best.s2 / AT_NOISE) < 1 else best

@@ -1,0 +1,1 @@
+"""The choice between finalists by what they predict, and the verdict."""

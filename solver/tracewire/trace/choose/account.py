@@ -1,0 +1,161 @@
+"""The account of a search: errors before and after, curves, and what declared parameters did."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import stdtrit
+
+from tracewire.residual import Section, Segment, opened, settled
+from tracewire.trace.found import ChannelError, Curve, Moved
+from tracewire.trace.search.search import Search
+from tracewire.trace.trials.trial import Bench, Trial
+
+Vector = NDArray[np.float64]
+FIRST_PART = 0.2
+"""The part of a record on which the start of a free run is fitted."""
+CONFIDENCE = 0.95
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """A section with the residuals of both models in SI, in windows and in one free run, by the
+    rows of `segment`, shape (N, signals); `edges` are times where windows begin."""
+
+    use: str
+    segment: Segment
+    windowed: tuple[Vector, Vector]
+    free: tuple[Vector, Vector]
+    edges: Vector
+
+    def errors(self, sigma: dict[str, float], units: dict[str, str]) -> Iterator[ChannelError]:
+        """The root mean square errors of each signal."""
+        for n, signal in enumerate(self.segment.signals):
+            for kind, pair in (("windowed", self.windowed), ("free run", self.free)):
+                before, after = (float(np.sqrt(np.mean(r[:, n] ** 2))) for r in pair)
+                yield ChannelError(
+                    self.segment.measured.name,
+                    self.use,
+                    signal,
+                    units.get(signal, ""),
+                    "windowed" if kind == "windowed" else "free run",
+                    before,
+                    after,
+                    sigma[signal],
+                )
+
+    def curves(self, sigma: dict[str, float], units: dict[str, str]) -> Iterator[Curve]:
+        """Each measured signal with both free runs."""
+        samples = self.segment.samples()
+        for n, signal in enumerate(self.segment.signals):
+            yield Curve(
+                series=self.segment.measured.name,
+                use=self.use,
+                signal=signal,
+                unit=units.get(signal, ""),
+                t=self.segment.t,
+                measured=samples[:, n],
+                before=samples[:, n] + self.free[0][:, n],
+                after=samples[:, n] + self.free[1][:, n],
+                edges=self.edges,
+                windowed_before=self.windowed[0][:, n] / sigma[signal],
+                windowed_after=self.windowed[1][:, n] / sigma[signal],
+            )
+
+
+def compared(search: Search, declared: Trial, best: Trial) -> list[Compared]:
+    """Both models on every section: what was fitted, the gate, and what played no part."""
+    stretches = search.stretches
+    uses = (
+        ("train", stretches.whole()),
+        ("gate", [s for s in stretches.gate if s.measured.use == "gate"]),
+        ("validate", stretches.validate),
+    )
+    return [
+        _compared(search, use, section, declared, best)
+        for use, sections in uses
+        for section in sections
+    ]
+
+
+def _compared(search: Search, use: str, section: Section, declared: Trial, best: Trial) -> Compared:
+    bench = replace(search.bench, inputs=None)  # residuals as they are, and not as they count
+    windows = search.windows([section], search.short)
+    (whole,) = search.windows([section], section.end - section.first)
+    sigma = np.array([bench.sigma[name] for name in whole.signals])
+    trials = (declared, best) if best is not declared else (declared,)
+    inside = [np.concatenate(bench.on(trial, windows)) * sigma for trial in trials]
+    free = [free_run(bench, trial, whole, search.shortest) * sigma for trial in trials]
+    return Compared(
+        use,
+        whole,
+        (inside[0], inside[-1]),
+        (free[0], free[-1]),
+        np.array([window.begin for window in windows]),
+    )
+
+
+def free_run(bench: Bench, trial: Trial, whole: Segment, shortest: int) -> Vector:
+    """The residuals in sigma of one run over a section, shape (N, signals).
+
+    A free start is fitted on the first fifth of the section alone.
+    """
+    if whole.free:
+        begun = settled(opened(bench.criterion(trial, [_first_part(whole, shortest)])))
+        whole = replace(begun.segments[0], rows=whole.rows)
+    return opened(bench.criterion(trial, [whole])).residuals[0]
+
+
+def met(search: Search, trial: Trial) -> Trial:
+    """The trial whose effects have what series of their own need that no fit saw: the phase of a
+    wave, from the first fifth of each such series alone."""
+    if not any(effect.own_series for effect in trial.effects):
+        return trial
+    stretches = search.stretches
+    unseen = [*(s for s in stretches.gate if s.measured.use == "gate"), *stretches.validate]
+    firsts = [
+        _first_part(whole, search.shortest)
+        for section in unseen
+        for whole in search.windows([section], section.end - section.first)
+    ]
+    return replace(trial, effects=search.bench.met(trial, firsts))
+
+
+def _first_part(whole: Segment, shortest: int) -> Segment:
+    count = max(int(FIRST_PART * len(whole.rows)), min(2 * shortest, len(whole.rows)))
+    return replace(whole, rows=whole.rows[:count])
+
+
+def rmse(parts: Sequence[Compared], which: int) -> float:
+    """The root mean square of free-run residuals over all signals, in SI."""
+    return float(np.sqrt(np.mean(np.concatenate([p.free[which].ravel() for p in parts]) ** 2)))
+
+
+def intervals(trial: Trial) -> dict[str, tuple[float, float]]:
+    """The 95 % interval of each fitted value."""
+    quantile = float(stdtrit(max(trial.freedom * trial.part, 1.0), 0.5 + CONFIDENCE / 2))
+    errors = trial.standard_errors
+    return {
+        name: (value - quantile * errors[name], value + quantile * errors[name])
+        for name, value in trial.values.items()
+    }
+
+
+def moved(bench: Bench, declared: Trial, best: Trial, values: dict[str, float]) -> list[Moved]:
+    """The declared parameters without and with the effects."""
+    errors = best.standard_errors
+    return [
+        Moved(
+            name,
+            bench.declared.flat.parameters[name].unit
+            if name in bench.declared.flat.parameters
+            else "",
+            value,
+            values.get(name, 0.0),
+            errors.get(name, 0.0),
+        )
+        for name, value in declared.values.items()
+    ]

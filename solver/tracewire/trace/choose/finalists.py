@@ -1,0 +1,302 @@
+"""Finalists: the best models of each size, whose predictions are then compared.
+
+A greedy path is not enough: a pendulum with dry friction and drag shows no single effect beside a
+declared viscous friction, and the pair is obvious. So single effects are refitted at both horizons,
+pairs come from the screen of the declared model and from screens beside the best single effects,
+threes from screens beside the best pairs. In the best of these each effect is exchanged for those
+that look alike, and each declared term that may be zero is left out. Fits rank by BIC with blocks
+of time as the independent observations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.solve import release
+from tracewire.trace.choose.choice import log_scores
+from tracewire.trace.choose.heldout import Finalist, errors_in_sample
+from tracewire.trace.choose.horizons import Horizons
+from tracewire.trace.options import TraceOptions
+from tracewire.trace.screen.screening import Proposal, Screen, screened
+from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.search.search import Search
+from tracewire.trace.trials.trial import Added, Trial
+
+Array = NDArray[np.float64]
+Key = tuple[frozenset[str], tuple[str, ...]]
+
+
+@dataclass
+class Pool:
+    """The models that were fitted so far, by their effects and the terms that were left out."""
+
+    search: Search
+    horizons: Horizons
+    options: TraceOptions
+    models: dict[Key, Finalist] = field(default_factory=dict)
+    spent: int = 0
+    """The solver's steps that all refits took."""
+    first: list[Screen] = field(default_factory=list)
+    """The screens beside the declared model, one for each horizon."""
+
+    def declared(self, begun: Trial) -> Finalist:
+        """The declared model at each horizon, from a fit of it."""
+        bench, trials, trial = self.search.bench, [], begun
+        for horizon in self.horizons.each:
+            trial = bench.fitted((), list(horizon.segments), horizon.length, trial.values)
+            trials.append(trial)
+        return self._kept(Finalist(tuple(trials)))
+
+    def fill(self, declared: Finalist) -> None:
+        """Models of one, two and three effects, and those without declared terms."""
+        options = self.options
+        numbers = range(len(self.horizons.each))
+        self.first = [self.screened(declared, number) for number in numbers]
+        self._extend(declared, options.singles // len(numbers), self.first)
+        # what imitates a declared term shows only where that is not there
+        for smaller in self.without_terms(declared):
+            self._extend(smaller, options.seconds, [*self.first[:-1], self.screened(smaller, -1)])
+        for size, parents in zip(range(1, options.effects), options.parents, strict=False):
+            if not self._improves(size):
+                break
+            for parent in self.best(size, parents):
+                # what shows in short windows is looked for in those of the declared model
+                screens = [*self.first[:-1], self.screened(parent, -1)]
+                self._extend(parent, options.seconds, screens)
+            if self._improves(size + 1):
+                self._exchange(size + 1)
+        for size in range(1, options.effects + 1):
+            for model in self.best(size, options.exchanged):
+                self.without_terms(model)
+
+    def _extend(self, parent: Finalist, count: int, screens: Sequence[Screen]) -> None:
+        """A model with the most promising effects and pairs of a screen at each horizon."""
+        for number, screen in enumerate(screens):
+            rows = [row for row in screen.best() if row.fall > 0]
+            self.extend(parent, number, [Proposal((row,), row.gain) for row in rows[:count]])
+            if self.options.effects > len(parent.names) + 1:
+                pairs = [
+                    pair
+                    for same in screen.by_count(self.options.pairs).values()
+                    for pair in same
+                    if len(pair.rows) == 2
+                ]
+                pairs.sort(key=lambda pair: -pair.gain)
+                self.extend(parent, number, pairs[: self.options.seconds])
+
+    def screened(self, parent: Finalist, number: int) -> Screen:
+        """The screen beside a model at a horizon."""
+        search, trial = self.search, parent.trials[number]
+        beside = " and ".join(sorted(parent.names)) or "the declared model"
+        search.tell(f"screening effects beside {beside}")
+        tangent = Tangent(trial.diagram, trial.windows, search.places, search.bench.rtol)
+        candidates = search.candidates(tangent, [effect.candidate for effect in trial.effects])
+        return screened(tangent, trial, candidates)
+
+    def extend(self, parent: Finalist, number: int, proposals: Iterable[Proposal]) -> None:
+        """Refit a model with each of some proposals in few steps, at the horizon whose screen made
+        them, and the best of them at each horizon."""
+        options = self.options
+        left = options.effects - len(parent.names)
+        begun: list[Trial] = []
+        for proposal in proposals:
+            added = {str(row.candidate) for row in proposal.rows}
+            names = parent.names | added
+            known = (names, parent.dropped) in self.models or added & parent.names
+            if known or len(proposal.rows) > left or self.spent > options.most_steps:
+                continue
+            self.search.tell(f"refitting with {' and '.join(sorted(names))}")
+            target = options.hopeful * min((trial.rss for trial in begun), default=np.inf)
+            first = [row.added for row in proposal.rows]
+            trial = self._refitted(parent.trials[number], first, (), options.first_steps, target)
+            if trial is not None:
+                begun.append(trial)
+        begun.sort(key=lambda trial: trial.rss)
+        for trial in begun[: options.begun // len(self.horizons.each)]:
+            if trial.rss <= options.hopeful * begun[0].rss:
+                fitted = self.fitted(parent, trial.effects[len(parent.names) :])
+                if fitted is not None:
+                    self._kept(fitted)
+
+    def fitted(
+        self, parent: Finalist, added: Sequence[Added], dropped: Sequence[str] = ()
+    ) -> Finalist | None:
+        """A model with more effects, or without declared terms, refitted at each horizon, the
+        longer one first, which determines more; None where it does not run."""
+        trials: list[Trial] = []
+        begun = list(added)
+        for now in reversed(parent.trials):
+            target = self._target(now.length, len(parent.names) + len(begun))
+            trial = self._refitted(now, begun, dropped, self.options.steps, target)
+            if trial is None:
+                return None
+            trials.append(trial)
+            begun = list(trial.effects[len(parent.names) :])
+        return Finalist(tuple(reversed(trials)), (*parent.dropped, *dropped))
+
+    def settled(self, model: Finalist) -> Finalist:
+        """The model refitted until it converges."""
+        if all(trial.converged for trial in model.trials):
+            return model
+        bench = self.search.bench
+        trials = tuple(
+            trial if trial.converged else bench.again(trial, trial.windows.segments, trial.length)
+            for trial in model.trials
+        )
+        self.models[model.key] = replace(model, trials=trials)
+        return self.models[model.key]
+
+    def scores(self) -> dict[Key, float]:
+        """How well each model fits, the mean of the in-sample log scores."""
+        errors = np.stack([errors_in_sample(m, self.horizons) for m in self.models.values()])
+        means = log_scores(errors).mean(axis=(1, 2, 3))
+        return dict(zip(self.models, means.tolist(), strict=True))
+
+    def ranks(self) -> dict[Key, float]:
+        """The scores with the price of each fitted number, BIC over twice the number of blocks."""
+        blocks = self.horizons.fitted
+        price = float(np.log(blocks)) / (2 * blocks)
+        return {key: s + price * self.models[key].numbers for key, s in self.scores().items()}
+
+    def best(self, size: int, count: int) -> list[Finalist]:
+        """The best fits with so many effects, each set of effects once, refitted until they
+        converge."""
+        ranks = self.ranks()
+        of_names: dict[frozenset[str], Key] = {}
+        for key in sorted(ranks, key=lambda key: -ranks[key]):
+            of_names[self.models[key].names] = key
+        mine = [key for names, key in of_names.items() if len(names) == size]
+        return [
+            self.settled(self.models[key])
+            for key in sorted(mine, key=lambda key: ranks[key])[:count]
+        ]
+
+    def without(self, model: Finalist, name: str) -> Finalist | None:
+        """The model without one of its effects."""
+        key = model.names - {name}, model.dropped
+        if key not in self.models:
+            trials = []
+            for trial in model.trials:
+                effects = [e for e in trial.effects if str(e) != name]
+                fixed = dict(trial.windows.criterion.parameters)
+                fewer = self._fit(trial, effects, fixed, self.options.steps, np.inf)
+                if fewer is None:
+                    return None
+                trials.append(fewer)
+            self.models[key] = Finalist(tuple(trials), model.dropped)
+        return self.settled(self.models[key])
+
+    def without_terms(self, model: Finalist) -> list[Finalist]:
+        """The model without each declared term that may be zero and is not."""
+        own, found = self.search.bench.declared.flat.parameters, []
+        for unknown in model.trials[0].windows.criterion.unknowns:
+            if unknown.low != 0.0 or unknown.name not in own or unknown.name in model.vanished:
+                continue
+            self.search.tell(f"refitting without {unknown.name}")
+            smaller = self.fitted(model, (), [unknown.name])
+            if smaller is not None:
+                found.append(self._kept(smaller))
+        return found
+
+    def _kept(self, finalist: Finalist) -> Finalist:
+        return self.models.setdefault(finalist.key, finalist)
+
+    def _refitted(
+        self,
+        now: Trial,
+        added: Sequence[Added],
+        dropped: Sequence[str],
+        steps: int,
+        target: float,
+    ) -> Trial | None:
+        fixed = {**now.windows.criterion.parameters, **dict.fromkeys(dropped, 0.0)}
+        trial = self._fit(now, (*now.effects, *added), fixed, steps, target)
+        if added and (trial is None or trial.rss > now.rss):  # the promised size led it astray
+            part = self.options.restart
+            small = [one.having(one.candidate.parameter, part * one.coefficient) for one in added]
+            again = self._fit(now, (*now.effects, *small), fixed, steps, target)
+            trial = min((t for t in (trial, again) if t), key=lambda t: t.rss, default=None)
+        return trial
+
+    def _fit(
+        self,
+        now: Trial,
+        effects: Sequence[Added],
+        fixed: dict[str, float],
+        steps: int,
+        target: float,
+    ) -> Trial | None:
+        windows = now.windows
+        level = float(np.median(windows.squares / [r.size for r in windows.residuals]))
+        fitted = self.search.refits.fitted(
+            now,
+            effects,
+            windows.segments,
+            fixed=fixed,
+            steps=steps,
+            target=target,
+            good=max(2 * level, windows.good),
+            creeps=self.options.coarse,
+            settling=1,
+        )
+        self.spent += (fitted or now).windows.criterion.steps
+        if fitted is not None:
+            release(fitted.model)  # there are hundreds of them
+        return fitted
+
+    def _target(self, length: int, size: int) -> float:
+        """The sum of squares that a fit must promise to reach, or be given up: twice the least one
+        of as many effects."""
+        known = [
+            trial.rss
+            for model in self.models.values()
+            for trial in model.trials
+            if trial.length == length and len(trial.effects) == size
+        ]
+        return self.options.hopeful * min(known, default=np.inf)
+
+    def _exchange(self, size: int) -> None:
+        """The best models of a size with each effect exchanged for those that look most like it."""
+        screen, options = self.first[-1], self.options
+        rows = screen.visible()
+        for model in self.best(size, options.exchanged):
+            for name in sorted(model.names & rows.keys()):
+                alike = {
+                    other: screen.columns.likeness(rows[name].columns, row.columns)
+                    for other, row in rows.items()
+                    if other not in model.names
+                }
+                nearest = sorted(alike, key=lambda other: -alike[other])[: options.alike]
+                self._replaced(model, name, [rows[other].added for other in nearest])
+
+    def _replaced(self, model: Finalist, name: str, others: Sequence[Added]) -> None:
+        for other in others:
+            names = model.names - {name} | {str(other)}
+            if (names, model.dropped) in self.models or self.spent > self.options.most_steps:
+                continue
+            self.search.tell(f"refitting with {' and '.join(sorted(names))}")
+            trials: list[Trial] = []
+            begun = other
+            for trial in reversed(model.trials):
+                kept = [effect for effect in trial.effects if str(effect) != name]
+                fixed = dict(trial.windows.criterion.parameters)
+                target = self._target(trial.length, len(kept) + 1)
+                steps = self.options.steps
+                fitted = self._fit(trial, (*kept, begun), fixed, steps, target)
+                if fitted is None:
+                    break
+                trials.append(fitted)
+                begun = fitted.effects[-1]
+            else:
+                self._kept(Finalist(tuple(reversed(trials)), model.dropped))
+
+    def _improves(self, size: int) -> bool:
+        """Whether models of this size fit better than smaller ones by more than the tolerance."""
+        scores = self.scores()
+        mine = [scores[key] for key, model in self.models.items() if len(model.names) == size]
+        less = [scores[key] for key, model in self.models.items() if len(model.names) < size]
+        return bool(mine) and min(less) - min(mine) > np.log1p(self.options.near)

@@ -1,0 +1,222 @@
+"""What models predict on blocks of time that their fits did not see."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.errors import FitError
+from tracewire.residual import (
+    LEAST_DAMPING,
+    bounded_step,
+    descended,
+    eliminated,
+    opened,
+    projection,
+    settled,
+)
+from tracewire.trace.choose.horizons import REST, Horizon, Horizons, restricted
+from tracewire.trace.options import TraceOptions
+from tracewire.trace.trials.bounds import at_bounds
+from tracewire.trace.trials.trial import Bench, Trial
+
+Vector = NDArray[np.float64]
+Array = NDArray[np.float64]
+Ints = NDArray[np.intp]
+NEAR = 1e-6
+"""Of the size of a value: nearer to its bound it sits there."""
+RIDGE = 1e-3
+"""The weight of the fit to all data beside that without a fold: what only the fold determines is
+then no accident."""
+
+
+@dataclass(frozen=True, eq=False)
+class Finalist:
+    """A model fitted at each horizon, and the declared parameters that were set to zero in it."""
+
+    trials: tuple[Trial, ...]
+    dropped: tuple[str, ...] = ()
+
+    @property
+    def names(self) -> frozenset[str]:
+        """The effects that it has, as `name @ place`."""
+        return frozenset(str(effect) for effect in self.trials[0].effects)
+
+    @property
+    def title(self) -> str:
+        """The effects in words."""
+        return " + ".join(sorted(self.names)) or "the declared model"
+
+    @property
+    def vanished(self) -> tuple[str, ...]:
+        """The fitted values that are zero, the bound below which they may not fall: such terms are
+        not there."""
+        return tuple(
+            u.name
+            for u in self.trials[0].windows.criterion.unknowns
+            if u.low == 0.0 and all(t.values[u.name] <= NEAR * u.scale for t in self.trials)
+        )
+
+    @property
+    def numbers(self) -> int:
+        """How many numbers are fitted beside the starts, without those that vanished."""
+        return len(self.trials[0].windows.values) - len(self.vanished)
+
+    @property
+    def at_bounds(self) -> tuple[str, ...]:
+        """The fitted values that sit on a bound at some horizon, but for terms that vanished."""
+        found = (one for trial in self.trials for one in at_bounds(trial) if not one.absent)
+        return tuple(dict.fromkeys(one.name for one in found))
+
+    @property
+    def key(self) -> tuple[frozenset[str], tuple[str, ...]]:
+        """What tells it from other finalists."""
+        return self.names, self.dropped
+
+
+def errors_in_sample(finalist: Finalist, horizons: Horizons) -> Array:
+    """The mean squared residual E/n of the fit itself, (horizons, 1, blocks, channels)."""
+    return np.stack([
+        _by_block(
+            horizons.fitted,
+            [(of, r) for of, r in zip(horizon.blocks, trial.windows.residuals, strict=True)],
+        )[None]
+        for horizon, trial in zip(horizons.each, finalist.trials, strict=True)
+    ])  # fmt: skip
+
+
+def errors_held_out(
+    bench: Bench, finalist: Finalist, horizons: Horizons, options: TraceOptions
+) -> Array:
+    """The mean squared residual E/n in sigma of each block, predicted by fits without it.
+
+    Shape (horizons, families of folds, blocks, channels). In windows that are left out as wholes
+    only the start is fitted. Fits without scattered blocks are one bounded Newton step from the fit
+    to all, those without contiguous parts go on from there. Infinite where the model does not run.
+    """
+    found = []
+    for at, (horizon, trial) in enumerate(zip(horizons.each, finalist.trials, strict=True)):
+        newton = _Newton(trial, horizon)
+        families = []
+        for number, family in enumerate(horizons.folds):
+            steps = options.fold_steps if number else 0
+            parts = [
+                _predicted(bench, trial, horizon, newton, group, steps, options.coarse)
+                for group in family
+            ]
+            families.append(_by_block(horizons.fitted, [row for part in parts for row in part]))
+        predicted = np.stack(families)
+        if horizons.gate:
+            judged = _judged(bench, trial, horizons.gate[at], horizons.count - horizons.fitted)
+            predicted = np.concatenate((predicted, np.stack([judged] * len(families))), axis=1)
+        found.append(predicted)
+    return np.stack(found)
+
+
+def _judged(bench: Bench, trial: Trial, horizon: Horizon, count: int) -> Array:
+    """The mean squared residual of blocks of series that no fit sees, (blocks, channels)."""
+    try:
+        windows = settled(opened(bench.criterion(trial, horizon.segments), trial.windows.good))
+    except FitError:
+        columns = trial.windows.residuals[0].shape[1]
+        return np.full((count, columns), np.inf)
+    return _by_block(count, list(zip(horizon.blocks, windows.residuals, strict=True)))
+
+
+class _Newton:
+    """The linearised fit of a trial, from which a fit without some blocks is one step away."""
+
+    def __init__(self, trial: Trial, horizon: Horizon) -> None:
+        windows = trial.windows
+        self.windows = windows
+        self.exact = all(
+            not segment.free or len(np.unique(of)) == 1
+            for segment, of in zip(windows.criterion.segments, horizon.blocks, strict=True)
+        )
+        """Whether no window with a free start is left out in part."""
+        views = [projection(windows, n) for n in range(len(windows.near))]
+        self.scales = np.array([u.scale for u in windows.criterion.unknowns])
+        reduced, self.residual = eliminated(windows, views)
+        self.reduced = reduced * self.scales
+        self.ridge = np.diag(RIDGE**0.5 * np.linalg.norm(self.reduced, axis=0))
+        self.blocks = np.concatenate([
+            np.repeat(of, near.residual.shape[1])
+            for of, near in zip(horizon.blocks, windows.near, strict=True)
+        ])  # fmt: skip
+
+    def without(self, group: Sequence[int]) -> dict[str, float]:
+        """The values that a fit without some blocks would have."""
+        unknowns, values = self.windows.criterion.unknowns, dict(self.windows.values)
+        if not unknowns:
+            return values
+        kept = ~np.isin(self.blocks, group)
+        now = np.array([values[u.name] for u in unknowns])
+        low, high = np.array([u.low for u in unknowns]), np.array([u.high for u in unknowns])
+        room = (low - now) / self.scales, (high - now) / self.scales
+        reduced = np.concatenate((self.reduced[kept], self.ridge))
+        residual = np.concatenate((self.residual[kept], np.zeros(len(unknowns))))
+        step = bounded_step(reduced, residual, LEAST_DAMPING, room)
+        moved = np.clip(now + step * self.scales, low, high)
+        return dict(zip((u.name for u in unknowns), moved.tolist(), strict=True))
+
+
+def _predicted(
+    bench: Bench,
+    trial: Trial,
+    horizon: Horizon,
+    newton: _Newton,
+    group: Sequence[int],
+    steps: int,
+    creeps: float,
+) -> list[tuple[Ints, Vector]]:
+    """The blocks and the residuals in sigma of the rows that a fold leaves out."""
+    known = trial.windows.segments
+    kept, held = horizon.without(group), horizon.within(group)
+    columns = trial.windows.residuals[0].shape[1]
+    failed = [(horizon.blocks[n][rows], np.full((len(rows), columns), np.inf)) for n, rows in held]
+    if not kept:
+        return failed
+    values: Mapping[str, float] = newton.without(group)
+    starts: dict[int, Mapping[str, float]] = {}
+    try:
+        if steps or not newton.exact:
+            segments = [restricted(known[n], rows) for n, rows in kept]
+            begun = opened(bench.warm(trial, segments, values), trial.windows.good)
+            fitted, _ = descended(begun, max(steps, 1), creeps=creeps, settling=1)
+            values = fitted.values
+            starts = {n: start for (n, _), start in zip(kept, fitted.starts, strict=True)}
+        residuals = _residuals(bench, trial, held, starts, values)
+    except FitError:
+        return failed
+    return [(horizon.blocks[n][rows], r) for (n, rows), r in zip(held, residuals, strict=True)]
+
+
+def _residuals(
+    bench: Bench,
+    trial: Trial,
+    held: Sequence[tuple[int, Ints]],
+    starts: Mapping[int, Mapping[str, float]],
+    values: Mapping[str, float],
+) -> list[Vector]:
+    """The residuals of left out rows with the values of a fold."""
+    segments, known = [], trial.windows.segments
+    for n, rows in held:
+        segment = restricted(known[n], rows)
+        if n in starts:  # its other rows were fitted, and with them its start
+            segment = replace(segment, start={**segment.start, **starts[n]}, free=())
+        segments.append(segment)
+    begun = opened(bench.at(trial, segments, values), trial.windows.good)
+    return settled(begun).residuals
+
+
+def _by_block(count: int, parts: Sequence[tuple[Ints, Vector]]) -> Array:
+    """The mean of squared residuals by block and channel, (blocks, channels)."""
+    blocks = np.concatenate([of for of, _ in parts])
+    squares = np.concatenate([r for _, r in parts]) ** 2
+    blocks, squares = blocks[blocks != REST], squares[blocks != REST]
+    sums = np.zeros((count, squares.shape[1]))
+    np.add.at(sums, blocks, squares)
+    return np.asarray(sums / np.maximum(np.bincount(blocks, minlength=count), 1)[:, None])

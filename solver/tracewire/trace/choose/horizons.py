@@ -1,0 +1,246 @@
+"""The two horizons of prediction, and the blocks of time on which models are compared.
+
+A record is cut into blocks that are as long as the longer horizon: five periods of the motion, so
+that there are 7 to 20 of them. Windows of the shorter horizon, a third of a period, tile the same
+blocks. Where a body has come to rest for good there are no blocks: nothing can be claimed there,
+and its samples are in every fit. What is missing in a sensor, or as a ripple, shows in the short
+windows; friction and drift show in the long ones. Where no start is free, or the motion has no
+period, there is one horizon, and the blocks are pieces of its runs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import Model
+from tracewire.residual import Section, Segment, cut
+from tracewire.trace.options import TraceOptions
+
+Vector = NDArray[np.float64]
+Ints = NDArray[np.intp]
+REST = -1
+"""The block of samples at rest, which is never left out."""
+
+
+@dataclass(frozen=True, eq=False)
+class Horizon:
+    """The windows of a horizon over all fitted data, of about `length` samples, and for each of
+    them the block of each of its rows."""
+
+    length: int
+    segments: tuple[Segment, ...]
+    blocks: tuple[Ints, ...]
+
+    def without(self, blocks: Sequence[int]) -> list[tuple[int, Ints]]:
+        """The windows that keep rows outside of some blocks: number and these rows."""
+        return self._where(blocks, inside=False)
+
+    def within(self, blocks: Sequence[int]) -> list[tuple[int, Ints]]:
+        """The windows that have rows in some blocks: number and these rows."""
+        return self._where(blocks, inside=True)
+
+    def _where(self, blocks: Sequence[int], inside: bool) -> list[tuple[int, Ints]]:
+        found = []
+        for number, of in enumerate(self.blocks):
+            rows = np.flatnonzero(np.isin(of, blocks) == inside)
+            if len(rows):
+                found.append((number, rows))
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Horizons:
+    """The horizons, the shorter first, with common blocks: the series and the start in s of each,
+    first those that are fitted and then those of series that only judge (`gate`, by horizon).
+    `folds` are the groups of fitted blocks that are left out together, by family; `interval` is
+    the time in s between samples."""
+
+    each: tuple[Horizon, ...]
+    gate: tuple[Horizon, ...]
+    series: tuple[str, ...]
+    begin: Vector
+    folds: tuple[tuple[tuple[int, ...], ...], ...]
+    interval: float
+
+    @property
+    def fitted(self) -> int:
+        """How many blocks are fitted."""
+        return sum(len(group) for group in self.folds[0])
+
+    @property
+    def count(self) -> int:
+        """How many blocks there are."""
+        return len(self.series)
+
+    @property
+    def groups(self) -> tuple[tuple[tuple[int, ...], ...], ...]:
+        """The groups of blocks that one fit predicts, by family."""
+        judging = tuple(range(self.fitted, self.count))
+        return tuple((*family, judging) if judging else family for family in self.folds)
+
+
+def horizons_of(
+    model: Model,
+    sections: Sequence[Section],
+    gate: Sequence[Section],
+    free: Sequence[str],
+    sigma: Mapping[str, float],
+    options: TraceOptions,
+) -> Horizons:
+    """The horizons of the sections that are fitted and of those that only judge; `free` are the
+    states where a window begins, `sigma` is the noise of each signal."""
+    whole = sections
+    sections, gate = (
+        [moving_part(section, sigma, options) for section in some] for some in (sections, gate)
+    )
+    total = sum(section.end - section.first for section in sections)
+    interval = float(np.median([np.median(np.diff(s.measured.t)) for s in sections]))
+    period = float(np.median([dominant_period(section) for section in sections]))
+    periodic = bool(np.isfinite(period))
+    long = options.horizon / interval if options.horizon else options.long_horizon * period
+    most, least = total / options.least_blocks, total / options.most_blocks
+    block = int(np.clip(long, max(least, 1), max(most, 1)))
+    short = max(int(options.short_horizon * period) if periodic else 0, options.shortest_window)
+    pieces = [piece for section in sections for piece in _pieces(section, block)]
+    judging = [piece for section in gate for piece in _pieces(section, block)]
+    if not free or block < 2 * short or not periodic:
+        each: tuple[Horizon, ...] = (_whole(model, whole, pieces, free),)
+        unseen: tuple[Horizon, ...] = (_whole(model, gate, judging, free),) if judging else ()
+    else:
+        rests = [
+            Section(one.measured, moving.end, one.end)
+            for one, moving in zip(whole, sections, strict=True)
+            if moving.end < one.end
+        ]
+        each = tuple(_cut(model, pieces, rests, length, free) for length in (short, block))
+        unseen = (
+            tuple(_cut(model, judging, [], length, free) for length in (short, block))
+            if judging
+            else ()
+        )
+    both = [*pieces, *judging]
+    return Horizons(
+        each,
+        unseen,
+        tuple(p.measured.series or p.measured.name for p in both),
+        np.array([p.measured.t[p.first] for p in both]),
+        _folds(pieces, options),
+        interval,
+    )
+
+
+def dominant_period(section: Section) -> float:
+    """The period in samples that halves the power of the measured signals, the median over them;
+    infinite where most of the power has a period longer than half the record."""
+    found = [
+        _median_period(values[section.first : section.end])
+        for values in section.measured.values.values()
+    ]
+    return float(np.median(found))
+
+
+def _median_period(values: Vector) -> float:
+    count = len(values)
+    if count < 8:
+        return float("inf")
+    slope = np.linspace(-0.5, 0.5, count)
+    basis = np.column_stack((np.ones(count), slope))
+    left = values - basis @ np.linalg.lstsq(basis, values, rcond=None)[0]
+    power = np.abs(np.fft.rfft(left * np.hanning(count))) ** 2
+    power[0] = 0.0
+    if not power.sum() > 0:
+        return float("inf")
+    line = int(np.searchsorted(np.cumsum(power), 0.5 * power.sum()))
+    return count / line if line > 2 else float("inf")
+
+
+def _pieces(section: Section, block: int) -> list[Section]:
+    """A section as blocks of equal length."""
+    count = max(round((section.end - section.first) / block), 1)
+    edges = np.linspace(section.first, section.end, count + 1).astype(int).tolist()
+    return [Section(section.measured, a, b) for a, b in pairwise(edges) if b > a]
+
+
+def moving_part(section: Section, sigma: Mapping[str, float], options: TraceOptions) -> Section:
+    """A section up to where its signals change by no more than noise any more, until its end."""
+    last = section.first
+    for name, values in section.measured.values.items():
+        y = values[section.first : section.end]
+        back = y[::-1]
+        change = (np.maximum.accumulate(back) - np.minimum.accumulate(back))[::-1]
+        still = max(options.still * sigma.get(name, 0.0), options.still_part * float(np.ptp(y)))
+        last = max(last, section.first + int(np.sum(change > still)))
+    count = section.end - section.first
+    if section.end - last < max(options.shortest_window, options.long_rest * count):
+        return section
+    few = section.first + options.shortest_window
+    return Section(section.measured, section.first, max(last, few))
+
+
+def _cut(
+    model: Model,
+    pieces: Sequence[Section],
+    rests: Sequence[Section],
+    length: int,
+    free: Sequence[str],
+) -> Horizon:
+    segments, blocks = [], []
+    numbered = [*enumerate(pieces), *((REST, rest) for rest in rests)]
+    numbered.sort(key=lambda one: (_order(pieces, rests, one[1]), one[1].first))
+    for number, piece in numbered:
+        for segment in cut(model, piece, length, free):
+            segments.append(segment)
+            blocks.append(np.full(len(segment.rows), number))
+    return Horizon(length, tuple(segments), tuple(blocks))
+
+
+def _whole(
+    model: Model, sections: Sequence[Section], pieces: Sequence[Section], free: Sequence[str]
+) -> Horizon:
+    segments, blocks = [], []
+    for section in sections:
+        mine = [(n, p) for n, p in enumerate(pieces) if p.measured is section.measured]
+        for segment in cut(model, section, section.end - section.first, free):
+            of = np.full(len(segment.rows), REST)
+            of[segment.rows < mine[0][1].first] = mine[0][0]
+            for number, piece in mine:
+                of[(segment.rows >= piece.first) & (segment.rows < piece.end)] = number
+            segments.append(segment)
+            blocks.append(of)
+    longest = max(section.end - section.first for section in sections)
+    return Horizon(longest, tuple(segments), tuple(blocks))
+
+
+def _order(pieces: Sequence[Section], rests: Sequence[Section], section: Section) -> int:
+    """The place of a section's series among all."""
+    names = list(dict.fromkeys(id(one.measured) for one in (*pieces, *rests)))
+    return names.index(id(section.measured))
+
+
+def _folds(
+    pieces: Sequence[Section], options: TraceOptions
+) -> tuple[tuple[tuple[int, ...], ...], ...]:
+    """Groups of blocks that are left out together: scattered ones, and contiguous thirds or, of
+    three series and more, whole series."""
+    count = len(pieces)
+    scattered = min(options.folds, count)
+    names = list(dict.fromkeys(id(p.measured) for p in pieces))
+    parts = min(options.thirds, count)
+    if len(names) >= parts:
+        of = [names.index(id(p.measured)) * parts // len(names) for p in pieces]
+    else:
+        of = [n * parts // count for n in range(count)]
+    return (
+        tuple(tuple(range(n, count, scattered)) for n in range(scattered)),
+        tuple(tuple(n for n in range(count) if of[n] == part) for part in range(parts)),
+    )
+
+
+def restricted(segment: Segment, rows: Ints) -> Segment:
+    """A window of which some rows count, by their place among those that count."""
+    return segment if len(rows) == len(segment.rows) else replace(segment, rows=segment.rows[rows])

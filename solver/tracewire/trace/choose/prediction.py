@@ -1,0 +1,159 @@
+"""From finalists to a choice: their errors on held-out blocks, and the model that these ask for."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.trace.choose.choice import Choice, Entrant, choose, floor_of, log_scores
+from tracewire.trace.choose.finalists import Key, Pool
+from tracewire.trace.choose.heldout import Finalist, errors_held_out, errors_in_sample
+from tracewire.trace.choose.horizons import Horizons, horizons_of
+from tracewire.trace.found import Ranked, StepTold
+from tracewire.trace.options import TraceOptions
+from tracewire.trace.screen.screening import Screen
+from tracewire.trace.search.search import Search
+from tracewire.trace.trials.trial import Trial
+
+Array = NDArray[np.float64]
+SHOWN = 12
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """What held-out blocks say: the models that were compared, the declared one first, their errors
+    E/n in sigma^2 (models, horizons, families, blocks, channels), and the choice among them."""
+
+    horizons: Horizons
+    models: tuple[Finalist, ...]
+    errors: Array
+    choice: Choice
+    screen: Screen
+    entrants: tuple[Entrant, ...]
+    options: TraceOptions
+
+    @property
+    def taken(self) -> Finalist:
+        """The model that was chosen."""
+        return self.models[self.choice.taken]
+
+    def again(self, refused: Collection[frozenset[str]]) -> Prediction:
+        """The same with another choice, of models that have none of some sets of effects."""
+        scores = log_scores(self.errors)
+        for number, entrant in enumerate(self.entrants):
+            if entrant.effects in refused:
+                scores[number] = np.inf
+        choice = choose(self.entrants, scores, self.horizons.groups, self.options)
+        return replace(self, choice=choice)
+
+    def without_effects(self) -> Prediction:
+        """The same with the declared model taken."""
+        return replace(self, choice=replace(self.choice, taken=0, ties=()))
+
+    def likeness(self, one: str, other: str) -> float:
+        """The correlation of what two effects do to the declared model's residual; nan where the
+        screen has no such effect."""
+        rows = self.screen.visible()
+        if one not in rows or other not in rows:
+            return float("nan")
+        return self.screen.columns.likeness(rows[one].columns, rows[other].columns)
+
+    def told(self) -> StepTold:
+        """The comparison as a step of the search."""
+        scores = log_scores(self.errors).mean(axis=(1, 2, 3))
+        order = np.argsort(scores)[:SHOWN]
+        rows = []
+        for n in order.tolist():
+            model, change = self.models[n], float(np.expm1(scores[n] - scores[0]))
+            without = f", without {' and '.join(model.dropped)}" if model.dropped else ""
+            rows.append(
+                Ranked(
+                    f"{model.title}{without}",
+                    float("nan"),
+                    float(scores[0] - scores[n]) * self.horizons.count,
+                    s2=model.trials[-1].s2,
+                    remark=f"{model.numbers} numbers, {change:+.1%} error on held-out blocks",
+                )
+            )
+        longest = self.horizons.each[-1].length * self.horizons.interval
+        declared = self.models[0].trials[-1].s2
+        words = f"held-out blocks choose {self.taken.title} (z = {self.choice.z:.3g})"
+        return StepTold(longest, declared, float("nan"), tuple(rows), words)
+
+
+def predict(search: Search, begun: Trial) -> Prediction:
+    """Compare the declared model and the best extended ones by what they predict."""
+    options, stretches = search.options, search.stretches
+    if not search.returns:  # what adds to an effect along one way is not to be told from it
+        options = replace(options, effects=1)
+    gate = [section for section in stretches.gate if section.measured.use == "gate"]
+    declared_model = search.bench.declared
+    horizons = horizons_of(
+        declared_model, stretches.whole(), gate, search.free, search.bench.sigma, options
+    )
+    search.tell("fitting the declared model at both horizons")
+    pool = Pool(search, horizons, options)
+    declared = pool.declared(begun)
+    pool.fill(declared)
+    errors: dict[Key, Array] = {}
+    _compare(pool, declared, errors)
+    while True:
+        prediction = _chosen(pool, errors)
+        taken = prediction.taken
+        fewer = [pool.without(taken, name) for name in sorted(taken.names)]
+        new = [m for m in fewer if m is not None and m.key not in errors]
+        if not new:
+            return prediction
+        for model in new:
+            errors[model.key] = _errors(pool, model)
+
+
+def _compare(pool: Pool, declared: Finalist, errors: dict[Key, Array]) -> None:
+    """The held-out errors of the models that may be chosen, the best fits first.
+
+    A model whose fit is worse than what another one predicts, by more than the tolerance, predicts
+    worse still and is passed over.
+    """
+    margin = 2 * np.log1p(pool.options.near)
+    errors[declared.key] = _errors(pool, declared)
+    fits = {key: errors_in_sample(model, pool.horizons) for key, model in pool.models.items()}
+    floor = floor_of(np.stack(list(fits.values())))
+    scores = {key: float(log_scores(fit[None], floor).mean()) for key, fit in fits.items()}
+    best = float(log_scores(errors[declared.key][None], floor).mean())
+    compared: dict[int, int] = {}
+    ranks = pool.ranks()
+    for key in sorted(ranks, key=lambda key: ranks[key]):
+        numbers = pool.models[key].numbers
+        behind = scores[key] > best + margin
+        if key in errors or behind or compared.get(numbers, 0) >= pool.options.finalists:
+            continue
+        compared[numbers] = compared.get(numbers, 0) + 1
+        errors[key] = _errors(pool, pool.settled(pool.models[key]))
+        best = min(best, float(log_scores(errors[key][None], floor).mean()))
+
+
+def _errors(pool: Pool, model: Finalist) -> Array:
+    search = pool.search
+    search.tell(f"predicting with {' and '.join(sorted(model.names)) or 'the declared model'}")
+    return errors_held_out(search.bench, model, pool.horizons, pool.options)
+
+
+def _chosen(pool: Pool, errors: dict[Key, Array]) -> Prediction:
+    options = pool.options
+    models = tuple(pool.models[key] for key in errors)
+    entrants = tuple(
+        Entrant(
+            model.names,
+            model.numbers,
+            sum(e.candidate.effect in options.uncommon for e in model.trials[0].effects)
+            + len(model.at_bounds),
+            sum(not e.candidate.sign for e in model.trials[0].effects),
+        )
+        for model in models
+    )
+    stacked = np.stack([errors[key] for key in errors])
+    choice = choose(entrants, log_scores(stacked), pool.horizons.groups, options)
+    return Prediction(pool.horizons, models, stacked, choice, pool.first[-1], entrants, options)

@@ -1,0 +1,140 @@
+"""From a finished search to what is told: effects, ties, steps, verdict, and the edited diagram."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import Model
+from tracewire.diagram import Diagram, set_sensors, set_values
+from tracewire.residual import SENSED
+from tracewire.trace.candidates.candidates import extend
+from tracewire.trace.choose.account import intervals
+from tracewire.trace.found import FoundEffect, Ranked, StepTold, Tie
+from tracewire.trace.search.finish import Final, Rival
+from tracewire.trace.search.search import Search, Step
+from tracewire.trace.trials.trial import Added, Trial
+
+Matrix = NDArray[np.float64]
+SHOWN = 12
+
+
+def told_effects(search: Search, final: Final) -> tuple[FoundEffect, ...]:
+    """The effects of the result, the one that brings most first."""
+    ends = intervals(final.best) if final.best.effects else {}
+    found = []
+    for effect in final.best.effects:
+        gain, masked, weight = _standing(search, effect)
+        rivals = [r for r in final.rivals.get(str(effect), ()) if r.tied]
+        shown = _shown(effect, final.best)
+        found.append(
+            FoundEffect(
+                name=effect.candidate.effect,
+                place=effect.candidate.place.name,
+                params=shown,
+                ties=tuple(map(tie_of, rivals)),
+                block=effect.candidate.block,
+                coefficient=effect.candidate.parameter,
+                intervals={
+                    name: ends[effect.unknown(name)]
+                    for name in shown
+                    if effect.unknown(name) in ends
+                },
+                gain=gain,
+                masked=masked,
+                weight=weight,
+            )
+        )
+    return tuple(found)
+
+
+def tie_of(rival: Rival) -> Tie:
+    """A rival as it is told."""
+    candidate = rival.added.candidate
+    return Tie(
+        candidate.effect,
+        candidate.place.name,
+        rival.likeness,
+        _shown(rival.added, rival.trial),
+        rival.rise,
+    )
+
+
+def _shown(effect: Added, trial: Trial) -> dict[str, float]:
+    """The parameters of an effect that were fitted."""
+    fitted = {**trial.windows.criterion.parameters, **trial.values}
+    return {
+        name: fitted[effect.unknown(name)]
+        for name in effect.values
+        if effect.unknown(name) in fitted
+    }
+
+
+def _standing(search: Search, effect: Added) -> tuple[float, float, float]:
+    """The gain, the masked part and the weight of an effect in the step that found it."""
+    for step in search.steps:
+        rows = {str(row.candidate): row for row in step.screen.best()}
+        for one in step.tried:
+            names = [str(row.candidate) for row in one.proposal.rows]
+            if str(effect) in names and one.trial is step.after:
+                row = rows.get(str(effect))
+                return -one.rise / 2, row.masked if row else float("nan"), one.weight
+    return (float("nan"),) * 3
+
+
+def told_steps(search: Search, interval: float) -> tuple[StepTold, ...]:
+    """The steps of the search."""
+    return tuple(_told(step, interval) for step in search.steps)
+
+
+def _told(step: Step, interval: float) -> StepTold:
+    rows = []
+    seen = set()
+    for one in step.tried:
+        names = " + ".join(str(row.candidate) for row in one.proposal.rows)
+        seen.add(names)
+        masked = max(row.masked for row in one.proposal.rows)
+        rows.append(
+            Ranked(
+                names,
+                one.proposal.gain,
+                -one.rise / 2,
+                one.weight,
+                masked,
+                one.trial.s2,
+                one.remark,
+            )
+        )
+    for row in step.screen.best()[:SHOWN]:
+        if str(row.candidate) not in seen:
+            rows.append(Ranked(str(row.candidate), row.gain, masked=row.masked))
+    return StepTold(
+        step.before.length * interval, step.before.s2, step.chance, tuple(rows), step.words
+    )
+
+
+def confusable(search: Search) -> tuple[tuple[str, ...], Matrix]:
+    """The best candidates of the first step, and the correlation of each two on the data."""
+    if not search.steps:
+        return (), np.zeros((0, 0))
+    screen = search.steps[0].screen
+    rows = screen.best()[:SHOWN]
+    matrix = np.eye(len(rows))
+    for i, one in enumerate(rows):
+        for j in range(i):
+            matrix[i, j] = matrix[j, i] = screen.columns.likeness(one.columns, rows[j].columns)
+    return tuple(str(row.candidate) for row in rows), matrix
+
+
+def edited(model: Model, best: Trial, values: Mapping[str, float]) -> Diagram:
+    """The original text with the effects and the refitted parameters."""
+    if not best.effects:
+        return model.diagram
+    diagram = extend(model.diagram, [(e.candidate, e.values) for e in best.effects])
+    own = {name: value for name, value in values.items() if name in model.flat.parameters}
+    diagram = set_values(diagram, own) if own else diagram
+    added = {effect.candidate.coefficient for effect in best.effects}
+    sensors = {n: v for n, v in values.items() if n.startswith(SENSED) and n not in added}
+    return set_sensors(diagram, sensors) if sensors else diagram

@@ -1,0 +1,210 @@
+"""The verdict of a trace: whether something is missing, and whether the named effects are it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tracewire.errors import FitError
+from tracewire.trace.choose.prediction import Prediction
+from tracewire.trace.choose.remainder import explained, held_out, remainders
+from tracewire.trace.found import Dependence, Explained, HeldOut, Missing, Remainder, Verdict
+from tracewire.trace.missing.dependence import where_what
+from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.search.finish import Final, Rival
+from tracewire.trace.search.search import Search
+from tracewire.trace.trials.trial import Trial
+
+FEW = 4
+"""Windows from which on the spread of their errors says what is chance."""
+
+
+@dataclass(frozen=True, eq=False)
+class Judgement:
+    """The verdict, the models that it is about, and what it rests on."""
+
+    verdict: Verdict
+    final: Final
+    dependences: tuple[Dependence, ...] = ()
+    missing: Missing | None = None
+    explained: Explained | None = None
+    remainder: tuple[Remainder, ...] = ()
+    remainder_depends: tuple[Dependence, ...] = ()
+    held_out: tuple[HeldOut, ...] = ()
+
+
+def noise_limit(search: Search, trial: Trial) -> float:
+    """The reduced chi-square up to which a residual is at the noise, four standard errors at least:
+    Var(s2) = 2/freedom."""
+    return max(search.options.at_noise, 1 + 4 * float(np.sqrt(2 / trial.freedom)))
+
+
+def is_at_noise(search: Search, trial: Trial) -> bool:
+    """Whether a model leaves no more than the noise of the sensors, on fitted windows and, with the
+    effects that were chosen there, on windows that no fit saw."""
+    limit = noise_limit(search, trial)
+    if not trial.s2 < limit:
+        return False
+    if trial.length < search.short:  # the shortest windows alone see little
+        windows = search.windows(search.stretches.train, search.short)
+        try:
+            longer = search.bench.again(trial, windows, search.short)
+        except FitError:
+            return True
+        if longer.s2 > search.options.lost:
+            return False
+    return not trial.effects or _gate(search, trial) < limit**2
+
+
+def is_slow_noise(search: Search, trial: Trial) -> bool:
+    """Whether what is left without effects may be slow noise of a sensor: where no body comes back
+    to where it was, that is not to be told from a force."""
+    return not trial.effects and not search.returns and trial.s2 < search.options.slow_noise
+
+
+def judge_at_noise(search: Search, final: Final) -> Judgement:
+    """`null` where the declared model is at the noise, else `effect`."""
+    return Judgement("effect" if final.best.effects else "null", final)
+
+
+def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
+    """The verdict on the model that predicts held-out blocks best.
+
+    `effect`: it beats the declared one by three standard errors and explains at least half of the
+    excess error, less one standard error. `null`: nothing is sure, and a smooth map of what is left
+    gains next to nothing. Else something is missing that no effect explains: `unexplained`.
+    """
+    options = search.options
+    prediction, harmed = _harmless(search, prediction)
+    choice = prediction.choice
+    if not choice.sure:
+        prediction = prediction.without_effects()
+    final = final_of(search, prediction)
+    taken = prediction.taken
+    search.tell("where and on what the rest depends")
+    maps = [residual_map(search, trial) for trial in taken.trials]
+    floors = [_left(trial, shares) for trial, (shares, _) in zip(taken.trials, maps, strict=True)]
+    share, error = explained(prediction, floors)
+    if not choice.sure:
+        gain = 0.5 * float(np.mean(-np.log(floors)))
+        missed = harmed or gain >= max(np.log1p(options.near), options.map_gain)
+        verdict: Verdict = "unexplained" if missed else "null"
+        dependences, missing = maps[0]
+    else:
+        verdict = "effect" if share.share - error >= options.explained else "unexplained"
+        dependences, missing = (
+            residual_map(search, prediction.models[0].trials[0])
+            if verdict == "unexplained"
+            else ((), None)
+        )
+    return Judgement(
+        verdict,
+        final,
+        dependences,
+        missing if verdict == "unexplained" else None,
+        share if choice.sure else None,
+        remainders(prediction, floors, search.bench.sigma, final.best.model.flat.units),
+        maps[0][0],
+        held_out(prediction, floors),
+    )
+
+
+def _harmless(search: Search, prediction: Prediction) -> tuple[Prediction, bool]:
+    """The prediction with the best choice that raises the error on no unseen data, and whether
+    another one was refused for that; what was refused goes into the search's words."""
+    refused: list[frozenset[str]] = []
+    while prediction.choice.sure and len(refused) < search.options.refused:
+        final = final_of(search, prediction, tell=False)
+        lengths = [horizon.length for horizon in prediction.horizons.each]
+        harm = raises_unseen(search, final, lengths)
+        if not harm:
+            return prediction, bool(refused)
+        search.words.append(f"{_joined(prediction.taken.names)} is not named: it {harm}")
+        refused.append(prediction.taken.names)
+        prediction = prediction.again(refused)
+    if refused and len(refused) == search.options.refused:
+        prediction = replace(prediction, choice=replace(prediction.choice, sure=False))
+    return prediction, bool(refused)
+
+
+def final_of(search: Search, prediction: Prediction, tell: bool = True) -> Final:
+    """The models of a prediction at the longer horizon, and the ties of each effect; other models
+    that predict as well go into the search's words, where it may `tell`."""
+    taken = prediction.taken
+    best, declared = taken.trials[-1], prediction.models[0].trials[-1]
+    rivals: dict[str, list[Rival]] = {str(effect): [] for effect in best.effects}
+    blocks = prediction.horizons.count
+    for number, cost in prediction.choice.ties:
+        other = prediction.models[number]
+        trial = other.trials[-1]
+        here, there = taken.names - other.names, other.names - taken.names
+        more = other.numbers - taken.numbers
+        rise = 2 * blocks * cost + more * float(np.log(blocks))
+        if len(here) == len(there) == 1:
+            (name,), (rival,) = here, there
+            added = next(e for e in trial.effects if str(e) == rival)
+            likeness = prediction.likeness(name, rival)
+            rivals[name].append(Rival(added, likeness, trial, rise, near=True))
+        elif tell:
+            search.words.append(
+                f"{_joined(other.names)} predicts as well: {_change(cost)} error,"
+                f" {abs(more)} fitted number(s) {'more' if more > 0 else 'less'}"
+            )
+    own = search.bench.declared.flat.parameters
+    dropped = (*taken.dropped, *(name for name in taken.vanished if name in own))
+    return Final(declared, best, {name: tuple(r) for name, r in rivals.items()}, dropped)
+
+
+def residual_map(search: Search, trial: Trial) -> tuple[tuple[Dependence, ...], Missing | None]:
+    """Where and on what the residual of a trial depends, in its windows."""
+    tangent = Tangent(trial.diagram, trial.windows, search.places, search.bench.rtol)
+    return where_what(tangent, trial, search.places)
+
+
+def raises_unseen(search: Search, final: Final, lengths: Sequence[int]) -> str:
+    """By how much the effects raise the error on data that played no part, in words; empty where
+    they do not. Windows of each length, of which only the starts are fitted. Of several windows the
+    rise is more than chance where it is two standard errors; of few, where it is a tenth."""
+    stretches = search.stretches
+    unseen = [*stretches.validate, *(s for s in stretches.gate if s.measured.use == "gate")]
+    for length in lengths:
+        windows = [w for section in unseen for w in search.windows([section], length)]
+        before, after = (
+            np.array([float(np.sum(r**2)) for r in search.bench.on(trial, windows)])
+            for trial in (final.declared, final.best)
+        )
+        rise, count = after - before, len(windows)
+        part = search.options.harm if count >= FEW else search.options.harm_few
+        if after.sum() <= (1 + part) ** 2 * before.sum():
+            continue
+        error = float(np.std(rise, ddof=1)) * count**0.5 if count >= FEW else 0.0
+        if not rise.sum() <= search.options.harm_errors * error:
+            factor = (after.sum() / before.sum()) ** 0.5 if before.sum() > 0 else float("inf")
+            return f"multiplies the error on unseen windows of {length} samples by {factor:.3g}"
+    return ""
+
+
+def _left(trial: Trial, shares: Sequence[Dependence]) -> float:
+    """The part of the squared residual that the best smooth map leaves."""
+    best = max((d.share for d in shares), default=0.0)
+    excess = max(trial.rss - trial.freedom, 0.0)
+    return float(np.clip(1 - best * excess / trial.rss, 1e-6, 1.0)) if trial.rss > 0 else 1.0
+
+
+def _gate(search: Search, best: Trial) -> float:
+    """The squared residual per residual on windows that no fit saw, their starts counted."""
+    windows = search.windows(search.stretches.gate, search.short)
+    residuals = search.bench.on(best, windows)
+    count = sum(r.size for r in residuals) - sum(len(w.free) for w in windows)
+    return sum(float(np.sum(r**2)) for r in residuals) / max(count, 1)
+
+
+def _joined(names: frozenset[str]) -> str:
+    return " and ".join(sorted(names))
+
+
+def _change(cost: float) -> str:
+    percent = 100 * float(np.expm1(abs(cost)))
+    return f"{percent:.2g} % {'more' if cost > 0 else 'less'}"

@@ -1,0 +1,1 @@
+"""What would have been seen, and which experiment would decide."""

@@ -1,0 +1,196 @@
+"""Experiments that would tell two effects apart which the data at hand cannot.
+
+One effect makes the data of a new experiment; the other fits them as well as it can: it chooses
+the starts of windows, and moves its unknowns as far as the data at hand allow. What is left, in
+sigma, is how clearly the experiment would decide. Drives and releases within reach are searched.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import Model, compile
+from tracewire.errors import OptionError, SimulationError
+from tracewire.residual import (
+    Criterion,
+    Segment,
+    eliminated,
+    of_diagram,
+    opened,
+    projection,
+    settled,
+)
+from tracewire.solve import Limits, simulate
+from tracewire.trace.experiment.rig import Rig, Setting, rig_of
+from tracewire.trace.found import Experiment
+from tracewire.trace.trials.trial import Bench, Trial
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+LIMITS = Limits(100_000, 30.0, 20_000)
+CLEAR = 1.0
+"""A separation in sigma (root mean square) below which an experiment does not decide."""
+ALIKE = 0.1
+"""A best separation below which the two are the same law on this rig."""
+ALIASES = {
+    ("bias", "sensor_offset"): "Turn the sensor by a known angle, or rest the part at a second "
+    "equilibrium: an offset stays with the sensor, a torque does not",
+    ("inertia", "sensor_gain"): "Weigh the part, or calibrate the sensor",
+    ("drive_gain", "inertia"): "Weigh the part, or calibrate the drive",
+    ("drive_gain", "sensor_gain"): "Calibrate the sensor, or the drive",
+    ("backlash", "barrier"): "Beside a free stiffness they are the same law: what a barrier adds "
+    "outside its gap, a stiffer spring with backlash lacks inside it",
+}
+"""What tells effects apart that are the same law on a rig."""
+
+
+def separating(bench: Bench, one: Trial, other: Trial, name: str, rival: str) -> Experiment:
+    """The experiment that best tells two fitted trials apart, and by how many sigma (rms).
+
+    Searched: the body released from rest without drive, and at rest driven by a sine, on each named
+    input and each sine or square block whose amplitude and frequency are parameters; amplitudes 0.2
+    to 3 times what was measured; first coarsely, then twice around the best. Deterministic.
+    Raises OptionError where nothing can be simulated.
+    """
+    rig = rig_of(bench, one)
+    states = compile(one.diagram, record=[*bench.signals, *bench.states], backend="quick")
+    # what the data at hand say of the rival's unknowns
+    views = [projection(other.windows, n) for n in range(len(other.windows.near))]
+    known, _ = eliminated(other.windows, views)
+    information = known.T @ known
+    tried: dict[Setting, float] = {}
+
+    def tell(setting: Setting) -> None:
+        if setting not in tried and rig.allowed(setting):
+            try:
+                tried[setting] = _separation(bench, rig, states, one, other, information, setting)
+            except SimulationError:
+                tried[setting] = math.nan
+
+    for setting in rig.settings():
+        tell(setting)
+    for _ in range(2):
+        if any(math.isfinite(value) for value in tried.values()):
+            for setting in _best(tried).near():
+                tell(setting)
+    if not any(math.isfinite(value) for value in tried.values()):
+        what = f"no experiment for {name} and {rival} can be simulated"
+        raise OptionError.one(what, hint="Simulate the diagram by itself first.")
+    best = _best(tried)
+    rows = tuple(
+        {**rig.told(setting), "separation": value}
+        for setting, value in tried.items()
+        if math.isfinite(value)
+    )
+    words = _words(rig, best, tried[best], name, rival)
+    return Experiment(name, rival, rig.told(best), tried[best], words, rows)
+
+
+def _best(tried: Mapping[Setting, float]) -> Setting:
+    return max(tried, key=lambda setting: (math.isfinite(tried[setting]), tried[setting]))
+
+
+def _separation(
+    bench: Bench,
+    rig: Rig,
+    states: Model,
+    one: Trial,
+    other: Trial,
+    information: Matrix,
+    setting: Setting,
+) -> float:
+    """The residual of the rival on what the pick does, root mean square in sigma."""
+    set_here, inputs = rig.parameters(setting), rig.inputs(setting)
+    start = rig.start(setting)
+    blank = {signal: np.zeros(len(rig.t)) for signal in bench.signals}
+    base = replace(rig.template, t=rig.t, values=blank, inputs=inputs, drift_from=0.0)
+    whole = Segment(base, 0.0, np.arange(len(rig.t)), start)
+    mine = {**bench.all_values(one), **set_here}
+    maker = Criterion(
+        one.model, [whole], [], mine, bench.rtol, bench.sigma, weighting="sum", limits=LIMITS
+    )
+    shown = maker.outputs(whole, {}, {})
+    run = simulate(
+        states,
+        parameters=of_diagram(mine, base),
+        start=start,
+        span=(0.0, float(rig.t[-1])),
+        times=rig.t,
+        rtol=bench.rtol,
+        preset=base.preset,
+        inputs=inputs,
+        limits=LIMITS,
+    )
+    measured = replace(base, values=dict(zip(base.values, shown.T, strict=True)))
+    edges = np.linspace(0, len(rig.t), _count(one, rig) + 1).astype(int)
+    segments = []
+    for a, b in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
+        begin = max(a - 1, 0)
+        there = {state: float(run[state][begin]) for state in bench.states}
+        rows = np.arange(a, b)
+        segments.append(Segment(measured, float(rig.t[begin]), rows, there, bench.states))
+    unknowns = other.windows.criterion.unknowns
+    unknowns = tuple(replace(u, value=other.values[u.name]) for u in unknowns)
+    fixed = {**bench.all_values(other), **set_here}
+    free = [n for n, u in enumerate(unknowns) if u.name not in set_here]
+    criterion = Criterion(
+        other.model,
+        segments,
+        [unknowns[n] for n in free],
+        fixed,
+        bench.rtol,
+        bench.sigma,
+        weighting="sum",
+        limits=LIMITS,
+    )
+    windows = settled(opened(criterion))
+    if not all(near.ran for near in windows.near):
+        raise criterion.failure or SimulationError.one("the rival does not run")
+    views = [projection(windows, n) for n in range(len(windows.near))]
+    columns, residual = eliminated(windows, views)
+    matrix = columns.T @ columns + information[np.ix_(free, free)]
+    right = columns.T @ residual
+    sizes = np.sqrt(np.maximum(np.diag(matrix), 1e-300))
+    step = np.linalg.pinv(matrix / np.outer(sizes, sizes), hermitian=True) @ (right / sizes)
+    left = float(residual @ residual) - float(step @ (right / sizes))
+    return math.sqrt(max(left, 0.0) / len(residual))
+
+
+def _count(one: Trial, rig: Rig) -> int:
+    """How many windows: as long as those of the fit, but between a third and a twelfth of all."""
+    t = one.windows.segments[0].measured.t
+    length = one.length * float(np.median(np.diff(t)))
+    return int(np.clip(round(float(rig.t[-1]) / length), 3, 12))
+
+
+# --- words ----------------------------------------------------------------------------------------
+
+
+def _words(rig: Rig, setting: Setting, separation: float, one: str, other: str) -> str:
+    """The experiment as a sentence, or that there is none."""
+    settings = rig.told(setting)
+    if not setting.drive:
+        states = " and ".join(
+            f"{name.removeprefix('start.')} = {value:g}" for name, value in settings.items()
+        )
+        off = "without drive, " if rig.drives else ""
+        how = f"{off}released from rest at {states}" if states else f"{off}left at rest"
+    else:
+        amplitude, frequency = settings.values()
+        how = f"from rest, {setting.drive} a sine of amplitude {amplitude:g} and {frequency:g} Hz"
+    if separation >= CLEAR:
+        told = f"There they differ by {separation:.2g} sigma (rms)."
+        return f"To tell {one} from {other}: {how}. {told}"
+    words = (
+        f"No experiment within reach tells {one} from {other}: "
+        f"at best {separation:.2g} sigma (rms; {how})."
+    )
+    effects = sorted(label.split(" @ ")[0] for label in (one, other))
+    alike = separation < ALIKE
+    hint = ALIASES.get((effects[0], effects[1])) if alike else None
+    return f"{words} {hint}." if hint else words

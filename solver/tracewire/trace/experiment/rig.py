@@ -1,0 +1,184 @@
+"""What can be set in a new experiment on the rig of a diagram, and how far."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.formula import Name
+from tracewire.residual import Measured
+from tracewire.solve import parameter_values
+from tracewire.trace.trials.trial import Bench, Trial
+
+Vector = NDArray[np.float64]
+SIZES = (0.2, 0.5, 1.0, 1.7, 3.0)
+"""Of the largest drive, or of the widest motion, that was measured."""
+PITCHES = (0.15, 0.4, 0.8, 1.25, 2.5)
+"""Of the main frequency that was measured."""
+SAMPLES, A_PERIOD = 300, 30
+
+
+@dataclass(frozen=True)
+class Setting:
+    """An experiment: a released body (in widths of the measured motion), or a driven one (drive,
+    its amplitude in SI and its frequency in Hz)."""
+
+    release: float = 0.0
+    drive: str = ""
+    amplitude: float = 0.0
+    frequency: float = 0.0
+
+    def near(self) -> Iterator[Setting]:
+        """Four settings around this one, or two."""
+        if not self.drive:
+            yield from (replace(self, release=self.release * x) for x in (0.8, 1.25))
+            return
+        yield from (replace(self, amplitude=self.amplitude * x) for x in (0.75, 1.33))
+        yield from (replace(self, frequency=self.frequency * x) for x in (0.8, 1.25))
+
+
+@dataclass(frozen=True, eq=False)
+class Rig:
+    """What can be set: sample times, where each state rests and how far it moved, drives with their
+    largest amplitude, the parameters (amplitude, frequency, factor) of those that are blocks."""
+
+    t: Vector
+    rest: Mapping[str, float]
+    width: Mapping[str, float]
+    drives: Mapping[str, float]
+    knobs: Mapping[str, tuple[str, str, float]]
+    frequency: float
+    template: Measured
+
+    def settings(self) -> list[Setting]:
+        """The coarse grid: releases, and every drive at several amplitudes and frequencies."""
+        nyquist = 0.05 / float(self.t[1] - self.t[0])
+        found = [Setting(release=size) for size in SIZES]
+        for drive, largest in self.drives.items():
+            for size in SIZES:
+                for pitch in PITCHES:
+                    frequency = min(pitch * self.frequency, nyquist)
+                    found.append(Setting(0.0, drive, size * largest, frequency))
+        return list(dict.fromkeys(found))
+
+    def allowed(self, setting: Setting) -> bool:
+        """Whether a setting is within reach."""
+        if not setting.drive:
+            return SIZES[0] <= setting.release <= SIZES[-1]
+        part = setting.amplitude / self.drives[setting.drive]
+        return SIZES[0] <= part <= SIZES[-1]
+
+    def told(self, setting: Setting) -> dict[str, float]:
+        """A setting by the names that a user knows, in SI and Hz."""
+        if not setting.drive:
+            return {
+                f"start.{state}": float(f"{self.rest[state] + setting.release * width:.4g}")
+                for state, width in self.width.items()
+            }
+        return {
+            f"{setting.drive} amplitude": float(f"{setting.amplitude:.4g}"),
+            f"{setting.drive} frequency": float(f"{setting.frequency:.4g}"),
+        }
+
+    def start(self, setting: Setting) -> dict[str, float]:
+        """The states where the experiment begins: at rest, released or not."""
+        return {
+            state: value + setting.release * self.width.get(state, 0.0)
+            for state, value in self.rest.items()
+        }
+
+    def inputs(self, setting: Setting) -> dict[str, tuple[Vector, Vector]]:
+        """The named inputs in the experiment."""
+        angle = 2 * np.pi * setting.frequency * self.t
+        sine, zero = setting.amplitude * np.sin(angle), np.zeros(len(self.t))
+        names = self.template.inputs
+        return {name: (self.t, sine if name == setting.drive else zero) for name in names}
+
+    def parameters(self, setting: Setting) -> dict[str, float]:
+        """The parameters of drives that are blocks."""
+        found = {}
+        for drive, (amplitude, frequency, factor) in self.knobs.items():
+            on = drive == setting.drive
+            found[amplitude] = setting.amplitude if on else 0.0
+            if on:
+                found[frequency] = setting.frequency * factor
+        return found
+
+
+def rig_of(bench: Bench, one: Trial) -> Rig:
+    train = [m for m in bench.measured if m.use == "train"]
+    longest = max(train, key=lambda m: float(m.t[-1] - m.t[0]))
+    interval = float(np.median(np.diff(longest.t)))
+    frequency = main_frequency(longest)
+    step = max(interval, min(1 / (A_PERIOD * frequency), 20 * interval))
+    duration = min(float(longest.t[-1] - longest.t[0]), (SAMPLES - 1) * step)
+    t = step * np.arange(int(duration / step) + 1, dtype=np.float64)
+    rest, width = _reach(bench, one, train)
+    drives: dict[str, float] = {}
+    for m in train:
+        for name, (_, u) in m.inputs.items():
+            drives[name] = max(drives.get(name, 0.0), float(np.max(np.abs(u - np.mean(u)))))
+    knobs = _knobs(bench, one)
+    for drive, (amplitude, _, _) in knobs.items():
+        drives[drive] = abs(bench.all_values(one).get(amplitude, _default(bench, amplitude)))
+    drives = {name: size for name, size in drives.items() if size > 0}
+    return Rig(t, rest, width, drives, knobs, frequency, longest)
+
+
+def main_frequency(measured: Measured) -> float:
+    """The frequency in Hz at which the first measured signal moves most; at least one wave."""
+    t = measured.t
+    values = next(iter(measured.values.values()))
+    even = np.interp(np.linspace(t[0], t[-1], len(t)), t, values)
+    spectrum = np.abs(np.fft.rfft(even - np.mean(even)))
+    return max(int(np.argmax(spectrum)), 1) / float(t[-1] - t[0])
+
+
+def _reach(
+    bench: Bench, one: Trial, train: Sequence[Measured]
+) -> tuple[dict[str, float], dict[str, float]]:
+    """Where each state rests (rates at zero), and how far each coordinate moved from there."""
+    states = {state.name: state for state in bench.declared.flat.states}
+    rates = {s.rate.name for s in states.values() if isinstance(s.rate, Name)} & set(states)
+    rest, width = {}, {}
+    for name in bench.states:
+        parts = [m.values[name] for m in train if name in m.values]
+        parts += [np.array([s.start[name]]) for s in one.windows.segments if name in s.start]
+        values = np.concatenate(parts) if parts else np.zeros(1)
+        if name in rates:
+            rest[name] = 0.0
+            continue
+        rest[name] = float(np.mean(values))
+        rate = states[name].rate
+        if isinstance(rate, Name) and rate.name in states:
+            width[name] = float(np.max(np.abs(values - rest[name])))
+    return rest, {name: size for name, size in width.items() if size > 0}
+
+
+def _knobs(bench: Bench, one: Trial) -> dict[str, tuple[str, str, float]]:
+    """Drives that are blocks with a sine or square: parameters of amplitude and frequency."""
+    diagram, flat = bench.declared.diagram, bench.declared.flat
+    found = {}
+    for name, block in diagram.blocks.items():
+        if block.type not in ("sine", "square"):
+            continue
+        keys = ("amplitude", "omega" if block.type == "sine" else "frequency")
+        names = []
+        for key in keys:
+            setting = block.settings.get(key)
+            formula = getattr(setting, "formula", None)
+            if f"{name}.{key}" in flat.parameters:
+                names.append(f"{name}.{key}")
+            elif isinstance(formula, Name) and formula.name in flat.parameters:
+                names.append(formula.name)
+        if len(names) == 2:
+            found[name] = (names[0], names[1], 2 * math.pi if block.type == "sine" else 1.0)
+    return found
+
+
+def _default(bench: Bench, parameter: str) -> float:
+    return float(parameter_values(bench.declared, {})[parameter])

@@ -1,0 +1,1 @@
+"""Where something is missing and what it depends on, whatever its name."""

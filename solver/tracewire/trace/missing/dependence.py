@@ -1,0 +1,291 @@
+"""Where something is missing and what it depends on: smooth torques at each place, cross-validated.
+
+At each place, for each set of variables, the missing torque is a smooth function: many bumps. The
+tangent says what each of them does to the residuals; a ridge fits them, together with what the
+unknowns of the declared model can still do; and the squared residual is taken on data that the fit
+did not see. What share of the excess goes says whether the torque depends on these variables.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import solve
+
+from tracewire.residual import Projection, eliminated, projection
+from tracewire.trace.candidates.places import Place
+from tracewire.trace.found import Dependence, Missing
+from tracewire.trace.missing.bases import Basis, bases_of
+from tracewire.trace.missing.table import add_table, missing_table
+from tracewire.trace.screen.tangent import Joined, Tangent
+from tracewire.trace.trials.trial import Trial
+
+__all__ = ["add_table", "missing_table", "where_what"]
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+FOLDS = 4
+CHUNKS = 24
+"""Pieces of a series that are left out as wholes."""
+SEED = 7
+RIDGES = 10.0 ** np.arange(-9.0, 0.5, 1.5)
+NEAR, NEAR_ELSEWHERE = 0.95, 0.98
+"""Of the best share: what is as good as it, at the same place and at another one."""
+LEAST_SHARE = 0.1
+LEAST_FALL = 25.0
+"""A smaller fall of the squared residual, in the noise's variance, is noise."""
+SIMPLE = {"history": 3}
+"""How many variables a set counts as, where that is not their number."""
+GRID = {1: 81, 2: 25}
+TOGETHER, COLUMNS = 2000, 200
+"""Residuals and columns that are worked on at once: fewer take longer, more take memory."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scored:
+    """A basis at a place with its cross-validated share, ridge, and coefficients on all data."""
+
+    place: Place
+    basis: Basis
+    share: float
+    fall: float
+    coefficients: Vector
+
+    @property
+    def size(self) -> int:
+        """How many variables it takes."""
+        return sum(SIMPLE.get(name.partition(" of ")[0], 1) for name in self.basis.variables)
+
+
+def where_what(
+    tangent: Tangent, trial: Trial, places: Sequence[Place]
+) -> tuple[tuple[Dependence, ...], Missing | None]:
+    """The share of the excess that each set of variables explains at each place, the best first.
+
+    The excess is the squared residual beyond its degrees of freedom. `Missing` is the torque of the
+    smallest set of variables that is within 5 % of the best (2 % of the best of another place);
+    None where nothing explains more than noise does. Its torque is what is missing beyond what the
+    free parameters can still do. Variables are named as in `bases_of`.
+    """
+    problem = _problem(tangent, trial)
+    found = [
+        scored
+        for place in places
+        for scored in _scored(problem, place, bases_of(place, tangent.trajectories))
+    ]
+    best: dict[tuple[str, tuple[str, ...]], Scored] = {}
+    for scored in found:
+        key = scored.place.name, scored.basis.variables
+        if key not in best or scored.fall > best[key].fall:
+            best[key] = scored
+    ranked = sorted(best.values(), key=lambda scored: -scored.fall)
+    shares = tuple(Dependence(s.place.name, s.basis.variables, s.share) for s in ranked)
+    chosen = smallest(ranked)
+    return shares, None if chosen is None else _missing(problem, chosen)
+
+
+def smallest(ranked: Sequence[Scored]) -> Scored | None:
+    """The one of fewest variables among those that are as good as the best; None: noise."""
+    top = max(ranked, key=lambda scored: scored.share, default=None)
+    if top is None or top.share < LEAST_SHARE or top.fall < LEAST_FALL:
+        return None
+    good = [
+        scored
+        for scored in ranked
+        if scored.share >= (NEAR if scored.place == top.place else NEAR_ELSEWHERE) * top.share
+    ]
+
+    def rank(scored: Scored) -> tuple[int, bool, bool, float]:
+        driven = scored.basis.variables[0].startswith(("u", "drive"))
+        elsewhere = scored.place != top.place and not driven
+        return scored.size, driven and scored.place.kind != "drive", elsewhere, -scored.share
+
+    return min(good, key=rank)
+
+
+# --- the linear problem ---------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """Residuals (M,) and the unknowns' derivatives (M, n) without window starts, folds (M,)."""
+
+    tangent: Tangent
+    views: Sequence[Projection]
+    residual: Vector
+    unknowns: Matrix
+    folds: NDArray[np.intp]
+    freedom: int
+
+    @property
+    def excess(self) -> float:
+        """The squared residual beyond the noise's; at least what noise makes it vary by."""
+        rss = float(self.residual @ self.residual)
+        return max(rss - self.freedom, 3 * float(np.sqrt(2 * self.freedom)))
+
+    def products(self, place: Place, bases: Sequence[Basis]) -> Matrix:
+        """The scalar products by fold, (FOLDS, n + K + 1, n + K + 1), of the unknowns, of what all
+        functions of some bases at a place do to the residuals, and of the residual.
+
+        They are added up a few windows at a time: the columns of a long record are much memory.
+        """
+        series = range(len(self.tangent.trajectories))
+        given = [np.concatenate([b.columns[n] for b in bases], axis=1) for n in series]
+        width = self.unknowns.shape[1] + given[0].shape[1] + 1
+        total = np.zeros((FOLDS, width, width))
+        first, waiting, rows = 0, list[Matrix](), 0
+        for n, (joined, view) in enumerate(zip(self.tangent.joined, self.views, strict=True)):
+            if place.kind == "sensor":
+                columns = _sensed(self.tangent, place.definition, joined, given)
+            else:
+                columns = self.tangent.window_answer(joined, {place.name: given})
+            last = first + rows + len(columns)
+            here = slice(first + rows, last)
+            known, left = self.unknowns[here], self.residual[here]
+            waiting.append(np.column_stack((known, view.off(columns), left)))
+            rows = last - first
+            if rows >= TOGETHER or n + 1 == len(self.views):
+                block, folds = np.concatenate(waiting), self.folds[first:last]
+                for fold in np.unique(folds).tolist():
+                    total[fold] += _gram(block[folds == fold])
+                first, waiting, rows = last, [], 0
+        return total
+
+
+def _problem(tangent: Tangent, trial: Trial) -> Problem:
+    windows = tangent.windows
+    views = [projection(windows, n) for n in range(len(windows.near))]
+    unknowns, residual = eliminated(windows, views)
+    sizes = np.linalg.norm(unknowns, axis=0)
+    seen = sizes > 1e-12 * max(float(sizes.max(initial=0.0)), 1e-300)
+    basis = np.linalg.svd(unknowns[:, seen] / sizes[seen], full_matrices=False)
+    kept = 1e-8 * max(float(basis.S.max(initial=0.0)), 1e-300) < basis.S
+    return Problem(tangent, views, residual, basis.U[:, kept], _folds(tangent), trial.freedom)
+
+
+def _folds(tangent: Tangent) -> NDArray[np.intp]:
+    """The fold of each residual: of each four neighbouring pieces of a series, each has another.
+
+    Their order is shuffled, so that no fold is always the same phase of a drive.
+    """
+    rng = np.random.default_rng(SEED)
+    order = np.concatenate([rng.permutation(FOLDS) for _ in range(CHUNKS)])
+    windows = tangent.windows
+    names = [s.measured.name for s in windows.criterion.segments]
+    totals = dict.fromkeys(names, 0)
+    for name, near in zip(names, windows.near, strict=True):
+        totals[name] += len(near.residual)
+    passed = dict.fromkeys(totals, 0)
+    found = []
+    for name, near in zip(names, windows.near, strict=True):
+        rows, width = near.residual.shape
+        first, longest = passed[name], totals[name] / CHUNKS
+        at = np.full(rows, first + rows // 2) if rows <= longest else first + np.arange(rows)
+        chunks = np.minimum(at / longest, CHUNKS - 1).astype(int)
+        found.append(np.repeat(order[chunks], width))
+        passed[name] = first + rows
+    return np.concatenate(found)
+
+
+def _sensed(tangent: Tangent, signal: str, joined: Joined, given: Sequence[Matrix]) -> Matrix:
+    """What a sensor's error of its signal (N, k) by series does to the residuals of a window."""
+    criterion = tangent.windows.criterion
+    name = criterion.segments[joined.window].measured.name
+    at = tangent.outputs.index(signal)
+    error = given[tangent.series[joined.window]][joined.samples[joined.counts]]
+    rows = np.zeros((len(error), len(tangent.outputs), error.shape[1]))
+    rows[:, at] = error / criterion.sigma[name][at]
+    return criterion.whiten(joined.window, rows.reshape(-1, error.shape[1]))
+
+
+def _scored(problem: Problem, place: Place, bases: Iterator[Basis]) -> Iterator[Scored]:
+    """Each basis at a place, cross-validated."""
+    some: list[Basis] = []
+    for basis in bases:
+        some.append(basis)
+        if sum(b.columns[0].shape[1] for b in some) >= COLUMNS:
+            yield from _together(problem, place, some)
+            some = []
+    if some:
+        yield from _together(problem, place, some)
+
+
+def _together(problem: Problem, place: Place, bases: Sequence[Basis]) -> list[Scored]:
+    """Some bases at a place, each cross-validated: from scalar products of columns by fold."""
+    products, excess = problem.products(place, bases), problem.excess
+    known = problem.unknowns.shape[1]
+    first, found = known, []
+    for basis in bases:
+        last = first + basis.columns[0].shape[1]
+        chosen = [*range(known), *range(first, last), products.shape[1] - 1]
+        own = products[:, chosen][:, :, chosen]
+        left = _left_out(own, known)
+        best = int(np.argmin(left))
+        before = float(np.sum(own[:, -1, -1]))
+        fall = before - float(left[best])
+        share = min(max(fall / excess, 0.0), 1.0)
+        (values,) = _solved(np.sum(own, axis=0), known, RIDGES[best : best + 1])
+        # what a basis is made of does not matter any more, and is much memory
+        found.append(Scored(place, replace(basis, columns=()), share, fall, values[known:]))
+        first = last
+    return found
+
+
+def _gram(matrix: Matrix) -> Matrix:
+    return np.asarray(matrix.T @ matrix)
+
+
+def _left_out(products: Matrix, known: int) -> Vector:
+    """The squared residual on the folds that were left out, for each ridge."""
+    total = np.sum(products, axis=0)
+    left = np.zeros(len(RIDGES))
+    for own in products:
+        values = _solved(total - own, known, RIDGES)
+        full = np.column_stack((values, np.ones(len(values))))
+        left += np.einsum("ri,ij,rj->r", full, own, full)
+    return left
+
+
+def _solved(products: Matrix, known: int, ridges: Vector) -> Matrix:
+    """The coefficients for each ridge, (ridges, n), which minimise |r + A c|^2 + ridge |c|^2.
+
+    The first `known` columns bear no ridge. The ridge is in units of the mean square of the rest.
+    """
+    a, b, c = products[:known, :known], products[:known, known:-1], products[known:-1, known:-1]
+    p, q = products[:known, -1], products[known:-1, -1]
+    inverse = np.linalg.pinv(a, rcond=1e-10, hermitian=True)
+    inner = c - b.T @ inverse @ b
+    right = q - b.T @ inverse @ p
+    unit = max(float(np.trace(c)) / max(len(c), 1), 1e-200) * np.eye(len(c))
+    smooth = -np.stack([solve(inner + r * unit, right, assume_a="pos") for r in ridges.tolist()])
+    exact = -(p + smooth @ b.T) @ inverse
+    return np.concatenate((exact, smooth), axis=1)
+
+
+# --- the missing torque ---------------------------------------------------------------------------
+
+
+def _missing(problem: Problem, chosen: Scored) -> Missing:
+    """The torque of the winner on a grid, with the number of samples near each point."""
+    basis = chosen.basis
+    names, share = basis.variables, chosen.share
+    if not basis.axes or len(basis.axes) != len(names):
+        nothing = np.zeros(0)
+        return Missing(chosen.place.name, names, share, (), nothing, nothing)
+    grid = tuple(np.linspace(*axis.ends, GRID[len(names)]) for axis in basis.axes)
+    points = [x.ravel() for x in np.meshgrid(*grid, indexing="ij")]
+    shape = tuple(len(x) for x in grid)
+    torque = (basis.at(*points) @ chosen.coefficients).reshape(shape)
+    values = [np.concatenate(axis.values) for axis in basis.axes]
+    edges = [_edges(x) for x in grid]
+    density, _ = np.histogramdd(values, edges)
+    return Missing(chosen.place.name, names, share, grid, torque, np.asarray(density))
+
+
+def _edges(grid: Vector) -> Vector:
+    """The bounds of the cells around evenly spaced points."""
+    half = (grid[1] - grid[0]) / 2
+    return np.concatenate((grid - half, grid[-1:] + half * (1 + 1e-9)))

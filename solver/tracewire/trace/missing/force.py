@@ -1,0 +1,167 @@
+"""The torque that a model lacks over time, as the data tell it, for the restoring-force picture."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import compile
+from tracewire.diagram import effects_of
+from tracewire.residual import Windows, projection
+from tracewire.trace.candidates.levels import Trajectory
+from tracewire.trace.candidates.places import Place
+from tracewire.trace.found import Force, Means
+from tracewire.trace.screen.observed import trajectories
+from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.trials.trial import Trial
+
+Vector = NDArray[np.float64]
+BINS = 9
+"""Bins of a variable with equally many samples, and bins of equal width; both kinds of edges are
+used: a body that mostly rests moves fast in few samples."""
+FEWEST = 8
+"""Samples of a bin."""
+SMOOTH = 0.3
+"""The size that a missing torque may have between neighbouring samples, of the sum at its place."""
+
+
+def forces(
+    tangent: Tangent, best: Trial, rtol: float, fitted: Tangent | None = None
+) -> tuple[Force, ...]:
+    """What is needed at each place to which an effect was added, and what the effects give there.
+
+    `needed` is what the effects give, and beside it the torque that takes the rest of the residual
+    away (partial residuals, at the values of the best model): in each window, the ridge solution
+    for a torque of free values at its samples. `fitted` is the tangent of the windows of the fit,
+    which are long enough to tell a small torque from noise: the means are estimated there.
+    """
+    found = []
+    names = {place.name: place for place in tangent.places if place.kind == "sum" and place.v}
+    for name in dict.fromkeys(effect.candidate.place.name for effect in best.effects):
+        if name not in names:
+            continue
+        place = names[name]
+        needed = _needed(tangent, place)
+        given_by_effects = _fitted(best, tangent.windows, place, rtol)
+        means = () if fitted is None else _means(fitted, best, place, rtol)
+        for number, (run, torque) in enumerate(zip(tangent.trajectories, needed, strict=True)):
+            known = np.isfinite(torque)
+            q = run.signals[place.q] if place.q else np.zeros(len(run.t))
+            v = run.signals[place.v]
+            given = given_by_effects[number]
+            torque = torque + given
+            signals = (place.q, place.v)
+            found.append(
+                Force(place.name, q[known], v[known], torque[known], given[known], signals, means)
+            )
+    merged: dict[str, list[Force]] = {}
+    for force in found:
+        merged.setdefault(force.place, []).append(force)
+    return tuple(_merged(group) for group in merged.values())
+
+
+def _merged(group: Sequence[Force]) -> Force:
+    return Force(
+        group[0].place,
+        np.concatenate([force.q for force in group]),
+        np.concatenate([force.v for force in group]),
+        np.concatenate([force.needed for force in group]),
+        np.concatenate([force.fitted for force in group]),
+        group[0].names,
+        group[0].means,
+    )
+
+
+def _means(tangent: Tangent, best: Trial, place: Place, rtol: float) -> tuple[Means, ...]:
+    """The mean torque that is needed in bins of q and of v, all bins of a variable at once.
+
+    A torque that is constant in each bin is fitted to the residual, with the window starts free and
+    the parameters at the values of the best model; what the effects give is added.
+    """
+    given = np.concatenate(_fitted(best, tangent.windows, place, rtol))
+    seen = [np.zeros(len(run.t), dtype=bool) for run in tangent.trajectories]
+    for joined, number in zip(tangent.joined, tangent.series, strict=True):
+        seen[number][joined.samples] = True
+    inside = np.concatenate(seen)
+    found = []
+    for signal in (place.q, place.v):
+        runs = [run.signals[signal] if signal else np.zeros(len(run.t))
+                for run in tangent.trajectories]  # fmt: skip
+        values = np.concatenate(runs)[inside]
+        edges = _edges(values)
+        count = len(edges) - 1
+        bins = [np.clip(np.searchsorted(edges, x, "right") - 1, 0, count - 1) for x in runs]
+        steps = [np.eye(count)[numbers] for numbers in bins]
+        extra, error = _least_squares(tangent, place, steps, best.s2)
+        numbers = np.concatenate(bins)[inside]
+        members = np.maximum(np.bincount(numbers, minlength=count), 1)
+        at = np.bincount(numbers, values, count) / members
+        mean = np.bincount(numbers, given[inside], count) / members
+        found.append(Means(at, mean + extra, error))
+    return tuple(found)
+
+
+def _edges(values: Vector) -> Vector:
+    """The edges of at least one bin, each of which has a few samples."""
+    counted = np.quantile(values, np.linspace(0, 1, BINS + 1))
+    low, high = np.quantile(values, [0.01, 0.99]).tolist()
+    even = np.linspace(low, high, BINS + 1)[1:-1]
+    edges = [float(values.min())]
+    for edge in np.unique(np.concatenate((counted, even))).tolist():
+        if np.sum((values >= edges[-1]) & (values < edge)) >= FEWEST:
+            edges.append(edge)
+    if len(edges) > 2:
+        edges.pop()  # the last bin goes to the end
+    return np.array([*edges, float(values.max())])
+
+
+def _least_squares(
+    tangent: Tangent, place: Place, columns: list[Vector], s2: float
+) -> tuple[Vector, Vector]:
+    """The coefficients of torques at a place, (N, K) by series, that take the residual away, and
+    their standard errors (K,)."""
+    count = columns[0].shape[1]
+    matrix, right = np.zeros((count, count)), np.zeros(count)
+    for joined in tangent.joined:
+        view = projection(tangent.windows, joined.window)
+        answer = view.off(tangent.window_answer(joined, {place.name: columns}))
+        residual = view.off(tangent.windows.near[joined.window].residual.ravel())
+        matrix += answer.T @ answer
+        right -= answer.T @ residual
+    ridge = 1e-12 * max(float(np.trace(matrix)) / count, 1e-300)
+    inverse = np.linalg.inv(matrix + ridge * np.eye(count))
+    return inverse @ right, np.sqrt(np.diag(inverse) * max(s2, 1.0))
+
+
+def _needed(tangent: Tangent, place: Place) -> list[Vector]:
+    """The missing torque at the samples of each series, nan where no window is."""
+    found = [np.full(len(run.t), np.nan) for run in tangent.trajectories]
+    for joined, number in zip(tangent.joined, tangent.series, strict=True):
+        samples = np.unique(joined.samples)
+        run = tangent.trajectories[number]
+        unit = np.zeros((len(run.t), len(samples)))
+        unit[samples, np.arange(len(samples))] = 1.0
+        given = [np.zeros((len(other.t), len(samples))) for other in tangent.trajectories]
+        given[number] = unit
+        view = projection(tangent.windows, joined.window)
+        answer = view.off(tangent.window_answer(joined, {place.name: given}))
+        residual = view.off(tangent.windows.near[joined.window].residual.ravel())
+        size = SMOOTH * max(float(np.std(run.signals[place.name])), 1e-300)
+        bent = np.diff(np.eye(len(samples)), 2, axis=0) / size
+        level = 1e-3 * np.eye(len(samples)) / size
+        matrix = np.vstack((answer, bent, level))
+        target = np.concatenate((-residual, np.zeros(len(bent) + len(level))))
+        found[number][samples] = np.linalg.lstsq(matrix, target, rcond=None)[0]
+    return found
+
+
+def _fitted(best: Trial, windows: Windows, place: Place, rtol: float) -> list[Vector]:
+    """What the added effects give at a place, at the samples of each series."""
+    outputs = {effect.name: effect.output for effect in effects_of(best.diagram)}
+    added = [e.candidate for e in best.effects if e.candidate.place.name == place.name]
+    signals = [c.block + outputs.get(c.effect, "") for c in added]
+    model = compile(best.diagram, record=signals, backend="quick")
+    runs: list[Trajectory] = trajectories(model, windows, rtol)
+    return [np.sum([run.signals[name] for name in signals], axis=0) for run in runs]

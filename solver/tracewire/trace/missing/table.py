@@ -1,0 +1,93 @@
+"""A missing torque as a table: the text of its file, and a `table` block in the diagram."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from tracewire.diagram import Diagram, add_addend
+from tracewire.diagram.rewire import add_to_drive
+from tracewire.errors import OptionError
+from tracewire.formula.text import number_text
+from tracewire.trace.candidates.places import Place
+from tracewire.trace.found import Missing
+
+
+def missing_table(missing: Missing) -> str:
+    """The text of a csv file of a missing torque, which a `table` block of a diagram can read.
+
+    One column for the variable, one for the torque, in SI, and one for the samples near it. For two
+    variables the file has one row for each pair: a `table` block has one input, and cannot read
+    that. Points that no sample is near are left out. Raises OptionError: the torque depends on what
+    is no number (history), or there are fewer than two points.
+    """
+    keys = [name.replace(" ", "_") for name in missing.variables]
+    if not missing.grid:
+        what = f"there is no table of a torque that depends on {' and '.join(missing.variables)}"
+        raise OptionError.one(what, hint="A table is a function of one or two measured variables.")
+    points = np.meshgrid(*missing.grid, indexing="ij")
+    rows = [
+        ", ".join(number_text(float(f"{x:.7g}")) for x in row)
+        for row in zip(
+            *(x.ravel().tolist() for x in (*points, missing.torque, missing.density)), strict=True
+        )
+        if row[-1] > 0
+    ]
+    if len(rows) < 2:
+        raise OptionError.one("the missing torque is known at fewer than two points")
+    return "\n".join(
+        [
+            f"# Empirical: the torque or force that is missing at '{missing.place}', in SI, as a",
+            f"# smooth function of {' and '.join(missing.variables)} that the data ask for; it",
+            f"# explains {missing.share:.0%} of what is unexplained. No law; of no use outside.",
+            ", ".join((*keys, "torque", "samples")),
+            *rows,
+            "",
+        ]
+    )
+
+
+def add_table(diagram: Diagram, place: Place, missing: Missing, file: str) -> Diagram:
+    """The diagram with the missing torque as a `table` block at its place, read from a csv file.
+
+    file: the path of the text of `missing_table`, as the diagram names it: the file must be there.
+    What free parameters can imitate is no part of the table: fit them again afterwards.
+    Raises OptionError: the torque depends on more than one variable, or on none that a block can be
+    wired to, or what is missing is no torque, but a sensor's.
+    """
+    signals = wires_of(place)
+    names = missing.variables
+    if place.kind == "sensor":
+        what = f"what is missing at '{place.name}' is no torque: a table cannot be added there"
+        raise OptionError.one(what, hint="The map says how the sensor errs.")
+    if len(names) != 1:
+        what = f"the missing torque depends on {' and '.join(names)}; a table has one input"
+        raise OptionError.one(what, hint="Write a block of your own for it.")
+    if not signals.get(names[0]) or not missing.grid:
+        known = ", ".join(name for name, signal in signals.items() if signal)
+        what = f"a table cannot be wired to {names[0]}"
+        raise OptionError.one(what, hint=f"At '{place.name}' it can be wired to {known}.")
+    taken = {*diagram.blocks, *diagram.parameters, *diagram.inputs, *diagram.subsystems}
+    name = "missing"
+    while name in taken:
+        name += "_"
+    column = names[0].replace(" ", "_")
+    line = (
+        f"{{type: table, of: {signals[names[0]]}, "
+        f"points: {{file: {file}, x: {column}, y: torque}}}}   # empirical: no law"
+    )
+    add = add_to_drive if place.kind == "drive" else add_addend
+    return add(diagram, place.definition, name, line)
+
+
+def wires_of(place: Place) -> Mapping[str, str]:
+    """The signal of each variable at a place that a block can be wired to."""
+    found = {"q": place.q, "v": place.v, "a": place.a, "t": "t"}
+    many = len(place.drive) > 1
+    found |= {f"u of {name}" if many else "u": name for name in place.drive}
+    several = len(place.others) > 1
+    for q, v in place.others:
+        of = f" of {v or q}" if several else ""
+        found |= {f"other_q{of}": q, f"other_v{of}": v}
+    return found

@@ -1,0 +1,40 @@
+"""What torques do to the residuals, without what starts and unknowns imitate."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.residual import Projection
+from tracewire.trace.screen.tangent import Tangent
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+ROWS = 64
+"""Rows that are worked on at once."""
+
+
+def without_starts(
+    tangent: Tangent, views: Sequence[Projection], torques: Mapping[str, Sequence[Matrix]]
+) -> tuple[Matrix, Vector]:
+    """What torques by place do to the residuals, as rows (K, M), without what the starts of windows
+    imitate; and the squares (K,) of them with it. Window by window: all of them are much memory."""
+    count = sum(given[0].shape[1] for given in torques.values())
+    rows, whole, first = np.empty((count, tangent.size)), np.zeros(count), 0
+    for joined, view in zip(tangent.joined, views, strict=True):
+        columns = tangent.window_answer(joined, torques)
+        whole += np.einsum("ij,ij->j", columns, columns)
+        last = first + len(columns)
+        rows[:, first:last] = view.off(columns).T
+        first = last
+    return rows, whole
+
+
+def without(rows: Matrix, basis: Matrix) -> Matrix:
+    """Rows (K, M) without their parts along an orthonormal basis (M, n); they are changed."""
+    for first in range(0, len(rows), ROWS):
+        some = rows[first : first + ROWS]
+        some -= (some @ basis) @ basis.T
+    return rows

@@ -1,0 +1,75 @@
+"""Probes: a diagram whose places take small test signals, for the linearisation along a run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from tracewire.diagram import BlockUse, Diagram, InputPort, Value, Wire
+from tracewire.diagram.rewire import rewired
+from tracewire.formula import Call, Expression, Name, Number
+from tracewire.trace.candidates.places import Place
+
+
+def probed(
+    diagram: Diagram, places: Sequence[Place], hats: int
+) -> tuple[Diagram, tuple[tuple[str, ...], ...]]:
+    """The diagram with sum_j p_j*h_j added at each sum and drive place, and the names p_j by place.
+
+    h_j are `hats` new inputs with the default 0, shared by all places; p_j are new parameters with
+    the value 0, so that a run is that of the diagram, and its sensitivities to p_j are its answers
+    to h_j at the place. What is added at a drive is seen by all that read it, but by no record of
+    it. A sensor gets none: its tuple is empty. The diagram is made without a text: it is to be
+    compiled, not edited.
+    """
+    taken = {*diagram.inputs, *diagram.parameters, *diagram.blocks, *diagram.subsystems}
+    prefix = "probe"
+    while any(name.startswith(prefix) for name in taken):
+        prefix += "_"
+    inputs = [f"{prefix}_input_{number}" for number in range(hats)]
+    zero = Value(Number(0.0))
+    diagram = replace(
+        diagram,
+        inputs={**diagram.inputs, **{name: InputPort(name, default=zero) for name in inputs}},
+    )
+    names: list[tuple[str, ...]] = []
+    for number, place in enumerate(places):
+        if place.kind == "sensor":
+            names.append(())
+            continue
+        parameters = tuple(f"{prefix}_{number}_{hat}" for hat in range(hats))
+        names.append(parameters)
+        diagram = replace(
+            diagram, parameters={**diagram.parameters, **dict.fromkeys(parameters, zero)}
+        )
+        terms = [
+            Call("*", (Name(parameter), Name(name)))
+            for parameter, name in zip(parameters, inputs, strict=True)
+        ]
+        diagram = _added(diagram, place, f"{prefix}_{number}", _total(terms))
+    return diagram, tuple(names)
+
+
+def _added(diagram: Diagram, place: Place, name: str, formula: Expression) -> Diagram:
+    """The diagram with a formula added at a place."""
+    if place.kind == "drive":
+        formula = Call("+", (Name(place.definition), formula))
+        diagram = rewired(diagram, place.definition, name)
+    else:
+        old = diagram.blocks[place.definition]
+        (port,) = (p.name for p in diagram.library[old.type].inputs if p.many)
+        wires = (*old.inputs[port], Wire(name))
+        new = replace(old, inputs={**old.inputs, port: wires})
+        diagram = replace(diagram, blocks={**diagram.blocks, place.definition: new})
+    probe = BlockUse(name, "expression", {}, {"formula": formula})
+    return replace(diagram, blocks={**diagram.blocks, name: probe})
+
+
+def _total(terms: Sequence[Expression]) -> Expression:
+    """The sum of the terms, added by halves: a formula may not nest deep."""
+    if not terms:
+        return Number(0.0)
+    if len(terms) == 1:
+        return terms[0]
+    middle = len(terms) // 2
+    return Call("+", (_total(terms[:middle]), _total(terms[middle:])))

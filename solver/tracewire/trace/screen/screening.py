@@ -1,0 +1,325 @@
+"""The screen: one linearisation that promises what each effect, and each pair, would bring."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.residual import Projection, Unknown, eliminated, projection
+from tracewire.trace.candidates.candidates import Candidate, is_default
+from tracewire.trace.candidates.histories import Variant, histories
+from tracewire.trace.candidates.levels import Trajectory
+from tracewire.trace.candidates.waves import as_measured, scanned
+from tracewire.trace.screen.answers import without, without_starts
+from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.trials.statistics import HIDDEN, Columns
+from tracewire.trace.trials.trial import Added, Trial
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+PHASE = "phase"
+"""A shape of this name turns a sine into a cosine: the two together span all phases."""
+NEAR = 1e-6
+SEEN = 1e-10
+"""The part of a column's square, beyond what window starts imitate, from which on it is seen."""
+QUADRATURE = (0.0, math.pi / 2)
+PAIRED = 24
+"""How many single effects are paired with each other."""
+SMALL = 0.1
+"""The part of a promise of the wrong sign at which a refit begins with the right one."""
+TRUST = 0.7
+"""The part of an expected coefficient at which a refit begins."""
+
+
+@dataclass(frozen=True, eq=False)
+class Row:
+    """A variant of a candidate in the screen: its columns (two where a phase is free), the fall of
+    the sum of squares that it promises, that fall as half a fall of BIC, and the values to begin
+    with."""
+
+    candidate: Candidate
+    shapes: Mapping[str, float]
+    columns: tuple[int, ...]
+    fall: float
+    gain: float
+    values: Mapping[str, float]
+    masked: float
+    possible: bool
+    series: tuple[str, ...] = ()
+    """Those that have a phase of their own: there is a column for each, and each quadrature."""
+
+    @property
+    def count(self) -> int:
+        """How many numbers the effect takes."""
+        return _count(self.candidate, self.shapes, self.series)
+
+    @property
+    def added(self) -> Added:
+        """The effect as a refit begins it, within the bounds of its numbers: a coefficient of the
+        wrong sign begins with a small one of the right sign."""
+        values = dict(self.values)
+        for name, (low, high) in self.candidate.limits.items():
+            if name in values:
+                values[name] = min(max(values[name], low), high)
+        name, neutral = self.candidate.parameter, self.candidate.neutral
+        if values[name] == neutral != self.values[name]:
+            values[name] = neutral + SMALL * abs(self.values[name] - neutral)
+        return Added(self.candidate, values)
+
+
+@dataclass(frozen=True, eq=False)
+class Proposal:
+    """Effects to try together, and what they promise."""
+
+    rows: tuple[Row, ...]
+    gain: float
+
+    @property
+    def count(self) -> int:
+        """How many numbers the effects take."""
+        return sum(row.count for row in self.rows)
+
+
+@dataclass(frozen=True, eq=False)
+class Screen:
+    """All variants of all candidates, scored on one linearisation."""
+
+    columns: Columns
+    rows: tuple[Row, ...]
+
+    def best(self) -> list[Row]:
+        """The best possible variant of each candidate, the most promising first."""
+        found: dict[str, Row] = {}
+        for row in self.rows:
+            known = found.get(str(row.candidate))
+            if row.possible and (known is None or row.gain > known.gain):
+                found[str(row.candidate)] = row
+        return sorted(found.values(), key=lambda row: -row.gain)
+
+    def visible(self) -> dict[str, Row]:
+        """The best variant of each candidate that the unknowns do not imitate, of any sign, by its
+        name."""
+        found: dict[str, Row] = {}
+        for row in self.rows:
+            known = found.get(str(row.candidate))
+            if row.masked < 1 - HIDDEN and (known is None or row.fall > known.fall):
+                found[str(row.candidate)] = row
+        return found
+
+    def chance(self) -> float:
+        """The probability that noise alone looks as good as the best row does."""
+        rows = [row for row in self.rows if row.possible]
+        if not rows:
+            return 1.0
+        best = max(row.fall for row in rows)
+        groups = [row.columns for row in self.rows]
+        return self.columns.chance(groups, [row.candidate.sign for row in self.rows], best)
+
+    def pairs(self) -> list[Proposal]:
+        """Pairs of candidates with possible signs, the most promising first."""
+        singles = self.best()[:PAIRED]
+        found = []
+        for one, other in combinations(singles, 2):
+            fall, values = self.columns.score((*one.columns, *other.columns))
+            split = len(one.columns)
+            parts = (one, values[:split]), (other, values[split:])
+            if all(_possible(row.candidate, part) for row, part in parts):
+                rows = tuple(_scored(row, part) for row, part in parts)
+                found.append(Proposal(rows, self.columns.gain(fall, one.count + other.count)))
+        return sorted(found, key=lambda proposal: -proposal.gain)
+
+    def by_count(self, each: int) -> dict[int, list[Proposal]]:
+        """The most promising singles and pairs at each number of numbers, `each` of them.
+
+        What takes many numbers, as a wave does, then hides no simple pair.
+        """
+        singles = [Proposal((row,), row.gain) for row in self.best()]
+        found: dict[int, list[Proposal]] = {}
+        for proposal in sorted([*singles, *self.pairs()], key=lambda proposal: -proposal.gain):
+            same = found.setdefault(proposal.count, [])
+            if len(same) < each:
+                same.append(proposal)
+        return dict(sorted(found.items()))
+
+
+def screened(tangent: Tangent, trial: Trial, candidates: Sequence[Candidate]) -> Screen:
+    """The score test of every variant of every candidate, at coefficient zero."""
+    windows = tangent.windows
+    views = [projection(windows, n) for n in range(len(windows.near))]
+    unknowns, residual = eliminated(windows, views)
+    # a value that sits on its bound cannot give way to an effect
+    unknowns = unknowns[
+        :, [not _on_bound(u, windows.values[u.name]) for u in windows.criterion.unknowns]
+    ]
+    basis = _basis(unknowns)
+    residual = residual - basis @ (basis.T @ residual)
+
+    def answer(place: str, torques: Sequence[Matrix]) -> Matrix:
+        rows, _ = without_starts(tangent, views, {place: torques})
+        return without(rows, basis).T
+
+    model = windows.criterion.model
+    measured = as_measured(windows, tangent.trajectories)
+    candidates = scanned(model, candidates, measured, residual, answer)
+    reduced, whole, variants = _rows(tangent, views, candidates, measured)
+    reduced[_squares(reduced) < SEEN * whole] = 0.0
+    reduced, variants = _by_series(tangent, reduced, variants)
+    seen = _squares(reduced)
+    left = without(reduced, basis)
+    masked = 1 - _squares(left) / np.maximum(seen, 1e-300)
+    masked = np.where(seen > 0, np.clip(masked, 0.0, 1.0), 1.0)
+    columns = Columns(residual, left.T, masked, trial.part, trial.freedom)
+    names = tuple(run.series for run in tangent.trajectories)
+    rows = [_row(columns, group, names) for group in _groups(variants)]
+    return Screen(columns, tuple(rows))
+
+
+def _rows(
+    tangent: Tangent,
+    views: Sequence[Projection],
+    candidates: Sequence[Candidate],
+    measured: Sequence[Trajectory],
+) -> tuple[Matrix, Vector, list[Variant]]:
+    """What the coefficients of all variants do to the residuals in sigma, as rows (K, M) without
+    what the starts of windows imitate, and their squares (K,) with it.
+
+    Waves are taken along what is measured: a part of their length matters, and a fit far from the
+    noise is off by more than the noise.
+    """
+    wired = [c for c in candidates if c.place.kind != "sensor"]
+    model = tangent.windows.criterion.model
+    known = histories(model, [c for c in wired if not c.waves], tangent.trajectories)
+    known |= histories(model, [c for c in wired if c.waves], measured)
+    by_place: dict[str, list[Variant]] = {}
+    for variant in known:
+        by_place.setdefault(variant.candidate.place.name, []).append(variant)
+    given = {
+        name: [
+            np.stack([known[v][n] for v in group], axis=1) for n in range(len(tangent.trajectories))
+        ]
+        for name, group in by_place.items()
+    }
+    variants = [variant for group in by_place.values() for variant in group]
+    del known
+    rows, whole = without_starts(tangent, views, given)
+    sensors = [c for c in candidates if c.place.kind == "sensor"]
+    if not sensors:
+        return rows, np.maximum(whole, 1e-300), variants
+    shown = np.stack([tangent.sensed(c.effect, c.place.definition) for c in sensors], axis=1)
+    edges = np.cumsum([near.residual.size for near in tangent.windows.near])[:-1]
+    parts = zip(views, np.split(shown, edges), strict=True)
+    more = np.concatenate([view.off(part).T for view, part in parts], axis=1)
+    whole = np.concatenate((whole, np.einsum("ij,ij->j", shown, shown)))
+    variants += [Variant(c, ()) for c in sensors]
+    return np.concatenate((rows, more)), np.maximum(whole, 1e-300), variants
+
+
+def _by_series(
+    tangent: Tangent, rows: Matrix, variants: list[Variant]
+) -> tuple[Matrix, list[Variant]]:
+    """What variants do to the residuals, (K, M), with a row for each series, zero in the others,
+    where a phase is its own there."""
+    count = len(tangent.trajectories)
+    if count < 2 or not any(variant.candidate.each for variant in variants):
+        return rows, variants
+    sizes = [near.residual.size for near in tangent.windows.near]
+    of = np.repeat(tangent.series, sizes)
+    parts = [count if variant.candidate.each else 1 for variant in variants]
+    found, first = np.zeros((sum(parts), rows.shape[1])), 0
+    for row, own in zip(rows, parts, strict=True):
+        for n in range(own):
+            mine = of == n if own > 1 else slice(None)
+            found[first + n, mine] = row[mine]
+        first += own
+    return found, [v for v, own in zip(variants, parts, strict=True) for _ in range(own)]
+
+
+def _groups(variants: Sequence[Variant]) -> Iterator[list[tuple[int, Variant]]]:
+    """Variants with their columns; those that differ only in phase stand together."""
+    groups: dict[tuple[str, tuple[tuple[str, float], ...]], list[tuple[int, Variant]]] = {}
+    for number, variant in enumerate(variants):
+        phases = variant.candidate.shapes.get(PHASE, ())
+        joint = len(phases) == 2 and bool(np.allclose(phases, QUADRATURE, atol=1e-3))
+        key = tuple((n, x) for n, x in variant.shapes if n != PHASE or not joint)
+        groups.setdefault((str(variant.candidate), key), []).append((number, variant))
+    yield from groups.values()
+
+
+def _row(columns: Columns, group: Sequence[tuple[int, Variant]], names: tuple[str, ...]) -> Row:
+    """One row: the score of a variant."""
+    indices = tuple(number for number, _ in group)
+    candidate = group[0][1].candidate
+    fall, values = columns.score(indices)
+    shapes = dict(group[0][1].shapes)
+    series = names if candidate.each and len(names) > 1 else ()
+    row = Row(
+        candidate=candidate,
+        shapes=shapes,
+        columns=indices,
+        fall=fall,
+        gain=columns.gain(fall, _count(candidate, shapes, series)),
+        values={},
+        masked=float(np.max(columns.masked[list(indices)])),
+        possible=fall > 0 and _possible(candidate, values),
+        series=series,
+    )
+    return _scored(row, values)
+
+
+def _scored(row: Row, values: Vector) -> Row:
+    """The row with the values at which a refit begins."""
+    shapes = dict(row.shapes)
+    count = len(row.series)
+    if count and len(values) == 2 * count:  # one amplitude, and a phase in each series
+        sines, cosines = values[:count], values[count:]
+        del shapes[PHASE]
+        phases = np.arctan2(cosines, sines).tolist()
+        shapes |= {f"{PHASE}@{name}": p for name, p in zip(row.series, phases, strict=True)}
+        values = np.array([np.mean(np.hypot(sines, cosines))])
+    elif len(values) == 2:  # sin(x + phase) = cos(phase) sin(x) + sin(phase) cos(x)
+        shapes[PHASE] = math.atan2(values[1], values[0]) + shapes.get(PHASE, 0.0)
+    size = float(np.hypot(*values)) if len(values) == 2 else float(values[0])
+    neutral = row.candidate.neutral
+    begun = {row.candidate.parameter: neutral + TRUST * size, **shapes}
+    return Row(
+        row.candidate, row.shapes, row.columns, row.fall, row.gain, begun, row.masked, row.possible,
+        row.series,
+    )  # fmt: skip
+
+
+def _on_bound(unknown: Unknown, value: float) -> bool:
+    """Whether a fitted value sits on a bound."""
+    near = NEAR * unknown.scale
+    return value - unknown.low < near or unknown.high - value < near
+
+
+def _possible(candidate: Candidate, values: Vector) -> bool:
+    """Whether a coefficient has a physical sign."""
+    return candidate.sign == 0 or len(values) > 1 or float(values[0]) * candidate.sign > 0
+
+
+def _count(candidate: Candidate, shapes: Mapping[str, float], series: Sequence[str]) -> int:
+    """How many numbers an effect takes: a shape that keeps its default is none. The screen takes an
+    amplitude and a phase in each series that has a phase of its own."""
+    more = 2 * (len(series) - 1) if series else 0
+    free = {name: value for name, value in shapes.items() if name not in candidate.fixed}
+    return 1 + more + sum(not is_default(candidate, name, value) for name, value in free.items())
+
+
+def _squares(rows: Matrix) -> Vector:
+    """The sum of squares of each row."""
+    return np.asarray(np.einsum("ij,ij->i", rows, rows))
+
+
+def _basis(matrix: Matrix) -> Matrix:
+    """An orthonormal basis of the columns of a matrix, without its negligible directions."""
+    if matrix.shape[1] == 0:
+        return np.zeros((matrix.shape[0], 0))
+    scaled = matrix / np.maximum(np.linalg.norm(matrix, axis=0), 1e-300)
+    left, singular, _ = np.linalg.svd(scaled, full_matrices=False)
+    return np.asarray(left[:, singular > 1e-8 * max(float(singular[0]), 1e-300)])

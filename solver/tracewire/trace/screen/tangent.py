@@ -1,0 +1,198 @@
+"""The tangent: what a small torque at any place, at any time, does to what is measured.
+
+The fitted windows are run again in pieces of a few samples. In each, hat functions in time enter at
+every place, and the sensitivities of the run, events included, say what the states and the measured
+signals make of them. Pieces are then joined: the answer to any history of a torque, and to any
+number of them, is a product of small matrices, without another run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import compile
+from tracewire.diagram import Diagram
+from tracewire.residual import Segment, Windows
+from tracewire.solve import Span
+from tracewire.trace.candidates.levels import signals_at
+from tracewire.trace.candidates.places import Place
+from tracewire.trace.screen.observed import (
+    Signals,
+    nodes_of,
+    observed,
+    runs_of,
+    series_of,
+    stitched,
+)
+from tracewire.trace.screen.probe import probed
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+SENSED: Mapping[str, Callable[[Vector, Vector], Vector]] = {
+    "sensor_offset": lambda y, t: np.ones(len(t)),
+    "sensor_gain": lambda y, t: y,
+    "sensor_delay": lambda y, t: -np.gradient(y, t),
+    "sensor_quad": lambda y, t: y**2,
+    "sensor_drift": lambda y, t: t - t[0],
+}
+"""What the coefficient 1 of a sensor's effect adds to a signal y(t)."""
+NODES = 13
+"""Samples of a piece: few hats at a time keep a run cheap, many pieces cost runs."""
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """A few samples of a window: how outputs and states there answer to its start and to the hats,
+    shapes (nodes, outputs + states, ...); `nodes` index the nodes of the window."""
+
+    nodes: slice
+    start: Matrix
+    hats: Matrix
+
+
+@dataclass(frozen=True, eq=False)
+class Joined:
+    """A window in pieces. `times` are its nodes, `samples` the rows of the series behind them,
+    `counts` says which nodes are residuals."""
+
+    window: int
+    times: Vector
+    samples: NDArray[np.intp]
+    counts: NDArray[np.bool_]
+    pieces: tuple[Piece, ...]
+
+
+class Tangent:
+    """The windows of a fit, linearised in torques at places."""
+
+    def __init__(
+        self, diagram: Diagram, windows: Windows, places: Sequence[Place], rtol: float
+    ) -> None:
+        self.windows = windows
+        self.places = [place for place in places if place.kind != "sensor"]
+        criterion = windows.criterion
+        self.outputs = criterion.segments[0].signals
+        self.states = criterion.model.states
+        self.probes: tuple[tuple[str, ...], ...]
+        text, self.probes = probed(diagram, self.places, NODES)
+        self.hats = [name for name in text.inputs if name not in diagram.inputs]
+        record = list(dict.fromkeys((*self.outputs, *self.states)))
+        self.model = compile(text, record=record, backend="quick")
+        wanted = dict.fromkeys((*record, *signals_at(self.places)))
+        observer = compile(diagram, record=list(wanted), backend="quick")
+        self.rtol = rtol
+        self.series = series_of(windows)
+        runs = observed(observer, windows, rtol)
+        self.trajectories = stitched(windows, runs)
+        groups: dict[tuple[int, float], list[int]] = {}
+        for n, segment in enumerate(windows.segments):
+            early = min(segment.begin, float(segment.measured.t[0]))
+            groups.setdefault((self.series[n], early), []).append(n)
+        joined = [one for group in groups.values() for one in self._joined(group, runs)]
+        self.joined = sorted(joined, key=lambda one: one.window)
+
+    def answer(self, histories: Mapping[str, Sequence[Matrix]]) -> Matrix:
+        """What torques do to the residuals in sigma, shape (M, K), before anything is projected.
+
+        `histories` gives, for some places, for each series, (N, k) torques at its samples; the
+        columns stand in the order of the places given.
+        """
+        return np.concatenate([self.window_answer(joined, histories) for joined in self.joined])
+
+    @property
+    def size(self) -> int:
+        """The number of residuals."""
+        return sum(near.residual.size for near in self.windows.near)
+
+    def sensed(self, effect: str, signal: str) -> Vector:
+        """What a small coefficient of a sensor's effect does to the residuals, shape (M,)."""
+        parts = []
+        for joined, number in zip(self.joined, self.series, strict=True):
+            run = self.trajectories[number]
+            segment = self.windows.criterion.segments[joined.window]
+            rows = joined.samples[joined.counts]
+            y, t = run.signals[signal], run.t
+            shown = SENSED[effect](y, t)
+            column = np.zeros((len(rows), len(self.outputs)))
+            at = self.outputs.index(signal)
+            sigma = self.windows.criterion.sigma[segment.measured.name][at]
+            column[:, at] = shown[rows] / sigma
+            parts.append(self.windows.criterion.whiten(joined.window, column.ravel()))
+        return np.concatenate(parts)
+
+    def window_answer(self, joined: Joined, histories: Mapping[str, Sequence[Matrix]]) -> Matrix:
+        """The same for one window."""
+        order = {place.name: n for n, place in enumerate(self.places)}
+        number = self.series[joined.window]
+        columns = sum(given[number].shape[1] for given in histories.values())
+        m = len(self.outputs)
+        state = np.zeros((len(self.states), columns))
+        rows = np.zeros((len(joined.times), m, columns))
+        for piece in joined.pieces:
+            out = piece.start @ state
+            samples = joined.samples[piece.nodes]
+            first = 0
+            for name, given in histories.items():
+                last = first + given[number].shape[1]
+                hats = piece.hats[:, :, order[name], :]
+                out[:, :, first:last] += hats @ given[number][samples]
+                first = last
+            rows[piece.nodes] = out[:, :m]
+            state = out[-1, m:]
+        segment = self.windows.criterion.segments[joined.window]
+        scale = self._shown(segment)[:, None]
+        answer = (rows[joined.counts] * scale).reshape(-1, columns)
+        return self.windows.criterion.whiten(joined.window, answer)
+
+    def _shown(self, segment: Segment) -> Vector:
+        """By how many sigma the sensors show a change of each signal."""
+        values = {**self.windows.criterion.parameters, **self.windows.values}
+        sigma = self.windows.criterion.sigma[segment.measured.name]
+        gains = [
+            values.get(f"gain.{signal}", segment.measured.sensor(signal).gain)
+            for signal in segment.signals
+        ]
+        return np.asarray(np.array(gains) / sigma)
+
+    def _joined(self, group: Sequence[int], runs: Sequence[Signals]) -> list[Joined]:
+        """Windows of one series, which have their nodes in common.
+
+        Each hat is one every NODES nodes and zero between, so that in a piece all are different,
+        and the runs of all pieces have the same inputs.
+        """
+        first_one = self.windows.criterion.segments[group[0]]
+        nodes = [nodes_of(self.windows.criterion.segments[n]) for n in group]
+        known = [first_one.measured.t, *(times for times, *_ in nodes)]
+        common = np.unique(np.concatenate(known))
+        turn = np.arange(len(common)) % NODES
+        hats = {name: (common, (turn == j).astype(float)) for j, name in enumerate(self.hats)}
+        parts, spans = [], []
+        for n, (times, *_) in zip(group, nodes, strict=True):
+            for first in range(0, max(len(times) - 1, 1), NODES - 1):
+                here = slice(first, min(first + NODES, len(times)))
+                start = {name: float(runs[n][name][first]) for name in self.states}
+                t = times[here]
+                spans.append(Span(float(t[0]), float(t[-1]), t, start))
+                parts.append((n, here, turn[np.searchsorted(common, t)]))
+        starts = [f"start.{name}" for name in self.states]
+        probes = [name for names in self.probes for name in names]
+        asked = [*starts, *probes]
+        found = runs_of(self.model, self.windows, first_one, spans, self.rtol, hats, asked)
+        signals = found.sensitivities.signals
+        rows = [signals.index(name) for name in (*self.outputs, *self.states)]
+        answers = found.sensitivities.array[:, rows].transpose(2, 1, 0)
+        pieces: dict[int, list[Piece]] = {n: [] for n in group}
+        for row, (n, here, order) in enumerate(parts):
+            mine = answers[found.rows[row] : found.rows[row + 1]]
+            of_starts, of_hats = np.split(mine, [len(starts)], axis=2)
+            shape = len(mine), len(rows), len(self.places), NODES
+            at_nodes = of_hats.reshape(shape)[:, :, :, order]
+            pieces[n].append(Piece(here, of_starts, at_nodes))
+        return [
+            Joined(n, times, samples, counts, tuple(pieces[n]))
+            for n, (times, samples, counts) in zip(group, nodes, strict=True)
+        ]

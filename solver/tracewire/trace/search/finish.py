@@ -1,0 +1,271 @@
+"""The end of a search: on the longest windows, rivals once more, shapes, what is superfluous."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tracewire.errors import FitError
+from tracewire.trace.candidates.candidates import is_default
+from tracewire.trace.screen.shortlist import MANY
+from tracewire.trace.search.refits import few_of, target_of
+from tracewire.trace.search.search import Search
+from tracewire.trace.trials.judge import AT_NOISE, MATERIAL
+from tracewire.trace.trials.trial import Added, Trial
+
+CHEAP = 6.0
+RELATED, ALIKE = 0.9, 0.5
+"""The likeness from which on an effect is a rival; and where two effects came together."""
+RIVALS = 5
+BEHIND = 10.0
+"""How many times the sum of squares of the best model a rival may leave in few short windows, where
+few steps may not bring it further."""
+CERTAIN = 10.0
+"""The standard errors from which on no model without a term is tried: it is there."""
+OPEN = 10.0
+"""A rival that BIC puts less than this behind is a tie."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rival:
+    """An effect in the place of one that was found: their correlation on the data, the rise of BIC
+    when it takes that place, and the trial where it does. `near`: it predicts as well."""
+
+    added: Added
+    likeness: float
+    trial: Trial
+    rise: float
+    near: bool = False
+
+    @property
+    def tied(self) -> bool:
+        """Whether these data cannot tell it from what was found."""
+        return self.near or self.rise < OPEN
+
+
+@dataclass(frozen=True, eq=False)
+class Final:
+    """The declared model and the best one on the longest windows that they bear, the rivals of each
+    effect by its name, and the declared parameters that went to zero."""
+
+    declared: Trial
+    best: Trial
+    rivals: dict[str, tuple[Rival, ...]]
+    dropped: tuple[str, ...]
+
+
+def finished(search: Search, declared: Trial, best: Trial) -> Final:
+    """The best model on long windows, without what is superfluous, effects beside their rivals."""
+    sections = search.stretches.whole()
+    declared = search.climbed(_over(search, declared), sections, np.inf)  # its best free run
+    if not best.effects:
+        return Final(declared, declared, {}, ())
+    best = search.climbed(_over(search, best), sections)
+    best = _pruned(search, best)
+    rivals: dict[str, tuple[Rival, ...]] = {}
+    for number in range(len(best.effects)):
+        best, found = _exchanged(search, best, number)
+        rivals[str(best.effects[number])] = found
+    best = _opened_shapes(search, best)
+    best = _common_phases(search, best)
+    best = _pruned(search, best)
+    best, dropped = _dropped(search, best)
+    return Final(declared, best, rivals, dropped)
+
+
+def _over(search: Search, trial: Trial) -> Trial:
+    """The trial over all that is not held back for the final claim, on windows as they are; where
+    it does not run on some of them, as it was."""
+    windows = search.windows(search.stretches.whole(), trial.length)
+    try:
+        return search.bench.again(trial, windows, trial.length)
+    except FitError:
+        return trial
+
+
+def _refitted(
+    search: Search, trial: Trial, effects: Sequence[Added], fixed: dict[str, float] | None = None
+) -> Trial | None:
+    """The trial with other effects on the same windows; None where that does not run."""
+    segments = trial.windows.segments
+    return search.refits.fitted(trial, effects, segments, fixed=fixed, target=target_of(trial))
+
+
+def _exchanged(search: Search, best: Trial, number: int) -> tuple[Trial, tuple[Rival, ...]]:
+    """The best model with the best of the rivals of one effect, and the other rivals."""
+    effect = best.effects[number]
+    search.tell(f"comparing {effect} with its rivals")
+    others = [e for e in best.effects if e is not effect]
+    part = best.part
+    results: list[tuple[float, Trial, Added]] = []
+    known = _known_rivals(search, effect)
+    kept = {str(e) for e in others}
+    few = _few_short(search, best)
+    for added, _ in known[: RIVALS if search.returns else MANY]:
+        if str(added) in kept:
+            continue
+        effects = [*best.effects[:number], added, *best.effects[number + 1 :]]
+        if _is_far_behind(search, few, effects):
+            continue
+        trial = _refitted(search, best, effects)
+        if trial is not None:
+            results.append((trial.quality(part), trial, trial.effects[number]))
+    results.append((best.quality(part), best, effect))
+    # where BIC is the same, a law with a physical sign goes before others, and a sensor comes last
+    results.sort(
+        key=lambda result: (
+            round(result[0], 2),
+            result[2].candidate.place.kind == "sensor",
+            not result[2].candidate.sign,
+        )
+    )
+    quality, winner, chosen = results[0]
+    likeness = {str(added): value for added, value in known} | {str(effect): 1.0}
+    if str(chosen) != str(effect):
+        likeness = {str(added): value for added, value in _known_rivals(search, chosen)}
+    found = [
+        Rival(added, likeness.get(str(added), 0.0), trial, rise - quality)
+        for rise, trial, added in results[1:]
+    ]
+    return winner, tuple(found)
+
+
+def _few_short(search: Search, best: Trial) -> Trial | None:
+    """The best model on few of the shortest windows; None where those it stands on are as short, or
+    where it is far from the noise on these."""
+    length = search.lengths[0]
+    if length >= best.length:
+        return None
+    segments = search.windows(search.stretches.whole(), length)
+    try:
+        few = search.bench.again(best, [segments[n] for n in few_of(segments)], length)
+    except FitError:
+        return None
+    return few if few.s2 < AT_NOISE else None
+
+
+def _is_far_behind(search: Search, few: Trial | None, effects: Sequence[Added]) -> bool:
+    """Whether rivals do so badly on few short windows that long ones need not be tried."""
+    if few is None:
+        return False
+    target = BEHIND * few.rss
+    trial = search.refits.fitted(few, effects, few.windows.segments, target=target)
+    return trial is None or trial.rss > target
+
+
+def _known_rivals(search: Search, effect: Added) -> list[tuple[Added, float]]:
+    """Effects that looked like one when it was screened, the most likely first."""
+    for step in search.steps:
+        rows = {str(row.candidate): row for row in step.screen.best()}
+        mine = rows.get(str(effect))
+        if mine is None or step.after is None:
+            continue
+        tried = {
+            str(one.trial.effects[-1]): one.rise
+            for one in step.tried
+            if len(one.proposal.rows) == 1
+        }
+        together = len(step.after.effects) > len(step.before.effects) + 1
+        found = []
+        for name, row in rows.items():
+            if name == str(effect):
+                continue
+            likeness = step.screen.columns.likeness(mine.columns, row.columns)
+            if likeness > (ALIKE if together else RELATED) or name in tried:
+                found.append((row.added, likeness, tried.get(name, np.inf)))
+        found.sort(key=lambda item: (item[2], -item[1]))
+        return [(added, likeness) for added, likeness, _ in found]
+    return []
+
+
+def _opened_shapes(search: Search, best: Trial) -> Trial:
+    """The best model with shapes free that had kept their default, where that is worth it."""
+    for number, effect in enumerate(best.effects):
+        candidate = effect.candidate
+        for shape, grid in candidate.shapes.items():
+            current = effect.values.get(shape, 0.0)
+            if not is_default(candidate, shape, current):
+                continue
+            first = min((value for value in grid if value > 0), default=0.0)
+            if not first:
+                continue
+            wider = replace(effect, values={**effect.values, shape: first})
+            effects = [*best.effects[:number], wider, *best.effects[number + 1 :]]
+            trial = _refitted(search, best, effects)
+            if trial is not None and trial.quality(best.part) < best.quality(best.part) - CHEAP:
+                best = trial
+                effect = best.effects[number]
+    return best
+
+
+def _common_phases(search: Search, best: Trial) -> Trial:
+    """The best model with one phase for all series where that is no worse: a clock of the rig, not
+    of the record."""
+    for number, effect in enumerate(best.effects):
+        if not effect.own_series:
+            continue
+        search.tell(f"{effect} with one phase in all series")
+        values = {name: value for name, value in effect.values.items() if "@" not in name}
+        for shape in effect.candidate.each:
+            own = [x for name, x in effect.values.items() if name.startswith(f"{shape}@")]
+            values[shape] = float(np.angle(np.mean(np.exp(1j * np.array(own)))))
+        effects = [*best.effects[:number], replace(effect, values=values)]
+        trial = _refitted(search, best, [*effects, *best.effects[number + 1 :]])
+        if trial is not None and trial.quality(best.part) < best.quality(best.part):
+            best = trial
+    return best
+
+
+def _pruned(search: Search, best: Trial) -> Trial:
+    """The best model without effects that the others make superfluous.
+
+    At the noise BIC decides, and what is many standard errors from nothing is not tried without;
+    far above the noise an effect must take a third off the squared error.
+    """
+    while len(best.effects) > 1:
+        costs = []
+        for effect in best.effects:
+            if best.s2 < AT_NOISE and _is_certain(best, effect):
+                continue
+            search.tell(f"trying without {effect}")
+            smaller = _refitted(search, best, [e for e in best.effects if e is not effect])
+            if smaller is None:
+                continue
+            loss = smaller.quality(best.part) - best.quality(best.part)
+            immaterial = best.s2 > AT_NOISE and best.rss > (1 - MATERIAL) * smaller.rss
+            if loss < CHEAP or immaterial:
+                costs.append((loss, smaller))
+        if not costs:
+            return best
+        best = min(costs, key=lambda cost: cost[0])[1]
+    return best
+
+
+def _is_certain(best: Trial, effect: Added) -> bool:
+    """Whether a coefficient is many standard errors from that of no effect."""
+    candidate = effect.candidate
+    error = best.standard_errors.get(candidate.coefficient, np.inf)
+    return bool(abs(effect.coefficient - candidate.neutral) > CERTAIN * error)
+
+
+def _dropped(search: Search, best: Trial) -> tuple[Trial, tuple[str, ...]]:
+    """The best model without declared terms that the effects make superfluous, and their names."""
+    names = []
+    own = search.bench.declared.flat.parameters
+    for unknown in best.windows.criterion.unknowns:
+        if unknown.low != 0.0 or unknown.name not in own:
+            continue
+        certain = best.values[unknown.name] > CERTAIN * best.standard_errors[unknown.name]
+        if certain and best.s2 < AT_NOISE:
+            continue
+        fixed = {**best.windows.criterion.parameters, unknown.name: 0.0}
+        smaller = _refitted(search, best, best.effects, fixed)
+        if smaller is None:
+            continue
+        loss = smaller.quality(best.part) - best.quality(best.part)
+        if loss < 0 or (best.s2 > AT_NOISE and best.rss > 0.98 * smaller.rss):
+            names.append(unknown.name)
+            best = smaller
+    return best, tuple(names)

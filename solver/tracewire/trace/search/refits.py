@@ -1,0 +1,202 @@
+"""Refits: the proposals of a screen in the loop, a few steps on few windows each, then the best."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tracewire.errors import DiagramError, FitError
+from tracewire.residual import CREEPS, SETTLING, Segment
+from tracewire.trace.screen.screening import Proposal
+from tracewire.trace.trials.trial import Added, Bench, Trial
+
+FAR = 30.0
+"""Longer windows than those that leave this many times the noise's variance say little: there the
+residual does not depend linearly any more on what is missing."""
+AT_NOISE, NEAR = 1.3, 3.0
+KEPT = 3
+SLOWER = 6.0
+"""How many times the cost of the model before an effect may take, in steps of a run."""
+WITHIN, WITHIN_NOISE = 2.0, 1.2
+"""How many times the sum of squares of another one a refit must come near; where that one is at the
+noise, it must come nearer."""
+STEPS, FIRST_STEPS, FEW = 20, 5, 30
+"""Steps of a refit and of the first round of refits, and about how many windows that takes."""
+SMALL = 0.1
+"""The part of its promised size at which an effect begins again that led a refit astray."""
+
+
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """Effects that were refitted: how much BIC rose, and what became of them."""
+
+    trial: Trial
+    proposal: Proposal
+    rise: float
+    weight: float
+    remark: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Begun:
+    """A proposal after a few steps on few windows."""
+
+    trial: Trial
+    proposal: Proposal
+
+    @property
+    def is_pair(self) -> bool:
+        """Whether two effects are proposed together."""
+        return len(self.proposal.rows) > 1
+
+
+@dataclass(frozen=True)
+class Refits:
+    """What refits share; `words` gets what could not be tried."""
+
+    bench: Bench
+    tell: Callable[[str], None]
+    words: list[str]
+
+    def tried(
+        self, now: Trial, singles: Sequence[Proposal], pairs: Sequence[Proposal]
+    ) -> list[Tried]:
+        """The best of the proposals, refitted on all windows and ranked.
+
+        Where a single effect comes near the noise, pairs are for later: they say nothing more if it
+        reaches it. Elsewhere they all begin together, and what a pair leaves far behind is not
+        refitted on all windows.
+        """
+        begun = self.begun(now, singles)
+        near = any(one.trial.s2 < NEAR for one in begun)
+        tried = self.whole(now, begun) if near else []
+        if any(one.trial.s2 < AT_NOISE for one in tried):
+            return tried
+        begun = [*([] if near else begun), *self.begun(now, pairs)]
+        target = min((one.trial.rss for one in tried), default=np.inf)
+        return self.ranked(now, [*tried, *self.whole(now, begun, target)])
+
+    def begun(self, now: Trial, proposals: Sequence[Proposal]) -> list[Begun]:
+        """The proposals after a few steps on few windows."""
+        segments = now.windows.segments
+        rows = few_of(segments)
+        few, least = [segments[n] for n in rows], float(now.windows.squares[rows].sum())
+        begun = []
+        for number, proposal in enumerate(proposals, start=1):
+            names = " and ".join(str(row.candidate) for row in proposal.rows)
+            self.tell(f"refitting with {names} ({number} of {len(proposals)})")
+            added = [row.added for row in proposal.rows]
+            trial = self.extended(now, added, few, FIRST_STEPS)
+            if trial is not None and trial.rss > least:  # the promised size led it astray
+                small = [
+                    one.having(one.candidate.parameter, SMALL * one.coefficient) for one in added
+                ]
+                again = self.extended(now, small, few, FIRST_STEPS) or trial
+                trial = min(trial, again, key=lambda one: one.rss)
+            if trial is not None:
+                begun.append(Begun(trial, proposal))
+        return begun
+
+    def whole(self, now: Trial, begun: Sequence[Begun], target: float = np.inf) -> list[Tried]:
+        """The best of what was begun, refitted on all windows and ranked.
+
+        Those that are too slow to come near the best, or below `target`, are given up on the way.
+        """
+        most = KEPT if now.s2 < FAR else KEPT + 2
+        kept: list[Begun] = []
+        for one in sorted(begun, key=lambda one: one.trial.rss):
+            near = not kept or one.trial.rss < WITHIN * kept[0].trial.rss
+            if near and sum(other.is_pair == one.is_pair for other in kept) < most:
+                kept.append(one)
+        tried = []
+        for number, one in enumerate(kept, start=1):
+            names = named(one.trial, now)
+            self.tell(f"refitting {names} on all windows ({number} of {len(kept)})")
+            trial = self.extended(one.trial, (), now.windows.segments, target=target)
+            if trial is not None:
+                tried.append(Tried(trial, one.proposal, 0.0, 0.0))
+                target = min(target, target_of(trial))
+        return self.ranked(now, tried)
+
+    def ranked(self, now: Trial, tried: Sequence[Tried]) -> list[Tried]:
+        """Trials on the same windows by BIC, the best first, with their weights."""
+        if not tried:
+            return []
+        part = min((one.trial for one in tried), key=lambda trial: trial.rss).part
+        rises = np.array([one.trial.quality(part) - now.quality(part) for one in tried])
+        weights = np.exp(-0.5 * (rises - rises.min()))
+        weights = weights / weights.sum()
+        rows = [
+            replace(one, rise=float(rise), weight=float(weight))
+            for one, rise, weight in zip(tried, rises, weights, strict=True)
+        ]
+        return sorted(rows, key=lambda one: one.rise)
+
+    def extended(
+        self,
+        now: Trial,
+        added: Sequence[Added],
+        segments: Sequence[Segment],
+        steps: int = STEPS,
+        target: float = np.inf,
+    ) -> Trial | None:
+        """The model with more effects, refitted from where it stood; None if it does not run."""
+        effects = (*now.effects, *added)
+        return self.fitted(now, effects, segments, steps=steps, target=target)
+
+    def fitted(
+        self,
+        now: Trial,
+        effects: Sequence[Added],
+        segments: Sequence[Segment],
+        *,
+        fixed: Mapping[str, float] | None = None,
+        steps: int = STEPS,
+        target: float = np.inf,
+        good: float = 2.0,
+        creeps: float = CREEPS,
+        settling: int = SETTLING,
+    ) -> Trial | None:
+        """The model with other effects, refitted from where it stood; None if it does not run."""
+        known = now.windows.criterion.parameters
+        try:
+            return self.bench.fitted(
+                effects,
+                segments,
+                now.length,
+                now.values,
+                fixed=known if fixed is None else fixed,
+                steps=steps,
+                budget=SLOWER * steps * len(segments) * now.cost,
+                target=target,
+                good=good,
+                creeps=creeps,
+                settling=settling,
+            )
+        except (FitError, DiagramError) as error:
+            there = {str(effect) for effect in now.effects}
+            names = " and ".join(str(e) for e in effects if str(e) not in there)
+            words = f"{names} was not tried: {error.problems[0].what}"
+            if names and words not in self.words:
+                self.words.append(words)
+            return None
+
+
+def few_of(segments: Sequence[Segment]) -> list[int]:
+    """About 30 of the windows by number, the first ones of each series, as memories go on between
+    them."""
+    names = [segment.measured.name for segment in segments]
+    most = -(-FEW // len(set(names)))
+    return [n for n, name in enumerate(names) if names[:n].count(name) < most]
+
+
+def target_of(trial: Trial) -> float:
+    """The sum of squares that a rival must promise to reach, or be given up."""
+    return (WITHIN_NOISE if trial.s2 < AT_NOISE else WITHIN) * trial.rss
+
+
+def named(trial: Trial, now: Trial) -> str:
+    """The effects that a trial has more than another one."""
+    return " and ".join(str(e) for e in trial.effects[len(now.effects) :])

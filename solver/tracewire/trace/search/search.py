@@ -1,0 +1,222 @@
+"""The search: from the declared model to the effects that it lacks, one step after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from tracewire.errors import FitError
+from tracewire.residual import Section, Segment
+from tracewire.trace.candidates.candidates import Candidate, find_candidates
+from tracewire.trace.candidates.levels import levels_of
+from tracewire.trace.candidates.places import Place
+from tracewire.trace.check.repeated import comes_back, visible
+from tracewire.trace.check.strays import without_strays
+from tracewire.trace.options import TraceOptions
+from tracewire.trace.screen.screening import Screen, screened
+from tracewire.trace.screen.shortlist import LEAST_GAIN, MANY, SINGLES, shortlist
+from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.search.refits import FAR, FIRST_STEPS, Refits, Tried, named
+from tracewire.trace.trials.judge import Verdict, gate
+from tracewire.trace.trials.stretches import Stretches
+from tracewire.trace.trials.trial import Bench, Trial
+
+CHANCE = 1e-3
+LONGER = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """One step of the search: where it stood, what the screen promised, what was tried."""
+
+    before: Trial
+    screen: Screen
+    chance: float
+    tried: tuple[Tried, ...]
+    after: Trial | None
+    words: str
+
+
+@dataclass
+class Search:
+    """What the steps of a search share."""
+
+    bench: Bench
+    stretches: Stretches
+    places: Sequence[Place]
+    shortest: int
+    values: Mapping[str, float]
+    tell: Callable[[str], None]
+    words: list[str]
+    options: TraceOptions = field(default_factory=TraceOptions)
+    steps: list[Step] = field(default_factory=list)
+    first: Trial | None = None
+    best: Trial | None = None
+    returns: bool = True
+    """Whether a body comes back to where it was: else much looks the same."""
+
+    @property
+    def standing(self) -> tuple[Trial, Trial]:
+        """The declared fit, and the best that was found so far."""
+        if self.first is None or self.best is None:
+            raise AssertionError("the declared model comes first")
+        return self.first, self.best
+
+    @property
+    def refits(self) -> Refits:
+        """How proposals are refitted."""
+        return Refits(self.bench, self.tell, self.words)
+
+    @property
+    def free(self) -> tuple[str, ...]:
+        """The states that are free where a window begins: none where the motion is prescribed, so
+        that no place moves a state and each series begins as it says."""
+        moved = any(place.a for place in self.places) or not any(p.v for p in self.places)
+        begun = any(value is None for m in self.bench.measured for value in m.start.values())
+        return self.bench.states if moved or begun else ()
+
+    @property
+    def lengths(self) -> list[int]:
+        """The window lengths in samples, from the shortest to whole sections."""
+        longest = self.stretches.longest
+        if not self.free:
+            return [longest]
+        lengths = [min(self.shortest, longest)]
+        while lengths[-1] * LONGER < 0.75 * longest:
+            lengths.append(lengths[-1] * LONGER)
+        return lengths if lengths[-1] == longest else [*lengths, longest]
+
+    @property
+    def short(self) -> int:
+        """The second of the window lengths: short, and not many windows."""
+        return self.lengths[min(1, len(self.lengths) - 1)]
+
+    def windows(self, sections: Sequence[Section], length: int) -> list[Segment]:
+        """The windows of some sections."""
+        return self.stretches.windows(self.bench.declared, sections, length, self.free)
+
+    def declared(self) -> Trial:
+        """The diagram as it is, fitted to the shortest windows."""
+        self.tell("fitting the declared model")
+        length = self.lengths[0]
+        windows = self.windows(self.stretches.train, length)
+        trial = self.bench.fitted((), windows, length, self.values, steps=FIRST_STEPS)
+        if trial.s2 > FAR:  # a fit that few windows rule also ends where it looks flat
+            trial = without_strays(self.bench, trial, windows, FIRST_STEPS)
+        if trial.converged:
+            return trial
+        return self.bench.fitted((), trial.windows.segments, length, trial.values)
+
+    def is_part(self, trial: Trial) -> bool:
+        """Whether a trial leaves out windows that it does not bear."""
+        return len(trial.windows.segments) < len(self.windows(self.stretches.train, trial.length))
+
+    def completed(self, trial: Trial) -> Trial:
+        """A trial on all windows, where it bears those that were left out."""
+        if not self.is_part(trial):
+            return trial
+        windows = self.windows(self.stretches.train, trial.length)
+        try:
+            whole = self.bench.again(trial, windows, trial.length)
+        except FitError:
+            return trial
+        return whole if whole.s2 < FAR else trial
+
+    def climbed(
+        self, trial: Trial, sections: Sequence[Section] | None = None, far: float = FAR
+    ) -> Trial:
+        """A trial refitted on longer and longer windows, as far as its residual stays small."""
+        sections = self.stretches.train if sections is None else sections
+        longest = max(section.end - section.first for section in sections)
+        lengths = [n for n in self.lengths if trial.length < n < 0.75 * longest]
+        for length in [*lengths, *([longest] if trial.length < longest else [])]:
+            if trial.s2 > far:
+                break
+            self.tell(f"refitting on windows of {length} samples")
+            try:
+                longer = self.bench.again(trial, self.windows(sections, length), length)
+            except FitError:
+                break
+            if not longer.converged or longer.s2 > far:
+                break
+            trial = longer
+        return trial
+
+    def run(self, declared: Trial) -> None:
+        """One effect after the other, from the declared fit, until none passes the gate."""
+        self.first = self.best = declared if self.is_part(declared) else self.climbed(declared)
+        self._onward()
+
+    def _onward(self) -> None:
+        """Effects from the best model on, until none passes."""
+        while self.best is not None and len(self.best.effects) < self.options.effects:
+            found = self.step(self.best)
+            if found is None:
+                break
+            self.best = self.climbed(self.completed(found))
+            if self.best.s2 > FAR:  # the noise is out of reach: models are compared otherwise
+                break
+
+    def step(self, now: Trial) -> Trial | None:
+        """One more effect, or a pair: screened, refitted, ranked, and passed by the gate."""
+        self.tell("screening effects")
+        tangent = Tangent(now.diagram, now.windows, self.places, self.bench.rtol)
+        candidates = self.candidates(tangent, [effect.candidate for effect in now.effects])
+        screen = screened(tangent, now, candidates)
+        chance = screen.chance()
+        count = SINGLES if now.s2 < FAR else MANY
+        proposals = shortlist(screen, self.options.effects - len(now.effects), count)
+        if chance > CHANCE or not proposals:
+            words = f"nothing stands out (p = {chance:.2g})"
+            self.steps.append(Step(now, screen, chance, (), None, words))
+            return None
+        singles = [p for p in proposals if len(p.rows) == 1]
+        pairs = [p for p in proposals if len(p.rows) > 1]
+        tried = self.refits.tried(now, singles, pairs)
+        winner = None
+        for number in _worth_judging(tried, now):
+            verdict = self.judged(now, tried[number], tried)
+            tried[number] = replace(tried[number], remark=verdict.words)
+            if verdict.passed:
+                winner = tried[number]
+                break
+        words = "no effect passes" if winner is None else f"accepted: {named(winner.trial, now)}"
+        after = None if winner is None else winner.trial
+        self.steps.append(Step(now, screen, chance, tuple(tried), after, words))
+        return after
+
+    def candidates(self, tangent: Tangent, taken: Sequence[Candidate]) -> list[Candidate]:
+        """The effects at places that may be tried beside those that are there."""
+        levels = levels_of(tangent.trajectories)
+        found = find_candidates(self.bench.declared, self.places, levels, taken, self.bench.tones)
+        self.returns = comes_back(self.places, tangent.trajectories)
+        if not self.returns:
+            found = visible(self.bench.declared, found, tangent.trajectories)
+        only, without = self.options.only, self.options.without
+        return [
+            c
+            for c in found
+            if (not only or c.place.name in only)
+            and c.effect not in without
+            and str(c) not in without
+        ]
+
+    def judged(self, now: Trial, one: Tried, tried: Sequence[Tried]) -> Verdict:
+        """What the gate says of a trial, of a pair also beside each effect alone."""
+        length = one.trial.length
+        windows = self.windows(self.stretches.gate, length)
+        verdict = gate(self.bench, now, one.trial, windows, -one.rise)
+        mine = {str(e) for e in one.trial.effects}
+        for other in tried:
+            if verdict.passed and {str(e) for e in other.trial.effects} < mine:
+                fall = other.rise - one.rise
+                verdict = gate(self.bench, other.trial, one.trial, windows, fall)
+        return verdict
+
+
+def _worth_judging(tried: Sequence[Tried], now: Trial) -> list[int]:
+    """The two best, and the best single effect: where no pair is more than its parts."""
+    gains = [n for n, one in enumerate(tried) if one.rise < -2 * LEAST_GAIN]
+    gains = [n for n in gains if len(tried[n].trial.effects) > len(now.effects)]
+    singles = [n for n in gains if len(tried[n].trial.effects) == len(now.effects) + 1]
+    return sorted({*gains[:2], *singles[:1]})

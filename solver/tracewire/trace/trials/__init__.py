@@ -1,0 +1,1 @@
+"""Diagrams with some effects added, fitted to windows, and the numbers by which they are judged."""

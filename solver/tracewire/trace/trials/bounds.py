@@ -1,0 +1,128 @@
+"""Which fitted numbers sit on a bound: an answer of a fit that may not be what the data say."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from tracewire.residual import OWN, SENSED, Unknown
+from tracewire.trace.trials.trial import Added, Trial
+
+NEAR = 1e-3
+"""Of the range between two bounds, or of the size of the number: how near to one is on it."""
+Kind = Literal["parameter", "sensor", "coefficient", "shape"]
+
+
+@dataclass(frozen=True)
+class AtBound:
+    """A fitted number on one of its bounds, in SI.
+
+    name: of the unknown. kind: a declared parameter, a number of a sensor, or the coefficient or a
+    shape of an effect, which is then `effect`. absent: the bound is 0, and what the number scales
+    is not there.
+    """
+
+    name: str
+    kind: Kind
+    value: float
+    low: float
+    high: float
+    upper: bool
+    unit: str = ""
+    effect: str = ""
+
+    @property
+    def bound(self) -> float:
+        """The bound that it sits on."""
+        return self.high if self.upper else self.low
+
+    @property
+    def absent(self) -> bool:
+        """Whether it is a term that the fit has switched off, and no bound that is too narrow."""
+        return self.kind in ("parameter", "coefficient") and not self.upper and self.low == 0.0
+
+    @property
+    def words(self) -> str:
+        """What sits where, and what to do."""
+        known = f"{self.bound:.4g} {self.unit}".strip()
+        ends = f"`fit: [{self.low:.4g}, {self.high:.4g}]`"
+        short = self.name.rpartition(".")[2]
+        if self.kind == "shape":
+            side = "above" if self.upper else "below"
+            return (
+                f"the {short} of {self.effect} sits on its bound {known}: the record tells nothing "
+                f"{side} it; take a simpler law in its place, or a record that goes further"
+            )
+        if self.kind == "coefficient":
+            return (
+                f"the {short} of {self.effect} sits on its bound {known}: the fit does not use it"
+            )
+        if self.absent:
+            return f"'{self.name}' sits on its bound {known}: the fit does not use it"
+        if self.kind == "sensor":
+            kind, _, signal = self.name.partition(".")
+            what = f"the {kind} of the sensor of '{signal}'"
+        else:
+            what = f"'{self.name}'"
+        return (
+            f"{what} sits on its bound {known}: widen its {ends}, or an effect may be named that "
+            "only makes up for it"
+        )
+
+
+def at_bounds(trial: Trial) -> list[AtBound]:
+    """The fitted numbers of a trial that sit on a bound: declared parameters and sensors first.
+
+    A number is on a bound where it is nearer to it than a thousandth of their range and of its own
+    size; between positive bounds more than tenfold apart, of the range of their logarithms.
+    """
+    effects = {effect.unknown(name): effect for effect in trial.effects for name in effect.values}
+    found = []
+    for unknown in trial.windows.criterion.unknowns:
+        value = trial.windows.values[unknown.name]
+        upper = _near(unknown, value, upper=True)
+        if not upper and not _near(unknown, value, upper=False):
+            continue
+        effect = effects.get(unknown.name)
+        low, high = unknown.low, unknown.high
+        unit = _unit(trial, unknown.name, effect)
+        kind = _kind(unknown.name, effect)
+        label = "" if effect is None else str(effect)
+        found.append(AtBound(unknown.name, kind, value, low, high, upper, unit, label))
+    order = ("parameter", "sensor", "coefficient", "shape")
+    return sorted(found, key=lambda one: order.index(one.kind))
+
+
+def _near(unknown: Unknown, value: float, upper: bool) -> bool:
+    """Whether a value sits on the upper, or the lower, bound of its unknown."""
+    low, high = unknown.low, unknown.high
+    bound = high if upper else low
+    if not math.isfinite(bound):
+        return False
+    if low > 0 and math.isfinite(high) and high > 10 * low and value > 0:
+        return abs(math.log(value / bound)) <= NEAR * math.log(high / low)
+    size = max(abs(bound), unknown.scale)
+    return abs(value - bound) <= NEAR * min(size, high - low)
+
+
+def _kind(name: str, effect: Added | None) -> Kind:
+    if effect is not None:
+        return "coefficient" if name == effect.candidate.coefficient else "shape"
+    return "sensor" if name.startswith(SENSED) else "parameter"
+
+
+def _unit(trial: Trial, name: str, effect: Added | None) -> str:
+    """The unit in SI of a number; '' where it is not known."""
+    flat = trial.model.flat
+    if effect is not None:
+        place, of = effect.candidate.place, effect.candidate.scales.get(name.rpartition(".")[2], "")
+        if of in ("T", "dt"):
+            return "s"
+        return flat.units.get(place.v if of in ("V", "rates", "top") else place.q, "") if of else ""
+    if name.startswith(SENSED):
+        kind, _, signal = name.partition(".")
+        unit = flat.units.get(signal, "")
+        return {"offset": unit, "delay": "s", "gain": ""}.get(kind, "")
+    parameter = flat.parameters.get(name.partition(OWN)[0])
+    return parameter.unit if parameter is not None else ""

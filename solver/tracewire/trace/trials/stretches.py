@@ -1,0 +1,105 @@
+"""Which stretch of the data does what: fit (train), accept (gate), the final claim (validate)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tracewire.compile import Model
+from tracewire.errors import DataError, Problem
+from tracewire.residual import Measured, Section, Segment, cut
+
+BLOCKS, FEW_BLOCKS = 9, 3
+"""Parts of a series of which every third is the gate; a short series has fewer."""
+VALIDATED = 1 / 6
+SHORTEST = 16
+"""Samples of the shortest window."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stretches:
+    """Sections of series by use, and how they came about in words.
+
+    Train and gate are cut into windows; validation is run as a whole.
+    """
+
+    train: tuple[Section, ...]
+    gate: tuple[Section, ...]
+    validate: tuple[Section, ...]
+    words: tuple[str, ...]
+
+    def windows(
+        self, model: Model, sections: Sequence[Section], length: int, free: Sequence[str]
+    ) -> list[Segment]:
+        """The windows of some sections."""
+        return [window for section in sections for window in cut(model, section, length, free)]
+
+    @property
+    def longest(self) -> int:
+        """The samples of the longest train section."""
+        return max(section.end - section.first for section in self.train)
+
+    def whole(self) -> list[Section]:
+        """Each train series over all that is not held back for the final claim."""
+        ends: dict[str, Section] = {}
+        for section in (*self.train, *self.gate):
+            measured = section.measured
+            if measured.use == "train":
+                known = ends.get(measured.name)
+                end = max(section.end, known.end if known else 0)
+                ends[measured.name] = Section(measured, 0, end)
+        return list(ends.values())
+
+
+def share_out(measured: Sequence[Measured]) -> Stretches:
+    """The sections of the measured series.
+
+    Without a series for it, every third ninth of the train series is the gate (the last third where
+    a ninth is too short for a window), and the last sixth is held back for the final claim.
+
+    Raises DataError where a gate or validate series measures what no train series does.
+    """
+    by_use = {use: [m for m in measured if m.use == use] for use in ("train", "gate", "validate")}
+    fitted = {signal for m in by_use["train"] for signal in m.values}
+    for m in (*by_use["gate"], *by_use["validate"]):
+        for signal in sorted(set(m.values) - fitted):
+            what = f"the series '{m.name}' measures '{signal}', which no train series measures"
+            raise DataError([Problem(what, hint="Leave it out, or train with it.")])
+    train: list[Section] = []
+    gate = [Section(m, 0, len(m.t)) for m in by_use["gate"]]
+    validate = [Section(m, 0, len(m.t)) for m in by_use["validate"]]
+    words = []
+    for m in by_use["train"]:
+        end = len(m.t) if by_use["validate"] else int(len(m.t) * (1 - VALIDATED))
+        if not by_use["validate"]:
+            words.append(f"the last sixth of '{m.name}' is held back for the final claim")
+            validate.append(Section(m, end, len(m.t)))
+        if by_use["gate"]:
+            train.append(Section(m, 0, end))
+            continue
+        blocks = BLOCKS if end >= BLOCKS * SHORTEST else FEW_BLOCKS
+        part = "every third ninth" if blocks == BLOCKS else "the last third"
+        words.append(f"{part} of the rest of '{m.name}' is the gate")
+        edges = np.linspace(0, end, blocks + 1).astype(int).tolist()
+        for n in range(0, blocks, 3):
+            train.append(Section(m, edges[n], edges[n + 2]))
+            gate.append(Section(m, edges[n + 2], edges[n + 3]))
+    return Stretches(tuple(train), tuple(gate), tuple(validate), tuple(words))
+
+
+def shortest_window(stretches: Stretches) -> int:
+    """The samples of the shortest window: about a fifth of the slowest series' period, at least 16.
+
+    A series without a period, as of a falling body, has no phase that a long run could lose: it is
+    one window.
+    """
+    lengths = []
+    for section in stretches.train:
+        for values in section.measured.values.values():
+            y = values[section.first : section.end]
+            centred = y - np.mean(y)
+            crossings = int(np.sum(np.diff(np.signbit(centred))))
+            lengths.append(2 * len(y) / crossings if crossings > 1 else 5 * len(y))
+    return int(np.clip(np.median(lengths) / 5, SHORTEST, max(stretches.longest, SHORTEST)))

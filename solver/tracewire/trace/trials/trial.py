@@ -1,0 +1,352 @@
+"""A trial: a diagram with some effects added, fitted to windows; how trials are made."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import Model, compile
+from tracewire.diagram import Diagram
+from tracewire.errors import FitError
+from tracewire.residual import (
+    CREEPS,
+    SETTLING,
+    Criterion,
+    InputCovariance,
+    Measured,
+    Segment,
+    Unknown,
+    Windows,
+    begun_before,
+    descended,
+    eliminated,
+    free_unknowns,
+    opened,
+    projection,
+    sensor_unknowns,
+    settled,
+)
+from tracewire.solve import Limits, parameter_values
+from tracewire.trace.candidates.candidates import Candidate, extend, unknowns_of, without_defaults
+from tracewire.trace.candidates.tones import Sine, tones_of
+from tracewire.trace.trials.phases import best_phase
+from tracewire.trace.trials.statistics import bic, effective_part
+
+Vector = NDArray[np.float64]
+LEAST_STEPS, STEPS, EVENTS, SECONDS = 1500, 15, 5, 20.0
+"""What a run may cost: steps, steps a sample, events a sample, seconds. An effect that makes a
+model as slow as that is a failure, not a candidate to wait for."""
+
+
+@dataclass(frozen=True)
+class Added:
+    """An effect in a diagram: the candidate, and the values of its parameters by their names in
+    its block; a shape that is not among them keeps its default."""
+
+    candidate: Candidate
+    values: Mapping[str, float]
+
+    def __str__(self) -> str:
+        return str(self.candidate)
+
+    def unknown(self, parameter: str) -> str:
+        """The name of a parameter among the unknowns of a fit."""
+        candidate = self.candidate
+        own = parameter == candidate.parameter
+        return candidate.coefficient if own else f"{candidate.block}.{parameter}"
+
+    @property
+    def own_series(self) -> set[str]:
+        """The series in which a shape has a value of its own."""
+        return {key.partition("@")[2] for key in self.values if "@" in key}
+
+    def own_in(self, series: str) -> dict[str, float]:
+        """The values of its own that a series has, by path."""
+        ends = f"@{series}"
+        own = dict(self.candidate.own.get(series, {}))
+        own |= {key.removesuffix(ends): v for key, v in self.values.items() if key.endswith(ends)}
+        return {f"{self.candidate.block}.{name}": value for name, value in own.items()}
+
+    def having(self, name: str, value: float) -> Added:
+        """The effect with one more value."""
+        return replace(self, values={**self.values, name: value})
+
+    @property
+    def coefficient(self) -> float:
+        """The value of the coefficient."""
+        return self.values[self.candidate.parameter]
+
+    def at(self, named: Mapping[str, float]) -> Added:
+        """The effect with the values that the unknowns of a fit have."""
+        values = {n: named.get(self.unknown(n), value) for n, value in self.values.items()}
+        return replace(self, values=without_defaults(self.candidate, values))
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A diagram with effects, fitted to windows of about `length` samples."""
+
+    diagram: Diagram
+    model: Model
+    effects: tuple[Added, ...]
+    windows: Windows
+    length: int
+    converged: bool
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The fitted parameters and sensor values by name."""
+        return dict(self.windows.values)
+
+    @property
+    def rss(self) -> float:
+        """The sum of squared residuals in sigma."""
+        return self.windows.rss
+
+    @property
+    def count(self) -> int:
+        """The number of residuals."""
+        return sum(r.size for r in self.windows.residuals)
+
+    @property
+    def unknowns(self) -> int:
+        """How many numbers were fitted, start values included."""
+        return len(self.windows.values) + sum(len(s) for s in self.windows.starts)
+
+    @property
+    def freedom(self) -> int:
+        """Degrees of freedom of the residual."""
+        return max(self.count - self.unknowns, 1)
+
+    @property
+    def s2(self) -> float:
+        """RSS per degree of freedom; 1 is at the noise."""
+        return self.rss / self.freedom
+
+    @property
+    def cost(self) -> float:
+        """The steps that a run takes on average."""
+        criterion = self.windows.criterion
+        return criterion.steps / max(criterion.runs, 1)
+
+    @property
+    def part(self) -> float:
+        """N_eff/N of the residuals."""
+        return effective_part(self.windows.residuals)
+
+    @cached_property
+    def standard_errors(self) -> dict[str, float]:
+        """The standard error of each fitted value, with the residual's autocorrelation counted."""
+        windows = self.windows
+        views = [projection(windows, n) for n in range(len(windows.near))]
+        reduced, _ = eliminated(windows, views)
+        scales = np.array([u.scale for u in windows.criterion.unknowns])
+        information = (reduced * scales).T @ (reduced * scales)
+        covariance = np.linalg.pinv(information, rcond=1e-12) * max(self.s2, 1e-300) / self.part
+        spread = np.sqrt(np.maximum(np.diag(covariance), 0.0)) * scales
+        return dict(zip(windows.values, spread.tolist(), strict=True))
+
+    def quality(self, part: float) -> float:
+        """BIC, of residuals of which this part is independent."""
+        return bic(self.rss, self.count, part, self.unknowns)
+
+
+@dataclass(frozen=True, eq=False)
+class Bench:
+    """What the trials of a trace share: the declared model, series, their noise, tolerance, and
+    what the noise of their inputs does."""
+
+    declared: Model
+    measured: tuple[Measured, ...]
+    sigma: Mapping[str, float]
+    rtol: float
+    inputs: InputCovariance | None = None
+
+    @cached_property
+    def tones(self) -> dict[str, dict[str, Sine]]:
+        """The sine that each measured drive is, by drive and series."""
+        return tones_of(self.measured)
+
+    @property
+    def signals(self) -> tuple[str, ...]:
+        """What is measured."""
+        return tuple(dict.fromkeys(name for m in self.measured for name in m.values))
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """The states that are free where a window begins: those of the declared diagram."""
+        return self.declared.states
+
+    def compiled(self, diagram: Diagram) -> Model:
+        """A diagram as a model that records what is measured."""
+        return compile(diagram, record=self.signals, backend="quick")
+
+    def fitted(
+        self,
+        effects: Sequence[Added],
+        segments: Sequence[Segment],
+        length: int,
+        values: Mapping[str, float],
+        *,
+        fixed: Mapping[str, float] | None = None,
+        steps: int = 20,
+        budget: float = np.inf,
+        target: float = np.inf,
+        good: float = 2.0,
+        creeps: float = CREEPS,
+        settling: int = SETTLING,
+    ) -> Trial:
+        """The declared diagram with effects fitted to windows, from the values given.
+
+        `fixed` are parameters that are not fitted, `budget` the steps of all runs together. A fit
+        that is too slow to reach the sum of squares `target` ends early; windows whose squared
+        residual is at most `good` are not taken for astray; `creeps` and `settling` as in
+        `descended`. Raises FitError where the
+        model cannot be simulated, DiagramError where an effect cannot be wired.
+        """
+        added = [(effect.candidate, effect.values) for effect in effects]
+        diagram = extend(self.declared.diagram, added) if added else self.declared.diagram
+        model = self.compiled(diagram) if added else self.declared
+        fixed = fixed or {}
+        unknowns = [u for u in self._unknowns(effects, values) if u.name not in fixed]
+        segments = [_without_strange(segment, model) for segment in segments]
+        criterion = self._criterion(model, self.with_own(segments, effects), unknowns, fixed)
+        criterion.budget = budget
+        windows = opened(criterion, good)
+        _refuse_failed(criterion, windows)
+        windows, converged = descended(windows, steps, target, creeps, settling)
+        _refuse_failed(criterion, windows)
+        now = tuple(effect.at(windows.values) for effect in effects)
+        return Trial(diagram, model, now, windows, length, converged)
+
+    def again(self, trial: Trial, segments: Sequence[Segment], length: int) -> Trial:
+        """A trial fitted to other windows, from where it stands."""
+        fixed = trial.windows.criterion.parameters
+        effects = self.met(trial, segments)
+        good = trial.windows.good
+        return self.fitted(effects, segments, length, trial.values, fixed=fixed, good=good)
+
+    def on(self, trial: Trial, segments: Sequence[Segment]) -> list[Vector]:
+        """The residuals in sigma of a trial on other windows, where only starts are fitted."""
+        return self.settled(trial, segments).residuals
+
+    def settled(self, trial: Trial, segments: Sequence[Segment]) -> Windows:
+        """A trial on other windows, where only starts are fitted."""
+        return settled(opened(self.criterion(trial, segments)))
+
+    def criterion(self, trial: Trial, segments: Sequence[Segment]) -> Criterion:
+        """The criterion of a trial on other windows, with its values fixed."""
+        segments = self.with_own(segments, self.met(trial, segments))
+        return self._criterion(trial.model, segments, [], self.all_values(trial))
+
+    def warm(
+        self, trial: Trial, segments: Sequence[Segment], values: Mapping[str, float]
+    ) -> Criterion:
+        """The criterion of a trial on other windows, with its unknowns free from `values`."""
+        unknowns = [replace(u, value=values[u.name]) for u in trial.windows.criterion.unknowns]
+        fixed = trial.windows.criterion.parameters
+        return self._criterion(trial.model, segments, unknowns, fixed)
+
+    def at(
+        self, trial: Trial, segments: Sequence[Segment], values: Mapping[str, float]
+    ) -> Criterion:
+        """The criterion of a trial on other windows, with its unknowns fixed at `values`."""
+        fixed = {**trial.windows.criterion.parameters, **values}
+        return self._criterion(trial.model, segments, [], fixed)
+
+    def met(self, trial: Trial, segments: Sequence[Segment]) -> tuple[Added, ...]:
+        """The effects of a trial with what each series of other windows has of its own: a series
+        that the trial did not see gets the phase that fits it best."""
+        effects = list(trial.effects)
+        fixed = self.all_values(trial)
+        for number, effect in enumerate(effects):
+            seen = effect.own_series
+            new: dict[str, list[Segment]] = {}
+            for segment in segments if seen else ():
+                name = segment.measured.series or segment.measured.name
+                if name not in seen:
+                    new.setdefault(name, []).append(segment)
+            for (name, mine), shape in product(new.items(), effect.candidate.each):
+                key = f"{shape}@{name}"
+
+                def criterion_at(phase: float, number: int = number, key: str = key,
+                                 mine: list[Segment] = mine) -> Criterion:  # fmt: skip
+                    tried = effects[number].having(key, phase)
+                    unknown = Unknown(tried.unknown(key), phase)
+                    those = self.with_own(mine, [*effects[:number], tried, *effects[number + 1 :]])
+                    return self._criterion(trial.model, those, [unknown], fixed)
+
+                effects[number] = effects[number].having(key, best_phase(criterion_at))
+        return tuple(effects)
+
+    def with_own(self, segments: Sequence[Segment], effects: Sequence[Added]) -> list[Segment]:
+        """Windows whose series have what effects need of each series, and nothing of others: the
+        tone of its drive, a phase of its own."""
+        declared = {measured.name: measured.parameters for measured in self.measured}
+        known: dict[int, Measured] = {}
+        for segment in segments:
+            measured = segment.measured
+            own = dict(declared.get(measured.name, {}))
+            for effect in effects:
+                own |= effect.own_in(measured.series or measured.name)
+            if own != measured.parameters:
+                known.setdefault(id(measured), replace(measured, parameters=own))
+        return [replace(s, measured=known.get(id(s.measured), s.measured)) for s in segments]
+
+    def all_values(self, trial: Trial) -> dict[str, float]:
+        """The values of all that was fitted or fixed in a trial."""
+        return {**trial.windows.criterion.parameters, **trial.values}
+
+    def _criterion(
+        self,
+        model: Model,
+        segments: Sequence[Segment],
+        unknowns: Sequence[Unknown],
+        fixed: Mapping[str, float],
+    ) -> Criterion:
+        """The sum of squares in sigma, which is what a likelihood needs."""
+        values = {**fixed, **{u.name: u.value for u in unknowns}}
+        segments = [begun_before(model, segment, values) for segment in segments]
+        longest = max(int(np.sum(s.measured.t[: s.rows[-1] + 1] >= s.begin)) for s in segments)
+        return Criterion(
+            model,
+            segments,
+            unknowns,
+            fixed,
+            self.rtol,
+            self.sigma,
+            weighting="sum",
+            chained=True,
+            covariance=self.inputs.factor if self.inputs and self.inputs.series else None,
+            limits=Limits(LEAST_STEPS + STEPS * longest, SECONDS, EVENTS * (longest + 10)),
+        )
+
+    def _unknowns(self, effects: Sequence[Added], values: Mapping[str, float]) -> list[Unknown]:
+        given = parameter_values(self.declared, {})
+        names = [n for n, p in self.declared.flat.parameters.items() if p.fit is not None]
+        free = free_unknowns(self.declared, names, given) if names else []
+        free += sensor_unknowns([m for m in self.measured if m.use == "train"])
+        free = [replace(u, value=values.get(u.name, u.value)) for u in free]
+        known = {u.name for u in free}
+        for effect in effects:
+            own = unknowns_of(effect.candidate, effect.values)
+            free += [u for u in own if u.name not in known]
+        return [replace(u, value=min(max(u.value, u.low), u.high)) for u in free]
+
+
+def _refuse_failed(criterion: Criterion, windows: Windows) -> None:
+    """Raises FitError where a window does not run."""
+    failed = any(not near.ran for near in windows.near)
+    if failed and criterion.failure is not None:
+        raise FitError(criterion.failure.problems)
+
+
+def _without_strange(segment: Segment, model: Model) -> Segment:
+    """The segment without starts of states that the model has not: another effect's memory."""
+    start = {name: value for name, value in segment.start.items() if name in model.states}
+    return segment if len(start) == len(segment.start) else replace(segment, start=start)

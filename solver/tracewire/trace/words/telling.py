@@ -1,0 +1,300 @@
+"""What a trace found, told in plain words that need no statistics."""
+
+from __future__ import annotations
+
+import math
+
+from tracewire.trace.found import Found, FoundEffect, Tie
+from tracewire.trace.options import TraceOptions
+from tracewire.trace.words.experiment_words import experiment_words
+from tracewire.trace.words.words import (
+    MOST_TOLD,
+    SENSORS,
+    both_of,
+    coefficient_of,
+    common_powers,
+    error_words,
+    few_of,
+    in_sigma,
+    moved_words,
+    percent,
+    place_words,
+    remainder_numbers,
+    share_words,
+    stood_in,
+    unit_of_power,
+    unseen_errors,
+    value_words,
+    variables_words,
+)
+
+LITTLE = 0.5
+"""The share of the excess below which the variables found explain little of it."""
+RANDOM = (
+    "a random disturbance of the motion (process noise), or something that is not measured, looks "
+    "like that"
+)
+FAR = 2.0
+"""Times the noise from which on a null needs a word about what the noise is not."""
+
+
+def paragraph_of(found: Found) -> str:
+    """The headline, then what was fitted, what the effects are, what is left, what cannot be told
+    apart, and what declared parameters had absorbed.
+
+    It reads every field of `found` but `paragraph`. σ is the noise of a sensor.
+    """
+    cut = "The trace was interrupted: this is the best result by then." if found.interrupted else ""
+    return " ".join(part for part in (cut, headline_of(found), *details_of(found)) if part)
+
+
+def details_of(found: Found) -> tuple[str, ...]:
+    """What stands behind the headline, in sentences."""
+    details = {"null": _null, "effect": _effect, "unexplained": _unexplained}[found.verdict]
+    parts = [_declared(found), *details(found), _dropped(found), limits_words(found.options)]
+    return tuple(part for part in parts if part)
+
+
+def headline_of(found: Found) -> str:
+    """One sentence: what is missing where, how much of the excess error it explains, and the error
+    on unseen data before and after, in the unit of the signal."""
+    heads = {"null": _nothing, "effect": _lacks, "unexplained": _open}
+    return heads[found.verdict](found)
+
+
+def limits_words(options: TraceOptions) -> str:
+    """To what a search was limited, in a sentence; '' where it was not."""
+    parts = []
+    if options.only:
+        places = both_of([f"'{place}'" for place in options.only])
+        parts.append(f"effects were tried only at {places}")
+    if options.without:
+        names = both_of([f"'{name}'" for name in options.without])
+        parts.append(f"{names} {_was(options.without)} not tried")
+    if options.effects != TraceOptions.effects:
+        parts.append(
+            f"at most {options.effects} {_plural('effect', options.effects)} could be added"
+        )
+    if options.horizon is not None:
+        parts.append(f"models were compared over {options.horizon:g} s")
+    if math.isfinite(options.budget):
+        parts.append(f"the search had a budget of {options.budget:g} s")
+    return f"Limits of this search: {both_of(parts)}." if parts else ""
+
+
+def tie_words(effect: FoundEffect, tie: Tie) -> str:
+    """A tie: its name, its place, and how many numbers more or fewer it needs."""
+    more = len(tie.params) - len(effect.params)
+    count = abs(more)
+    kind = "more" if more > 0 else "fewer"
+    text = f"'{tie.name}' {place_words(tie.place)}"
+    if tie.params and more:
+        text += f" ({count} fitted {_plural('number', count)} {kind})"
+    return text
+
+
+def ties_words(effect: FoundEffect) -> list[str]:
+    """The ties of an effect, each once."""
+    return list(dict.fromkeys(tie_words(effect, tie) for tie in effect.ties))
+
+
+# --- the headline -------------------------------------------------------------------------------
+
+
+def _lacks(found: Found) -> str:
+    one = len(found.effects) == 1
+    text = f"The diagram lacks {both_of([_named(found, effect) for effect in found.effects])}"
+    parts = []
+    if found.explained is not None:
+        who = "it explains" if one else "together they explain"
+        parts.append(f"{who} {share_words(found.explained)} of the excess error")
+    errors = error_words(found, unseen_errors(found))
+    if errors:
+        goes = _goes(found)
+        parts.append(f"on unseen data the error of free runs {goes} {both_of(errors)}")
+    return f"{text}; {', and '.join(parts)}." if parts else f"{text}."
+
+
+def _goes(found: Found) -> str:
+    errors = unseen_errors(found)
+    before, after = in_sigma(errors, "before"), in_sigma(errors, "after")
+    if not (math.isfinite(before) and math.isfinite(after)):
+        return "goes"
+    return "falls" if after < before else "rises"
+
+
+def _named(found: Found, effect: FoundEffect) -> str:
+    """An effect at its place, with its coefficient alone: the table has the others."""
+    where = place_words(effect.place)
+    what = SENSORS.get(effect.name, f"'{effect.name}'")
+    name = (
+        effect.coefficient if effect.coefficient in effect.params else next(iter(effect.params), "")
+    )
+    return f"{what} {where}" + (f", {value_words(found, effect, name)}" if name else "")
+
+
+def _nothing(found: Found) -> str:
+    if found.interrupted:
+        return "No missing effect was found by then, but not all effects were tried."
+    errors = unseen_errors(found)
+    parts = error_words(found, errors, both=False)
+    text = "Nothing is missing that these data could show"
+    if not parts:
+        return f"{text}."
+    noise = f" ({in_sigma(errors, 'after'):.3g} σ)" if in_sigma(errors, "after") > 0 else ""
+    return f"{text}; on unseen data a free run is wrong by {both_of(parts)}{noise}."
+
+
+def _open(found: Found) -> str:
+    missing = found.missing
+    none = (
+        "no effect was accepted by then"
+        if found.interrupted
+        else "no effect of the library explains it"
+    )
+    if missing is None:
+        where = "Something is missing, and its place is not known"
+        return f"{where}; {none}{_wrong_by(found)}."
+    where, share = place_words(missing.place), percent(missing.share)
+    variables = variables_words(found, missing.place, missing.variables)
+    return (
+        f"Something is missing {where} that depends on {variables} ({share} of the excess error); "
+        f"{none}{_wrong_by(found)}."
+    )
+
+
+def _wrong_by(found: Found) -> str:
+    """How wrong the declared diagram is on unseen data, where nothing better is known."""
+    parts = [] if found.effects else error_words(found, unseen_errors(found), both=False)
+    return f", and on unseen data a free run is wrong by {both_of(parts)}" if parts else ""
+
+
+# --- the details --------------------------------------------------------------------------------
+
+
+def _declared(found: Found) -> str:
+    series = list(dict.fromkeys(e.series for e in found.errors if e.use == "train"))
+    names = few_of([f"'{name}'" for name in series])
+    to = f" to {names}" if series else ""
+    title = found.original.title or found.original.file.name
+    return (
+        f"'{title}' was first fitted{to} as it stands: it leaves a residual of "
+        f"{found.s2_before**0.5:.3g} σ (rms on the fitted windows; σ is the noise of the sensor)."
+    )
+
+
+def _null(found: Found) -> list[str]:
+    parts = []
+    if not found.interrupted:
+        parts.append("No effect of the library reduces it on unseen data.")
+        if found.s2_before**0.5 > FAR:
+            parts.append(
+                "It is more than the noise that was assumed, and follows nothing that was tried: "
+                f"{RANDOM}, and so does a noise that is larger than assumed."
+            )
+    if found.power:
+        few = [
+            f"{p.name} {place_words(p.place)} from {coefficient_of(p)} = "
+            f"{p.smallest:.3g} {unit_of_power(found, p)}".rstrip()
+            for p in common_powers(found)[:MOST_TOLD]
+        ]
+        parts.append(f"These data would have shown, for example, {both_of(few)} on.")
+    return parts
+
+
+def _effect(found: Found) -> list[str]:
+    parts = [_meaning(found, effect) for effect in found.effects]
+    parts.append(_left(found))
+    if found.explained is not None:
+        parts.append(
+            "The excess error is what the declared model leaves above the best smooth force that "
+            "the data allow."
+        )
+    if not unseen_errors(found):
+        parts.append("No data were kept back for a final test.")
+    return [*parts, *_remains(found), *_ties(found), _moved(found)]
+
+
+def _meaning(found: Found, effect: FoundEffect) -> str:
+    if effect.name not in found.diagram.library or effect.name in SENSORS:
+        return ""
+    doc = found.diagram.library[effect.name].doc.rstrip(".")
+    return f"'{effect.name}': {doc[:1].lower()}{doc[1:]}." if doc else ""
+
+
+def _left(found: Found) -> str:
+    what = "With it" if len(found.effects) == 1 else "With them"
+    left = f"{found.s2_after**0.5:.3g} σ"
+    return f"{what} in the diagram, and all free parameters refitted, {left} are left."
+
+
+def _remains(found: Found) -> list[str]:
+    parts = []
+    for left in found.remainder[:MOST_TOLD]:
+        size, _, unit = remainder_numbers(found, left)
+        size = f"{size} {unit}".rstrip()
+        share = f"{left.in_sigma:.3g} σ, {percent(left.share)} of the error before"
+        parts.append(f"{size} of {left.signal} ({share})")
+    if not parts:
+        return []
+    text = f"On data that no fit saw, these residuals remain: {both_of(parts)}."
+    most = max(found.remainder_depends, key=lambda d: d.share, default=None)
+    if most is not None and most.share > 0:
+        variables = variables_words(found, most.place, most.variables)
+        text += (
+            f" A smooth function of {variables} {place_words(most.place)} explains "
+            f"{percent(most.share)} of that."
+        )
+    return [text]
+
+
+def _unexplained(found: Found) -> list[str]:
+    parts = []
+    if found.missing is None:
+        parts.append(f"The residual depends on nothing that was tried: {RANDOM}.")
+    elif found.missing.share < LITTLE:
+        parts.append(f"The rest depends on no variable that was tried: {RANDOM}.")
+    if found.effects:
+        names = both_of([_named(found, effect) for effect in found.effects])
+        parts.append(f"The best approximation is {names}. {_left(found)} That is not enough.")
+        if found.explained is not None:
+            parts.append(f"It explains {share_words(found.explained)} of the excess error.")
+        errors = error_words(found, unseen_errors(found))
+        if errors:
+            goes = _goes(found)
+            parts.append(f"On unseen data the error of free runs {goes} {both_of(errors)}.")
+        parts += _remains(found)
+    return [*parts, _moved(found)]
+
+
+def _ties(found: Found) -> list[str]:
+    parts = []
+    for effect in found.effects:
+        if effect.ties:
+            names = few_of(ties_words(effect), "or")
+            parts.append(f"These data cannot tell '{effect.name}' from {names}.")
+    return parts + [experiment_words(found, experiment) for experiment in found.experiments]
+
+
+def _moved(found: Found) -> str:
+    large = [m for m in found.moved if stood_in(m) and m.name not in found.dropped]
+    if not large or not found.effects:
+        return ""
+    shifts = few_of([moved_words(m) for m in large])
+    who = "A fitted parameter" if len(large) == 1 else "Fitted parameters"
+    return f"{who} had absorbed part of the missing effect: {shifts}."
+
+
+def _dropped(found: Found) -> str:
+    if not found.dropped:
+        return ""
+    names = both_of([f"'{name}'" for name in found.dropped])
+    return f"The fit sets {names} to zero: the data do not need what the diagram declares there."
+
+
+def _was(texts: tuple[str, ...]) -> str:
+    return "was" if len(texts) == 1 else "were"
+
+
+def _plural(word: str, count: int) -> str:
+    return word if count == 1 else f"{word}s"

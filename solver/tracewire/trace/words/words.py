@@ -1,0 +1,294 @@
+"""Numbers, units, places and series in words, for all that tells of a trace."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Sequence
+
+from tracewire.trace.candidates.effect_units import signal_of, unit_at, unit_of_effect
+from tracewire.trace.found import (
+    ChannelError,
+    Explained,
+    Found,
+    FoundEffect,
+    Moved,
+    Power,
+    Remainder,
+)
+
+SENSORS = {
+    "sensor_offset": "an offset",
+    "sensor_gain": "a gain that is not 1",
+    "sensor_delay": "a delay",
+    "sensor_quad": "a bent scale",
+    "sensor_drift": "a drift",
+}
+VARIABLES = {
+    "q": "the coordinate",
+    "v": "the rate",
+    "a": "the acceleration",
+    "t": "the time",
+    "u": "the drive",
+    "y": "the signal",
+}
+COMMON = ("coulomb", "viscous", "quad_drag", "stiffness", "cubic_stiffness", "sensor_offset")
+MOST_TOLD = 3
+TINY = 1e-12
+NEARLY_ALL = 0.995
+"""From here on a share would round to 100 %, which it is not."""
+WORTH_TELLING = 0.01
+"""A parameter that moved by less than this part of itself is not worth a word."""
+NOTHING = 1e-6
+"""An error of less than this part of the noise is 0."""
+MOST_DIGITS = 10
+PLAIN = 1e-4, 1e6
+"""Numbers between these are written without an exponent."""
+
+
+# --- numbers ------------------------------------------------------------------------------------
+
+
+def percent(part: float) -> str:
+    """A part of a whole: `62 %`, `> 99.5 %` where that is not all; '' where it is not known."""
+    if not math.isfinite(part):
+        return ""
+    if NEARLY_ALL <= part < 1:
+        return f"> {100 * NEARLY_ALL:g} %"
+    if 0 < part < 1 - NEARLY_ALL:
+        return f"< {100 * (1 - NEARLY_ALL):.1g} %"
+    return f"{100 * part:.0f} %"
+
+
+def chance_words(chance: float) -> str:
+    """A probability: `p = 0.4`, `p < 1e-12`."""
+    return f"p < {TINY:g}" if chance < TINY else f"p = {chance:.2g}"
+
+
+def to_its_interval(value: float, low: float, high: float) -> tuple[str, str, str]:
+    """A value and the ends of its interval, with so many digits that the three differ.
+
+    Half of the interval is written with two digits.
+    """
+    half = (high - low) / 2
+    if not (math.isfinite(half) and half > 0):
+        return f"{value:.5g}", f"{low:.5g}", f"{high:.5g}"
+    last = math.floor(math.log10(half)) - 1
+    return _rounded(value, last), _rounded(low, last), _rounded(high, last)
+
+
+def _rounded(value: float, last: int) -> str:
+    """A number up to the digit 10^last."""
+    rounded = round(value / 10.0**last) * 10.0**last
+    if not rounded:
+        return "0"
+    if PLAIN[0] <= abs(rounded) < PLAIN[1]:
+        return f"{rounded:.{min(max(-last, 0), MOST_DIGITS)}f}"
+    digits = math.floor(math.log10(abs(rounded))) - last
+    return f"{rounded:.{min(max(digits, 0), MOST_DIGITS)}e}"
+
+
+def value_words(found: Found, effect: FoundEffect, name: str) -> str:
+    """A parameter of an effect with its unit and 95 % interval: `level = 0.800 N m (...)`."""
+    unit = unit_of(found, effect, name)
+    unit = f" {unit}" if unit else ""
+    low, high = effect.intervals.get(name, (math.nan, math.nan))
+    if not (math.isfinite(low) and math.isfinite(high) and low < high):
+        return f"{name} = {effect.params[name]:.4g}{unit}"
+    value, low_text, high_text = to_its_interval(effect.params[name], low, high)
+    return f"{name} = {value}{unit} (95 %: {low_text} to {high_text})"
+
+
+def share_words(explained: Explained) -> str:
+    """The explained share with its interval: `98 % (95 % interval: 96 to 99 %)`."""
+    low, high = (f"{100 * end:.0f}" for end in (explained.low, explained.high))
+    if low == high:
+        low, high = (f"{100 * end:.2f}" for end in (explained.low, explained.high))
+    return f"{percent(explained.share)} (95 % interval: {low} to {high} %)"
+
+
+# --- units --------------------------------------------------------------------------------------
+
+
+def unit_of(found: Found, effect: FoundEffect, name: str) -> str:
+    """The SI unit of a parameter of an effect; '' where it has none, or where it is not known."""
+    if not effect.block:
+        return found.units.get(f"{name}.{effect.place.partition('.')[2]}", "")
+    own = found.units.get(f"{effect.block}.{name}", "")
+    return own or unit_of_effect(found, effect.name, effect.place, name)
+
+
+def unit_of_place(found: Found, place: str) -> str:
+    """The SI unit of what is missing at a place; '' where it is not known."""
+    return unit_at(found, place)
+
+
+def known_units(found: Found) -> dict[str, str]:
+    """The units of parameters of effects, by `block.parameter`, and of places, as far as known."""
+    units = {f"{e.block}.{name}": unit_of(found, e, name)
+             for e in found.effects if e.block for name in e.params}  # fmt: skip
+    units |= {p.coefficient: unit_of_power(found, p) for p in found.power}
+    places = {*(e.place for e in found.effects), *(d.place for d in found.dependences)}
+    units |= {place: unit_of_place(found, place) for place in places}
+    return {name: unit for name, unit in units.items() if unit}
+
+
+def users_unit(found: Found, signal: str) -> tuple[str, float]:
+    """The unit in which the user's files have a signal, and its factor to SI: `deg`, pi/180.
+
+    Where the series differ, or the diagram names no unit, it is that of SI.
+    """
+    if signal in found.users_units:
+        return found.users_units[signal]
+    channels = [
+        s.channels[signal] for s in found.original.measured.values() if signal in s.channels
+    ]
+    units = {(c.declared, c.factor) for c in channels if c.declared}
+    if len(units) == 1 and all(c.declared for c in channels):
+        ((unit, factor),) = units
+        return str(unit), factor
+    return found.units.get(signal, ""), 1.0
+
+
+# --- errors -------------------------------------------------------------------------------------
+
+
+def unseen_errors(found: Found) -> tuple[ChannelError, ...]:
+    """The errors of free runs on data that played no part; () where there were no such data."""
+    return tuple(e for e in found.errors if e.kind == "free run" and e.use == "validate")
+
+
+def in_sigma(errors: Iterable[ChannelError], when: str) -> float:
+    """The root mean square of errors in units of each sensor's noise; nan where there is none.
+
+    `when` is before or after.
+    """
+    squares = [(getattr(e, when) / e.sigma) ** 2 for e in errors if e.sigma > 0]
+    mean = math.sqrt(sum(squares) / len(squares)) if squares else math.nan
+    return 0.0 if mean < NOTHING else mean
+
+
+def error_words(found: Found, errors: Sequence[ChannelError], both: bool = True) -> list[str]:
+    """The error of each signal over all series in its unit: `for theta from 0.32 to 0.06 deg`.
+
+    Without `both` the error after alone: `0.06 deg in theta`.
+    """
+    parts = []
+    for signal in list(dict.fromkeys(e.signal for e in errors))[:MOST_TOLD]:
+        own = [e for e in errors if e.signal == signal]
+        unit, factor = users_unit(found, signal)
+        before, after = (
+            math.sqrt(sum(getattr(e, when) ** 2 for e in own) / len(own)) / factor
+            for when in ("before", "after")
+        )
+        if not math.isfinite(after):
+            continue
+        if after < NOTHING * sum(e.sigma for e in own) / len(own) / factor:
+            after = 0.0
+        unit = f" {unit}" if unit else ""
+        old = f"{before:.3g}" if math.isfinite(before) else "no run at all"
+        new = f"{after:.3g}{unit}"
+        parts.append(f"for {signal} from {old} to {new}" if both else f"{new} in {signal}")
+    return parts
+
+
+def remainder_numbers(found: Found, left: Remainder) -> tuple[str, str, str]:
+    """What is left of a signal, and its floor ('' where none is known), in the user's unit."""
+    unit, factor = users_unit(found, left.signal)
+    if factor == 1.0:
+        unit = left.unit or unit
+    floor = f"{left.floor / factor:.3g}" if math.isfinite(left.floor) else ""
+    return f"{left.rms / factor:.3g}", floor, unit
+
+
+def stood_in(moved: Moved) -> bool:
+    """Whether a declared parameter had absorbed the missing effect: it moved by more than its
+    uncertainty, and by more than a hundredth of itself."""
+    change = abs(moved.after - moved.before)
+    return moved.significant and change > WORTH_TELLING * max(abs(moved.before), abs(moved.after))
+
+
+def moved_words(moved: Moved) -> str:
+    """How a declared parameter moved: `'c' moves from 0.3 to 0.051 N m s/rad`, and by
+    how many standard errors where these are few."""
+    unit = f" {moved.unit}" if moved.unit else ""
+    text = f"'{moved.name}' moves from {moved.before:.4g} to {moved.after:.4g}{unit}"
+    if moved.error > 0:
+        errors = abs(moved.after - moved.before) / moved.error
+        text += f" ({errors:.2g} standard errors)" if errors < 100 else ""
+    return text
+
+
+# --- names --------------------------------------------------------------------------------------
+
+
+def place_words(place: str) -> str:
+    """A place as a person would call it."""
+    kind, _, signal = place.partition(".")
+    words = {"sensor": f"in the sensor of '{signal}'", "drive": f"in the drive '{signal}'"}
+    return words.get(kind, "") if signal and kind in words else f"at the sum '{place}'"
+
+
+def variables_words(found: Found, place: str, variables: Sequence[str]) -> str:
+    """Variables at a place as a person would call them: `the rate omega`."""
+    known = [(VARIABLES.get(name, ""), signal_of(found, place, name)) for name in variables]
+    return both_of([f"{kind} {name}".strip() for kind, name in known])
+
+
+def common_powers(found: Found) -> list[Power]:
+    """What these data would have shown, the effects first that a reader is most likely to know."""
+    order = {name: n for n, name in enumerate(COMMON)}
+    return sorted(found.power, key=lambda p: order.get(p.name, len(order)))
+
+
+def coefficient_of(power: Power) -> str:
+    """The coefficient of an effect as its block, or the sensor, calls it."""
+    first, _, last = power.coefficient.partition(".")
+    return first if power.name in SENSORS or not last else last
+
+
+def unit_of_power(found: Found, power: Power) -> str:
+    """The SI unit of the smallest coefficient; '' where it has none, or where it is not known."""
+    if found.units.get(power.coefficient):
+        return found.units[power.coefficient]
+    if power.name in SENSORS:
+        signal = power.place.partition(".")[2]
+        unit = found.units.get(signal, "")
+        return {
+            "offset": unit,
+            "delay": "s",
+            "drift": f"{unit}/s" if unit else "",
+            "quad": f"1/({unit})" if "/" in unit or " " in unit else f"1/{unit}" if unit else "",
+        }.get(coefficient_of(power), "")
+    return unit_of_effect(found, power.name, power.place, coefficient_of(power))
+
+
+def few_of(texts: Sequence[str], word: str = "and", most: int = MOST_TOLD) -> str:
+    """The first of some texts, and how many more there are."""
+    more = len(texts) - most
+    return both_of([*texts[:most], f"{more} more"] if more > 0 else texts, word)
+
+
+def both_of(texts: Sequence[str], word: str = "and") -> str:
+    """Texts as a list in a sentence: `a, b and c`."""
+    return f" {word} ".join(part for part in (", ".join(texts[:-1]), *texts[-1:]) if part)
+
+
+def told_once(texts: Sequence[str], series: Sequence[str]) -> tuple[str, ...]:
+    """Remarks, each of which is told once with the list of series that it is true of.
+
+    A remark names a series in quotes, or at its begin before a colon.
+    """
+    names = sorted(series, key=len, reverse=True)
+    ways = [re.compile(rf"'{re.escape(name)}'|^{re.escape(name)}(?=: )") for name in names]
+    groups: dict[str, list[str]] = {}
+    for text in texts:
+        hit = next(((n, w) for n, w in zip(names, ways, strict=True) if w.search(text)), None)
+        key = hit[1].sub("\0", text) if hit else text
+        quoted = bool(hit) and f"'{hit[0]}'" in text if hit else False
+        groups.setdefault(key, [])
+        if hit:
+            groups[key].append(f"'{hit[0]}'" if quoted else hit[0])
+    return tuple(
+        key.replace("\0", both_of(list(dict.fromkeys(found)))) for key, found in groups.items()
+    )

@@ -1,0 +1,154 @@
+"""Windows with free starts: fits of them, against dense least squares and exact solutions."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from oracles.oscillator import DIAGRAM, NOISE, bench_of, exact, model_of, record, trial_of
+from scipy.optimize import least_squares
+from tracewire.compile import compile
+from tracewire.diagram import read_text
+from tracewire.residual import Criterion, Measured, Segment
+from tracewire.residual.levenberg_marquardt import descended
+from tracewire.residual.settling import settled
+from tracewire.residual.windows import Section, cut, eliminated, opened, projection
+
+BALL = """\
+span: [0, 2]
+parameters: {stiff: 1e6}
+blocks:
+  x: {type: integrator, of: v, start: 0.2}
+  v: {type: integrator, of: force}
+  weight: {type: constant, value: -9.81}
+  ground: {type: expression, formula: "stiff*max(-x, 0)"}
+  force: {type: sum, of: [weight, ground]}
+"""
+
+
+def test_windows_tile_a_section_and_begin_at_the_last_sample_before() -> None:
+    m = record()
+    windows = cut(model_of(), Section(m, 100, 300), 45, ("x", "v"))
+    rows = np.concatenate([window.rows for window in windows])
+    np.testing.assert_array_equal(rows, np.arange(100, 300))
+    assert [window.begin for window in windows] == [m.t[w.rows[0] - 1] for w in windows]
+    assert {len(window.rows) for window in windows} == {50}
+    assert all(window.free == ("x", "v") for window in windows)
+
+
+def test_the_first_window_begins_as_the_series_says() -> None:
+    m = Measured("drop", "train", *_drop(), start={"x": 1.0, "v": None})
+    first, second = cut(model_of(), Section(m, 0, 100), 50, ("x", "v"))
+    assert first.begin == m.t[0] and first.free == ("v",) and first.start["x"] == 1.0
+    assert second.free == ("x", "v")
+
+
+def _drop() -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    t = np.arange(0, 3, 0.03)
+    return t, {"x": exact(t, 25.0, 0.2, (1.0, 0.0))}
+
+
+def test_the_starts_eliminated_the_fit_is_that_of_all_numbers_at_once() -> None:
+    m = record(noise=5e-3, end=5.0)
+    bench = bench_of(m, sigma=5e-3)
+    trial = trial_of(bench, length=50)
+    segments = trial.windows.segments
+
+    def residual(z: np.ndarray) -> np.ndarray:
+        parts = []
+        for n, segment in enumerate(segments):
+            times = (
+                np.concatenate(([segment.begin], segment.t))
+                if segment.begin < segment.t[0]
+                else segment.t
+            )
+            x = exact(times, z[0], z[1], z[2 + 2 * n : 4 + 2 * n])[-len(segment.t) :]
+            parts.append((x - m.values["x"][segment.rows]) / 5e-3)
+        return np.concatenate(parts)
+
+    starts = [segment.start[name] for segment in segments for name in ("x", "v")]
+    dense = least_squares(residual, [24.0, 0.25, *starts], x_scale="jac", xtol=1e-12, ftol=1e-12)
+    assert trial.converged
+    assert trial.rss == pytest.approx(2 * dense.cost, rel=1e-3)
+    # a fit ends where less than a twentieth of the noise's variance is to gain
+    errors = np.sqrt(np.diag(np.linalg.inv(dense.jac.T @ dense.jac)))
+    assert abs(trial.values["k"] - dense.x[0]) < 0.25 * errors[0]
+    assert abs(trial.values["c"] - dense.x[1]) < 0.25 * errors[1]
+
+
+def test_what_is_left_without_the_starts_is_the_dense_least_squares() -> None:
+    windows = trial_of(bench_of(record()), length=80).windows
+    views = [projection(windows, n) for n in range(len(windows.near))]
+    reduced, residual = eliminated(windows, views)
+    blocks = [near.slopes for near in windows.near]
+    starts = np.zeros((len(residual), sum(b.shape[1] - 2 for b in blocks)))
+    row = column = 0
+    for block in blocks:
+        height, width = len(block), block.shape[1] - 2
+        starts[row : row + height, column : column + width] = block[:, 2:]
+        row, column = row + height, column + width
+    moved = np.concatenate([block[:, :2] for block in blocks])
+    full = np.column_stack((moved, starts))
+    flat = np.concatenate([near.residual.ravel() for near in windows.near])
+    expected = np.linalg.lstsq(full / np.linalg.norm(full, axis=0), -flat)[0]
+    expected = (expected / np.linalg.norm(full, axis=0))[:2]
+    found = np.linalg.lstsq(reduced, -residual)[0]
+    np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-9)
+
+
+def test_the_answer_of_a_start_takes_away_what_a_start_can_explain() -> None:
+    windows = trial_of(bench_of(record()), length=80).windows
+    view = projection(windows, 1)
+    slopes = windows.near[1].slopes[:, 2:]
+    np.testing.assert_allclose(view.answer @ slopes, np.eye(2), atol=1e-8)
+    np.testing.assert_allclose(view.off(slopes) / np.linalg.norm(slopes, axis=0), 0, atol=1e-9)
+
+
+def test_an_unknown_ends_at_its_bound_where_it_wants_to_pass_it() -> None:
+    grows = record(lambda x, v: 0.3 * v, end=4.0)  # its damping is -0.1, which c must not be
+    trial = trial_of(bench_of(grows))
+    assert trial.values["c"] == pytest.approx(0.0, abs=1e-9)
+    text = DIAGRAM.replace("fit: [5, 80]", "fit: [5, 24]")
+    trial = trial_of(bench_of(record(), text=text))
+    assert trial.values["k"] == pytest.approx(24.0, abs=1e-6)
+
+
+def test_settling_moves_starts_and_no_unknown() -> None:
+    m = record()
+    bench = bench_of(m)
+    trial = trial_of(bench, length=60)
+    criterion = bench.criterion(trial, cut(bench.declared, Section(m, 90, 270), 90, bench.states))
+    begun = opened(criterion)
+    done = settled(begun)
+    assert done.values == begun.values
+    assert done.rss < begun.rss
+    assert done.rss == pytest.approx(180, rel=0.3), "at the noise"
+
+
+def test_a_start_inside_a_stiff_barrier_is_rescued_by_the_window_before() -> None:
+    """A ball that bounces on a stiff spring: a start 1 cm inside it is thrown off the record."""
+    model = compile(read_text(BALL), record=["x"])
+    t = np.arange(0.0, 2.0, 0.008)
+    fall = (2 * 0.2 / 9.81) ** 0.5
+    # a contact lasts pi/sqrt(1e6) = 3 ms; the flight between two of them 2*fall
+    since = np.mod(t + fall, 2 * fall + np.pi / 1e3) - fall
+    x = np.maximum(0.2 - 9.81 / 2 * np.clip(since, -fall, fall) ** 2, 0.0)
+    m = Measured("ball", "train", t, {"x": x}, start={"x": None, "v": None})
+    before, there = cut(model, Section(m, 1, 161), 80, ("x", "v"))
+    inside = Segment(m, there.begin, there.rows, {"x": -0.01, "v": 0.0}, ("x", "v"))
+
+    def fitted(*segments: Segment) -> np.ndarray:
+        criterion = Criterion(model, segments, [], {}, 1e-8, {"x": 2e-3}, chained=True)
+        return settled(opened(criterion)).squares
+
+    assert fitted(inside)[0] > 1e6, "by itself it stays astray"
+    assert fitted(before, inside)[1] < 80
+
+
+def test_without_unknowns_a_fit_settles_the_starts() -> None:
+    m = record()
+    model = model_of(DIAGRAM.replace("value: 22", "value: 25").replace("value: 0.3", "value: 0.2"))
+    segments = cut(model, Section(m, 0, len(m.t)), 60, ("x", "v"))
+    criterion = Criterion(model, segments, [], {}, 1e-8, {"x": NOISE}, weighting="sum")
+    windows, converged = descended(opened(criterion))
+    assert converged
+    assert windows.rss == pytest.approx(len(m.t), rel=0.2)

@@ -1,0 +1,71 @@
+"""The unit of a coefficient follows from the formula of its effect and from its place."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from show.traces import FOUND
+from tracewire.diagram import read_text
+from tracewire.trace.candidates.effect_units import unit_at, unit_of_effect
+
+CART = """\
+blocks:
+  x: {type: integrator, of: v, unit: m}
+  v: {type: integrator, of: a, unit: m/s}
+  spring: {type: stiffness, of: x, k: 1}
+  force: {type: sum, of: [spring], unit: N}
+  a: {type: gain, of: force, k: 2}
+"""
+CART_UNITS = {"x": "m", "v": "m/s", "force": "N"}
+PENDULUM = """\
+blocks:
+  q: {type: integrator, of: w, unit: rad}
+  w: {type: integrator, of: acceleration, unit: rad/s}
+  height: {type: sin, of: q}
+  acceleration: {type: sum, of: [-height]}
+"""
+
+
+@pytest.mark.parametrize(
+    ("effect", "parameter", "unit"),
+    [
+        ("coulomb", "level", "N"),
+        ("coulomb", "width", "m/s"),
+        ("stribeck", "speed", "m/s"),
+        ("viscous", "c", "N s/m"),
+        ("quad_drag", "c", "N s^2/m^2"),
+        ("cubic_stiffness", "k", "N/m^3"),
+        ("backlash", "gap", "m"),
+        ("cogging", "pitch", "m"),
+        ("friction_drift", "level", "N/s"),
+        ("dahl", "deflection", "m"),
+        ("bouc_wen", "level", "N"),
+        ("inertia", "m", "N s^2/m"),
+        ("hunt_crossley", "k", ""),  # it depends on the exponent
+        ("dahl", "exponent", ""),
+        ("nothing", "c", ""),
+    ],
+)
+def test_units_at_a_sum_with_a_unit(effect: str, parameter: str, unit: str) -> None:
+    found = replace(FOUND, original=read_text(CART), units=CART_UNITS)
+    assert unit_of_effect(found, effect, "force", parameter) == unit
+
+
+def test_a_sum_that_is_a_rate_of_a_rate_has_its_unit() -> None:
+    found = replace(FOUND, original=read_text(PENDULUM), units={"q": "rad", "w": "rad/s"})
+    assert unit_at(found, "acceleration") == "rad/s^2"
+    assert unit_of_effect(found, "coulomb", "acceleration", "level") == "rad/s^2"
+    assert unit_of_effect(found, "viscous", "acceleration", "c") == "1/s"
+
+
+def test_where_the_place_has_no_unit_none_is_made_up() -> None:
+    bare = replace(FOUND, original=read_text(CART), units={"x": "m", "v": "m/s"})
+    assert unit_at(bare, "force") == ""
+    assert unit_of_effect(bare, "coulomb", "force", "level") == ""
+    assert unit_of_effect(bare, "coulomb", "force", "width") == "m/s"
+
+
+def test_sensors_and_drives_have_the_unit_of_their_signal() -> None:
+    found = replace(FOUND, units={"theta": "rad", "F": "N"})
+    assert (unit_at(found, "sensor.theta"), unit_at(found, "drive.F")) == ("rad", "N")

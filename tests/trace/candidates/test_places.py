@@ -1,0 +1,281 @@
+"""Places: the sums that feed a rate, and the signals around them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from tracewire.compile import compile
+from tracewire.diagram import read, read_text
+from tracewire.trace.candidates.candidates import find_candidates
+from tracewire.trace.candidates.levels import Level, Levels
+from tracewire.trace.candidates.places import Place, find_places, untried
+
+PENDULUM = Path(__file__).parents[3] / "diagrams/papers/a_torsion/pendulum.yaml"
+LEVELS = Levels({"u": Level(1.0, 2.0), "x": Level(2.0, 4.0)}, 10.0, 0.01)
+
+
+def places(text: str) -> list[Place]:
+    return find_places(compile(read_text(text)))
+
+
+def test_a_sum_behind_gains_is_a_place_with_its_coordinate_and_rate() -> None:
+    found = places(
+        """
+        blocks:
+          x: {type: integrator, of: v}
+          v: {type: integrator, of: a}
+          a: {type: gain, of: force, k: 2}
+          force: {type: sum, of: [spring]}
+          spring: {type: stiffness, of: x, k: 1}
+        """
+    )
+    assert found == [Place("force", "sum", "force", "x", "v", "a")]
+
+
+def test_a_sum_that_only_feeds_another_sum_is_left_out() -> None:
+    found = places(
+        """
+        blocks:
+          x: {type: integrator, of: v}
+          v: {type: integrator, of: total}
+          total: {type: sum, of: [spring, losses]}
+          losses: {type: sum, of: [-v]}
+          spring: {type: stiffness, of: x, k: 1}
+        """
+    )
+    assert [place.name for place in found] == ["total"]
+
+
+def test_a_sum_behind_a_function_is_no_place() -> None:
+    found = places(
+        """
+        blocks:
+          x: {type: integrator, of: bent}
+          bent: {type: tanh, of: inner}
+          inner: {type: sum, of: [-x]}
+        """
+    )
+    assert found == []
+
+
+def test_a_state_without_coordinate_has_none() -> None:
+    found = places(
+        """
+        blocks:
+          v: {type: integrator, of: a}
+          a: {type: sum, of: [-v]}
+        """
+    )
+    assert found == [Place("a", "sum", "a", "", "v", "a")]
+
+
+def test_the_diagram_can_say_which_sum_is_the_place() -> None:
+    column, contact, *others = find_places(compile(read(PENDULUM)))
+    bodies = ("phi1", "phi1_dot"), ("phi2", "phi2_dot")
+    drives = ("f_e",)
+    one, two = bodies
+    assert column == Place("column", "sum", "column", *one, "phi1_ddot", (two,), drives)
+    assert contact == Place("contact", "sum", "contact", *two, "phi2_ddot", (one,), drives)
+    assert [(place.name, place.kind) for place in others] == [
+        ("drive.f_e", "drive"),
+        ("sensor.phi2", "sensor"),
+    ]
+
+
+def test_a_sum_of_vectors_is_no_place() -> None:
+    found = places(
+        """
+        blocks:
+          x: {type: integrator, of: v, start: [1, 2]}
+          v: {type: integrator, of: force}
+          force: {type: sum, of: [spring, same], place: {q: x, v: v}}
+          same: {type: sum, of: [spring]}
+          spring: {type: stiffness, of: x, k: 1}
+        """
+    )
+    assert found == []
+
+
+def test_a_sum_in_an_algebraic_loop_is_a_place() -> None:
+    found = places(
+        """
+        blocks:
+          x: {type: integrator, of: v}
+          v: {type: integrator, of: total}
+          total: {type: sum, of: [spring, back, outer]}
+          back: {type: gain, of: total, k: -0.5}
+          spring: {type: stiffness, of: x, k: 1}
+          outer: {type: sum, of: [ring]}
+          ring: {type: gain, of: outer, k: -2}
+        """
+    )
+    assert {place.name for place in found} == {"total", "outer"}
+
+
+DRIVEN = """
+inputs: {u: {default: 0}, unused: {default: 0}}
+blocks:
+  x: {type: integrator, of: v}
+  v: {type: integrator, of: force}
+  force: {type: sum, of: [u, motor, hum, level, clock, wired, ripple]}
+  motor: {type: sine, amplitude: 2, omega: 3}
+  hum: {type: expression, formula: "0.1*sin(50*t)"}
+  idle: {type: square, amplitude: 1, frequency: 2}
+  level: {type: constant, value: 1}
+  clock: {type: time}
+  ripple: {type: harmonic, amplitude: 1, period: 0.1}
+  wired: {type: expression, formula: "u*t"}
+measured:
+  run:
+    file: run.csv
+    use: train
+    time: t
+    signals: {x: {column: x}, v: {column: v}}
+    inputs: {u: {column: u}}
+"""
+
+
+def test_drives_are_inputs_and_sources_that_something_reads(tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text("t,x,v,u\n0,0,0,0\n1,0,0,0\n")
+    found = find_places(compile(read_text(DRIVEN, tmp_path / "driven.yaml")))
+    assert [place.name for place in found] == [
+        "force",
+        "drive.u",
+        "drive.motor",
+        "drive.hum",
+        "sensor.x",
+        "sensor.v",
+    ]
+    assert found[0].drive == ("u", "motor", "hum")
+    assert found[1].drive == ("u",)
+
+
+def test_a_sum_of_a_drive_and_an_effect_at_it_is_the_drive() -> None:
+    found = places(
+        """
+        inputs: {u: {default: 0}}
+        blocks:
+          x: {type: integrator, of: v}
+          v: {type: integrator, of: force}
+          force: {type: sum, of: [u_seen, -x]}
+          u_seen: {type: sum, of: [u, more]}
+          more: {type: drive_gain, of: u, gain: 0.1}
+          also: {type: gain, of: u_seen, k: 2}
+        """
+    )
+    assert [place.name for place in found] == ["force", "drive.u"]
+
+
+def test_a_signal_inside_a_subsystem_counts_where_a_port_carries_it() -> None:
+    found = places(
+        """
+        blocks:
+          force: {type: sum, of: [-body.position]}
+          body: {type: mass, force: force}
+          hidden: {type: sum, of: [-body.position]}
+          other: {type: closed, force: hidden}
+        subsystems:
+          mass:
+            inputs: [force]
+            outputs: {position: x, speed: v}
+            blocks: {x: {type: integrator, of: v}, v: {type: integrator, of: force}}
+          closed:
+            inputs: [force]
+            outputs: {y: doubled}
+            blocks:
+              x: {type: integrator, of: v}
+              v: {type: integrator, of: force}
+              doubled: {type: gain, of: x, k: 2}
+        """
+    )
+    assert found == [
+        Place("force", "sum", "force", "body.position", "body.speed", "force"),
+        Place("hidden", "sum", "hidden", "", "", "hidden", (("body.position", "body.speed"),)),
+    ]
+
+
+def test_a_sum_inside_a_subsystem_is_no_place_even_where_it_says_so() -> None:
+    found = places(
+        """
+        blocks:
+          body: {type: mass}
+        subsystems:
+          mass:
+            outputs: {x: x}
+            blocks:
+              x: {type: integrator, of: v}
+              v: {type: integrator, of: force}
+              force: {type: sum, of: [-x], place: {q: x, v: v}}
+        """
+    )
+    assert found == []
+
+
+def test_a_place_that_names_a_coordinate_alone_is_kept() -> None:
+    text = """
+        inputs: {u: {default: 0}}
+        blocks:
+          x: {type: sum, of: [pull], place: {q: u}}
+          pull: {type: gain, of: u, k: 2}
+        """
+    model = compile(read_text(text))
+    (place, _) = find_places(model)
+    assert place == Place("x", "sum", "x", "u", "", "", (), ("u",))
+    known = {c.effect: c for c in find_candidates(model, [place], LEVELS)}
+    assert {"cubic_stiffness", "backlash", "cogging", "play_q", "stop_q", "bias"} <= known.keys()
+    assert not known.keys() & {"coulomb", "viscous", "play", "hysteresis"}
+    assert known["play_q"].signals == {"of": "u"}
+
+
+def test_the_diagram_says_the_coordinate_of_a_sum_and_that_one_only() -> None:
+    (place,) = places(
+        """
+        blocks:
+          x: {type: integrator, of: v}
+          v: {type: integrator, of: force}
+          force: {type: sum, of: [-x], place: {q: x}}
+        """
+    )
+    assert (place.q, place.v) == ("x", "")
+
+
+def test_what_cannot_be_tried_at_a_place_is_said() -> None:
+    model = compile(
+        read_text(
+            """
+            inputs: {u: {default: 0}}
+            blocks:
+              h: {type: integrator, of: flow}
+              flow: {type: sum, of: [u, -h]}
+              x: {type: sum, of: [u], place: {q: u}}
+            """
+        )
+    )
+    flow, position = untried(model.diagram, find_places(model))
+    assert "'x' has no rate: " in flow + position
+    assert (
+        "are not tried there; name it, as in `place: {v: SIGNAL}`, where there is one"
+        in position + flow
+    )
+    assert "'flow' has no coordinate: " in position + flow
+
+
+def test_a_place_with_both_is_not_talked_about() -> None:
+    text = """
+        blocks:
+          x: {type: integrator, of: v}
+          v: {type: integrator, of: force}
+          force: {type: sum, of: [-x]}
+        """
+    model = compile(read_text(text))
+    assert untried(model.diagram, find_places(model)) == []
+
+
+def test_a_level_overflows_where_there_is_no_coordinate() -> None:
+    text = "blocks: {h: {type: integrator, of: flow}, flow: {type: sum, of: [-h]}}"
+    model = compile(read_text(text))
+    levels = Levels({"h": Level(1.0, 2.0), "flow": Level(1.0, 1.0)}, 10.0, 0.01)
+    known = {c.effect: c for c in find_candidates(model, find_places(model), levels)}
+    assert known["overflow"].signals == {"of": "h"}
+    assert known["overflow"].limits["edge"] == pytest.approx((0.4, 2.0))

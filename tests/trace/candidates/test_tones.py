@@ -1,0 +1,47 @@
+"""The sine that a drive is: its amplitude, period and phase in each series."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from tracewire.residual import Measured
+from tracewire.trace.candidates.tones import Sine, own_values, sine_of, tones_of
+
+T = np.arange(501) / 50
+
+
+def measured(name: str, use: str, u: NDArray[np.float64]) -> Measured:
+    return Measured(f"{name} ({use})", use, T, {"x": 0 * T}, inputs={"u": (T, u)}, series=name)
+
+
+@pytest.mark.parametrize("omega", [0.7, 1.3, 6.0, 20.0, 60.0])
+def test_a_sine_around_a_mean_is_found_exactly(omega: float) -> None:
+    found = sine_of(T, 0.02 * np.sin(omega * T - 2.0) + 0.5)
+    assert found is not None
+    assert found.amplitude == pytest.approx(0.02, rel=1e-9)
+    assert found.period == pytest.approx(2 * np.pi / omega, rel=1e-9)
+    assert found.phase == pytest.approx(-2.0, abs=1e-8)
+
+
+def test_noise_a_square_wave_and_a_constant_are_no_sines() -> None:
+    assert sine_of(T, np.random.default_rng(1).standard_normal(len(T))) is None
+    assert sine_of(T, np.sign(np.sin(3 * T))) is None
+    assert sine_of(T, np.full(len(T), 2.0)) is None
+
+
+def test_each_series_has_its_own_sine_and_windows_of_it_share_it() -> None:
+    one, other = np.sin(3 * T), 2 * np.sin(4 * T + 1)
+    tones = tones_of(
+        [measured("a", "train", one), measured("a", "gate", one), measured("b", "train", other)]
+    )
+    assert set(tones) == {"u"} and set(tones["u"]) == {"a", "b"}
+    own = own_values({"size": "amplitude", "start": "phase"}, tones["u"])
+    assert own["b"] == pytest.approx({"size": 2.0, "start": 1.0})
+    assert own_values({"size": "amplitude"}, None) == {}
+    assert isinstance(tones["u"]["a"], Sine)
+
+
+def test_a_drive_that_is_no_sine_in_one_series_has_no_tones() -> None:
+    square = np.sign(np.sin(3 * T))
+    assert tones_of([measured("a", "train", np.sin(T)), measured("b", "train", square)]) == {}

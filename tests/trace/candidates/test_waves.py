@@ -1,0 +1,77 @@
+"""Waves along a coordinate: the scan finds the teeth of a rotor that turns many times."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from oracles.oscillator import bench_of, trial_of
+from scipy.integrate import solve_ivp
+from tracewire.residual import Measured
+from tracewire.trace.candidates.candidates import Candidate, find_candidates
+from tracewire.trace.candidates.levels import levels_of
+from tracewire.trace.candidates.places import find_places
+from tracewire.trace.screen.screening import Row, screened
+from tracewire.trace.screen.tangent import Tangent
+
+ROTOR = """\
+span: [0, 8]
+inputs: {u: {default: 0}}
+parameters:
+  c: {value: 0.3, fit: [0, 5]}
+  b: {value: 9, fit: [0, 50]}
+blocks:
+  x: {type: integrator, of: w, start: 0, unit: UNIT}
+  w: {type: integrator, of: torque}
+  bearing: {type: viscous, rate: w, c: c}
+  push: {type: gain, of: u, k: b}
+  torque: {type: sum, of: [bearing, push]}
+"""
+T = np.arange(0.0, 8.0, 0.01)
+
+
+def drive(t: float | np.ndarray) -> np.ndarray:
+    return np.asarray(0.5 * np.sin(1.3 * t) + 0.35 * np.sin(3.1 * t + 1) + 0.12)
+
+
+def turned(teeth: float, amplitude: float, rubbing: float = 0.0) -> Measured:
+    """x'' = -0.5 x' + 10 u + amplitude*sin(teeth*x + 0.7), and a friction of as many waves."""
+
+    def rates(t: float, state: np.ndarray) -> list[float]:
+        x, w = state.tolist()
+        wave = amplitude * np.sin(teeth * x + 0.7)
+        wave -= rubbing * np.cos((teeth * x + 0.4) / 2) ** 2 * np.tanh(w / 1e-2)
+        return [w, -0.5 * w + 10 * float(drive(t)) + wave]
+
+    run = solve_ivp(rates, (0, 8), [0, 0], t_eval=T, rtol=1e-8, atol=1e-9, max_step=0.02)
+    x = run.y[0] + 5e-4 * np.random.default_rng(0).standard_normal(len(T))
+    inputs = {"u": (T, drive(T))}
+    return Measured("run", "train", T, {"x": x}, start={"x": None, "w": None}, inputs=inputs)
+
+
+def best_row(record: Measured, effect: str, unit: str = "rad") -> Row:
+    bench = bench_of(record, text=ROTOR.replace("UNIT", unit), sigma=5e-4)
+    trial = trial_of(bench, length=40)
+    places = find_places(bench.declared)
+    tangent = Tangent(trial.diagram, trial.windows, places, 1e-6)
+    known: list[Candidate] = find_candidates(
+        bench.declared, places, levels_of(tangent.trajectories)
+    )
+    screen = screened(tangent, trial, [c for c in known if c.effect == effect])
+    return screen.best()[0]
+
+
+@pytest.mark.parametrize(("teeth", "amplitude"), [(1, 1.0), (12, 2.0), (36, 1.0)])
+def test_the_teeth_of_a_rotor_that_turns_are_counted(teeth: int, amplitude: float) -> None:
+    pitch = best_row(turned(teeth, amplitude), "cogging").shapes["pitch"]
+    assert pitch == pytest.approx(2 * np.pi / teeth, rel=1e-9)
+
+
+def test_a_pitch_that_is_no_part_of_a_turn_is_found_nearly() -> None:
+    record = turned(2 * np.pi / 0.37, 1.0)
+    assert np.ptp(record.values["x"]) > 30 * 0.37
+    assert best_row(record, "cogging", unit="m").shapes["pitch"] == pytest.approx(0.37, rel=0.02)
+
+
+def test_friction_that_comes_back_with_the_way_is_scanned_too() -> None:
+    row = best_row(turned(5, 0.0, rubbing=1.5), "position_friction")
+    assert row.shapes["pitch"] == pytest.approx(2 * np.pi / 5, rel=0.02)

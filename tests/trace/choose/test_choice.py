@@ -1,0 +1,111 @@
+"""The choice by held-out errors: the simplest of those that predict as well as the best."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tracewire.trace.choose.choice import Choice, Entrant, choose, floor_of, log_scores
+from tracewire.trace.options import TraceOptions
+
+BLOCKS = 10
+FOLDS = ((tuple(range(0, 10, 2)), tuple(range(1, 10, 2))), (tuple(range(5)), tuple(range(5, 10))))
+OPTIONS = TraceOptions()
+
+
+def scores(*costs: float | np.ndarray) -> np.ndarray:
+    """S of models whose T is 1 + cost in each block, (models, 2 horizons, 2 families, blocks)."""
+    rows = [np.broadcast_to(1.0 + np.asarray(cost), (2, 2, BLOCKS)) for cost in costs]
+    return np.stack(rows)
+
+
+def model(*effects: str, numbers: int | None = None, uncommon: int = 0) -> Entrant:
+    return Entrant(frozenset(effects), 2 + len(effects) if numbers is None else numbers, uncommon)
+
+
+def chosen(entrants: list[Entrant], *costs: float | np.ndarray) -> Choice:
+    return choose(entrants, scores(*costs), FOLDS, OPTIONS)
+
+
+def wobble(size: float) -> np.ndarray:
+    """A difference over blocks with this standard deviation and no mean."""
+    x = np.array([1.0, -1.0] * (BLOCKS // 2))
+    return size * x * ((BLOCKS - 1) / BLOCKS) ** 0.5
+
+
+def test_a_score_is_half_the_logarithm_of_error_and_floor() -> None:
+    errors = np.array([[4.0, 8.0, 2.0], [1.0, 3.0, 2.0]]).reshape(2, 1, 1, 3, 1)
+    assert floor_of(errors).item() == 2.0, "the median of the least errors 1, 3 and 2"
+    expected = 0.5 * np.log(np.array([[6.0, 10.0, 4.0], [3.0, 5.0, 4.0]]))
+    assert log_scores(errors)[:, 0, 0] == pytest.approx(expected)
+
+
+def test_channels_count_alike_whatever_their_noise() -> None:
+    rng = np.random.default_rng(1)
+    errors = rng.uniform(1, 2, size=(3, 2, 2, BLOCKS, 2))
+    scaled = errors * np.array([1.0, 1e6])
+    before, after = (log_scores(e).mean(axis=(1, 2, 3)) for e in (errors, scaled))
+    assert np.diff(after) == pytest.approx(np.diff(before))
+
+
+def test_of_models_within_five_percent_the_one_of_fewest_numbers_is_taken() -> None:
+    entrants = [model(), model("a"), model("a", "b"), model("a", "b", "c")]
+    assert chosen(entrants, 1.0, 0.04, 0.0, -0.005).taken == 1
+    assert chosen(entrants, 1.0, 0.2, 0.0, -0.005).taken == 2
+
+
+def test_a_gain_within_one_standard_error_is_none() -> None:
+    entrants = [model(), model("a"), model("b", "c")]
+    steady, shaky = 0.12, 0.12 + wobble(0.6)
+    assert chosen(entrants, 1.0, steady, 0.0).taken == 2
+    assert chosen(entrants, 1.0, shaky, 0.0).taken == 1
+
+
+def test_a_common_law_goes_before_a_wave_of_as_many_numbers() -> None:
+    entrants = [model(), model("wave", uncommon=1), model("coulomb")]
+    assert chosen(entrants, 1.0, 0.0, 0.04).taken == 2
+    assert chosen(entrants, 1.0, 0.0, 0.2).taken == 1, "where it predicts better it is taken"
+
+
+def test_an_effect_that_costs_less_than_two_standard_errors_is_dropped() -> None:
+    entrants = [model(), model("a", "b", numbers=3), model("a", numbers=3)]
+    # more than the tolerance and than one error, less than two
+    choice = chosen(entrants, 1.0, 0.0, 0.1 + wobble(0.2))
+    assert choice.taken == 2
+
+
+def test_what_is_not_three_errors_better_than_the_declared_model_is_not_sure() -> None:
+    entrants = [model(), model("a")]
+    sure = chosen(entrants, 0.4 + wobble(0.3), 0.0)
+    assert sure.sure and sure.z == pytest.approx(0.4 / (0.3 / BLOCKS**0.5), rel=0.01)
+    assert not chosen(entrants, 0.4 + wobble(0.6), 0.0).sure
+    assert not chosen(entrants, 0.04, 0.0).sure, "less than the tolerance, however sure"
+
+
+def test_a_model_that_is_sure_goes_before_a_better_one_that_is_not() -> None:
+    entrants = [model(), model("a"), model("a", "b")]
+    declared = 0.4 + wobble(0.05)
+    choice = chosen(entrants, declared, 0.1, 0.0 + wobble(1.0))
+    assert choice.sure and choice.taken == 1
+
+
+def test_a_model_that_does_not_run_somewhere_is_never_taken() -> None:
+    broken = np.zeros(BLOCKS)
+    broken[3] = np.inf
+    choice = chosen([model(), model("a"), model("b")], 1.0, broken, 0.5)
+    assert choice.taken == 2 and choice.sure
+
+
+def test_models_as_near_with_at_most_one_number_more_are_ties() -> None:
+    entrants = [model(), model("a"), model("b"), model("c"), model("a", "d", "e")]
+    choice = chosen(entrants, 1.0, 0.0, 0.02, 0.4, -0.01)
+    assert choice.taken == 1
+    assert [number for number, _ in choice.ties] == [2]
+    assert choice.ties[0][1] == pytest.approx(0.02)
+
+
+def test_the_tolerance_is_an_option() -> None:
+    entrants = [model(), model("a"), model("a", "b")]
+    strict = choose(entrants, scores(1.0, 0.04, 0.0), FOLDS, replace(OPTIONS, near=0.02))
+    assert strict.taken == 2

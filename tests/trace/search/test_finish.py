@@ -1,0 +1,107 @@
+"""The end of a search: rivals once more, and what is superfluous goes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import pytest
+from oracles.oscillator import bench_of, candidates_of, record, search_of
+from tracewire.trace.candidates.places import find_places
+from tracewire.trace.screen.screening import Proposal, screened
+from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.search.finish import Final, finished
+from tracewire.trace.search.refits import Tried
+from tracewire.trace.search.search import Search, Step
+from tracewire.trace.trials.trial import Added, Trial
+
+Law = Callable[[float, float], float]
+COULOMB, DRAG, CUBIC = "coulomb @ force", "quad_drag @ force", "cubic_damping @ force"
+
+
+def rubbed(x: float, v: float) -> float:
+    return -0.4 * float(np.tanh(v / 1e-3))
+
+
+def dragged(x: float, v: float) -> float:
+    return -0.1 * v * abs(v)
+
+
+def ended(
+    law: Law, names: Sequence[str], screen: Sequence[str], damping: float = 0.2
+) -> tuple[Search, Final]:
+    """The end of a search that has accepted `names`, after a screen of `screen`."""
+    bench = bench_of(
+        record(law, damping=damping, end=7.0),
+        record(law, damping=damping, end=6.0, use="gate", name="gate", seed=1),
+    )
+    search = search_of(bench)
+    known = candidates_of(bench)
+    now = search.declared()
+    search.first = now
+    best = now
+    for name in names:
+        tangent = Tangent(best.diagram, best.windows, find_places(bench.declared), 1e-6)
+        shown = screened(tangent, best, [known[other] for other in screen])
+        rows = {str(row.candidate): row for row in shown.best()}
+        tried = []
+        for other in screen:
+            added = Added(known[other], {known[other].parameter: 0.02})
+            trial = search.refits.extended(best, [added], now.windows.segments)
+            if trial is not None and other in rows:
+                tried.append(Tried(trial, Proposal((rows[other],), 1.0), 0.0, 0.0))
+        ranked = search.refits.ranked(best, tried)
+        after: Trial = next(one.trial for one in ranked if str(one.trial.effects[-1]) == name)
+        search.steps.append(Step(best, shown, 0.0, tuple(ranked), after, ""))
+        best = after
+    search.best = best
+    return search, finished(search, now, best)
+
+
+def names_of(trial: Trial) -> list[str]:
+    return [str(effect) for effect in trial.effects]
+
+
+def test_a_wrong_effect_is_exchanged_for_its_better_rival() -> None:
+    _, final = ended(dragged, [CUBIC], [DRAG, CUBIC])
+    assert names_of(final.best) == [DRAG]
+    assert final.best.effects[0].coefficient == pytest.approx(0.1, rel=0.03)
+    (rival,) = final.rivals[DRAG]
+    assert str(rival.added) == CUBIC and not rival.tied
+    assert 0.9 < rival.likeness < 1.0
+
+
+def test_the_right_effect_stays_on_long_windows() -> None:
+    search, final = ended(rubbed, [COULOMB], [COULOMB, DRAG])
+    assert names_of(final.best) == [COULOMB]
+    assert final.best.length == search.stretches.longest
+    assert final.best.s2 == pytest.approx(1.0, abs=0.2)
+    assert final.declared.effects == () and final.declared.s2 > 3
+
+
+def test_an_effect_that_the_others_make_superfluous_is_pruned() -> None:
+    _, final = ended(dragged, [CUBIC, DRAG], [DRAG, CUBIC])
+    assert names_of(final.best) == [DRAG]
+
+
+def test_a_declared_term_that_the_effects_make_superfluous_is_dropped() -> None:
+    _, final = ended(rubbed, [COULOMB], [COULOMB, DRAG], damping=0.0)
+    assert final.dropped == ("c",)
+    assert "c" not in final.best.values
+    assert final.best.values["k"] == pytest.approx(25.0, rel=0.01)
+
+
+def test_a_declared_term_that_is_there_is_kept() -> None:
+    _, final = ended(rubbed, [COULOMB], [COULOMB, DRAG])
+    assert final.dropped == ()
+    assert final.best.values["c"] == pytest.approx(0.2, rel=0.1)
+
+
+def test_without_effects_the_declared_model_is_the_end() -> None:
+    bench = bench_of(record(end=7.0), record(end=6.0, use="gate", name="gate", seed=1))
+    search = search_of(bench)
+    now = search.declared()
+    final = finished(search, now, now)
+    assert final.best is final.declared and final.best.effects == ()
+    assert final.rivals == {} and final.dropped == ()
+    assert final.best.length == search.stretches.longest

@@ -1,0 +1,79 @@
+"""The gate: whether a trial does better than another on windows that no fit saw."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from tracewire.trace.trials.judge import Verdict, gate
+
+WINDOWS = 10
+
+
+def judged(before: list[float], after: list[float], s2: float = 1.0, fall: float = 20.0) -> Verdict:
+    """The gate on windows with these squared errors."""
+    now, trial = SimpleNamespace(s2=9.0), SimpleNamespace(s2=s2)
+    squares = {id(now): before, id(trial): after}
+    bench = SimpleNamespace(on=lambda one, windows: [np.sqrt([[x]]) for x in squares[id(one)]])
+    return gate(bench, now, trial, [], fall)  # type: ignore[arg-type]
+
+
+def test_what_halves_the_error_everywhere_passes() -> None:
+    verdict = judged([10.0] * WINDOWS, [5.0] * WINDOWS)
+    assert verdict.passed
+    assert verdict.drop == pytest.approx(0.5)
+    assert verdict.improved == 1.0
+    assert verdict.words == "gate: squared error falls by 50%, passed"
+
+
+def test_what_takes_nearly_all_of_the_error_is_not_said_to_take_all() -> None:
+    verdict = judged([1000.0] * WINDOWS, [1.0] * WINDOWS)
+    assert verdict.words == "gate: squared error falls by more than 99.5%, passed"
+
+
+def test_what_does_worse_is_refused() -> None:
+    verdict = judged([10.0] * WINDOWS, [11.0] * WINDOWS)
+    assert not verdict.passed
+    assert verdict.words == "gate: squared error rises by 10%, refused"
+
+
+def test_less_than_two_percent_is_nothing() -> None:
+    assert not judged([10.0] * WINDOWS, [9.85] * WINDOWS).passed
+    assert judged([10.0] * WINDOWS, [9.75] * WINDOWS).passed
+
+
+def test_far_above_the_noise_a_third_is_asked_for() -> None:
+    assert not judged([10.0] * WINDOWS, [7.0] * WINDOWS, s2=5.0).passed
+    assert judged([10.0] * WINDOWS, [6.0] * WINDOWS, s2=5.0).passed
+
+
+def test_one_window_that_improves_carries_nothing_alone() -> None:
+    after = [1.0, *[10.0] * (WINDOWS - 1)]
+    assert not judged([10.0] * WINDOWS, after).passed
+
+
+def test_where_bic_is_decided_less_support_is_enough() -> None:
+    after = [4.0, 4.0, *[10.0] * 6, 10.5, 10.5]  # z = 1.3, and two windows of ten improve
+    assert not judged([10.0] * WINDOWS, after, fall=20.0).passed
+    assert judged([10.0] * WINDOWS, after, fall=200.0).passed
+
+
+def test_what_shows_in_one_window_and_harms_none_passes_where_bic_is_decided() -> None:
+    after = [1.0, 10.3, *[10.0] * (WINDOWS - 2)]  # z = 1
+    assert judged([10.0] * WINDOWS, after, fall=200.0).passed
+    harmed = [1.0, 12.0, *[10.0] * (WINDOWS - 2)]
+    assert not judged([10.0] * WINDOWS, harmed, fall=200.0).passed
+
+
+def test_a_window_in_which_both_lose_their_track_does_not_count() -> None:
+    before, after = [1.6] * (WINDOWS - 1), [0.8] * (WINDOWS - 1)
+    verdict = judged([*before, 3870.0], [*after, 4050.0])
+    assert verdict.passed and verdict.drop == pytest.approx(0.5)
+    assert not judged([*before, 3870.0], [*after, 4050.0], s2=5.0).passed, "it is lost anyway"
+    assert not judged([*before, 1.6], [*after, 4050.0]).passed, "the trial itself lost it"
+    assert not judged([*before[:-1], 3870.0, 3870.0], [*after[:-1], 4050.0, 4050.0]).passed
+
+
+def test_without_an_error_there_is_nothing_to_improve() -> None:
+    assert judged([0.0, 0.0], [0.0, 0.0]).words == "gate: nothing to improve"

@@ -1,0 +1,69 @@
+"""Which samples are fitted, which accept, and which are held back for the final claim."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from oracles.oscillator import model_of, record
+from tracewire.errors import DataError
+from tracewire.residual import Measured
+from tracewire.residual.windows import Section
+from tracewire.trace.trials.stretches import Stretches, share_out
+
+
+def rows(sections: tuple[Section, ...]) -> np.ndarray:
+    return np.concatenate([np.arange(s.first, s.end) for s in sections])
+
+
+def test_of_a_lone_series_no_sample_is_used_twice() -> None:
+    m = record()
+    found = share_out([m])
+    train, gate, last = rows(found.train), rows(found.gate), rows(found.validate)
+    assert len(np.intersect1d(train, gate)) == 0
+    np.testing.assert_array_equal(np.sort(np.concatenate((train, gate, last))), np.arange(len(m.t)))
+    assert last[0] > max(train.max(), gate.max())
+    assert len(last) == pytest.approx(len(m.t) / 6, abs=1)
+    assert len(train) == pytest.approx(2 * len(gate), abs=6)
+    assert found.words == (
+        "the last sixth of 'swing' is held back for the final claim",
+        "every third ninth of the rest of 'swing' is the gate",
+    )
+
+
+def test_series_that_have_a_use_keep_it_whole() -> None:
+    series = [record(name=use, use=use, end=6.0) for use in ("train", "gate", "validate")]
+    found = share_out(series)
+    for sections, m in zip((found.train, found.gate, found.validate), series, strict=True):
+        assert sections == (Section(m, 0, len(m.t)),) or [
+            (s.measured.name, s.first, s.end) for s in sections
+        ] == [(m.name, 0, len(m.t))]
+    assert found.words == ()
+
+
+def test_with_a_gate_alone_the_claim_comes_from_the_last_sixth() -> None:
+    train, gate = record(), record(name="gate", use="gate")
+    found = share_out([train, gate])
+    assert [s.measured.name for s in found.gate] == ["gate"]
+    assert found.train[0].end == found.validate[0].first
+    assert found.validate[0].end == len(train.t)
+
+
+def test_the_whole_of_the_train_series_leaves_out_what_is_held_back() -> None:
+    m, gate = record(), record(name="gate", use="gate")
+    alone: Stretches = share_out([m])
+    assert [(s.first, s.end) for s in alone.whole()] == [(0, alone.validate[0].first)]
+    assert {s.measured.name for s in share_out([m, gate]).whole()} == {"swing"}
+
+
+def test_windows_of_sections_never_cross_their_edges() -> None:
+    found = share_out([record()])
+    windows = found.windows(model_of(), found.train, 40, ("x", "v"))
+    np.testing.assert_array_equal(np.concatenate([w.rows for w in windows]), rows(found.train))
+    assert found.longest == max(s.end - s.first for s in found.train)
+
+
+def test_a_signal_that_no_train_series_measures_is_refused() -> None:
+    m = record(name="other", use="validate")
+    other = Measured("other", "validate", m.t, {"v": m.values["x"]})
+    with pytest.raises(DataError, match="'other' measures 'v', which no train series measures"):
+        share_out([record(), other])

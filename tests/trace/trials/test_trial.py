@@ -1,0 +1,140 @@
+"""Trials: the declared diagram with effects added, fitted to windows."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from oracles.oscillator import (
+    DIAGRAM,
+    NOISE,
+    bench_of,
+    candidates_of,
+    later,
+    record,
+    trial_of,
+)
+from scipy.integrate import solve_ivp
+from tracewire.errors import FitError
+from tracewire.residual import Measured
+from tracewire.residual.windows import Section, cut
+from tracewire.trace.trials.trial import Added
+
+COULOMB = "coulomb @ force"
+
+
+def rubbed(x: float, v: float) -> float:
+    return -0.4 * float(np.tanh(v / 1e-3))
+
+
+def test_the_declared_model_is_fitted_to_the_truth_of_its_record() -> None:
+    trial = trial_of(bench_of(record()))
+    assert trial.values == pytest.approx({"k": 25.0, "c": 0.2}, rel=0.05)
+    assert trial.s2 == pytest.approx(1.0, abs=0.2)
+    assert trial.unknowns == 2 + 2 * len(trial.windows.segments)
+    assert trial.freedom == trial.count - trial.unknowns
+
+
+def test_an_added_effect_is_fitted_with_its_coefficient() -> None:
+    bench = bench_of(record(rubbed, end=7.0))
+    coulomb = Added(candidates_of(bench)[COULOMB], {"level": 0.1})
+    without, trial = trial_of(bench), trial_of(bench, [coulomb])
+    (effect,) = trial.effects
+    assert effect.coefficient == pytest.approx(0.4, rel=0.03)
+    assert trial.values["coulomb.level"] == effect.coefficient
+    assert trial.s2 == pytest.approx(1.0, abs=0.2) and without.s2 > 3
+    assert "coulomb" in trial.diagram.blocks
+    assert bench.declared.diagram.text == without.diagram.text
+
+
+def test_bic_tells_an_effect_that_is_there_from_one_that_is_not() -> None:
+    bench = bench_of(record(rubbed, end=7.0))
+    known = candidates_of(bench)
+    now = trial_of(bench)
+    there = trial_of(bench, [Added(known[COULOMB], {"level": 0.1})])
+    other = trial_of(
+        bench,
+        [
+            Added(known[COULOMB], {"level": 0.1}),
+            Added(known["cubic_stiffness @ force"], {"k": 0.01}),
+        ],
+    )
+    part = there.part
+    assert there.quality(part) < now.quality(part) - 100
+    assert other.quality(part) > there.quality(part)
+
+
+def test_an_effect_knows_the_names_of_its_unknowns() -> None:
+    known = candidates_of(bench_of(record()))
+    coulomb = Added(known[COULOMB], {"level": 0.1, "width": 0.2})
+    assert [coulomb.unknown(name) for name in coulomb.values] == ["coulomb.level", "coulomb.width"]
+    offset = Added(known["sensor_offset @ sensor.x"], {"offset": 0.01})
+    assert offset.unknown("offset") == "offset.x"
+    moved = coulomb.at({"coulomb.level": 0.3, "k": 9.0})
+    assert moved.values == {"level": 0.3, "width": 0.2}
+    sharp = coulomb.at({"coulomb.level": 0.3, "coulomb.width": 0.01})
+    assert sharp.values["width"] == 0.0, "as narrow as that it sticks, as far as the record shows"
+
+
+def test_what_is_fixed_is_not_fitted() -> None:
+    bench = bench_of(record())
+    segments = trial_of(bench).windows.segments
+    trial = bench.fitted((), segments, 60, {}, fixed={"c": 0.0})
+    assert set(trial.values) == {"k"}
+    assert bench.all_values(trial) == {**trial.values, "c": 0.0}
+    assert bench.again(trial, segments, 60).values == pytest.approx(trial.values, rel=1e-3)
+
+
+def test_on_other_windows_only_the_starts_are_fitted() -> None:
+    m = record()
+    bench = bench_of(m)
+    trial = trial_of(bench)
+    other = bench.criterion(trial, cut(bench.declared, Section(m, 90, 270), 90, bench.states))
+    assert other.unknowns == () and other.parameters == trial.values
+    residuals = bench.on(trial, cut(bench.declared, Section(m, 90, 270), 90, bench.states))
+    assert np.mean(np.concatenate(residuals) ** 2) == pytest.approx(1.0, abs=0.3)
+    shifted = later(m, slice(90, 270), 0.05)
+    worse = bench.on(trial, cut(bench.declared, Section(shifted, 90, 270), 90, bench.states))
+    assert np.mean(np.concatenate(worse) ** 2) > 10, "an offset is no start"
+
+
+def test_a_diagram_that_does_not_run_is_told_with_its_block() -> None:
+    text = DIAGRAM.replace("k: -k}", "k: -k/(c - c)}")
+    with pytest.raises(FitError, match="'spring' is not finite"):
+        trial_of(bench_of(record(end=3.0), text=text))
+
+
+def test_a_model_that_takes_too_many_events_is_given_up() -> None:
+    """It rattles between two stops a thousandth apart, far more often than it is sampled."""
+    text = DIAGRAM + (
+        "events:\n"
+        "  - {when: x - 0.5, crosses: both, set: {v: 1000 + 0*v}}\n"
+        "  - {when: x - 0.501, crosses: both, set: {v: -1000 + 0*v}}\n"
+    )
+    with pytest.raises(FitError, match="more than 305 events"):
+        trial_of(bench_of(record(end=3.0), text=text))
+
+
+def test_a_delay_is_found_on_short_windows_too() -> None:
+    """A window's first samples show what was before it: its run begins earlier."""
+    delay, t = 0.047, np.arange(0.0, 12.0, 0.03)
+    drive = "3*sin(2*t) + 2*sin(5.3*t)"
+
+    def rates(t: float, state: np.ndarray) -> list[float]:
+        x, v = state.tolist()
+        return [v, 3 * math.sin(2 * t) + 2 * math.sin(5.3 * t) - 25 * x - 0.2 * v]
+
+    run = solve_ivp(rates, (-1, 12), [1.0, 0.0], rtol=1e-10, atol=1e-11, dense_output=True)
+    x = run.sol(t - delay)[0] + NOISE * np.random.default_rng(3).standard_normal(len(t))
+    m = Measured("swing", "train", t, {"x": x}, start={"x": None, "v": None})
+    text = DIAGRAM.replace("spring, damper]", "spring, damper, drive]").replace(
+        "  damper:", f"  drive: {{type: expression, formula: {drive}}}\n  damper:"
+    )
+    bench = bench_of(m, text=text)
+    late = Added(candidates_of(bench)["sensor_delay @ sensor.x"], {"delay": 0.7 * delay})
+    trial = trial_of(bench, [late], length=20)
+    assert trial.values["delay.x"] == pytest.approx(delay, rel=0.02)
+    assert trial.s2 == pytest.approx(1.0, abs=0.2)
+    begins = [window.begin for window in trial.windows.segments]
+    assert all(b < w.t[0] - delay for b, w in zip(begins, trial.windows.segments, strict=True))
