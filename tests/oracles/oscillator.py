@@ -20,9 +20,12 @@ from tracewire.residual.windows import Section, cut
 from tracewire.trace.candidates.candidates import Candidate, find_candidates
 from tracewire.trace.candidates.levels import Level, Levels
 from tracewire.trace.candidates.places import find_places
+from tracewire.trace.options import TraceOptions
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.stretches import share_out
 from tracewire.trace.trials.trial import Added, Bench, Trial
+
+OPTIONS = TraceOptions()
 
 DIAGRAM = """\
 span: [0, 12]
@@ -96,7 +99,7 @@ def bench_of(*series: Measured, text: str = DIAGRAM, sigma: float = NOISE) -> Be
 
 def candidates_of(bench: Bench) -> dict[str, Candidate]:
     """What may be missing, by name."""
-    found = find_candidates(bench.declared, find_places(bench.declared), LEVELS)
+    found = find_candidates(bench.declared, find_places(bench.declared), LEVELS, OPTIONS.candidate)
     return {str(candidate): candidate for candidate in found}
 
 
@@ -110,7 +113,7 @@ def trial_of(bench: Bench, effects: Sequence[Added] = (), length: int = 60) -> T
 def search_of(bench: Bench, shortest: int = 20) -> Search:
     """A search that has not begun."""
     places = find_places(bench.declared)
-    stretches = share_out(bench.measured)
+    stretches = share_out(bench.measured, OPTIONS.split)
     return Search(bench, stretches, places, shortest, {}, lambda text: None, [])
 
 

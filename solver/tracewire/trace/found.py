@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from typing import Any, Literal
 
@@ -269,7 +269,7 @@ class Found:
     words. `explained` is the share of the excess that the effects explain, `remainder` what is left
     of each signal, `remainder_depends` on what that depends (the map of the remainder, the best
     first), `held_out` the errors on held-out blocks at each horizon, all None or empty where the
-    residual is at the noise; `options` is what the user asked for.
+    residual is at the noise; `options` is what the user asked for, with every threshold.
     `diagram` is the edited diagram. `units` are the SI units of signals and parameters by
     name, also of those that were added ('coulomb.level', 'offset.theta'). `interrupted`: the user
     stopped the trace, and this is what was known by then. `users_units` are the unit of a signal in
@@ -412,7 +412,7 @@ class Found:
                 }
                 for h in self.held_out
             ],
-            "options": vars(self.options),
+            "options": asdict(self.options),
             "paragraph": self.paragraph,
             "words": list(self.words),
         }

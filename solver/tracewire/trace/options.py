@@ -3,7 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+from tracewire.trace.thresholds import (
+    CandidateOptions,
+    CheckOptions,
+    ExperimentOptions,
+    MapOptions,
+    ScreenOptions,
+    SearchOptions,
+    SplitOptions,
+    TrialOptions,
+)
 
 
 @dataclass(frozen=True)
@@ -12,7 +23,8 @@ class TraceOptions:
 
     The defaults of the choice are those of the study in which held-out log scores on blocks of time
     chose right most often on 16 measured records (see `choose/choice.py`); tolerances of 5 to
-    10 % did equally well there, 2 % and 20 % worse.
+    10 % did equally well there, 2 % and 20 % worse. Those of the other stages are grouped at the
+    end: `TraceOptions(search=SearchOptions(rivals=8))`.
     """
 
     only: tuple[str, ...] = ()
@@ -113,3 +125,26 @@ class TraceOptions:
     """Models of each size of which effects are exchanged for those that look alike."""
     alike: int = 3
     """How many effects are tried in the place of one in such an exchange."""
+    fold_ridge: float = 1e-3
+    """The weight of the fit to all data beside that without a fold: what only the fold determines
+    is then no accident."""
+    few_windows: int = 4
+    """Windows from which on the spread of their errors says what is chance."""
+    noise_errors: float = 4.0
+    """Standard errors of a reduced chi-square, sqrt(2/freedom), up to which it is at the noise."""
+    confidence: float = 0.95
+    """Of the intervals of fitted values and of shares."""
+    far_null: float = 2.0
+    """Times the noise, root mean square, from which on a `null` is told with a word about what the
+    rest is."""
+    shown: int = 12
+    """Rows of each table of what was tried."""
+
+    split: SplitOptions = field(default_factory=SplitOptions)
+    check: CheckOptions = field(default_factory=CheckOptions)
+    candidate: CandidateOptions = field(default_factory=CandidateOptions)
+    trial: TrialOptions = field(default_factory=TrialOptions)
+    screen: ScreenOptions = field(default_factory=ScreenOptions)
+    map: MapOptions = field(default_factory=MapOptions)
+    search: SearchOptions = field(default_factory=SearchOptions)
+    experiment: ExperimentOptions = field(default_factory=ExperimentOptions)

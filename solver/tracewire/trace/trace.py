@@ -50,11 +50,6 @@ from tracewire.trace.trials.stretches import share_out, shortest_window
 from tracewire.trace.trials.trial import Bench, Trial
 from tracewire.trace.words.telling import paragraph_of
 
-EXPERIMENTS = 2
-TIGHTENED = 2
-"""How many times the solver's tolerance is tightened by ten where its error counts."""
-SUSPICIOUS = 3.0
-
 
 def trace(
     subject: Model | Fit,
@@ -123,7 +118,7 @@ def within(seconds: float, tell: Callable[[str], None]) -> Callable[[str], None]
 def _precise(search: Search) -> Trial:
     """The declared fit, with a tolerance at which the solver's error does not count."""
     declared = search.declared()
-    for _ in range(TIGHTENED):
+    for _ in range(search.options.check.tightened):
         if not is_loose(search.bench, declared):
             break
         _tighten(search)
@@ -142,7 +137,7 @@ def _checked(search: Search, judgement: Judgement) -> Judgement:
     """The judgement where the solver is precise enough, and no effect raises the error on unseen
     data; without the effects where they do."""
     final = judgement.final
-    for _ in range(TIGHTENED):
+    for _ in range(search.options.check.tightened):
         if not (final.best.effects and is_loose(search.bench, final.best)):
             break
         _tighten(search)
@@ -171,11 +166,12 @@ def _refuse_mistakes(search: Search, declared: Trial, judgement: Judgement) -> N
     """
     best = judgement.final.best
     suspicious = any(e.candidate.place.kind != "sum" for e in best.effects)
-    if suspicious or (judgement.verdict == "unexplained" and best.s2 > SUSPICIOUS):
+    if suspicious or (
+        judgement.verdict == "unexplained" and best.s2 > search.options.check.suspicious
+    ):
         search.tell("looking for mistakes in the records")
-        refuse_mistakes(
-            search.bench.declared, search.bench.measured, declared.s2, search.bench.rtol
-        )
+        bench, options = search.bench, search.options.check
+        refuse_mistakes(bench.declared, bench.measured, options, declared.s2, bench.rtol)
 
 
 def begun(
@@ -193,25 +189,25 @@ def begun(
         subject = subject.model
     model = with_measured_signals(subject, measured)
     series = tuple(load_measured(model) if measured is None else measured)
-    check_series(model, series)
+    check_series(model, series, options.check)
     check_options(options, model)
     sigma = channel_noise([m for m in series if m.use != "validate"])
-    series = tuple(without_spikes(m, sigma) for m in series)
-    stretches = share_out(series)
-    inputs = InputCovariance(sigma, model, series, shortest_window(stretches))
-    bench = Bench(model, series, sigma, rtol, inputs)
+    series = tuple(without_spikes(m, sigma, options.check) for m in series)
+    stretches = share_out(series, options.split)
+    shortest = shortest_window(stretches, options.split)
+    inputs = InputCovariance(sigma, model, series, shortest)
+    bench = Bench(model, series, sigma, rtol, inputs, options)
     places = find_places(model)
-    words = [*remarks(series), *stretches.words]
+    words = [*remarks(series, options.check), *stretches.words]
     words += untried(model.diagram, [place for place in places if place.q])
     return Search(
         bench,
         stretches,
         places,
-        shortest_window(stretches),
+        shortest,
         values,
         progress,
         words,
-        options,
     )
 
 
@@ -272,7 +268,7 @@ def _experiments(search: Search, final: Final) -> tuple[Experiment, ...]:
     found = []
     for effect in final.best.effects:
         tied = [rival for rival in final.rivals.get(str(effect), ()) if rival.tied]
-        for rival in tied[:EXPERIMENTS]:
+        for rival in tied[: search.options.experiment.tied]:
             search.tell(f"an experiment to tell {effect} from {rival.added}")
             try:
                 found.append(
@@ -289,6 +285,6 @@ def _forces(search: Search, best: Trial) -> tuple[Force, ...]:
         return ()
     bench = search.bench
     windows = bench.settled(best, search.windows(search.stretches.train, search.short))
-    tangent = Tangent(best.diagram, windows, search.places, bench.rtol)
-    fitted = Tangent(best.diagram, best.windows, search.places, bench.rtol)
+    tangent = Tangent(best.diagram, windows, search.places, bench.rtol, search.options)
+    fitted = Tangent(best.diagram, best.windows, search.places, bench.rtol, search.options)
     return forces(tangent, best, bench.rtol, fitted)

@@ -19,6 +19,9 @@ from tracewire.trace.candidates.candidates import (
 )
 from tracewire.trace.candidates.levels import Level, Levels, Trajectory, levels_of, signals_at
 from tracewire.trace.candidates.places import find_places
+from tracewire.trace.options import TraceOptions
+
+OPTIONS = TraceOptions()
 
 PENDULUM = """\
 span: [0, 2]
@@ -81,7 +84,9 @@ def runs(model: Model) -> list[Trajectory]:
 def found_in(diagram: Diagram, taken: Sequence[Candidate] = ()) -> list[Candidate]:
     places = find_places(compile(diagram))
     model = compile(diagram, record=signals_at(places))
-    return find_candidates(model, places, levels_of(runs(model)), taken)
+    return find_candidates(
+        model, places, levels_of(runs(model), OPTIONS.candidate), OPTIONS.candidate, taken
+    )
 
 
 def named(candidates: Sequence[Candidate]) -> dict[str, Candidate]:
@@ -96,7 +101,7 @@ def driven(folder: Path) -> Diagram:
 def test_levels_are_taken_over_all_series() -> None:
     short = Trajectory(np.array([0, 0.5, 1.0]), {"x": np.array([3.0, 0, 0])})
     long = Trajectory(np.array([5.0, 6, 7, 8]), {"x": np.array([0, 0, -4, 0.0])})
-    levels = levels_of([short, long])
+    levels = levels_of([short, long], OPTIONS.candidate)
     assert levels.signals["x"] == Level(pytest.approx(5 / 7**0.5), 4.0, 4.0, 4.0, slowest=3.01)
     assert (levels.duration, levels.interval) == (3.0, 1.0)
     assert levels.of("unknown") == Level(0.0, 0.0)
@@ -113,7 +118,9 @@ def test_shapes_are_sizes_of_the_signals() -> None:
     diagram = read_text(PENDULUM)
     places = find_places(compile(diagram))
     sizes = {"omega": Level(2.0, 5.0), "theta": Level(0.5, 3.0), "torque": Level(7.0, 9.0)}
-    candidates = find_candidates(compile(diagram), places, Levels(sizes, 10.0, 0.01))
+    candidates = find_candidates(
+        compile(diagram), places, Levels(sizes, 10.0, 0.01), OPTIONS.candidate
+    )
     known = named(candidates)
     assert known["coulomb @ torque"].shapes == {"width": (0.0, 0.2)}, (
         "0.04 is less than is resolved"
@@ -121,7 +128,7 @@ def test_shapes_are_sizes_of_the_signals() -> None:
     assert known["backlash @ torque"].shapes["gap"] == pytest.approx((0.3, 0.75, 1.5))
     assert known["harmonic @ torque"].shapes["period"][:2] == (10.0, 5.0)
     assert known["bias @ torque"].scale == pytest.approx(7.0)
-    still = find_candidates(compile(diagram), places, Levels({}, 10.0, 0.01))
+    still = find_candidates(compile(diagram), places, Levels({}, 10.0, 0.01), OPTIONS.candidate)
     assert "backlash @ torque" not in named(still) and "bias @ torque" in named(still)
 
 
@@ -133,7 +140,9 @@ def test_shapes_stay_within_what_the_record_shows() -> None:
         "torque": Level(7.0, 9.0),
     }
     places = find_places(compile(diagram))
-    known = named(find_candidates(compile(diagram), places, Levels(sizes, 10.0, 0.01)))
+    known = named(
+        find_candidates(compile(diagram), places, Levels(sizes, 10.0, 0.01), OPTIONS.candidate)
+    )
     stribeck = known["stribeck @ torque"]
     assert stribeck.limits["speed"] == (0.1, 5.0)
     speeds = stribeck.shapes["speed"]
@@ -149,14 +158,16 @@ def test_shapes_stay_within_what_the_record_shows() -> None:
     assert known["harmonic @ torque"].limits["period"][1] == 10.0, "one wave in the record"
     assert known["backlash @ torque"].limits["gap"] == pytest.approx((0.03, 3.0))
     fast = {**sizes, "theta": Level(0.5, 3.0, stroke=4.0, step=2.0)}
-    left = named(find_candidates(compile(diagram), places, Levels(fast, 10.0, 0.01)))
+    left = named(
+        find_candidates(compile(diagram), places, Levels(fast, 10.0, 0.01), OPTIONS.candidate)
+    )
     assert "cogging @ torque" not in left, "no wave is four samples long"
 
 
 def test_levels_know_strokes_steps_and_slow_rates() -> None:
     t = np.linspace(0, 2, 2001)
     there_and_back = Trajectory(t, {"q": np.abs(3 * (1 - t)), "v": np.where(t < 1, -3.0, 0.0)})
-    levels = levels_of([there_and_back])
+    levels = levels_of([there_and_back], OPTIONS.candidate)
     assert levels.of("q").stroke == pytest.approx(3.0)
     assert levels.of("q").step == pytest.approx(0.003)
     assert levels.of("v").slowest == 3.0, "what rests is not slow"

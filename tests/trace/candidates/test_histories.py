@@ -11,9 +11,12 @@ from tracewire.compile import Model, compile
 from tracewire.diagram import read_text
 from tracewire.solve import Interrupted
 from tracewire.trace.candidates.candidates import Candidate, find_candidates
-from tracewire.trace.candidates.histories import MOST_VARIANTS, histories, variants_of
+from tracewire.trace.candidates.histories import histories, variants_of
 from tracewire.trace.candidates.levels import Trajectory, levels_of
 from tracewire.trace.candidates.places import find_places
+from tracewire.trace.options import TraceOptions
+
+OPTIONS = TraceOptions()
 
 TEXT = """
 inputs: {u: {default: 0}}
@@ -40,7 +43,9 @@ def resting() -> Trajectory:
 
 def candidates_of(text: str, runs: list[Trajectory]) -> tuple[Model, dict[str, Candidate]]:
     model = compile(read_text(text))
-    found = find_candidates(model, find_places(model), levels_of(runs))
+    found = find_candidates(
+        model, find_places(model), levels_of(runs, OPTIONS.candidate), OPTIONS.candidate
+    )
     return model, {str(candidate): candidate for candidate in found}
 
 
@@ -57,7 +62,7 @@ def test_memoryless_effects_follow_their_formulas() -> None:
         "inertia @ force": lambda x, v, a, u: -a,
         "drive_gain @ drive.u": lambda x, v, a, u: u,
     }
-    found = histories(model, [known[name] for name in formulas], runs)
+    found = histories(model, [known[name] for name in formulas], runs, OPTIONS.candidate)
     for name, formula in formulas.items():
         first = next(v for v in found if str(v.candidate) == name)
         for run, values in zip(runs, found[first], strict=True):
@@ -68,7 +73,7 @@ def test_memoryless_effects_follow_their_formulas() -> None:
 def test_a_shape_is_a_variant_of_its_own() -> None:
     runs = [moving()]
     model, known = candidates_of(TEXT, runs)
-    found = histories(model, [known["coulomb @ force"]], runs)
+    found = histories(model, [known["coulomb @ force"]], runs, OPTIONS.candidate)
     assert [dict(variant.shapes)["width"] for variant in found] == pytest.approx(
         known["coulomb @ force"].shapes["width"]
     )
@@ -82,7 +87,7 @@ def test_a_memory_is_integrated_along_the_run() -> None:
     run = moving()
     model, known = candidates_of(TEXT, [run])
     dahl = known["hysteresis @ force"]
-    found = histories(model, [dahl], [run])
+    found = histories(model, [dahl], [run], OPTIONS.candidate)
     for variant, (values,) in found.items():
         (s,) = (value for _, value in variant.shapes)
 
@@ -99,7 +104,7 @@ def test_a_lag_is_that_of_its_coefficient_over_it() -> None:
     model, known = candidates_of(TEXT, [run])
     lag = known["drive_lag @ drive.u"]
     assert lag.at == pytest.approx(2 * 0.005)
-    ((values,),) = histories(model, [lag], [run]).values()
+    ((values,),) = histories(model, [lag], [run], OPTIONS.candidate).values()
     late = T > 0.2  # behind the start, a sine after a lag is known
     phase = np.arctan(3 * lag.at)
     expected = (np.cos(phase) * np.sin(3 * T - phase) - np.sin(3 * T)) / lag.at
@@ -111,7 +116,7 @@ def test_a_body_at_rest_neither_hangs_nor_fails() -> None:
     runs = [resting(), resting()]
     model, known = candidates_of(TEXT, runs)
     told: list[str] = []
-    found = histories(model, list(known.values()), runs, told.append)
+    found = histories(model, list(known.values()), runs, OPTIONS.candidate, told.append)
     assert told == []
     assert {str(variant.candidate) for variant in found} == {
         name
@@ -135,7 +140,7 @@ subsystems:
     model, known = candidates_of(TEXT + bad, runs)
     told: list[str] = []
     names = ["viscous @ force", "root @ force", "stiffness @ force", "bias @ force"]
-    found = histories(model, [known[name] for name in names], runs, told.append)
+    found = histories(model, [known[name] for name in names], runs, OPTIONS.candidate, told.append)
     assert [str(v.candidate) for v in found] == [n for n in names if n != "root @ force"]
     assert len(told) == 1 and told[0].startswith("root @ force was not tried: ")
 
@@ -145,8 +150,8 @@ def test_long_grids_are_thinned_out_evenly() -> None:
     candidate = known["coulomb @ force"]
     grids = {"a": tuple(np.arange(300.0)), "b": (0.0, 1.0)}
     many = Candidate("x", candidate.place, "x", {}, "x.c", 0, grids)
-    variants = [dict(variant.shapes) for variant in variants_of(many)]
-    assert len(variants) <= MOST_VARIANTS
+    variants = [dict(variant.shapes) for variant in variants_of(many, OPTIONS.candidate.variants)]
+    assert len(variants) <= OPTIONS.candidate.variants
     assert {(shape["a"], shape["b"]) for shape in variants} >= {
         (0.0, 0.0),
         (0.0, 1.0),
@@ -165,4 +170,4 @@ def test_ctrl_c_is_no_reason_to_leave_one_out(monkeypatch: pytest.MonkeyPatch) -
     # the package has a function of its name, which hides the module from its path
     monkeypatch.setattr(sys.modules[histories.__module__], "simulate", stopped)
     with pytest.raises(Interrupted):
-        histories(model, list(known.values()), [moving()])
+        histories(model, list(known.values()), [moving()], OPTIONS.candidate)

@@ -10,6 +10,9 @@ from tracewire.diagram import read, read_text
 from tracewire.trace.candidates.candidates import find_candidates
 from tracewire.trace.candidates.levels import Level, Levels
 from tracewire.trace.candidates.places import Place, find_places, untried
+from tracewire.trace.options import TraceOptions
+
+OPTIONS = TraceOptions()
 
 PENDULUM = Path(__file__).parents[3] / "diagrams/papers/a_torsion/pendulum.yaml"
 LEVELS = Levels({"u": Level(1.0, 2.0), "x": Level(2.0, 4.0)}, 10.0, 0.01)
@@ -222,7 +225,7 @@ def test_a_place_that_names_a_coordinate_alone_is_kept() -> None:
     model = compile(read_text(text))
     (place, _) = find_places(model)
     assert place == Place("x", "sum", "x", "u", "", "", (), ("u",))
-    known = {c.effect: c for c in find_candidates(model, [place], LEVELS)}
+    known = {c.effect: c for c in find_candidates(model, [place], LEVELS, OPTIONS.candidate)}
     assert {"cubic_stiffness", "backlash", "cogging", "play_q", "stop_q", "bias"} <= known.keys()
     assert not known.keys() & {"coulomb", "viscous", "play", "hysteresis"}
     assert known["play_q"].signals == {"of": "u"}
@@ -276,6 +279,8 @@ def test_a_level_overflows_where_there_is_no_coordinate() -> None:
     text = "blocks: {h: {type: integrator, of: flow}, flow: {type: sum, of: [-h]}}"
     model = compile(read_text(text))
     levels = Levels({"h": Level(1.0, 2.0), "flow": Level(1.0, 1.0)}, 10.0, 0.01)
-    known = {c.effect: c for c in find_candidates(model, find_places(model), levels)}
+    known = {
+        c.effect: c for c in find_candidates(model, find_places(model), levels, OPTIONS.candidate)
+    }
     assert known["overflow"].signals == {"of": "h"}
     assert known["overflow"].limits["edge"] == pytest.approx((0.4, 2.0))

@@ -10,8 +10,11 @@ from tracewire.residual import Measured
 from tracewire.trace.candidates.candidates import Candidate, find_candidates
 from tracewire.trace.candidates.levels import levels_of
 from tracewire.trace.candidates.places import find_places
+from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Row, screened
 from tracewire.trace.screen.tangent import Tangent
+
+OPTIONS = TraceOptions()
 
 ROTOR = """\
 span: [0, 8]
@@ -52,9 +55,12 @@ def best_row(record: Measured, effect: str, unit: str = "rad") -> Row:
     bench = bench_of(record, text=ROTOR.replace("UNIT", unit), sigma=5e-4)
     trial = trial_of(bench, length=40)
     places = find_places(bench.declared)
-    tangent = Tangent(trial.diagram, trial.windows, places, 1e-6)
+    tangent = Tangent(trial.diagram, trial.windows, places, 1e-6, OPTIONS)
     known: list[Candidate] = find_candidates(
-        bench.declared, places, levels_of(tangent.trajectories)
+        bench.declared,
+        places,
+        levels_of(tangent.trajectories, OPTIONS.candidate),
+        OPTIONS.candidate,
     )
     screen = screened(tangent, trial, [c for c in known if c.effect == effect])
     return screen.best()[0]

@@ -14,6 +14,9 @@ from tracewire.diagram import read_text
 from tracewire.errors import DataError
 from tracewire.residual import Measured
 from tracewire.trace.check.mistakes import likely_lags, refuse_mistakes, shifted
+from tracewire.trace.options import TraceOptions
+
+OPTIONS = TraceOptions()
 
 DRIVEN = """\
 span: [0, 8]
@@ -52,7 +55,7 @@ def record(law: Callable[[float, float], float] = lambda q, v: 0.0, late: float 
 
 def refused(m: Measured) -> str:
     with pytest.raises(DataError) as caught:
-        refuse_mistakes(MODEL, [m])
+        refuse_mistakes(MODEL, [m], OPTIONS.check)
     return str(caught.value)
 
 
@@ -84,17 +87,17 @@ def test_an_input_in_thousandths() -> None:
     ],
 )
 def test_a_missing_effect_is_no_mistake(law: Callable[[float, float], float]) -> None:
-    refuse_mistakes(MODEL, [record(law)])
+    refuse_mistakes(MODEL, [record(law)], OPTIONS.check)
 
 
 def test_lags_are_found_and_undone() -> None:
     for late in (-0.4, 0.0, 0.25):
         m = record(late=late)
-        lag = likely_lags(MODEL, m)[0]
+        lag = likely_lags(MODEL, m, OPTIONS.check)[0]
         assert lag == pytest.approx(-late, abs=0.011)
         t, u = shifted(m, lag).inputs["u"]
         assert np.interp(2.0, t, u) == pytest.approx(drive(np.array([2.0]))[0], abs=0.3)
 
 
 def test_nothing_is_tried_near_the_noise() -> None:
-    refuse_mistakes(MODEL, [record(late=0.3)], s2=1.2)
+    refuse_mistakes(MODEL, [record(late=0.3)], OPTIONS.check, s2=1.2)

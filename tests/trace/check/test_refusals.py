@@ -12,6 +12,9 @@ from tracewire.diagram import read_text
 from tracewire.errors import DataError
 from tracewire.residual import Measured, Sensor
 from tracewire.trace.check.refusals import check_series, rate_ratio, remarks
+from tracewire.trace.options import TraceOptions
+
+OPTIONS = TraceOptions()
 
 MODEL = compile(
     read_text("""\
@@ -46,13 +49,13 @@ def theta(values: Any, **changed: Any) -> Measured:
 
 def refused(*measured: Measured) -> str:
     with pytest.raises(DataError) as caught:
-        check_series(MODEL, measured)
+        check_series(MODEL, measured, OPTIONS.check)
     return str(caught.value)
 
 
 def test_good_series_pass() -> None:
-    check_series(MODEL, [swing(), theta(np.exp(-T) + 0.1 * NOISE[0])])
-    check_series(MODEL, [swing(inputs={"u": (T, 0 * T)})])  # a free swing
+    check_series(MODEL, [swing(), theta(np.exp(-T) + 0.1 * NOISE[0])], OPTIONS.check)
+    check_series(MODEL, [swing(inputs={"u": (T, 0 * T)})], OPTIONS.check)  # a free swing
 
 
 def test_no_series_to_train_on() -> None:
@@ -93,15 +96,17 @@ def test_noise_alone() -> None:
 def test_noise_is_taken_for_noise_and_a_weak_signal_not(seed: int) -> None:
     noise = np.random.default_rng(seed).standard_normal(len(T))
     assert "shows nothing above" in refused(theta(noise))
-    check_series(MODEL, [theta(noise + 2 * np.cos(3 * T))])
+    check_series(MODEL, [theta(noise + 2 * np.cos(3 * T))], OPTIONS.check)
 
 
 def test_a_channel_that_is_noise_in_every_series() -> None:
     values = {**swing().values, "omega": NOISE[1]}
     text = refused(swing(values=values), swing(values=values, name="two"))
     assert text.startswith("'omega' shows nothing above its noise in any series. Is the sensor")
-    check_series(MODEL, [swing(), swing(values=values)])
-    assert remarks([swing(values=values)]) == ("run: omega shows nothing above its noise",)
+    check_series(MODEL, [swing(), swing(values=values)], OPTIONS.check)
+    assert remarks([swing(values=values)], OPTIONS.check) == (
+        "run: omega shows nothing above its noise",
+    )
 
 
 def test_columns_of_other_lengths_and_times_that_go_back() -> None:
@@ -138,16 +143,20 @@ def test_a_signal_and_its_rate_in_units_that_do_not_match(factor: float, message
 
 def test_a_gain_that_is_near_one_or_free_is_no_mistake() -> None:
     values = swing().values
-    check_series(MODEL, [swing(values={**values, "omega": 1.1 * values["omega"]})])
+    check_series(MODEL, [swing(values={**values, "omega": 1.1 * values["omega"]})], OPTIONS.check)
     free = {"omega": Sensor(free={"gain": (-100.0, 100.0)})}
-    check_series(MODEL, [swing(values={**values, "omega": -values["omega"]}, sensors=free)])
+    check_series(
+        MODEL, [swing(values={**values, "omega": -values["omega"]}, sensors=free)], OPTIONS.check
+    )
 
 
 def test_the_ratio_needs_signals_that_belong_together() -> None:
-    assert rate_ratio(T, np.cos(3 * T), NOISE[0]) is None
-    assert rate_ratio(T, np.cos(3 * T), 0 * T) is None
+    assert rate_ratio(T, np.cos(3 * T), NOISE[0], OPTIONS.check.sure_rate) is None
+    assert rate_ratio(T, np.cos(3 * T), 0 * T, OPTIONS.check.sure_rate) is None
     drifting = np.cos(3 * T) + 5 + 0.3 * T
-    assert rate_ratio(T, drifting, -1.5 * np.sin(3 * T)) == pytest.approx(2, rel=1e-3)
+    assert rate_ratio(T, drifting, -1.5 * np.sin(3 * T), OPTIONS.check.sure_rate) == pytest.approx(
+        2, rel=1e-3
+    )
 
 
 def test_all_problems_are_told_at_once() -> None:
@@ -157,6 +166,6 @@ def test_all_problems_are_told_at_once() -> None:
 
 
 def test_remarks_of_the_file_are_passed_on() -> None:
-    assert remarks([swing(remarks=("the time step is not regular",))]) == (
+    assert remarks([swing(remarks=("the time step is not regular",))], OPTIONS.check) == (
         "run: the time step is not regular",
     )

@@ -14,6 +14,8 @@ from tracewire.trace.check.spikes import spikes, without_spikes
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.trace import begun
 
+OPTIONS = TraceOptions()
+
 T = np.arange(0.0, 10.0, 0.01)
 NOISE = 1e-3
 
@@ -27,7 +29,7 @@ def swing(seed: int = 0) -> np.ndarray:
 def test_a_single_wrong_sample_is_found(row: int, size: float, sign: int) -> None:
     y = np.exp(-0.1 * T) * np.cos(5.0 * T)
     y[row] += sign * size * NOISE
-    assert np.flatnonzero(spikes(T, y, NOISE)).tolist() == [row]
+    assert np.flatnonzero(spikes(T, y, NOISE, OPTIONS.check)).tolist() == [row]
 
 
 def test_noise_hides_a_spike_seldom() -> None:
@@ -37,7 +39,7 @@ def test_noise_hides_a_spike_seldom() -> None:
     for row in rows:
         y = swing(row)
         y[row] += 0.05
-        there = np.flatnonzero(spikes(T, y, NOISE)).tolist()
+        there = np.flatnonzero(spikes(T, y, NOISE, OPTIONS.check)).tolist()
         assert there in ([row], []), "never another one"
         found += len(there)
     assert found > 0.9 * len(rows)
@@ -45,7 +47,7 @@ def test_noise_hides_a_spike_seldom() -> None:
 
 @given(st.integers(0, 200))
 def test_noise_has_no_spikes(seed: int) -> None:
-    assert not spikes(T, swing(seed), NOISE).any()
+    assert not spikes(T, swing(seed), NOISE, OPTIONS.check).any()
 
 
 @pytest.mark.parametrize("speed", [0.3, 1.0, 3.0, 10.0])
@@ -53,15 +55,15 @@ def test_the_kink_of_an_impact_is_no_spike(speed: float) -> None:
     """A ball's bounce, a rate that turns under dry friction, and one of a body that is stopped."""
     for shift in np.linspace(0, 0.01, 7):
         noise = 1e-4 * np.random.default_rng(1).standard_normal(len(T))
-        assert not spikes(T, speed * np.abs(T - 5.0 - shift) + noise, 1e-4).any()
-        assert not spikes(T, speed * (5.0 + shift > T) + noise, 1e-4).any()
+        assert not spikes(T, speed * np.abs(T - 5.0 - shift) + noise, 1e-4, OPTIONS.check).any()
+        assert not spikes(T, speed * (5.0 + shift > T) + noise, 1e-4, OPTIONS.check).any()
 
 
 def test_a_series_tells_what_was_left_out() -> None:
     y = swing(3)
     y[[100, 400, 700]] += 0.5
     m = Measured("swing", "train", T, {"x": y, "v": swing(1)})
-    found = without_spikes(m, {"x": NOISE, "v": NOISE})
+    found = without_spikes(m, {"x": NOISE, "v": NOISE}, OPTIONS.check)
     assert len(found.t) == len(found.values["v"]) == len(T) - 3
     assert found.remarks == ("3 single samples left out, far off their neighbours: 3 of x",)
     assert np.abs(np.diff(found.values["x"])).max() < 0.1
@@ -71,13 +73,13 @@ def test_many_wrong_samples_are_no_mistake_of_single_ones() -> None:
     y = swing()
     y[10::40] += 0.5
     m = Measured("swing", "train", T, {"x": y})
-    assert without_spikes(m, {"x": NOISE}) is m
+    assert without_spikes(m, {"x": NOISE}, OPTIONS.check) is m
 
 
 def test_a_series_without_spikes_is_the_same() -> None:
     m = Measured("swing", "train", T, {"x": swing()})
-    assert without_spikes(m, {"x": NOISE}) is m
-    assert without_spikes(replace(m, t=T**1.5), {"x": NOISE}).values.keys() == {"x"}
+    assert without_spikes(m, {"x": NOISE}, OPTIONS.check) is m
+    assert without_spikes(replace(m, t=T**1.5), {"x": NOISE}, OPTIONS.check).values.keys() == {"x"}
 
 
 def test_a_trace_leaves_them_out_and_says_so() -> None:

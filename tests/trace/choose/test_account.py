@@ -9,8 +9,11 @@ import pytest
 from oracles.oscillator import NOISE, bench_of, later, record, search_of, trial_of
 from tracewire.residual import Measured, Segment
 from tracewire.residual.windows import Section, cut
-from tracewire.trace.choose.account import FIRST_PART, compared, free_run, intervals, moved, rmse
+from tracewire.trace.choose.account import compared, free_run, intervals, moved, rmse
+from tracewire.trace.options import TraceOptions
 from tracewire.trace.trials.trial import Bench
+
+OPTIONS = TraceOptions()
 
 
 def whole(bench: Bench, measured: Measured) -> Segment:
@@ -24,7 +27,7 @@ def test_a_free_run_uses_only_the_first_fifth_for_its_start() -> None:
     m = record()
     bench = bench_of(m)
     trial = trial_of(bench)
-    seen = int(FIRST_PART * len(m.t))
+    seen = int(OPTIONS.split.first_part * len(m.t))
     before = free_run(bench, trial, whole(bench, m), 20)
     after = free_run(bench, trial, whole(bench, later(m, slice(seen, None), 0.1)), 20)
     np.testing.assert_allclose(after[:seen], before[:seen], atol=1e-9)
@@ -71,7 +74,7 @@ def test_intervals_cover_the_truth_as_often_as_they_say() -> None:
         x = exact.values["x"] + NOISE * rng.standard_normal(len(exact.t))
         noisy = replace(exact, values={"x": x})
         drawn = [replace(segment, measured=noisy) for segment in segments]
-        ends = intervals(bench.fitted((), drawn, 60, {"k": 25.0, "c": 0.2}))
+        ends = intervals(bench.fitted((), drawn, 60, {"k": 25.0, "c": 0.2}), OPTIONS.confidence)
         inside += [ends[n][0] <= value <= ends[n][1] for n, value in (("k", 25.0), ("c", 0.2))]
     assert np.mean(inside) == pytest.approx(0.95, abs=0.06)
 

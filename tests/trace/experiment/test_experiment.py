@@ -17,7 +17,10 @@ from tracewire.trace.candidates.places import find_places
 from tracewire.trace.experiment.experiment import separating
 from tracewire.trace.experiment.rig import main_frequency
 from tracewire.trace.found import Experiment
+from tracewire.trace.options import TraceOptions
 from tracewire.trace.trials.trial import Added, Bench
+
+OPTIONS = TraceOptions()
 
 OSCILLATOR = """\
 span: [0, 6]
@@ -59,8 +62,8 @@ def between(folder: Path, one: str, values: dict[str, float], other: str) -> Exp
     bench = Bench(model, (series,), {"q": NOISE}, 1e-6)
     places = find_places(model)
     signals = {"q": run[0], "v": run[1], "u": drive(T), "torque": np.gradient(run[1], T)}
-    levels = levels_of([Trajectory(T, signals)])
-    known = {c.effect: c for c in find_candidates(model, places, levels)}
+    levels = levels_of([Trajectory(T, signals)], OPTIONS.candidate)
+    known = {c.effect: c for c in find_candidates(model, places, levels, OPTIONS.candidate)}
     windows = cut(model, Section(series, 0, len(T)), 150, ("q", "v"))
     trials = []
     for name in (one, other):

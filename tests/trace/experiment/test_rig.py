@@ -11,7 +11,10 @@ from tracewire.diagram import read_text
 from tracewire.residual import Measured
 from tracewire.residual.windows import Section, cut
 from tracewire.trace.experiment.rig import Rig, Setting, rig_of
+from tracewire.trace.options import TraceOptions
 from tracewire.trace.trials.trial import Bench
+
+OPTIONS = TraceOptions()
 
 DRIVEN = """\
 span: [0, 2]
@@ -70,5 +73,5 @@ def test_nothing_beyond_three_times_what_was_measured(rig: Rig) -> None:
     assert not rig.allowed(Setting(release=3.1))
     assert not rig.allowed(Setting(release=0.1))
     assert not rig.allowed(Setting(0.0, "push", 2.0, 1.0))
-    nearby = list(Setting(0.0, "push", 1.0, 1.0).near())
+    nearby = list(Setting(0.0, "push", 1.0, 1.0).near(OPTIONS.experiment))
     assert len({(s.amplitude, s.frequency) for s in nearby}) == 4

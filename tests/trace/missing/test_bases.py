@@ -9,6 +9,9 @@ from hypothesis import strategies as st
 from tracewire.trace.candidates.levels import Trajectory
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.missing.bases import bases_of, drive_phase, lowpassed, stopped
+from tracewire.trace.options import TraceOptions
+
+OPTIONS = TraceOptions()
 
 T = np.arange(0.0, 8.0, 0.01)
 Q = 0.3 * np.sin(4 * T) + 0.1 * np.sin(9 * T)
@@ -22,7 +25,7 @@ def runs(count: int = 2) -> list[Trajectory]:
 
 
 def test_all_variables_of_a_place_are_tried() -> None:
-    found = {basis.variables for basis in bases_of(PLACE, runs())}
+    found = {basis.variables for basis in bases_of(PLACE, runs(), OPTIONS.map)}
     assert found == {
         ("q",),
         ("v",),
@@ -42,12 +45,12 @@ def test_all_variables_of_a_place_are_tried() -> None:
 def test_drives_and_bodies_are_told_apart_where_there_are_several() -> None:
     signals = {**runs(1)[0].signals, "w": np.cos(T), "q3": Q, "v3": V}
     place = Place("torque", "sum", "torque", "q", "v", "", (("q2", "v2"), ("q3", "v3")), ("u", "w"))
-    found = {basis.variables for basis in bases_of(place, [Trajectory(T, signals)])}
+    found = {basis.variables for basis in bases_of(place, [Trajectory(T, signals)], OPTIONS.map)}
     assert {("u of u",), ("u of w",), ("other_q of v2",), ("other_q of v3",)} <= found
 
 
 def test_bumps_sum_to_one_on_and_off_the_data() -> None:
-    for basis in bases_of(PLACE, runs()):
+    for basis in bases_of(PLACE, runs(), OPTIONS.map):
         if basis.axes and basis.variables != ("t",):
             assert all(np.allclose(c.sum(axis=1), 1.0) for c in basis.columns), basis.variables
             far = [np.array([-100.0, 0.0, 100.0]) for _ in basis.axes]
@@ -56,7 +59,7 @@ def test_bumps_sum_to_one_on_and_off_the_data() -> None:
 
 def test_a_fast_ripple_needs_the_fine_functions_of_q() -> None:
     left = []
-    for basis in bases_of(PLACE, runs(1)):
+    for basis in bases_of(PLACE, runs(1), OPTIONS.map):
         if basis.variables == ("q",):
             ripple = np.sin(40 * Q)
             values, *_ = np.linalg.lstsq(basis.columns[0], ripple, rcond=1e-8)
@@ -67,21 +70,23 @@ def test_a_fast_ripple_needs_the_fine_functions_of_q() -> None:
 def test_a_constant_signal_has_no_functions() -> None:
     signals = {"q": Q, "v": V, "u": np.ones(len(T))}
     place = Place("torque", "sum", "torque", "q", "v", "", (), ("u",))
-    found = {basis.variables for basis in bases_of(place, [Trajectory(T, signals)])}
+    found = {basis.variables for basis in bases_of(place, [Trajectory(T, signals)], OPTIONS.map)}
     assert ("u",) not in found
     assert ("drive phase",) not in found
 
 
 @pytest.mark.parametrize("omega", [0.9, 3.0, 11.3])
 def test_the_phase_of_a_sine(omega: float) -> None:
-    phase = drive_phase(T, 2.0 + 0.7 * np.sin(omega * T + 0.8))
+    phase = drive_phase(T, 2.0 + 0.7 * np.sin(omega * T + 0.8), OPTIONS.map.tonal)
     assert phase is not None
     assert np.allclose(np.sin(phase), np.sin(omega * T + 0.8), atol=0.02)
 
 
 def test_a_drive_that_is_no_sine_has_no_phase() -> None:
-    assert drive_phase(T, np.random.default_rng(1).standard_normal(len(T))) is None
-    assert drive_phase(T, np.zeros(len(T))) is None
+    assert (
+        drive_phase(T, np.random.default_rng(1).standard_normal(len(T)), OPTIONS.map.tonal) is None
+    )
+    assert drive_phase(T, np.zeros(len(T)), OPTIONS.map.tonal) is None
 
 
 def test_a_low_pass_answers_a_step_exponentially() -> None:

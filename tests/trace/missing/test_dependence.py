@@ -18,8 +18,11 @@ from tracewire.trace.candidates.places import Place, find_places
 from tracewire.trace.found import Dependence, Missing
 from tracewire.trace.missing.bases import Basis, bases_of
 from tracewire.trace.missing.dependence import Scored, smallest, where_what
+from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.tangent import Tangent
 from tracewire.trace.trials.trial import Bench, Trial
+
+OPTIONS = TraceOptions()
 
 dependence = sys.modules[where_what.__module__]
 Law = Callable[[float, float, float], float]
@@ -75,7 +78,7 @@ def tangent_of(law: Law, memory: Law = lambda q, v, z: 0.0) -> tuple[Tangent, Tr
     windows = [w for m in series for w in cut(model, Section(m, 0, len(T)), 40, ("q", "v"))]
     trial = bench.fitted((), windows, 40, {})
     places = [*find_places(model), Place("sensor.q", "sensor", "q")]
-    return Tangent(trial.diagram, trial.windows, places, 1e-6), trial, places
+    return Tangent(trial.diagram, trial.windows, places, 1e-6, OPTIONS), trial, places
 
 
 def test_the_map_is_the_same_however_much_is_worked_on_at_once(
@@ -96,7 +99,10 @@ def test_the_map_is_the_same_however_much_is_worked_on_at_once(
 def test_the_map_never_holds_the_columns_of_all_bases() -> None:
     tangent, trial, places = tangent_of(lambda q, v, z: 0.8 * math.sin(12 * q))
     sizes = [
-        sum(basis.columns[0].shape[1] for basis in bases_of(place, tangent.trajectories))
+        sum(
+            basis.columns[0].shape[1]
+            for basis in bases_of(place, tangent.trajectories, OPTIONS.map)
+        )
         for place in places
     ]
     all_columns = 8 * tangent.size * max(sizes)
@@ -164,7 +170,7 @@ DRIVE = Place("drive.u", "drive", "u")
 
 
 def chosen(*rows: Scored) -> tuple[str, tuple[str, ...]] | None:
-    best = smallest(rows)
+    best = smallest(rows, OPTIONS.map)
     return None if best is None else (best.place.name, best.basis.variables)
 
 

@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 from oracles.oscillator import bench_of, candidates_of, record, trial_of
 from tracewire.trace.candidates.places import find_places
+from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Screen, screened
 from tracewire.trace.screen.tangent import Tangent
 from tracewire.trace.trials.trial import Added
+
+OPTIONS = TraceOptions()
 
 NAMES = (
     "bias @ force", "coulomb @ force", "quad_drag @ force", "cubic_stiffness @ force",
@@ -22,7 +25,7 @@ def screen_of(law: Callable[[float, float], float] | None = None) -> Screen:
     bench = bench_of(record(law))
     trial = trial_of(bench, length=40)
     candidates = candidates_of(bench)
-    tangent = Tangent(trial.diagram, trial.windows, find_places(bench.declared), 1e-6)
+    tangent = Tangent(trial.diagram, trial.windows, find_places(bench.declared), 1e-6, OPTIONS)
     return screened(tangent, trial, [candidates[name] for name in NAMES])
 
 
@@ -89,7 +92,7 @@ def test_a_free_phase_is_fitted_by_sine_and_cosine_together() -> None:
     bench = bench_of(record())
     waves = [c for name, c in candidates_of(bench).items() if name.startswith("harmonic @ force")]
     trial = trial_of(bench, length=40)
-    tangent = Tangent(trial.diagram, trial.windows, find_places(bench.declared), 1e-6)
+    tangent = Tangent(trial.diagram, trial.windows, find_places(bench.declared), 1e-6, OPTIONS)
     found = screened(tangent, trial, waves)
     assert found.rows
     assert all(len(row.columns) == 2 for row in found.rows)

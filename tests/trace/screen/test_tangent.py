@@ -13,8 +13,11 @@ from tracewire.diagram import read_text
 from tracewire.residual import Criterion, Measured
 from tracewire.residual.windows import Section, Windows, cut, opened
 from tracewire.trace.candidates.places import find_places
+from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.observed import nodes_of
 from tracewire.trace.screen.tangent import Tangent
+
+OPTIONS = TraceOptions()
 
 SMOOTH = """\
 span: [0, 3]
@@ -90,7 +93,7 @@ def test_the_answer_is_the_derivative_by_the_coefficient_of_the_same_torque(
 ) -> None:
     windows = opened_at(text, 0.0, np.zeros(len(T)), STARTS)
     places = [p for p in find_places(windows.criterion.model) if p.name == "torque"]
-    tangent = Tangent(windows.criterion.model.diagram, windows, places, 1e-8)
+    tangent = Tangent(windows.criterion.model.diagram, windows, places, 1e-8, OPTIONS)
     histories = [np.stack(list(PUSHES.values()), axis=1)]
     found = tangent.answer({"torque": histories})
     assert found.shape == (tangent.size, len(PUSHES)) == (len(T), len(PUSHES))
@@ -110,7 +113,7 @@ def test_while_it_sticks_no_torque_moves_it() -> None:
     at_rest: list[dict[str, float]] = [{"theta": 0.1, "omega": 0.0}] * 3
     windows = opened_at(STICK, 0.0, np.zeros(len(T)), at_rest)
     places = [p for p in find_places(windows.criterion.model) if p.name == "torque"]
-    tangent = Tangent(windows.criterion.model.diagram, windows, places, 1e-8)
+    tangent = Tangent(windows.criterion.model.diagram, windows, places, 1e-8, OPTIONS)
     answer = tangent.answer({"torque": [np.ones((len(T), 1))]})
     np.testing.assert_allclose(answer, 0.0, atol=1e-9)
 
@@ -118,7 +121,7 @@ def test_while_it_sticks_no_torque_moves_it() -> None:
 def test_the_trajectories_are_the_fitted_run_at_every_sample() -> None:
     trial = trial_of(bench_of(record(), record(name="again", seed=1)))
     places = find_places(trial.model)
-    tangent = Tangent(trial.diagram, trial.windows, places, 1e-8)
+    tangent = Tangent(trial.diagram, trial.windows, places, 1e-8, OPTIONS)
     assert len(tangent.trajectories) == 2
     first = tangent.trajectories[0]
     m = trial.windows.criterion.segments[0].measured
@@ -138,7 +141,7 @@ def test_the_trajectories_are_the_fitted_run_at_every_sample() -> None:
 def test_a_sensor_is_told_by_what_it_shows() -> None:
     bench = bench_of(record(end=4.0))
     trial = trial_of(bench)
-    tangent = Tangent(trial.diagram, trial.windows, find_places(trial.model), 1e-8)
+    tangent = Tangent(trial.diagram, trial.windows, find_places(trial.model), 1e-8, OPTIONS)
     run = tangent.trajectories[0]
     rows = np.concatenate([s.rows for s in trial.windows.criterion.segments])
     expected = {

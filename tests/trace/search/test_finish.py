@@ -8,12 +8,15 @@ import numpy as np
 import pytest
 from oracles.oscillator import bench_of, candidates_of, record, search_of
 from tracewire.trace.candidates.places import find_places
+from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal, screened
 from tracewire.trace.screen.tangent import Tangent
 from tracewire.trace.search.finish import Final, finished
 from tracewire.trace.search.refits import Tried
 from tracewire.trace.search.search import Search, Step
 from tracewire.trace.trials.trial import Added, Trial
+
+OPTIONS = TraceOptions()
 
 Law = Callable[[float, float], float]
 COULOMB, DRAG, CUBIC = "coulomb @ force", "quad_drag @ force", "cubic_damping @ force"
@@ -41,7 +44,7 @@ def ended(
     search.first = now
     best = now
     for name in names:
-        tangent = Tangent(best.diagram, best.windows, find_places(bench.declared), 1e-6)
+        tangent = Tangent(best.diagram, best.windows, find_places(bench.declared), 1e-6, OPTIONS)
         shown = screened(tangent, best, [known[other] for other in screen])
         rows = {str(row.candidate): row for row in shown.best()}
         tried = []

@@ -10,12 +10,15 @@ import pytest
 from oracles.oscillator import bench_of, candidates_of, record, search_of
 from tracewire.trace.candidates.candidates import Candidate
 from tracewire.trace.candidates.places import Place
+from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Row, Screen
-from tracewire.trace.screen.shortlist import PAIRS, SINGLES, shortlist
+from tracewire.trace.screen.shortlist import shortlist
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.statistics import Columns
 from tracewire.trace.trials.stretches import share_out, shortest_window
 from tracewire.trace.trials.trial import Added, Trial
+
+OPTIONS = TraceOptions()
 
 N = 1000
 FORCE = Place("force", "sum", "force")
@@ -42,7 +45,10 @@ def screen_of(truth: Mapping[str, float], sign: int = 0, count: int = 10) -> Scr
 
 
 def proposed(screen: Screen, room: int = 3) -> list[set[str]]:
-    return [{row.candidate.effect for row in p.rows} for p in shortlist(screen, room)]
+    return [
+        {row.candidate.effect for row in p.rows}
+        for p in shortlist(screen, room, OPTIONS.screen.singles)
+    ]
 
 
 def test_a_single_effect_is_proposed_alone() -> None:
@@ -72,17 +78,21 @@ def test_nothing_is_proposed_where_nothing_is() -> None:
 
 def test_the_list_stays_short_where_everything_stands_out() -> None:
     found = proposed(screen_of({f"c{n}": 0.5 for n in range(10)}))
-    assert sum(len(names) == 1 for names in found) == SINGLES
-    assert sum(len(names) == 2 for names in found) == PAIRS
+    assert sum(len(names) == 1 for names in found) == OPTIONS.screen.singles
+    assert sum(len(names) == 2 for names in found) == OPTIONS.screen.pairs
 
 
 def test_the_shortest_window_is_a_fifth_of_a_period() -> None:
     slow = record(end=12.0)
     t = np.arange(0, 30, 0.03)
     slow = replace(slow, t=t, values={"x": np.cos(2 * np.pi * t / 6.0)})  # 200 samples a period
-    assert shortest_window(share_out([slow])) == pytest.approx(40, abs=6)
+    assert shortest_window(share_out([slow], OPTIONS.split), OPTIONS.split) == pytest.approx(
+        40, abs=6
+    )
     fast = replace(slow, values={"x": np.cos(2 * np.pi * t / 0.3)})
-    assert shortest_window(share_out([fast])) == 16, "never below that"
+    assert shortest_window(share_out([fast], OPTIONS.split), OPTIONS.split) == 16, (
+        "never below that"
+    )
 
 
 def test_windows_grow_threefold_up_to_the_whole_section() -> None:

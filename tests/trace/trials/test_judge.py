@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from tracewire.trace.options import TraceOptions
 from tracewire.trace.trials.judge import Verdict, gate
 
 WINDOWS = 10
@@ -15,7 +16,9 @@ def judged(before: list[float], after: list[float], s2: float = 1.0, fall: float
     """The gate on windows with these squared errors."""
     now, trial = SimpleNamespace(s2=9.0), SimpleNamespace(s2=s2)
     squares = {id(now): before, id(trial): after}
-    bench = SimpleNamespace(on=lambda one, windows: [np.sqrt([[x]]) for x in squares[id(one)]])
+    bench = SimpleNamespace(
+        on=lambda one, windows: [np.sqrt([[x]]) for x in squares[id(one)]], options=TraceOptions()
+    )
     return gate(bench, now, trial, [], fall)  # type: ignore[arg-type]
 
 

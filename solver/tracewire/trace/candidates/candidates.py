@@ -20,7 +20,7 @@ from tracewire.trace.candidates.extend import extend
 from tracewire.trace.candidates.levels import Levels
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.candidates.tones import Sine, own_values
-from tracewire.trace.candidates.waves import MOST_WAVES
+from tracewire.trace.thresholds import CandidateOptions
 
 __all__ = [
     "Candidate",
@@ -32,20 +32,12 @@ __all__ = [
     "without_defaults",
 ]
 
-WIDE = 10.0
-"""The upper bound of a shape, in units of the largest value that is tried first."""
-NARROW = 0.1
-"""The lower bound of a shape that may not be zero, in units of the smallest one."""
-SAMPLES = 4.0
-"""Samples that a wave along the coordinate takes at least, at the median rate."""
-FEWEST = 0.01
-"""The least part of the largest rate that counts as resolved."""
-
 
 def find_candidates(
     model: Model,
     places: Sequence[Place],
     levels: Levels,
+    options: CandidateOptions,
     taken: Sequence[Candidate] = (),
     tones: Mapping[str, Mapping[str, Sine]] | None = None,
 ) -> list[Candidate]:
@@ -74,7 +66,9 @@ def find_candidates(
             wanted = f"{name}_{place.name.rpartition('.')[2]}" if several[place.kind] else name
             for of, signals in _wirings(kind.effect, place, places):
                 block = free_name(f"{wanted}_{of}" if of else wanted, names)
-                candidate = _candidate(kind, place, block, of, signals, levels, tones or {})
+                candidate = _candidate(
+                    kind, place, block, of, signals, levels, tones or {}, options
+                )
                 if candidate is not None:
                     names.add(block)
                     found.append(candidate)
@@ -125,12 +119,13 @@ def _candidate(
     signals: dict[str, str],
     levels: Levels,
     tones: Mapping[str, Mapping[str, Sine]],
+    options: CandidateOptions,
 ) -> Candidate | None:
     effect = kind.effect
     own = own_values(effect.tone, tones.get(place.definition)) if effect.tone else {}
     if effect.tone and not own:
         return None
-    sizes = _sizes(effect, signals, place, levels)
+    sizes = _sizes(effect, signals, place, levels, options)
     shapes: dict[str, tuple[float, ...]] = {}
     limits: dict[str, tuple[float, float]] = {}
     resolved: dict[str, float] = {}
@@ -138,7 +133,7 @@ def _candidate(
         grid = _grid(shape, sizes)
         if grid is None:
             return None
-        low, high = _limits(shape, grid, bounds_of(kind, parameter), sizes)
+        low, high = _limits(shape, grid, bounds_of(kind, parameter), sizes, options)
         if not low < high:
             return None
         if shape.of == "V" and 0.0 in grid:
@@ -158,7 +153,7 @@ def _candidate(
     limits[effect.coefficient] = max(low, 0.0) if effect.sign else low, high
     base = levels.of(place.definition if place.kind == "drive" else place.name).rms
     inputs = {port: levels.of(signal) for port, signal in signals.items()}
-    scale = scale_of(kind, inputs, shapes, base, at, levels.duration)
+    scale = scale_of(kind, inputs, shapes, base, at, levels.duration, options.parts)
     return Candidate(
         kind.name,
         place,
@@ -182,7 +177,11 @@ def _candidate(
 
 
 def _sizes(
-    effect: Effect, signals: Mapping[str, str], place: Place, levels: Levels
+    effect: Effect,
+    signals: Mapping[str, str],
+    place: Place,
+    levels: Levels,
+    options: CandidateOptions,
 ) -> dict[str, float]:
     """What the shapes of an effect are multiples of."""
     read = {symbol: signals[port] for port, symbol in effect.inputs.items()}
@@ -196,7 +195,7 @@ def _sizes(
         "step": q.step,
         "rates": v.max,
         "top": v.max,
-        "slowest": max(v.slowest, FEWEST * v.max),
+        "slowest": max(v.slowest, options.slowest_rate * v.max),
         "U": levels.of(read.get("u") or "".join(place.drive[:1])).max,
         "T": levels.duration,
         "dt": levels.interval,
@@ -218,20 +217,22 @@ def _limits(
     grid: Sequence[float],
     bounds: tuple[float, float],
     sizes: Mapping[str, float],
+    options: CandidateOptions,
 ) -> tuple[float, float]:
     """Finite bounds of a shape: what the record can tell where that is known, else wide ones."""
     if shape.of == "rates":
         return max(sizes["slowest"], bounds[0]), min(sizes["rates"], bounds[1])
-    wide, size = WIDE * max(map(abs, grid)), sizes[shape.of]
+    wide, size = options.wide * max(map(abs, grid)), sizes[shape.of]
     low, high = max(shape.low, bounds[0], -wide), min(bounds[1], wide)
     if shape.most is not None:
         high = min(bounds[1], shape.most * size)
     if shape.least is not None:
         low = max(low, shape.least * size)
     elif low >= 0.0 and min(grid) > 0:
-        low = max(low, NARROW * min(grid))
+        low = max(low, options.narrow * min(grid))
     if shape.wave:
-        return max(shape.low, SAMPLES * sizes["step"], high / MOST_WAVES), high
+        least = options.samples_in_a_wave * sizes["step"]
+        return max(shape.low, least, high / options.most_waves), high
     return low, max(high, *grid)
 
 

@@ -11,9 +11,6 @@ from tracewire.errors import TracewireError
 from tracewire.formula import Number, evaluate
 from tracewire.trace.candidates.levels import Level
 
-PARTS = (-1.3, -0.6, 0.4, 1.0, 1.4)
-"""Of the root mean square of a signal: where the size of an effect is looked at."""
-
 
 def bounds_of(kind: EffectType, parameter: str) -> tuple[float, float]:
     """The bounds in SI of a parameter of an effect."""
@@ -31,11 +28,13 @@ def scale_of(
     size: float,
     at: float,
     duration: float,
+    parts: Sequence[float],
 ) -> float:
     """The coefficient at which the output of an effect is about as large as `size`.
 
     The output of an effect without memory is looked at where its inputs have their usual size; of
     others the coefficient is taken to be a force. inputs: by port. duration: of the record in s.
+    parts: of the root mean square of the inputs, where the output is looked at.
     """
     whole = size if size > 0 else 1.0
     if kind.block is not None and (kind.block.states or kind.block.modes):
@@ -43,7 +42,7 @@ def scale_of(
     numbers = {name: grid[len(grid) // 2] for name, grid in shapes.items()}
     numbers[kind.effect.coefficient] = at
     squares = []
-    for part in PARTS:
+    for part in parts:
         given = {port: part * level.rms for port, level in inputs.items()}
         given["t"] = abs(part) * duration / 2
         try:

@@ -19,12 +19,9 @@ from tracewire.formula import Number
 from tracewire.solve import Interrupted, simulate
 from tracewire.trace.candidates.candidates import Candidate
 from tracewire.trace.candidates.levels import Trajectory
+from tracewire.trace.thresholds import CandidateOptions
 
 Vector = NDArray[np.float64]
-MOST_VARIANTS = 128
-"""Of one candidate."""
-TOLERANCE = 1e-4
-"""Of memories: it leaves a thousandth of them, which no screen sees."""
 
 __all__ = ["Trajectory", "Variant", "histories", "variants_of"]
 
@@ -41,13 +38,13 @@ class Variant:
         return f"{self.candidate}" + (f" ({shapes})" if shapes else "")
 
 
-def variants_of(candidate: Candidate) -> list[Variant]:
-    """The choices of shapes that are tried first: all, or with the longest grids thinned out."""
+def variants_of(candidate: Candidate, most: int) -> list[Variant]:
+    """The choices of shapes that are tried first: all, or `most` by thinning the longest grids."""
     counts = {name: len(grid) for name, grid in candidate.shapes.items()}
-    while math.prod(counts.values()) > MOST_VARIANTS:
+    while math.prod(counts.values()) > most:
         longest = max(counts, key=counts.__getitem__)
         others = math.prod(counts.values()) // counts[longest]
-        counts[longest] = max(MOST_VARIANTS // others, counts[longest] // 2, 1)
+        counts[longest] = max(most // others, counts[longest] // 2, 1)
     grids = (
         [grid[number] for number in np.linspace(0, len(grid) - 1, counts[name]).round().astype(int)]
         for name, grid in candidate.shapes.items()
@@ -60,6 +57,7 @@ def histories(
     model: Model,
     candidates: Sequence[Candidate],
     trajectories: Sequence[Trajectory],
+    options: CandidateOptions,
     tell: Callable[[str], None] | None = None,
 ) -> dict[Variant, list[Vector]]:
     """The output of each variant of each candidate along each trajectory, shape (N,).
@@ -70,7 +68,9 @@ def histories(
     nothing; one that cannot be computed is left out, and `tell` gets the reason. Raises
     Interrupted: Ctrl-C.
     """
-    variants = [v for c in candidates if c.place.kind != "sensor" for v in variants_of(c)]
+    variants = [
+        v for c in candidates if c.place.kind != "sensor" for v in variants_of(c, options.variants)
+    ]
     found: dict[Variant, list[Vector]] = {}
     # memories need shorter steps, and may fail: the others shall not pay for that
     groups: dict[str, list[Variant]] = {}
@@ -80,7 +80,7 @@ def histories(
     while queue:
         group = queue.pop()
         try:
-            found |= _together(model.diagram, group, trajectories)
+            found |= _together(model.diagram, group, trajectories, options.memory_tolerance)
         except Interrupted:
             raise
         except TracewireError as error:
@@ -101,7 +101,10 @@ def _memory(diagram: Diagram, effect: str) -> str:
 
 
 def _together(
-    diagram: Diagram, variants: Sequence[Variant], trajectories: Sequence[Trajectory]
+    diagram: Diagram,
+    variants: Sequence[Variant],
+    trajectories: Sequence[Trajectory],
+    rtol: float,
 ) -> dict[Variant, list[Vector]]:
     """The outputs of several variants, in one small diagram whose inputs are the signals."""
     signals = dict.fromkeys(s for v in variants for s in v.candidate.signals.values())
@@ -133,8 +136,8 @@ def _together(
         sizes = [float(np.max(np.abs(x))) for _, x in given.values()]
         least = min([1.0, *(size for size in sizes if size > 0)])
         result = simulate(
-            model, parameters=own, times=run.t, inputs=given, rtol=TOLERANCE,
-            atol=1e-3 * TOLERANCE * least,
+            model, parameters=own, times=run.t, inputs=given, rtol=rtol,
+            atol=1e-3 * rtol * least,
         )  # fmt: skip
         for variant, name in zip(variants, outputs, strict=True):
             found[variant].append(result.signals[name] / variant.candidate.at)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.trace.candidates.places import Place
+from tracewire.trace.thresholds import CandidateOptions
 
 Vector = NDArray[np.float64]
 
@@ -20,12 +21,6 @@ class Trajectory:
     t: Vector
     signals: Mapping[str, Vector]
     series: str = ""
-
-
-RESOLVED = 0.01
-"""The part of the samples, of those that move, below whose rates nothing is resolved."""
-MOVES = 1e-3
-"""Of the largest rate: what is slower rests."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +61,7 @@ def signals_at(places: Sequence[Place]) -> tuple[str, ...]:
     return tuple(name for name in found if name)
 
 
-def levels_of(trajectories: Sequence[Trajectory]) -> Levels:
+def levels_of(trajectories: Sequence[Trajectory], options: CandidateOptions) -> Levels:
     """The sizes of all signals over all series."""
     names = dict.fromkeys(name for run in trajectories for name in run.signals)
     whole = {
@@ -93,8 +88,8 @@ def levels_of(trajectories: Sequence[Trajectory]) -> Levels:
                 float(np.sqrt(np.mean(x**2))),
                 float(np.max(np.abs(x))),
                 float(np.max(ways[name], initial=0.0)),
-                float(np.median(_moving(steps[name]))),
-                float(np.quantile(_moving(np.abs(x)), RESOLVED)),
+                float(np.median(_moving(steps[name], options.moves))),
+                float(np.quantile(_moving(np.abs(x), options.moves), options.resolved_rates)),
             )
             for name, x in whole.items()
         },
@@ -111,7 +106,7 @@ def _ways(x: Vector) -> Vector:
     return np.abs([float(np.sum(part)) for part in np.split(steps, turns)])
 
 
-def _moving(sizes: Vector) -> Vector:
+def _moving(sizes: Vector, part: float) -> Vector:
     """Absolute values without those of rest; [0] where there are none."""
-    kept = sizes[sizes > MOVES * float(np.max(sizes, initial=0.0))]
+    kept = sizes[sizes > part * float(np.max(sizes, initial=0.0))]
     return kept if kept.size else np.zeros(1)

@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from tracewire.residual import Measured
+from tracewire.trace.thresholds import CandidateOptions
 
 Vector = NDArray[np.float64]
-PURE = 0.02
-"""The part of a drive's variance that its sine may leave."""
 
 
 @dataclass(frozen=True)
@@ -26,9 +25,9 @@ class Sine:
     phase: float
 
 
-def sine_of(t: Vector, u: Vector) -> Sine | None:
+def sine_of(t: Vector, u: Vector, pure: float) -> Sine | None:
     """The sine that a drive u (N,) is at times t (N,), fitted by least squares; None where it
-    leaves more than 2 % of the variance."""
+    leaves more than the part `pure` of the variance."""
     centred = u - np.mean(u)
     total = float(centred @ centred)
     span = float(t[-1] - t[0])
@@ -51,12 +50,12 @@ def sine_of(t: Vector, u: Vector) -> Sine | None:
     best = least_squares(left_at, [first * span], xtol=1e-12, ftol=1e-14, gtol=1e-14)
     frequency = float(best.x[0]) / span
     (sine, cosine, _), left = linear(frequency)
-    if not frequency > 0 or float(left @ left) > PURE:
+    if not frequency > 0 or float(left @ left) > pure:
         return None
     return Sine(math.hypot(sine, cosine), 1 / frequency, math.atan2(cosine, sine))
 
 
-def tones_of(measured: Sequence[Measured]) -> dict[str, dict[str, Sine]]:
+def tones_of(measured: Sequence[Measured], options: CandidateOptions) -> dict[str, dict[str, Sine]]:
     """The sine of each measured input in each series, for inputs that are sines in all of them."""
     found: dict[str, dict[str, Sine]] = {}
     missing: set[str] = set()
@@ -65,7 +64,8 @@ def tones_of(measured: Sequence[Measured]) -> dict[str, dict[str, Sine]]:
         for name in inputs:
             if series.series in found.get(name, {}):  # another window of the same record
                 continue
-            sine = sine_of(*series.inputs[name]) if name in series.inputs else None
+            known = series.inputs.get(name)
+            sine = sine_of(*known, options.pure_tone) if known else None
             if sine is None:
                 missing.add(name)
             else:

@@ -16,20 +16,13 @@ from tracewire.formula.arrays import evaluate_along
 from tracewire.residual import Windows
 from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.levels import Trajectory
+from tracewire.trace.thresholds import CandidateOptions
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 Answer = Callable[[str, Sequence[Matrix]], Matrix]
 """What torques (N, k) by series at a place, by its name, do to the residuals, (M, k), without what
 the starts of windows and the unknowns imitate."""
-MOST_WAVES = 400
-"""In the longest way of the coordinate."""
-PER_WAVE = 2
-"""Lengths that are scanned for each wave more on the way."""
-PEAKS = 6
-"""Lengths of the best waves that are tried first."""
-TEETH = 48
-"""The most teeth, slots or poles of a turn that are tried one by one."""
 TOGETHER = 64
 """Lengths that are scanned at once: what the columns of all would take is much memory."""
 
@@ -40,10 +33,11 @@ def scanned(
     runs: Sequence[Trajectory],
     residual: Vector,
     answer: Answer,
+    options: CandidateOptions,
 ) -> list[Candidate]:
     """The candidates, those with a wave with the lengths that promise most in place of their grid.
 
-    All lengths between the bounds are scored, PER_WAVE of them for each wave more on the way, and
+    All lengths between the bounds are scored, some of them for each wave more on the way, and
     where the coordinate is an angle also 2 pi/n; the peaks of the score are kept. A candidate that
     cannot be computed along samples alone keeps its grid.
     """
@@ -51,7 +45,7 @@ def scanned(
     for candidate in candidates:
         for shape in candidate.waves:
             try:
-                grid = _peaks(model, candidate, shape, runs, residual, answer)
+                grid = _peaks(model, candidate, shape, runs, residual, answer, options)
             except TracewireError:
                 continue
             candidate = replace(candidate, shapes={**candidate.shapes, shape: grid})
@@ -81,10 +75,11 @@ def _peaks(
     runs: Sequence[Trajectory],
     residual: Vector,
     answer: Answer,
+    options: CandidateOptions,
 ) -> tuple[float, ...]:
     """The lengths at the highest peaks of the score, the best first."""
     angle = model.flat.units.get(candidate.place.q) == "rad"
-    lengths = _lengths(*candidate.limits[shape], angle)
+    lengths = _lengths(*candidate.limits[shape], angle, options)
     falls = []
     for first in range(0, len(lengths), TOGETHER):
         some = lengths[first : first + TOGETHER]
@@ -94,17 +89,17 @@ def _peaks(
     scores = np.array(falls)
     ahead = np.r_[-np.inf, scores[:-1]], np.r_[scores[1:], -np.inf]
     peaks = np.flatnonzero((scores >= ahead[0]) & (scores >= ahead[1]))
-    best = peaks[np.argsort(-scores[peaks])][:PEAKS]
+    best = peaks[np.argsort(-scores[peaks])][: options.wave_peaks]
     return tuple(lengths[best].tolist())
 
 
-def _lengths(low: float, high: float, angle: bool) -> Vector:
+def _lengths(low: float, high: float, angle: bool, options: CandidateOptions) -> Vector:
     """Lengths between two bounds, evenly in waves on the way, the longest first."""
-    most = min(high / low, MOST_WAVES)
-    waves = np.arange(1.0, most + 1e-9, 1 / PER_WAVE)
+    most = min(high / low, options.most_waves)
+    waves = np.arange(1.0, most + 1e-9, 1 / options.lengths_a_wave)
     lengths = set((high / waves).tolist())
     if angle:
-        turns = (2 * math.pi / n for n in range(1, TEETH + 1))
+        turns = (2 * math.pi / n for n in range(1, options.teeth + 1))
         lengths |= {length for length in turns if low <= length <= high}
     return np.array(sorted(lengths, reverse=True))
 

@@ -25,23 +25,9 @@ from tracewire.residual import (
     sensor_unknowns,
 )
 from tracewire.solve import parameter_values, values_at, with_points
+from tracewire.trace.thresholds import CheckOptions
 
 Vector = NDArray[np.float64]
-FAR = 30.0
-"""RSS per degree of freedom from which on a record may hold a mistake of this kind."""
-AT_NOISE = 2.0
-NEARER = 30.0
-"""How many times less must be left when the mistake is undone: then it is certain."""
-SAMPLES = 250
-LENGTH = 25
-FEW_STEPS = 4
-HOPEFUL = 5.0
-MOST_STEPS = 10
-POINTS = 9
-LONGEST = 2.0
-"""The longest lag in s that is looked for."""
-LEAST_BEFORE, LEAST_AFTER = 4, 15
-"""Samples by which a response comes before its drive, or after it, that no effect explains."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +40,11 @@ class Mistake:
 
 
 def refuse_mistakes(
-    model: Model, measured: Sequence[Measured], s2: float = np.inf, rtol: float = 1e-6
+    model: Model,
+    measured: Sequence[Measured],
+    options: CheckOptions,
+    s2: float = np.inf,
+    rtol: float = 1e-6,
 ) -> None:
     """Refuse a record that the declared model explains once a mistake in it is undone.
 
@@ -66,27 +56,31 @@ def refuse_mistakes(
     s2: RSS per degree of freedom of the declared model in short windows, where it is known; below
     30 nothing is tried. Raises DataError.
     """
-    train = [m for m in measured if m.use == "train" and len(m.t) > LENGTH]
-    if s2 < FAR or not train:
+    train = [m for m in measured if m.use == "train" and len(m.t) > options.mistake_window]
+    if s2 < options.mistake_from or not train:
         return
-    m = _beginning(model, train[0])
-    before = declared_s2(model, [m], rtol)
-    if before < FAR:
+    m = _beginning(model, train[0], options.mistake_samples)
+    before = declared_s2(model, [m], rtol, options.mistake_window)
+    if before < options.mistake_from:
         return
     best, found = np.inf, None
-    for mistake in chain(_shifts(model, train[0], m, before, rtol), _units(model, m)):
-        after = declared_s2(model, [mistake.undone(m)], rtol, FEW_STEPS)
+    for mistake in chain(_shifts(model, train[0], m, before, rtol, options), _units(model, m)):
+        length, steps = options.mistake_window, options.mistake_steps
+        after = declared_s2(model, [mistake.undone(m)], rtol, length, steps)
         if after < best:
             best, found = after, mistake
-        if best < AT_NOISE:
+        if best < options.mistake_undone:
             break
-    if found is not None and best * NEARER < before:
+    if found is not None and best * options.mistake_nearer < before:
         what = f"the series '{m.name}' is explained {before / best:.0f} times better {found.what}"
         raise DataError([Problem(what, hint=found.hint)])
 
 
-def declared_s2(model: Model, measured: Sequence[Measured], rtol: float, steps: int = 8) -> float:
-    """RSS per degree of freedom of the declared model, fitted to short windows with free starts.
+def declared_s2(
+    model: Model, measured: Sequence[Measured], rtol: float, length: int, steps: int = 8
+) -> float:
+    """RSS per degree of freedom of the declared model, fitted to windows of `length` samples with
+    free starts.
 
     Infinity where it cannot be simulated.
     """
@@ -94,7 +88,7 @@ def declared_s2(model: Model, measured: Sequence[Measured], rtol: float, steps: 
         segments = [
             window
             for m in measured
-            for window in cut(model, Section(m, 0, len(m.t)), LENGTH, model.states)
+            for window in cut(model, Section(m, 0, len(m.t)), length, model.states)
         ]
         unknowns = [
             replace(u, value=min(max(u.value, u.low), u.high))
@@ -113,9 +107,9 @@ def declared_s2(model: Model, measured: Sequence[Measured], rtol: float, steps: 
     return windows.rss / max(count - fitted, 1)
 
 
-def _beginning(model: Model, m: Measured) -> Measured:
+def _beginning(model: Model, m: Measured, samples: int) -> Measured:
     """The first samples of a series, from a free start."""
-    rows = slice(0, SAMPLES)
+    rows = slice(0, samples)
     values = {name: column[rows] for name, column in m.values.items()}
     start = dict.fromkeys(model.states)
     return replace(m, t=m.t[rows], values=values, start=start, drift_from=m.zero)
@@ -173,7 +167,7 @@ def _louder(m: Measured, name: str, factor: float) -> Measured:
 
 
 def _shifts(
-    model: Model, m: Measured, part: Measured, before: float, rtol: float
+    model: Model, m: Measured, part: Measured, before: float, rtol: float, options: CheckOptions
 ) -> Iterator[Mistake]:
     """A drive that stands too late or too early in time beside the response.
 
@@ -182,19 +176,20 @@ def _shifts(
     step = float(np.median(np.diff(m.t)))
 
     def left(lag: float) -> float:
-        return declared_s2(model, [shifted(part, lag)], rtol, FEW_STEPS)
+        length, steps = options.mistake_window, options.mistake_steps
+        return declared_s2(model, [shifted(part, lag)], rtol, length, steps)
 
     def hopeful(s2: float) -> bool:
-        return AT_NOISE < s2 < before / HOPEFUL
+        return options.mistake_undone < s2 < before / options.lag_hopeful
 
-    for begun in likely_lags(model, m):
-        if -LEAST_BEFORE < begun / step < LEAST_AFTER:
+    for begun in likely_lags(model, m, options):
+        if -options.lag_before < begun / step < options.lag_after:
             continue
         lag, least = begun, left(begun)
         for side in (-step, step):
-            while hopeful(least) and (there := left(lag + side)) < 0.9 * least:
+            while hopeful(least) and (there := left(lag + side)) < options.lag_better * least:
                 lag, least = lag + side, there
-                if abs(lag - begun) > MOST_STEPS * step:
+                if abs(lag - begun) > options.lag_steps * step:
                     break
         when = f"about {abs(lag):.2g} s {'after' if lag > 0 else 'before'} its drive"
         yield Mistake(
@@ -210,7 +205,7 @@ def shifted(m: Measured, lag: float) -> Measured:
     return replace(m, inputs=later)
 
 
-def likely_lags(model: Model, m: Measured, most: int = 3) -> list[float]:
+def likely_lags(model: Model, m: Measured, options: CheckOptions, most: int = 3) -> list[float]:
     """The lags in s by which the response may follow the inputs, the most likely first.
 
     Where the accelerations are explained best by a polynomial of the signals, their rates, and the
@@ -218,13 +213,13 @@ def likely_lags(model: Model, m: Measured, most: int = 3) -> list[float]:
     stand for those of the signals. Positive: the response comes after.
     """
     step = float(np.median(np.diff(m.t)))
-    if not m.inputs or len(m.t) < 8 * POINTS:
+    if not m.inputs or len(m.t) < 8 * options.lag_bump:
         return []
-    target, basis = _weighed(model, m, step)
+    target, basis = _weighed(model, m, step, options.lag_bump)
     basis, _ = np.linalg.qr(basis)
     target = target - basis @ (basis.T @ target)
-    bump, _, _ = _bump(step)
-    reach = int(min(len(m.t) // 3, LONGEST / step))
+    bump, _, _ = _bump(step, options.lag_bump)
+    reach = int(min(len(m.t) // 3, options.lag_longest / step))
     lags = step * np.arange(-reach, reach + 1)
     left = []
     for lag in lags:
@@ -243,9 +238,9 @@ def likely_lags(model: Model, m: Measured, most: int = 3) -> list[float]:
     return found
 
 
-def _weighed(model: Model, m: Measured, step: float) -> tuple[Vector, Vector]:
+def _weighed(model: Model, m: Measured, step: float, half: int) -> tuple[Vector, Vector]:
     """Accelerations (N, signals), and what they may depend on (N, n)."""
-    bump, first, second = _bump(step)
+    bump, first, second = _bump(step, half)
     rates = {state.name: state.rate for state in model.flat.states}
     columns: list[Vector] = [np.ones(len(m.t))]
     targets: list[Vector] = []
@@ -255,7 +250,7 @@ def _weighed(model: Model, m: Measured, step: float) -> tuple[Vector, Vector]:
         y = (values - np.mean(values)) / (float(np.std(values)) or 1.0)
         target = np.convolve(y, second if order == 2 else first, "valid")
         targets.append(target / (float(np.std(target)) or 1.0))
-        v = np.convolve(np.pad(y, POINTS, mode="edge"), first / np.sum(bump), "valid")
+        v = np.convolve(np.pad(y, half, mode="edge"), first / np.sum(bump), "valid")
         v = v / (float(np.std(v)) or 1.0)
         own = [y, y**2, y**3, y**5]
         if order == 2:
@@ -267,11 +262,11 @@ def _weighed(model: Model, m: Measured, step: float) -> tuple[Vector, Vector]:
     return np.column_stack(targets), np.column_stack(basis)
 
 
-def _bump(step: float) -> tuple[Vector, Vector, Vector]:
-    """(1 - s^2)^4 over 2 POINTS + 1 samples, and its derivatives in time."""
+def _bump(step: float, half: int) -> tuple[Vector, Vector, Vector]:
+    """(1 - s^2)^4 over 2 half + 1 samples, and its derivatives in time."""
     polynomial = np.polynomial.Polynomial([1.0, 0.0, -1.0]) ** 4
-    s = np.linspace(-1, 1, 2 * POINTS + 1)
-    width = step * POINTS
+    s = np.linspace(-1, 1, 2 * half + 1)
+    width = step * half
     return (
         polynomial(s),
         polynomial.deriv()(s) / width,

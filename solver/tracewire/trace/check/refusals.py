@@ -12,16 +12,9 @@ from tracewire.compile import Model
 from tracewire.errors import DataError, Problem
 from tracewire.formula import Name
 from tracewire.residual import Measured, noise_level
+from tracewire.trace.thresholds import CheckOptions
 
 Vector = NDArray[np.float64]
-LEAST_SAMPLES = 40
-ABOVE_NOISE = 1.5
-"""A signal that spreads less than this many times its noise shows nothing else."""
-NEIGHBOURS = 8.0
-"""By how much, over the root of N, the mean square of differences may fall below that of noise."""
-SURE = 0.9
-"""The part of a signal that the integral of its rate must explain before their ratio counts."""
-NEAR = 0.02
 FACTORS = {
     180 / np.pi: "degrees beside radians",
     1000.0: "a unit and its thousandth, such as m and mm or s and ms",
@@ -31,7 +24,7 @@ FACTORS = {
 }
 
 
-def check_series(model: Model, measured: Sequence[Measured]) -> None:
+def check_series(model: Model, measured: Sequence[Measured], options: CheckOptions) -> None:
     """Refuse series that nothing can be traced in.
 
     Raises DataError with all that is wrong: no series to train on, times or values that are no
@@ -46,19 +39,19 @@ def check_series(model: Model, measured: Sequence[Measured]) -> None:
     if problems:
         raise DataError(problems)
     for m in measured:
-        found = [*_short(m), *_still(m), *_inputs(m)]
-        problems += found or _rates(model, m)
-    problems += _dead_channels(measured) if not problems else []
+        found = [*_short(m, options.least_samples), *_still(m, options), *_inputs(m)]
+        problems += found or _rates(model, m, options)
+    problems += _dead_channels(measured, options) if not problems else []
     if problems:
         raise DataError(problems)
 
 
-def remarks(measured: Sequence[Measured]) -> tuple[str, ...]:
+def remarks(measured: Sequence[Measured], options: CheckOptions) -> tuple[str, ...]:
     """What is odd about series, and no reason to refuse them: signals that are nothing but noise in
     some series, and what was remarked when they were read."""
     found = [f"{m.name}: {remark}" for m in measured for remark in m.remarks]
     for m in measured:
-        quiet = [name for name in m.values if _is_noise(m, name)]
+        quiet = [name for name in m.values if _is_noise(m, name, options)]
         found += [f"{m.name}: {name} shows nothing above its noise" for name in quiet]
     return tuple(dict.fromkeys(found))
 
@@ -89,34 +82,34 @@ def _broken(m: Measured) -> Iterator[Problem]:
             yield Problem(what, hint="Leave these rows out.")
 
 
-def _short(m: Measured) -> Iterator[Problem]:
-    if len(m.t) < LEAST_SAMPLES:
+def _short(m: Measured, least: int) -> Iterator[Problem]:
+    if len(m.t) < least:
         what = f"the series '{m.name}' has {len(m.t)} samples, too few to trace anything"
-        yield Problem(what, hint=f"At least {LEAST_SAMPLES} are needed.")
+        yield Problem(what, hint=f"At least {least} are needed.")
 
 
-def _still(m: Measured) -> Iterator[Problem]:
+def _still(m: Measured, options: CheckOptions) -> Iterator[Problem]:
     """Constant signals, and series in which no signal shows more than noise."""
     constant = [name for name, values in m.values.items() if np.ptp(values) == 0]
     for name in constant:
         what = f"'{name}' of '{m.name}' is constant: {m.values[name][0]:.6g} in every sample"
         yield Problem(what, hint="Is the sensor connected? Leave the signal or the series out.")
-    if not constant and all(_is_noise(m, name) for name in m.values):
+    if not constant and all(_is_noise(m, name, options) for name in m.values):
         names = " and ".join(f"'{name}'" for name in m.values)
         what = f"the series '{m.name}' shows nothing above the noise of {names}"
         yield Problem(what, hint="Nothing moves in it, or the noise hides it: leave it out.")
 
 
-def _dead_channels(measured: Sequence[Measured]) -> Iterator[Problem]:
+def _dead_channels(measured: Sequence[Measured], options: CheckOptions) -> Iterator[Problem]:
     """Signals that show nothing but noise in every series."""
     for name in dict.fromkeys(name for m in measured for name in m.values):
         having = [m for m in measured if name in m.values]
-        if all(_is_noise(m, name) for m in having):
+        if all(_is_noise(m, name, options) for m in having):
             what = f"'{name}' shows nothing above its noise in any series"
             yield Problem(what, hint="Is the sensor connected? Leave the signal out.")
 
 
-def _is_noise(m: Measured, name: str) -> bool:
+def _is_noise(m: Measured, name: str, options: CheckOptions) -> bool:
     """Whether a signal is nothing but white noise, or stays within its declared noise.
 
     White noise has a mean square of differences of twice its variance (von Neumann, 1941).
@@ -129,8 +122,8 @@ def _is_noise(m: Measured, name: str) -> bool:
     if len(np.unique(values)) <= 2:
         return True  # a reading that flips between two steps
     ratio = float(np.mean(np.diff(values) ** 2)) / max(spread**2, 1e-300)
-    white = ratio > 2 - NEIGHBOURS / np.sqrt(len(values))
-    return bool(white and spread < ABOVE_NOISE * noise_level(values))
+    white = ratio > 2 - options.neighbours / np.sqrt(len(values))
+    return bool(white and spread < options.above_noise * noise_level(values))
 
 
 def _inputs(m: Measured) -> Iterator[Problem]:
@@ -147,26 +140,28 @@ def _inputs(m: Measured) -> Iterator[Problem]:
         yield Problem(what, hint="Put both into one time, or cut the series.")
 
 
-def _rates(model: Model, m: Measured) -> Iterator[Problem]:
+def _rates(model: Model, m: Measured, options: CheckOptions) -> Iterator[Problem]:
     """A measured signal whose measured rate is not its rate: in other units, or turned round."""
     for state in model.flat.states:
         rate = state.rate
         if not isinstance(rate, Name) or not {state.name, rate.name} <= set(m.values):
             continue
-        ratio = rate_ratio(m.t, m.values[state.name], m.values[rate.name])
+        ratio = rate_ratio(m.t, m.values[state.name], m.values[rate.name], options.sure_rate)
         if ratio is None or m.sensor(state.name).free or m.sensor(rate.name).free:
             continue
         what = f"in '{m.name}' the rate of '{state.name}' is {ratio:.4g} times '{rate.name}'"
-        if ratio < 0 and abs(abs(ratio) - 1) < NEAR:
+        near = options.near_factor
+        if ratio < 0 and abs(abs(ratio) - 1) < near:
             yield Problem(what, hint="One of them has the wrong sign: gain: -1 turns it round.")
         for factor, meaning in FACTORS.items():
-            if any(abs(abs(ratio) / f - 1) < NEAR for f in (factor, 1 / factor)):
+            if any(abs(abs(ratio) / f - 1) < near for f in (factor, 1 / factor)):
                 hint = f"Are their units, or that of time, mixed up: {meaning}?"
                 yield Problem(what, hint=hint)
 
 
-def rate_ratio(t: Vector, values: Vector, rates: Vector) -> float | None:
-    """How many times `rates` the rate of `values` (N,) is; None where they do not belong together.
+def rate_ratio(t: Vector, values: Vector, rates: Vector, sure: float) -> float | None:
+    """How many times `rates` the rate of `values` (N,) is; None where they do not belong together,
+    as their integral explains less than the part `sure`.
 
     By least squares of the values on the integral of the rates, a constant and a straight line: an
     offset of either does not count, and no noise is amplified.
@@ -179,4 +174,4 @@ def rate_ratio(t: Vector, values: Vector, rates: Vector) -> float | None:
         return None
     ratio = float(left @ moved) / size
     explained = ratio * float(left @ moved) / float(left @ left)
-    return ratio if explained > SURE else None
+    return ratio if explained > sure else None

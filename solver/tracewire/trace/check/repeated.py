@@ -15,18 +15,17 @@ from tracewire.trace.candidates.candidates import Candidate
 from tracewire.trace.candidates.levels import Trajectory
 from tracewire.trace.candidates.places import Place
 
-AGAIN = 1.2
-"""The way a body goes over the range of its coordinate, from which on it has come back."""
 PITCH = "pitch"
 
 
-def comes_back(places: Sequence[Place], trajectories: Sequence[Trajectory]) -> bool:
-    """Whether in some series some body is twice at the same coordinate."""
+def comes_back(places: Sequence[Place], trajectories: Sequence[Trajectory], again: float) -> bool:
+    """Whether in some series some body is twice at the same coordinate: the way it goes is `again`
+    times the range."""
     coordinates = {place.q for place in places if place.kind == "sum" and place.q}
     known = [(run, q) for run in trajectories for q in coordinates if q in run.signals]
     for run, q in known:
         way = float(np.sum(np.abs(np.diff(run.signals[q]))))
-        if way > AGAIN * float(np.ptp(run.signals[q])):
+        if way > again * float(np.ptp(run.signals[q])):
             return True
     return not known
 

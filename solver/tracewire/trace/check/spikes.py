@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.residual import Measured
+from tracewire.trace.thresholds import CheckOptions
 
 Vector = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -18,16 +19,11 @@ SIDE = 5
 ONWARD = np.linalg.pinv(np.vander(np.arange(-SIDE, 0.0), 3))[-1]
 """A sample from the five before it, by the parabola that fits them best."""
 SPREAD, ONWARD_SPREAD = (float(np.sqrt(1 + np.sum(w**2))) for w in (CUBIC, ONWARD))
-FAR, NEAR = 8.0, 3.0
-"""Standard deviations by which a spike is off, and by which its neighbours are without it."""
-ALIKE = 1 / 3
-"""The part of a spike's height by which both sides must agree on what should stand there."""
-MOST = 0.02
-"""The part of a record that may be spikes: what is more is no mistake of single samples."""
-EVEN = 0.01
 
 
-def without_spikes(measured: Measured, sigma: Mapping[str, float]) -> Measured:
+def without_spikes(
+    measured: Measured, sigma: Mapping[str, float], options: CheckOptions
+) -> Measured:
     """A series without the samples at which a signal has a spike; its `remarks` tell how many.
 
     A spike is more than 8 standard deviations off both parabolas, that of the five samples before
@@ -36,9 +32,11 @@ def without_spikes(measured: Measured, sigma: Mapping[str, float]) -> Measured:
     under dry friction and the step of a body that is stopped are none.
     """
     t = measured.t
-    found = {name: spikes(t, y, sigma.get(name, 0.0)) for name, y in measured.values.items()}
+    found = {
+        name: spikes(t, y, sigma.get(name, 0.0), options) for name, y in measured.values.items()
+    }
     bad = np.any(list(found.values()), axis=0)
-    if not bad.any() or np.mean(bad) > MOST:
+    if not bad.any() or np.mean(bad) > options.most_spikes:
         return measured
     told = " and ".join(f"{flags.sum()} of {name}" for name, flags in found.items() if flags.any())
     plural = "s" * (int(bad.sum()) > 1)
@@ -47,21 +45,23 @@ def without_spikes(measured: Measured, sigma: Mapping[str, float]) -> Measured:
     return replace(measured, t=t[~bad], values=values, remarks=(*measured.remarks, remark))
 
 
-def spikes(t: Vector, y: Vector, sigma: float) -> Flags:
+def spikes(t: Vector, y: Vector, sigma: float, options: CheckOptions) -> Flags:
     """Which samples (N,) are spikes beside noise of the standard deviation sigma; none at 0."""
     flags = np.zeros(len(y), dtype=bool)
     if len(y) <= 2 * SIDE or sigma <= 0:
         return flags
-    rows = np.flatnonzero(_off(y) > FAR * SPREAD * sigma)
+    rows = np.flatnonzero(_off(y) > options.spike * SPREAD * sigma)
     for k in rows[(rows >= SIDE) & (rows < len(y) - SIDE)].tolist():
         before, after = y[k - SIDE : k] @ ONWARD, y[k + 1 : k + 1 + SIDE] @ ONWARD[::-1]
         off = min(abs(y[k] - before), abs(y[k] - after))
         mended, steps = y[k - SIDE : k + SIDE + 1].copy(), np.diff(t[k - SIDE : k + SIDE + 1])
         mended[SIDE] = mended[SIDE - 2 : SIDE + 3] @ CUBIC
-        alike = max(abs(mended[SIDE] - before), abs(mended[SIDE] - after)) < ALIKE * off
-        smooth = bool((_off(mended) < NEAR * SPREAD * sigma).all())
-        even = np.ptp(steps) < EVEN * np.median(steps)
-        flags[k] = even and smooth and alike and off > FAR * ONWARD_SPREAD * sigma
+        alike = (
+            max(abs(mended[SIDE] - before), abs(mended[SIDE] - after)) < options.spike_alike * off
+        )
+        smooth = bool((_off(mended) < options.spike_neighbour * SPREAD * sigma).all())
+        even = np.ptp(steps) < options.even * np.median(steps)
+        flags[k] = even and smooth and alike and off > options.spike * ONWARD_SPREAD * sigma
     return flags
 
 

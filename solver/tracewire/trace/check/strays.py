@@ -12,17 +12,7 @@ import numpy as np
 
 from tracewire.errors import FitError
 from tracewire.residual import Segment
-from tracewire.trace.trials.judge import AT_NOISE
 from tracewire.trace.trials.trial import Bench, Trial
-
-STRAY = 30.0
-"""A window with this many times the squared residual of the middle one is a stray."""
-LEFT, MOST_LEFT = 0.5, 0.8
-"""The part of the windows that stays at least; and of a fit that converged: windows that are many
-and far off show what is missing."""
-ROUNDS = 4
-LEAST_LED = 30.0
-"""RSS per degree of freedom from which on strays may lead a fit."""
 
 
 def without_strays(bench: Bench, trial: Trial, segments: Sequence[Segment], steps: int) -> Trial:
@@ -31,13 +21,15 @@ def without_strays(bench: Bench, trial: Trial, segments: Sequence[Segment], step
     It is fitted in rounds of some `steps`. All windows are used again where they are near the noise
     from there, and where the others are at it: then what is missing shows in the strays alone.
     """
+    options = bench.options.check
     kept, best = list(range(len(segments))), trial
-    least = (MOST_LEFT if trial.converged else LEFT) * len(segments)
+    left = options.strays_left_converged if trial.converged else options.strays_left
+    least = left * len(segments)
     try:
-        for _ in range(ROUNDS):
+        for _ in range(options.stray_rounds):
             sizes = best.windows.squares / [max(r.size, 1) for r in best.windows.residuals]
-            near = np.flatnonzero(sizes <= STRAY * np.median(sizes)).tolist()
-            if best.s2 < LEAST_LED or len(near) == len(kept) or len(near) < least:
+            near = np.flatnonzero(sizes <= options.stray * np.median(sizes)).tolist()
+            if best.s2 < options.led_astray or len(near) == len(kept) or len(near) < least:
                 break
             kept = [kept[n] for n in near]
             starts = [best.windows.segments[n] for n in near]
@@ -49,4 +41,5 @@ def without_strays(bench: Bench, trial: Trial, segments: Sequence[Segment], step
         whole = bench.fitted((), whole_segments, trial.length, best.values, steps=steps)
     except FitError:
         return trial
-    return whole if min(whole.s2 / LEAST_LED, best.s2 / AT_NOISE) < 1 else best
+    at_noise = best.s2 < bench.options.trial.gate_noise
+    return whole if at_noise or whole.s2 < options.led_astray else best

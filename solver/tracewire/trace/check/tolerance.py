@@ -9,15 +9,10 @@ import numpy as np
 from tracewire.residual import opened
 from tracewire.trace.trials.trial import Bench, Trial
 
-TIGHTER = 0.1
-MOVES = 0.3
-"""What the residual of a window may move, as a part of the larger of the noise and what is left, as
-a root mean square: a tenth of its squares."""
-
 
 def tightened(bench: Bench) -> Bench:
-    """The bench with a tenth of the tolerance."""
-    return replace(bench, rtol=TIGHTER * bench.rtol)
+    """The bench with a tenth of the tolerance, or what the options say."""
+    return replace(bench, rtol=bench.options.check.tighter * bench.rtol)
 
 
 def is_loose(bench: Bench, trial: Trial) -> bool:
@@ -33,4 +28,4 @@ def is_loose(bench: Bench, trial: Trial) -> bool:
     if not pairs:
         return False
     moved = np.median([np.sqrt(np.mean((a.residual - b.residual) ** 2)) for a, b in pairs])
-    return not moved < MOVES * max(trial.s2**0.5, 1.0)
+    return not moved < bench.options.check.solver_error * max(trial.s2**0.5, 1.0)

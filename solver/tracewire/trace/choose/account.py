@@ -15,9 +15,6 @@ from tracewire.trace.search.search import Search
 from tracewire.trace.trials.trial import Bench, Trial
 
 Vector = NDArray[np.float64]
-FIRST_PART = 0.2
-"""The part of a record on which the start of a free run is fitted."""
-CONFIDENCE = 0.95
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,31 +98,37 @@ def _compared(search: Search, use: str, section: Section, declared: Trial, best:
 def free_run(bench: Bench, trial: Trial, whole: Segment, shortest: int) -> Vector:
     """The residuals in sigma of one run over a section, shape (N, signals).
 
-    A free start is fitted on the first fifth of the section alone.
+    A free start is fitted on the first part of the section alone.
     """
     if whole.free:
-        begun = settled(opened(bench.criterion(trial, [_first_part(whole, shortest)])))
+        begun = settled(
+            opened(
+                bench.criterion(
+                    trial, [_first_part(whole, shortest, bench.options.split.first_part)]
+                )
+            )
+        )
         whole = replace(begun.segments[0], rows=whole.rows)
     return opened(bench.criterion(trial, [whole])).residuals[0]
 
 
 def met(search: Search, trial: Trial) -> Trial:
     """The trial whose effects have what series of their own need that no fit saw: the phase of a
-    wave, from the first fifth of each such series alone."""
+    wave, from the first part of each such series alone."""
     if not any(effect.own_series for effect in trial.effects):
         return trial
     stretches = search.stretches
     unseen = [*(s for s in stretches.gate if s.measured.use == "gate"), *stretches.validate]
     firsts = [
-        _first_part(whole, search.shortest)
+        _first_part(whole, search.shortest, search.options.split.first_part)
         for section in unseen
         for whole in search.windows([section], section.end - section.first)
     ]
     return replace(trial, effects=search.bench.met(trial, firsts))
 
 
-def _first_part(whole: Segment, shortest: int) -> Segment:
-    count = max(int(FIRST_PART * len(whole.rows)), min(2 * shortest, len(whole.rows)))
+def _first_part(whole: Segment, shortest: int, part: float) -> Segment:
+    count = max(int(part * len(whole.rows)), min(2 * shortest, len(whole.rows)))
     return replace(whole, rows=whole.rows[:count])
 
 
@@ -134,9 +137,9 @@ def rmse(parts: Sequence[Compared], which: int) -> float:
     return float(np.sqrt(np.mean(np.concatenate([p.free[which].ravel() for p in parts]) ** 2)))
 
 
-def intervals(trial: Trial) -> dict[str, tuple[float, float]]:
-    """The 95 % interval of each fitted value."""
-    quantile = float(stdtrit(max(trial.freedom * trial.part, 1.0), 0.5 + CONFIDENCE / 2))
+def intervals(trial: Trial, confidence: float) -> dict[str, tuple[float, float]]:
+    """The interval of each fitted value, which holds the truth with this confidence."""
+    quantile = float(stdtrit(max(trial.freedom * trial.part, 1.0), 0.5 + confidence / 2))
     errors = trial.standard_errors
     return {
         name: (value - quantile * errors[name], value + quantile * errors[name])

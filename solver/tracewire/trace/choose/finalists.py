@@ -93,7 +93,9 @@ class Pool:
         search, trial = self.search, parent.trials[number]
         beside = " and ".join(sorted(parent.names)) or "the declared model"
         search.tell(f"screening effects beside {beside}")
-        tangent = Tangent(trial.diagram, trial.windows, search.places, search.bench.rtol)
+        tangent = Tangent(
+            trial.diagram, trial.windows, search.places, search.bench.rtol, search.options
+        )
         candidates = search.candidates(tangent, [effect.candidate for effect in trial.effects])
         return screened(tangent, trial, candidates)
 

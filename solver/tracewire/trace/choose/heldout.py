@@ -28,9 +28,6 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.intp]
 NEAR = 1e-6
 """Of the size of a value: nearer to its bound it sits there."""
-RIDGE = 1e-3
-"""The weight of the fit to all data beside that without a fold: what only the fold determines is
-then no accident."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +96,7 @@ def errors_held_out(
     """
     found = []
     for at, (horizon, trial) in enumerate(zip(horizons.each, finalist.trials, strict=True)):
-        newton = _Newton(trial, horizon)
+        newton = _Newton(trial, horizon, options.fold_ridge)
         families = []
         for number, family in enumerate(horizons.folds):
             steps = options.fold_steps if number else 0
@@ -129,7 +126,7 @@ def _judged(bench: Bench, trial: Trial, horizon: Horizon, count: int) -> Array:
 class _Newton:
     """The linearised fit of a trial, from which a fit without some blocks is one step away."""
 
-    def __init__(self, trial: Trial, horizon: Horizon) -> None:
+    def __init__(self, trial: Trial, horizon: Horizon, ridge: float) -> None:
         windows = trial.windows
         self.windows = windows
         self.exact = all(
@@ -141,7 +138,7 @@ class _Newton:
         self.scales = np.array([u.scale for u in windows.criterion.unknowns])
         reduced, self.residual = eliminated(windows, views)
         self.reduced = reduced * self.scales
-        self.ridge = np.diag(RIDGE**0.5 * np.linalg.norm(self.reduced, axis=0))
+        self.ridge = np.diag(ridge**0.5 * np.linalg.norm(self.reduced, axis=0))
         self.blocks = np.concatenate([
             np.repeat(of, near.residual.shape[1])
             for of, near in zip(horizon.blocks, windows.near, strict=True)

@@ -19,7 +19,6 @@ from tracewire.trace.search.search import Search
 from tracewire.trace.trials.trial import Trial
 
 Array = NDArray[np.float64]
-SHOWN = 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +63,7 @@ class Prediction:
     def told(self) -> StepTold:
         """The comparison as a step of the search."""
         scores = log_scores(self.errors).mean(axis=(1, 2, 3))
-        order = np.argsort(scores)[:SHOWN]
+        order = np.argsort(scores)[: self.options.shown]
         rows = []
         for n in order.tolist():
             model, change = self.models[n], float(np.expm1(scores[n] - scores[0]))

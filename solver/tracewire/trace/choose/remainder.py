@@ -6,13 +6,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import ndtri
 
 from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.found import Explained, HeldOut, Remainder
 
 Array = NDArray[np.float64]
-CONFIDENCE = 1.96
-"""Standard errors of a 95 % interval."""
 
 
 def explained(prediction: Prediction, floors: Sequence[float]) -> tuple[Explained, float]:
@@ -31,7 +30,8 @@ def explained(prediction: Prediction, floors: Sequence[float]) -> tuple[Explaine
     error = float(
         np.sqrt((count - 1) / count * np.sum((np.array(left_out) - np.mean(left_out)) ** 2))
     )
-    low, high = whole - CONFIDENCE * error, whole + CONFIDENCE * error
+    errors = float(ndtri(0.5 + prediction.options.confidence / 2))
+    low, high = whole - errors * error, whole + errors * error
     return Explained(whole, low, min(high, 1.0)), error
 
 

@@ -18,12 +18,11 @@ from tracewire.trace.search.search import Search, Step
 from tracewire.trace.trials.trial import Added, Trial
 
 Matrix = NDArray[np.float64]
-SHOWN = 12
 
 
 def told_effects(search: Search, final: Final) -> tuple[FoundEffect, ...]:
     """The effects of the result, the one that brings most first."""
-    ends = intervals(final.best) if final.best.effects else {}
+    ends = intervals(final.best, search.options.confidence) if final.best.effects else {}
     found = []
     for effect in final.best.effects:
         gain, masked, weight = _standing(search, effect)
@@ -86,10 +85,10 @@ def _standing(search: Search, effect: Added) -> tuple[float, float, float]:
 
 def told_steps(search: Search, interval: float) -> tuple[StepTold, ...]:
     """The steps of the search."""
-    return tuple(_told(step, interval) for step in search.steps)
+    return tuple(_told(step, interval, search.options.shown) for step in search.steps)
 
 
-def _told(step: Step, interval: float) -> StepTold:
+def _told(step: Step, interval: float, shown: int) -> StepTold:
     rows = []
     seen = set()
     for one in step.tried:
@@ -107,7 +106,7 @@ def _told(step: Step, interval: float) -> StepTold:
                 one.remark,
             )
         )
-    for row in step.screen.best()[:SHOWN]:
+    for row in step.screen.best()[:shown]:
         if str(row.candidate) not in seen:
             rows.append(Ranked(str(row.candidate), row.gain, masked=row.masked))
     return StepTold(
@@ -120,7 +119,7 @@ def confusable(search: Search) -> tuple[tuple[str, ...], Matrix]:
     if not search.steps:
         return (), np.zeros((0, 0))
     screen = search.steps[0].screen
-    rows = screen.best()[:SHOWN]
+    rows = screen.best()[: search.options.shown]
     matrix = np.eye(len(rows))
     for i, one in enumerate(rows):
         for j in range(i):

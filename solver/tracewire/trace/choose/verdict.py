@@ -17,9 +17,6 @@ from tracewire.trace.search.finish import Final, Rival
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.trial import Trial
 
-FEW = 4
-"""Windows from which on the spread of their errors says what is chance."""
-
 
 @dataclass(frozen=True, eq=False)
 class Judgement:
@@ -36,9 +33,11 @@ class Judgement:
 
 
 def noise_limit(search: Search, trial: Trial) -> float:
-    """The reduced chi-square up to which a residual is at the noise, four standard errors at least:
+    """The reduced chi-square up to which a residual is at the noise, some standard errors at least:
     Var(s2) = 2/freedom."""
-    return max(search.options.at_noise, 1 + 4 * float(np.sqrt(2 / trial.freedom)))
+    return max(
+        search.options.at_noise, 1 + search.options.noise_errors * float(np.sqrt(2 / trial.freedom))
+    )
 
 
 def is_at_noise(search: Search, trial: Trial) -> bool:
@@ -146,7 +145,7 @@ def final_of(search: Search, prediction: Prediction, tell: bool = True) -> Final
             (name,), (rival,) = here, there
             added = next(e for e in trial.effects if str(e) == rival)
             likeness = prediction.likeness(name, rival)
-            rivals[name].append(Rival(added, likeness, trial, rise, near=True))
+            rivals[name].append(Rival(added, likeness, trial, rise, tied=True))
         elif tell:
             search.words.append(
                 f"{_joined(other.names)} predicts as well: {_change(cost)} error,"
@@ -159,7 +158,9 @@ def final_of(search: Search, prediction: Prediction, tell: bool = True) -> Final
 
 def residual_map(search: Search, trial: Trial) -> tuple[tuple[Dependence, ...], Missing | None]:
     """Where and on what the residual of a trial depends, in its windows."""
-    tangent = Tangent(trial.diagram, trial.windows, search.places, search.bench.rtol)
+    tangent = Tangent(
+        trial.diagram, trial.windows, search.places, search.bench.rtol, search.options
+    )
     return where_what(tangent, trial, search.places)
 
 
@@ -176,10 +177,14 @@ def raises_unseen(search: Search, final: Final, lengths: Sequence[int]) -> str:
             for trial in (final.declared, final.best)
         )
         rise, count = after - before, len(windows)
-        part = search.options.harm if count >= FEW else search.options.harm_few
+        part = (
+            search.options.harm if count >= search.options.few_windows else search.options.harm_few
+        )
         if after.sum() <= (1 + part) ** 2 * before.sum():
             continue
-        error = float(np.std(rise, ddof=1)) * count**0.5 if count >= FEW else 0.0
+        error = (
+            float(np.std(rise, ddof=1)) * count**0.5 if count >= search.options.few_windows else 0.0
+        )
         if not rise.sum() <= search.options.harm_errors * error:
             factor = (after.sum() / before.sum()) ** 0.5 if before.sum() > 0 else float("inf")
             return f"multiplies the error on unseen windows of {length} samples by {factor:.3g}"

@@ -32,11 +32,6 @@ from tracewire.trace.trials.trial import Bench, Trial
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-LIMITS = Limits(100_000, 30.0, 20_000)
-CLEAR = 1.0
-"""A separation in sigma (root mean square) below which an experiment does not decide."""
-ALIKE = 0.1
-"""A best separation below which the two are the same law on this rig."""
 ALIASES = {
     ("bias", "sensor_offset"): "Turn the sensor by a known angle, or rest the part at a second "
     "equilibrium: an offset stays with the sensor, a torque does not",
@@ -53,8 +48,8 @@ def separating(bench: Bench, one: Trial, other: Trial, name: str, rival: str) ->
     """The experiment that best tells two fitted trials apart, and by how many sigma (rms).
 
     Searched: the body released from rest without drive, and at rest driven by a sine, on each named
-    input and each sine or square block whose amplitude and frequency are parameters; amplitudes 0.2
-    to 3 times what was measured; first coarsely, then twice around the best. Deterministic.
+    input and each sine or square block whose amplitude and frequency are parameters; first
+    coarsely, then around the best. Deterministic.
     Raises OptionError where nothing can be simulated.
     """
     rig = rig_of(bench, one)
@@ -74,9 +69,10 @@ def separating(bench: Bench, one: Trial, other: Trial, name: str, rival: str) ->
 
     for setting in rig.settings():
         tell(setting)
-    for _ in range(2):
+    options = bench.options.experiment
+    for _ in range(options.rounds):
         if any(math.isfinite(value) for value in tried.values()):
-            for setting in _best(tried).near():
+            for setting in _best(tried).near(options):
                 tell(setting)
     if not any(math.isfinite(value) for value in tried.values()):
         what = f"no experiment for {name} and {rival} can be simulated"
@@ -105,6 +101,8 @@ def _separation(
     setting: Setting,
 ) -> float:
     """The residual of the rival on what the pick does, root mean square in sigma."""
+    options = bench.options.experiment
+    limits = Limits(options.steps, options.seconds, options.events)
     set_here, inputs = rig.parameters(setting), rig.inputs(setting)
     start = rig.start(setting)
     blank = {signal: np.zeros(len(rig.t)) for signal in bench.signals}
@@ -112,7 +110,7 @@ def _separation(
     whole = Segment(base, 0.0, np.arange(len(rig.t)), start)
     mine = {**bench.all_values(one), **set_here}
     maker = Criterion(
-        one.model, [whole], [], mine, bench.rtol, bench.sigma, weighting="sum", limits=LIMITS
+        one.model, [whole], [], mine, bench.rtol, bench.sigma, weighting="sum", limits=limits
     )
     shown = maker.outputs(whole, {}, {})
     run = simulate(
@@ -124,10 +122,10 @@ def _separation(
         rtol=bench.rtol,
         preset=base.preset,
         inputs=inputs,
-        limits=LIMITS,
+        limits=limits,
     )
     measured = replace(base, values=dict(zip(base.values, shown.T, strict=True)))
-    edges = np.linspace(0, len(rig.t), _count(one, rig) + 1).astype(int)
+    edges = np.linspace(0, len(rig.t), _count(one, rig, options.windows) + 1).astype(int)
     segments = []
     for a, b in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
         begin = max(a - 1, 0)
@@ -146,7 +144,7 @@ def _separation(
         bench.rtol,
         bench.sigma,
         weighting="sum",
-        limits=LIMITS,
+        limits=limits,
     )
     windows = settled(opened(criterion))
     if not all(near.ran for near in windows.near):
@@ -161,11 +159,11 @@ def _separation(
     return math.sqrt(max(left, 0.0) / len(residual))
 
 
-def _count(one: Trial, rig: Rig) -> int:
-    """How many windows: as long as those of the fit, but between a third and a twelfth of all."""
+def _count(one: Trial, rig: Rig, ends: tuple[int, int]) -> int:
+    """How many windows, between two ends: as long as those of the fit."""
     t = one.windows.segments[0].measured.t
     length = one.length * float(np.median(np.diff(t)))
-    return int(np.clip(round(float(rig.t[-1]) / length), 3, 12))
+    return int(np.clip(round(float(rig.t[-1]) / length), *ends))
 
 
 # --- words ----------------------------------------------------------------------------------------
@@ -183,7 +181,7 @@ def _words(rig: Rig, setting: Setting, separation: float, one: str, other: str) 
     else:
         amplitude, frequency = settings.values()
         how = f"from rest, {setting.drive} a sine of amplitude {amplitude:g} and {frequency:g} Hz"
-    if separation >= CLEAR:
+    if separation >= rig.options.decides:
         told = f"There they differ by {separation:.2g} sigma (rms)."
         return f"To tell {one} from {other}: {how}. {told}"
     words = (
@@ -191,6 +189,6 @@ def _words(rig: Rig, setting: Setting, separation: float, one: str, other: str) 
         f"at best {separation:.2g} sigma (rms; {how})."
     )
     effects = sorted(label.split(" @ ")[0] for label in (one, other))
-    alike = separation < ALIKE
+    alike = separation < rig.options.alike
     hint = ALIASES.get((effects[0], effects[1])) if alike else None
     return f"{words} {hint}." if hint else words

@@ -8,9 +8,6 @@ from tracewire.trace.found import Power
 from tracewire.trace.screen.screening import Screen
 from tracewire.trace.trials.statistics import HIDDEN
 
-CLEAR = 5.0
-"""Standard errors of a coefficient that is clearly not zero."""
-
 
 def powers(screen: Screen) -> tuple[Power, ...]:
     """The smallest coefficient of each effect that these data would show, in SI.
@@ -28,7 +25,7 @@ def powers(screen: Screen) -> tuple[Power, ...]:
         singular = np.linalg.svd(screen.columns.matrix[:, indices], compute_uv=False)
         if not singular[-1] > 0:
             continue
-        smallest = CLEAR / float(singular[-1])
+        smallest = screen.columns.options.shows / float(singular[-1])
         candidate = row.candidate
         known = found.get(str(candidate))
         if known is None or smallest < known.smallest:

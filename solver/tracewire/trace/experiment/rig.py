@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,14 +12,10 @@ from numpy.typing import NDArray
 from tracewire.formula import Name
 from tracewire.residual import Measured
 from tracewire.solve import parameter_values
+from tracewire.trace.thresholds import ExperimentOptions
 from tracewire.trace.trials.trial import Bench, Trial
 
 Vector = NDArray[np.float64]
-SIZES = (0.2, 0.5, 1.0, 1.7, 3.0)
-"""Of the largest drive, or of the widest motion, that was measured."""
-PITCHES = (0.15, 0.4, 0.8, 1.25, 2.5)
-"""Of the main frequency that was measured."""
-SAMPLES, A_PERIOD = 300, 30
 
 
 @dataclass(frozen=True)
@@ -32,13 +28,13 @@ class Setting:
     amplitude: float = 0.0
     frequency: float = 0.0
 
-    def near(self) -> Iterator[Setting]:
+    def near(self, options: ExperimentOptions) -> Iterator[Setting]:
         """Four settings around this one, or two."""
         if not self.drive:
-            yield from (replace(self, release=self.release * x) for x in (0.8, 1.25))
+            yield from (replace(self, release=self.release * x) for x in options.near_sizes)
             return
-        yield from (replace(self, amplitude=self.amplitude * x) for x in (0.75, 1.33))
-        yield from (replace(self, frequency=self.frequency * x) for x in (0.8, 1.25))
+        yield from (replace(self, amplitude=self.amplitude * x) for x in options.near_amplitudes)
+        yield from (replace(self, frequency=self.frequency * x) for x in options.near_sizes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,24 +49,26 @@ class Rig:
     knobs: Mapping[str, tuple[str, str, float]]
     frequency: float
     template: Measured
+    options: ExperimentOptions = field(default_factory=ExperimentOptions)
 
     def settings(self) -> list[Setting]:
         """The coarse grid: releases, and every drive at several amplitudes and frequencies."""
-        nyquist = 0.05 / float(self.t[1] - self.t[0])
-        found = [Setting(release=size) for size in SIZES]
+        highest = self.options.highest / float(self.t[1] - self.t[0])
+        found = [Setting(release=size) for size in self.options.sizes]
         for drive, largest in self.drives.items():
-            for size in SIZES:
-                for pitch in PITCHES:
-                    frequency = min(pitch * self.frequency, nyquist)
+            for size in self.options.sizes:
+                for pitch in self.options.pitches:
+                    frequency = min(pitch * self.frequency, highest)
                     found.append(Setting(0.0, drive, size * largest, frequency))
         return list(dict.fromkeys(found))
 
     def allowed(self, setting: Setting) -> bool:
         """Whether a setting is within reach."""
+        least, most = self.options.sizes[0], self.options.sizes[-1]
         if not setting.drive:
-            return SIZES[0] <= setting.release <= SIZES[-1]
+            return least <= setting.release <= most
         part = setting.amplitude / self.drives[setting.drive]
-        return SIZES[0] <= part <= SIZES[-1]
+        return least <= part <= most
 
     def told(self, setting: Setting) -> dict[str, float]:
         """A setting by the names that a user knows, in SI and Hz."""
@@ -114,8 +112,10 @@ def rig_of(bench: Bench, one: Trial) -> Rig:
     longest = max(train, key=lambda m: float(m.t[-1] - m.t[0]))
     interval = float(np.median(np.diff(longest.t)))
     frequency = main_frequency(longest)
-    step = max(interval, min(1 / (A_PERIOD * frequency), 20 * interval))
-    duration = min(float(longest.t[-1] - longest.t[0]), (SAMPLES - 1) * step)
+    options = bench.options.experiment
+    fine = 1 / (options.samples_a_period * frequency)
+    step = max(interval, min(fine, options.coarser * interval))
+    duration = min(float(longest.t[-1] - longest.t[0]), (options.samples - 1) * step)
     t = step * np.arange(int(duration / step) + 1, dtype=np.float64)
     rest, width = _reach(bench, one, train)
     drives: dict[str, float] = {}
@@ -126,7 +126,7 @@ def rig_of(bench: Bench, one: Trial) -> Rig:
     for drive, (amplitude, _, _) in knobs.items():
         drives[drive] = abs(bench.all_values(one).get(amplitude, _default(bench, amplitude)))
     drives = {name: size for name, size in drives.items() if size > 0}
-    return Rig(t, rest, width, drives, knobs, frequency, longest)
+    return Rig(t, rest, width, drives, knobs, frequency, longest, options)
 
 
 def main_frequency(measured: Measured) -> float:

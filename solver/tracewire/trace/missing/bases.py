@@ -12,21 +12,11 @@ from scipy.optimize import minimize_scalar
 
 from tracewire.trace.candidates.levels import Trajectory
 from tracewire.trace.candidates.places import Place
+from tracewire.trace.thresholds import MapOptions
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 Scale = Callable[[Vector], Vector]
-COARSE, MEDIUM, FINE = 11, 41, 121
-SLOPES = (0.05, 0.005)
-"""Of the root mean square of a rate: where its asinh scale turns from linear to logarithmic."""
-LAGS = (0.03, 0.06, 0.12, 0.25, 0.5, 1.0)
-"""Time constants of low-passed signals, as parts of the period of the motion."""
-PLAYS = (0.03, 0.08, 0.2, 0.4, 0.7)
-"""Widths of stop operators as parts of the largest coordinate."""
-HARMONICS = 4
-IN_TIME = 10
-TONAL = 0.8
-"""The part of a drive's variance that one sine explains where its phase has a meaning."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +57,7 @@ class Basis:
         return _product([axis.bumps(x) for axis, x in zip(self.axes, points, strict=True)])
 
 
-def bases_of(place: Place, runs: Sequence[Trajectory]) -> Iterator[Basis]:
+def bases_of(place: Place, runs: Sequence[Trajectory], options: MapOptions) -> Iterator[Basis]:
     """The bases at a place, along its runs.
 
     Variables: `q`, `v`, `a` of the place, `t`, `u` and `drive phase` of each drive, `history`
@@ -75,39 +65,41 @@ def bases_of(place: Place, runs: Sequence[Trajectory]) -> Iterator[Basis]:
     of drives or bodies, each has its signal behind its name: `u of force`.
     """
     if place.kind == "sensor":
-        yield from _smooth("y", [run.signals[place.definition] for run in runs])
-        yield in_time(runs)
+        yield from _smooth(options, "y", [run.signals[place.definition] for run in runs])
+        yield in_time(runs, options.in_time)
         return
     q, v, a = (_values(runs, name) for name in (place.q, place.v, place.a))
-    yield from _smooth("q", q)
-    yield from _ripples("q", q)
-    yield from _smooth("v", v, rate=True)
+    yield from _smooth(options, "q", q)
+    yield from _ripples(options, "q", q)
+    yield from _smooth(options, "v", v, rate=True)
     if q and v:
-        yield from _surfaces(("q", "v"), q, v)
-    yield from _smooth("a", a)
-    yield in_time(runs)
+        yield from _surfaces(options, ("q", "v"), q, v)
+    yield from _smooth(options, "a", a)
+    yield in_time(runs, options.in_time)
     if q or v:
-        yield _history(runs, q, v)
+        yield _history(options, runs, q, v)
     for name in place.drive:
         of = f" of {name}" if len(place.drive) > 1 else ""
         u = _values(runs, name)
-        yield from _smooth(f"u{of}", u)
-        phase = [drive_phase(run.t, x) for run, x in zip(runs, u, strict=False)]
+        yield from _smooth(options, f"u{of}", u)
+        phase = [drive_phase(run.t, x, options.tonal) for run, x in zip(runs, u, strict=False)]
         if phase and all(x is not None for x in phase):
-            yield _harmonics(f"drive phase{of}", [x for x in phase if x is not None])
+            known = [x for x in phase if x is not None]
+            yield _harmonics(options, f"drive phase{of}", known)
     for other_q, other_v in place.others:
         of = f" of {other_v or other_q}" if len(place.others) > 1 else ""
         oq, ov = _values(runs, other_q), _values(runs, other_v)
-        yield from _smooth(f"other_q{of}", oq)
-        yield from _smooth(f"other_v{of}", ov, rate=True)
-        yield from _relative(("q", f"other_q{of}"), q, oq)
-        yield from _relative(("v", f"other_v{of}"), v, ov, rate=True)
+        yield from _smooth(options, f"other_q{of}", oq)
+        yield from _smooth(options, f"other_v{of}", ov, rate=True)
+        yield from _relative(options, ("q", f"other_q{of}"), q, oq)
+        yield from _relative(options, ("v", f"other_v{of}"), v, ov, rate=True)
 
 
-def drive_phase(t: Vector, u: Vector) -> Vector | None:
+def drive_phase(t: Vector, u: Vector, tonal: float) -> Vector | None:
     """The phase of a drive in rad, 0 where it rises through its mean; None where it is no sine.
 
-    The frequency is that of the sine that explains most of its variance, at least 80 %.
+    The frequency is that of the sine that explains most of its variance, at least the part
+    `tonal`.
     """
     centred = u - np.mean(u)
     total = float(centred @ centred)
@@ -126,18 +118,18 @@ def drive_phase(t: Vector, u: Vector) -> Vector | None:
     ends = (first - 1) / span + 1e-3 / span, (first + 1) / span
     best = minimize_scalar(lambda f: fitted(f)[0], bounds=ends, method="bounded")
     left, found = fitted(float(best.x))
-    if left > (1 - TONAL) * total:
+    if left > (1 - tonal) * total:
         return None
     return np.asarray(2 * np.pi * best.x * t + math.atan2(found[1], found[0]))
 
 
-def in_time(runs: Sequence[Trajectory]) -> Basis:
-    """Ten bumps in time in each series: what happens at a time happens in one series only."""
-    axes = [_axis([run.t], IN_TIME) for run in runs]
+def in_time(runs: Sequence[Trajectory], count: int) -> Basis:
+    """Some bumps in time in each series: what happens at a time happens in one series only."""
+    axes = [_axis([run.t], count) for run in runs]
     columns = []
     for n, (run, axis) in enumerate(zip(runs, axes, strict=True)):
-        mine = np.zeros((len(run.t), IN_TIME * len(runs)))
-        mine[:, n * IN_TIME : (n + 1) * IN_TIME] = axis.bumps(run.t)
+        mine = np.zeros((len(run.t), count * len(runs)))
+        mine[:, n * count : (n + 1) * count] = axis.bumps(run.t)
         columns.append(mine)
     return Basis(("t",), columns, tuple(axes[:1]) if len(runs) == 1 else ())
 
@@ -156,58 +148,68 @@ def _moves(values: Sequence[Vector], size: float = 0.0) -> bool:
     return high - low > 1e-9 * max(abs(low), abs(high), size)
 
 
-def _smooth(name: str, values: Sequence[Vector], rate: bool = False) -> Iterator[Basis]:
+def _smooth(
+    options: MapOptions, name: str, values: Sequence[Vector], rate: bool = False
+) -> Iterator[Basis]:
     """Functions of one variable, coarse and fine."""
     if not values:
         return
     if rate:
-        axes = [_axis(values, 31), *(_axis(values, 21, _asinh(values, s)) for s in SLOPES)]
+        plain, bent = options.rates
+        axes = [_axis(values, plain)]
+        axes += [_axis(values, bent, _asinh(values, slope)) for slope in options.slopes]
     else:
-        axes = [_axis(values, n) for n in (COARSE, MEDIUM)]
+        axes = [_axis(values, n) for n in (options.coarse, options.medium)]
     yield from (_grid((name,), axis) for axis in axes)
 
 
-def _ripples(name: str, values: Sequence[Vector]) -> Iterator[Basis]:
+def _ripples(options: MapOptions, name: str, values: Sequence[Vector]) -> Iterator[Basis]:
     """Very fine functions of one variable, where the samples resolve them."""
     if not values:
         return
-    axis = _axis(values, FINE)
+    axis = _axis(values, options.fine)
     step = float(np.median(np.abs(np.concatenate([np.diff(x) for x in values]))))
     low, high = axis.ends
-    if step <= (high - low) / (FINE - 1):
+    if step <= (high - low) / (options.fine - 1):
         yield _grid((name,), axis)
 
 
-def _surfaces(names: tuple[str, str], q: Sequence[Vector], v: Sequence[Vector]) -> Iterator[Basis]:
+def _surfaces(
+    options: MapOptions, names: tuple[str, str], q: Sequence[Vector], v: Sequence[Vector]
+) -> Iterator[Basis]:
     """Functions of a coordinate and a rate: even, fine in the one, or about zero in the other."""
-    bent = _asinh(v, SLOPES[0])
-    yield _grid(names, _axis(q, 7), _axis(v, 7))
-    yield _grid(names, _axis(q, 9), _axis(v, 9, bent))
-    yield _grid(names, _axis(q, 21), _axis(v, 5))
-    yield _grid(names, _axis(q, 21), _axis(v, 5, bent))
+    bent = _asinh(v, options.slopes[0])
+    for along, over, is_bent in options.surfaces:
+        yield _grid(names, _axis(q, along), _axis(v, over, bent) if is_bent else _axis(v, over))
 
 
 def _relative(
-    names: tuple[str, str], own: Sequence[Vector], other: Sequence[Vector], rate: bool = False
+    options: MapOptions,
+    names: tuple[str, str],
+    own: Sequence[Vector],
+    other: Sequence[Vector],
+    rate: bool = False,
 ) -> Iterator[Basis]:
     """Functions of the difference of two variables, and of both."""
     if not own or not other:
         return
     difference = [a - b for a, b in zip(own, other, strict=True)]
     if _moves(difference, max(float(np.max(np.abs(x))) for x in own)):
-        for basis in _smooth("", difference, rate):
+        for basis in _smooth(options, "", difference, rate):
             yield Basis(names, basis.columns)
-    yield _grid(names, _axis(own, 7), _axis(other, 7))
+    yield _grid(names, _axis(own, options.others), _axis(other, options.others))
 
 
-def _harmonics(name: str, phases: Sequence[Vector]) -> Basis:
-    """Sines and cosines of the first four multiples of a phase."""
-    orders = np.arange(1, HARMONICS + 1)
+def _harmonics(options: MapOptions, name: str, phases: Sequence[Vector]) -> Basis:
+    """Sines and cosines of the first multiples of a phase."""
+    orders = np.arange(1, options.harmonics + 1)
     angles = [phase[:, None] * orders for phase in phases]
     return Basis((name,), [np.concatenate([np.sin(x), np.cos(x)], axis=1) for x in angles])
 
 
-def _history(runs: Sequence[Trajectory], q: Sequence[Vector], v: Sequence[Vector]) -> Basis:
+def _history(
+    options: MapOptions, runs: Sequence[Trajectory], q: Sequence[Vector], v: Sequence[Vector]
+) -> Basis:
     """Low-passed coordinate and rate, and what stops of several widths hold of the coordinate.
 
     A linear element with memory (Maxwell) is a sum of the former, hysteresis that does not depend
@@ -218,9 +220,9 @@ def _history(runs: Sequence[Trajectory], q: Sequence[Vector], v: Sequence[Vector
     columns = []
     for n, run in enumerate(runs):
         own = [x[n] for x in (q, v) if x]
-        parts = [*own, *(lowpassed(run.t, x, lag * period) for x in own for lag in LAGS)]
+        parts = [*own, *(lowpassed(run.t, x, lag * period) for x in own for lag in options.lags)]
         if q:
-            parts += [stopped(q[n], part * size) for part in PLAYS]
+            parts += [stopped(q[n], part * size) for part in options.plays]
         columns.append(np.stack(parts, axis=1))
     whole = np.concatenate(columns)
     sizes = np.maximum(np.sqrt(np.mean(whole**2, axis=0)), 1e-300)

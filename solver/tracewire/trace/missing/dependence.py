@@ -21,25 +21,13 @@ from tracewire.trace.found import Dependence, Missing
 from tracewire.trace.missing.bases import Basis, bases_of
 from tracewire.trace.missing.table import add_table, missing_table
 from tracewire.trace.screen.tangent import Joined, Tangent
+from tracewire.trace.thresholds import MapOptions
 from tracewire.trace.trials.trial import Trial
 
 __all__ = ["add_table", "missing_table", "where_what"]
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-FOLDS = 4
-CHUNKS = 24
-"""Pieces of a series that are left out as wholes."""
-SEED = 7
-RIDGES = 10.0 ** np.arange(-9.0, 0.5, 1.5)
-NEAR, NEAR_ELSEWHERE = 0.95, 0.98
-"""Of the best share: what is as good as it, at the same place and at another one."""
-LEAST_SHARE = 0.1
-LEAST_FALL = 25.0
-"""A smaller fall of the squared residual, in the noise's variance, is noise."""
-SIMPLE = {"history": 3}
-"""How many variables a set counts as, where that is not their number."""
-GRID = {1: 81, 2: 25}
 TOGETHER, COLUMNS = 2000, 200
 """Residuals and columns that are worked on at once: fewer take longer, more take memory."""
 
@@ -54,10 +42,10 @@ class Scored:
     fall: float
     coefficients: Vector
 
-    @property
-    def size(self) -> int:
-        """How many variables it takes."""
-        return sum(SIMPLE.get(name.partition(" of ")[0], 1) for name in self.basis.variables)
+    def size(self, history: int) -> int:
+        """How many variables it takes; the history of a motion counts as some."""
+        names = (name.partition(" of ")[0] for name in self.basis.variables)
+        return sum(history if name == "history" else 1 for name in names)
 
 
 def where_what(
@@ -66,7 +54,7 @@ def where_what(
     """The share of the excess that each set of variables explains at each place, the best first.
 
     The excess is the squared residual beyond its degrees of freedom. `Missing` is the torque of the
-    smallest set of variables that is within 5 % of the best (2 % of the best of another place);
+    smallest set of variables that is nearly as good as the best, at its place or at another one;
     None where nothing explains more than noise does. Its torque is what is missing beyond what the
     free parameters can still do. Variables are named as in `bases_of`.
     """
@@ -74,7 +62,9 @@ def where_what(
     found = [
         scored
         for place in places
-        for scored in _scored(problem, place, bases_of(place, tangent.trajectories))
+        for scored in _scored(
+            problem, place, bases_of(place, tangent.trajectories, tangent.options.map)
+        )
     ]
     best: dict[tuple[str, tuple[str, ...]], Scored] = {}
     for scored in found:
@@ -83,27 +73,27 @@ def where_what(
             best[key] = scored
     ranked = sorted(best.values(), key=lambda scored: -scored.fall)
     shares = tuple(Dependence(s.place.name, s.basis.variables, s.share) for s in ranked)
-    chosen = smallest(ranked)
+    chosen = smallest(ranked, tangent.options.map)
     return shares, None if chosen is None else _missing(problem, chosen)
 
 
-def smallest(ranked: Sequence[Scored]) -> Scored | None:
+def smallest(ranked: Sequence[Scored], options: MapOptions) -> Scored | None:
     """The one of fewest variables among those that are as good as the best; None: noise."""
     top = max(ranked, key=lambda scored: scored.share, default=None)
-    if top is None or top.share < LEAST_SHARE or top.fall < LEAST_FALL:
+    if top is None or top.share < options.least_share or top.fall < options.least_fall:
         return None
-    good = [
-        scored
-        for scored in ranked
-        if scored.share >= (NEAR if scored.place == top.place else NEAR_ELSEWHERE) * top.share
-    ]
+
+    def is_good(scored: Scored) -> bool:
+        near = options.near if scored.place == top.place else options.near_elsewhere
+        return scored.share >= near * top.share
 
     def rank(scored: Scored) -> tuple[int, bool, bool, float]:
         driven = scored.basis.variables[0].startswith(("u", "drive"))
         elsewhere = scored.place != top.place and not driven
-        return scored.size, driven and scored.place.kind != "drive", elsewhere, -scored.share
+        size = scored.size(options.history_counts)
+        return size, driven and scored.place.kind != "drive", elsewhere, -scored.share
 
-    return min(good, key=rank)
+    return min(filter(is_good, ranked), key=rank)
 
 
 # --- the linear problem ---------------------------------------------------------------------------
@@ -127,7 +117,7 @@ class Problem:
         return max(rss - self.freedom, 3 * float(np.sqrt(2 * self.freedom)))
 
     def products(self, place: Place, bases: Sequence[Basis]) -> Matrix:
-        """The scalar products by fold, (FOLDS, n + K + 1, n + K + 1), of the unknowns, of what all
+        """The scalar products by fold, (folds, n + K + 1, n + K + 1), of the unknowns, of what all
         functions of some bases at a place do to the residuals, and of the residual.
 
         They are added up a few windows at a time: the columns of a long record are much memory.
@@ -135,7 +125,7 @@ class Problem:
         series = range(len(self.tangent.trajectories))
         given = [np.concatenate([b.columns[n] for b in bases], axis=1) for n in series]
         width = self.unknowns.shape[1] + given[0].shape[1] + 1
-        total = np.zeros((FOLDS, width, width))
+        total = np.zeros((self.tangent.options.map.folds, width, width))
         first, waiting, rows = 0, list[Matrix](), 0
         for n, (joined, view) in enumerate(zip(self.tangent.joined, self.views, strict=True)):
             if place.kind == "sensor":
@@ -167,12 +157,13 @@ def _problem(tangent: Tangent, trial: Trial) -> Problem:
 
 
 def _folds(tangent: Tangent) -> NDArray[np.intp]:
-    """The fold of each residual: of each four neighbouring pieces of a series, each has another.
+    """The fold of each residual: neighbouring pieces of a series have different ones.
 
     Their order is shuffled, so that no fold is always the same phase of a drive.
     """
-    rng = np.random.default_rng(SEED)
-    order = np.concatenate([rng.permutation(FOLDS) for _ in range(CHUNKS)])
+    options = tangent.options.map
+    rng = np.random.default_rng(options.seed)
+    order = np.concatenate([rng.permutation(options.folds) for _ in range(options.pieces)])
     windows = tangent.windows
     names = [s.measured.name for s in windows.criterion.segments]
     totals = dict.fromkeys(names, 0)
@@ -182,9 +173,9 @@ def _folds(tangent: Tangent) -> NDArray[np.intp]:
     found = []
     for name, near in zip(names, windows.near, strict=True):
         rows, width = near.residual.shape
-        first, longest = passed[name], totals[name] / CHUNKS
+        first, longest = passed[name], totals[name] / options.pieces
         at = np.full(rows, first + rows // 2) if rows <= longest else first + np.arange(rows)
-        chunks = np.minimum(at / longest, CHUNKS - 1).astype(int)
+        chunks = np.minimum(at / longest, options.pieces - 1).astype(int)
         found.append(np.repeat(order[chunks], width))
         passed[name] = first + rows
     return np.concatenate(found)
@@ -216,18 +207,18 @@ def _scored(problem: Problem, place: Place, bases: Iterator[Basis]) -> Iterator[
 def _together(problem: Problem, place: Place, bases: Sequence[Basis]) -> list[Scored]:
     """Some bases at a place, each cross-validated: from scalar products of columns by fold."""
     products, excess = problem.products(place, bases), problem.excess
-    known = problem.unknowns.shape[1]
+    known, ridges = problem.unknowns.shape[1], np.array(problem.tangent.options.map.ridges)
     first, found = known, []
     for basis in bases:
         last = first + basis.columns[0].shape[1]
         chosen = [*range(known), *range(first, last), products.shape[1] - 1]
         own = products[:, chosen][:, :, chosen]
-        left = _left_out(own, known)
+        left = _left_out(own, known, ridges)
         best = int(np.argmin(left))
         before = float(np.sum(own[:, -1, -1]))
         fall = before - float(left[best])
         share = min(max(fall / excess, 0.0), 1.0)
-        (values,) = _solved(np.sum(own, axis=0), known, RIDGES[best : best + 1])
+        (values,) = _solved(np.sum(own, axis=0), known, ridges[best : best + 1])
         # what a basis is made of does not matter any more, and is much memory
         found.append(Scored(place, replace(basis, columns=()), share, fall, values[known:]))
         first = last
@@ -238,12 +229,12 @@ def _gram(matrix: Matrix) -> Matrix:
     return np.asarray(matrix.T @ matrix)
 
 
-def _left_out(products: Matrix, known: int) -> Vector:
+def _left_out(products: Matrix, known: int, ridges: Vector) -> Vector:
     """The squared residual on the folds that were left out, for each ridge."""
     total = np.sum(products, axis=0)
-    left = np.zeros(len(RIDGES))
+    left = np.zeros(len(ridges))
     for own in products:
-        values = _solved(total - own, known, RIDGES)
+        values = _solved(total - own, known, ridges)
         full = np.column_stack((values, np.ones(len(values))))
         left += np.einsum("ri,ij,rj->r", full, own, full)
     return left
@@ -275,7 +266,8 @@ def _missing(problem: Problem, chosen: Scored) -> Missing:
     if not basis.axes or len(basis.axes) != len(names):
         nothing = np.zeros(0)
         return Missing(chosen.place.name, names, share, (), nothing, nothing)
-    grid = tuple(np.linspace(*axis.ends, GRID[len(names)]) for axis in basis.axes)
+    count = problem.tangent.options.map.grid
+    grid = tuple(np.linspace(*axis.ends, count[len(names) - 1]) for axis in basis.axes)
     points = [x.ravel() for x in np.meshgrid(*grid, indexing="ij")]
     shape = tuple(len(x) for x in grid)
     torque = (basis.at(*points) @ chosen.coefficients).reshape(shape)

@@ -15,16 +15,10 @@ from tracewire.trace.candidates.places import Place
 from tracewire.trace.found import Force, Means
 from tracewire.trace.screen.observed import trajectories
 from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.thresholds import MapOptions
 from tracewire.trace.trials.trial import Trial
 
 Vector = NDArray[np.float64]
-BINS = 9
-"""Bins of a variable with equally many samples, and bins of equal width; both kinds of edges are
-used: a body that mostly rests moves fast in few samples."""
-FEWEST = 8
-"""Samples of a bin."""
-SMOOTH = 0.3
-"""The size that a missing torque may have between neighbouring samples, of the sum at its place."""
 
 
 def forces(
@@ -90,7 +84,7 @@ def _means(tangent: Tangent, best: Trial, place: Place, rtol: float) -> tuple[Me
         runs = [run.signals[signal] if signal else np.zeros(len(run.t))
                 for run in tangent.trajectories]  # fmt: skip
         values = np.concatenate(runs)[inside]
-        edges = _edges(values)
+        edges = _edges(values, tangent.options.map)
         count = len(edges) - 1
         bins = [np.clip(np.searchsorted(edges, x, "right") - 1, 0, count - 1) for x in runs]
         steps = [np.eye(count)[numbers] for numbers in bins]
@@ -103,14 +97,15 @@ def _means(tangent: Tangent, best: Trial, place: Place, rtol: float) -> tuple[Me
     return tuple(found)
 
 
-def _edges(values: Vector) -> Vector:
+def _edges(values: Vector, options: MapOptions) -> Vector:
     """The edges of at least one bin, each of which has a few samples."""
-    counted = np.quantile(values, np.linspace(0, 1, BINS + 1))
+    bins = options.force_bins + 1
+    counted = np.quantile(values, np.linspace(0, 1, bins))
     low, high = np.quantile(values, [0.01, 0.99]).tolist()
-    even = np.linspace(low, high, BINS + 1)[1:-1]
+    even = np.linspace(low, high, bins)[1:-1]
     edges = [float(values.min())]
     for edge in np.unique(np.concatenate((counted, even))).tolist():
-        if np.sum((values >= edges[-1]) & (values < edge)) >= FEWEST:
+        if np.sum((values >= edges[-1]) & (values < edge)) >= options.force_samples:
             edges.append(edge)
     if len(edges) > 2:
         edges.pop()  # the last bin goes to the end
@@ -148,7 +143,9 @@ def _needed(tangent: Tangent, place: Place) -> list[Vector]:
         view = projection(tangent.windows, joined.window)
         answer = view.off(tangent.window_answer(joined, {place.name: given}))
         residual = view.off(tangent.windows.near[joined.window].residual.ravel())
-        size = SMOOTH * max(float(np.std(run.signals[place.name])), 1e-300)
+        size = tangent.options.map.force_smooth * max(
+            float(np.std(run.signals[place.name])), 1e-300
+        )
         bent = np.diff(np.eye(len(samples)), 2, axis=0) / size
         level = 1e-3 * np.eye(len(samples)) / size
         matrix = np.vstack((answer, bent, level))

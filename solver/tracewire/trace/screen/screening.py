@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 
 import numpy as np
@@ -17,6 +17,7 @@ from tracewire.trace.candidates.levels import Trajectory
 from tracewire.trace.candidates.waves import as_measured, scanned
 from tracewire.trace.screen.answers import without, without_starts
 from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.thresholds import ScreenOptions
 from tracewire.trace.trials.statistics import HIDDEN, Columns
 from tracewire.trace.trials.trial import Added, Trial
 
@@ -28,12 +29,6 @@ NEAR = 1e-6
 SEEN = 1e-10
 """The part of a column's square, beyond what window starts imitate, from which on it is seen."""
 QUADRATURE = (0.0, math.pi / 2)
-PAIRED = 24
-"""How many single effects are paired with each other."""
-SMALL = 0.1
-"""The part of a promise of the wrong sign at which a refit begins with the right one."""
-TRUST = 0.7
-"""The part of an expected coefficient at which a refit begins."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +47,7 @@ class Row:
     possible: bool
     series: tuple[str, ...] = ()
     """Those that have a phase of their own: there is a column for each, and each quadrature."""
+    options: ScreenOptions = field(default_factory=ScreenOptions)
 
     @property
     def count(self) -> int:
@@ -68,7 +64,7 @@ class Row:
                 values[name] = min(max(values[name], low), high)
         name, neutral = self.candidate.parameter, self.candidate.neutral
         if values[name] == neutral != self.values[name]:
-            values[name] = neutral + SMALL * abs(self.values[name] - neutral)
+            values[name] = neutral + self.options.wrong_sign * abs(self.values[name] - neutral)
         return Added(self.candidate, values)
 
 
@@ -122,7 +118,7 @@ class Screen:
 
     def pairs(self) -> list[Proposal]:
         """Pairs of candidates with possible signs, the most promising first."""
-        singles = self.best()[:PAIRED]
+        singles = self.best()[: self.columns.options.paired]
         found = []
         for one, other in combinations(singles, 2):
             fall, values = self.columns.score((*one.columns, *other.columns))
@@ -165,7 +161,7 @@ def screened(tangent: Tangent, trial: Trial, candidates: Sequence[Candidate]) ->
 
     model = windows.criterion.model
     measured = as_measured(windows, tangent.trajectories)
-    candidates = scanned(model, candidates, measured, residual, answer)
+    candidates = scanned(model, candidates, measured, residual, answer, tangent.options.candidate)
     reduced, whole, variants = _rows(tangent, views, candidates, measured)
     reduced[_squares(reduced) < SEEN * whole] = 0.0
     reduced, variants = _by_series(tangent, reduced, variants)
@@ -173,7 +169,7 @@ def screened(tangent: Tangent, trial: Trial, candidates: Sequence[Candidate]) ->
     left = without(reduced, basis)
     masked = 1 - _squares(left) / np.maximum(seen, 1e-300)
     masked = np.where(seen > 0, np.clip(masked, 0.0, 1.0), 1.0)
-    columns = Columns(residual, left.T, masked, trial.part, trial.freedom)
+    columns = Columns(residual, left.T, masked, trial.part, trial.freedom, tangent.options.screen)
     names = tuple(run.series for run in tangent.trajectories)
     rows = [_row(columns, group, names) for group in _groups(variants)]
     return Screen(columns, tuple(rows))
@@ -192,9 +188,9 @@ def _rows(
     noise is off by more than the noise.
     """
     wired = [c for c in candidates if c.place.kind != "sensor"]
-    model = tangent.windows.criterion.model
-    known = histories(model, [c for c in wired if not c.waves], tangent.trajectories)
-    known |= histories(model, [c for c in wired if c.waves], measured)
+    model, options = tangent.windows.criterion.model, tangent.options.candidate
+    known = histories(model, [c for c in wired if not c.waves], tangent.trajectories, options)
+    known |= histories(model, [c for c in wired if c.waves], measured, options)
     by_place: dict[str, list[Variant]] = {}
     for variant in known:
         by_place.setdefault(variant.candidate.place.name, []).append(variant)
@@ -267,6 +263,7 @@ def _row(columns: Columns, group: Sequence[tuple[int, Variant]], names: tuple[st
         masked=float(np.max(columns.masked[list(indices)])),
         possible=fall > 0 and _possible(candidate, values),
         series=series,
+        options=columns.options,
     )
     return _scored(row, values)
 
@@ -285,11 +282,8 @@ def _scored(row: Row, values: Vector) -> Row:
         shapes[PHASE] = math.atan2(values[1], values[0]) + shapes.get(PHASE, 0.0)
     size = float(np.hypot(*values)) if len(values) == 2 else float(values[0])
     neutral = row.candidate.neutral
-    begun = {row.candidate.parameter: neutral + TRUST * size, **shapes}
-    return Row(
-        row.candidate, row.shapes, row.columns, row.fall, row.gain, begun, row.masked, row.possible,
-        row.series,
-    )  # fmt: skip
+    begun = {row.candidate.parameter: neutral + row.options.trust * size, **shapes}
+    return replace(row, values=begun)
 
 
 def _on_bound(unknown: Unknown, value: float) -> bool:

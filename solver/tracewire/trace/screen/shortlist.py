@@ -4,34 +4,29 @@ from __future__ import annotations
 
 from tracewire.trace.screen.screening import Proposal, Row, Screen
 
-LEAST_GAIN = 5.0
-"""Half the fall of BIC from which on an effect is worth a refit."""
-SINGLES, PAIRS = 6, 4
-SIMPLE = 2
-"""Of the pairs: the best one at each of the smallest numbers of fitted numbers."""
-MANY = 10
-"""Single effects that are refitted far from the noise, where the screen's promises are poor."""
 COPY = 1 - 1e-6
 """The likeness from which on two effects are one and the same on these data."""
 
 
-def shortlist(screen: Screen, room: int, count: int = SINGLES) -> list[Proposal]:
-    """What is worth a refit: the best single effects, and pairs that promise more than their
-    parts."""
+def shortlist(screen: Screen, room: int, count: int) -> list[Proposal]:
+    """What is worth a refit: the best single effects, `count` of them, and pairs that promise more
+    than their parts where there is room for two."""
+    options = screen.columns.options
+    least = options.least_gain
     singles: list[Row] = []
     for row in sorted(screen.best(), key=lambda row: (-round(row.gain, 3), not row.candidate.sign)):
         # an exact copy, as of what is more in one direction where there is no other, has its name
         same = (screen.columns.likeness(row.columns, other.columns) for other in singles)
-        if row.gain > LEAST_GAIN and (len(singles) >= MANY or all(x < COPY for x in same)):
+        if row.gain > least and (len(singles) >= options.many or all(x < COPY for x in same)):
             singles.append(row)
     found = [Proposal((row,), row.gain) for row in singles[:count]]
     if room < 2:
         return found
     alone = {str(row.candidate): row.gain for row in screen.best()}
     best = max(alone.values(), default=0.0)
-    pairs = [pair for pair in screen.pairs() if pair.gain > max(best, LEAST_GAIN) + LEAST_GAIN]
+    pairs = [pair for pair in screen.pairs() if pair.gain > max(best, least) + least]
     best_of = {pair.count: pair for pair in reversed(pairs)}
     # what takes many numbers, as waves do, hides no simple pair
-    simple = [best_of[count] for count in sorted(best_of)[:SIMPLE]]
+    simple = [best_of[count] for count in sorted(best_of)[: options.simple_pairs]]
     others = [pair for pair in pairs if pair not in simple]
-    return found + simple + others[: PAIRS - len(simple)]
+    return found + simple + others[: options.pairs - len(simple)]

@@ -20,6 +20,7 @@ from tracewire.residual import Segment, Windows
 from tracewire.solve import Span
 from tracewire.trace.candidates.levels import signals_at
 from tracewire.trace.candidates.places import Place
+from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.observed import (
     Signals,
     nodes_of,
@@ -40,8 +41,6 @@ SENSED: Mapping[str, Callable[[Vector, Vector], Vector]] = {
     "sensor_drift": lambda y, t: t - t[0],
 }
 """What the coefficient 1 of a sensor's effect adds to a signal y(t)."""
-NODES = 13
-"""Samples of a piece: few hats at a time keep a run cheap, many pieces cost runs."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,15 +69,21 @@ class Tangent:
     """The windows of a fit, linearised in torques at places."""
 
     def __init__(
-        self, diagram: Diagram, windows: Windows, places: Sequence[Place], rtol: float
+        self,
+        diagram: Diagram,
+        windows: Windows,
+        places: Sequence[Place],
+        rtol: float,
+        options: TraceOptions,
     ) -> None:
         self.windows = windows
+        self.options = options
         self.places = [place for place in places if place.kind != "sensor"]
         criterion = windows.criterion
         self.outputs = criterion.segments[0].signals
         self.states = criterion.model.states
         self.probes: tuple[tuple[str, ...], ...]
-        text, self.probes = probed(diagram, self.places, NODES)
+        text, self.probes = probed(diagram, self.places, options.screen.nodes)
         self.hats = [name for name in text.inputs if name not in diagram.inputs]
         record = list(dict.fromkeys((*self.outputs, *self.states)))
         self.model = compile(text, record=record, backend="quick")
@@ -161,19 +166,20 @@ class Tangent:
     def _joined(self, group: Sequence[int], runs: Sequence[Signals]) -> list[Joined]:
         """Windows of one series, which have their nodes in common.
 
-        Each hat is one every NODES nodes and zero between, so that in a piece all are different,
+        Each hat is one every few nodes and zero between, so that in a piece all are different,
         and the runs of all pieces have the same inputs.
         """
+        count = self.options.screen.nodes
         first_one = self.windows.criterion.segments[group[0]]
         nodes = [nodes_of(self.windows.criterion.segments[n]) for n in group]
         known = [first_one.measured.t, *(times for times, *_ in nodes)]
         common = np.unique(np.concatenate(known))
-        turn = np.arange(len(common)) % NODES
+        turn = np.arange(len(common)) % count
         hats = {name: (common, (turn == j).astype(float)) for j, name in enumerate(self.hats)}
         parts, spans = [], []
         for n, (times, *_) in zip(group, nodes, strict=True):
-            for first in range(0, max(len(times) - 1, 1), NODES - 1):
-                here = slice(first, min(first + NODES, len(times)))
+            for first in range(0, max(len(times) - 1, 1), count - 1):
+                here = slice(first, min(first + count, len(times)))
                 start = {name: float(runs[n][name][first]) for name in self.states}
                 t = times[here]
                 spans.append(Span(float(t[0]), float(t[-1]), t, start))
@@ -189,7 +195,7 @@ class Tangent:
         for row, (n, here, order) in enumerate(parts):
             mine = answers[found.rows[row] : found.rows[row + 1]]
             of_starts, of_hats = np.split(mine, [len(starts)], axis=2)
-            shape = len(mine), len(rows), len(self.places), NODES
+            shape = len(mine), len(rows), len(self.places), count
             at_nodes = of_hats.reshape(shape)[:, :, :, order]
             pieces[n].append(Piece(here, of_starts, at_nodes))
         return [

@@ -9,40 +9,22 @@ import numpy as np
 
 from tracewire.errors import FitError
 from tracewire.trace.candidates.candidates import is_default
-from tracewire.trace.screen.shortlist import MANY
 from tracewire.trace.search.refits import few_of, target_of
 from tracewire.trace.search.search import Search
-from tracewire.trace.trials.judge import AT_NOISE, MATERIAL
 from tracewire.trace.trials.trial import Added, Trial
-
-CHEAP = 6.0
-RELATED, ALIKE = 0.9, 0.5
-"""The likeness from which on an effect is a rival; and where two effects came together."""
-RIVALS = 5
-BEHIND = 10.0
-"""How many times the sum of squares of the best model a rival may leave in few short windows, where
-few steps may not bring it further."""
-CERTAIN = 10.0
-"""The standard errors from which on no model without a term is tried: it is there."""
-OPEN = 10.0
-"""A rival that BIC puts less than this behind is a tie."""
 
 
 @dataclass(frozen=True, eq=False)
 class Rival:
     """An effect in the place of one that was found: their correlation on the data, the rise of BIC
-    when it takes that place, and the trial where it does. `near`: it predicts as well."""
+    when it takes that place, and the trial where it does. `tied`: it predicts as well, or BIC puts
+    it next to nothing behind: these data cannot tell it from what was found."""
 
     added: Added
     likeness: float
     trial: Trial
     rise: float
-    near: bool = False
-
-    @property
-    def tied(self) -> bool:
-        """Whether these data cannot tell it from what was found."""
-        return self.near or self.rise < OPEN
+    tied: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +72,9 @@ def _refitted(
 ) -> Trial | None:
     """The trial with other effects on the same windows; None where that does not run."""
     segments = trial.windows.segments
-    return search.refits.fitted(trial, effects, segments, fixed=fixed, target=target_of(trial))
+    return search.refits.fitted(
+        trial, effects, segments, fixed=fixed, target=target_of(trial, search.options)
+    )
 
 
 def _exchanged(search: Search, best: Trial, number: int) -> tuple[Trial, tuple[Rival, ...]]:
@@ -103,7 +87,9 @@ def _exchanged(search: Search, best: Trial, number: int) -> tuple[Trial, tuple[R
     known = _known_rivals(search, effect)
     kept = {str(e) for e in others}
     few = _few_short(search, best)
-    for added, _ in known[: RIVALS if search.returns else MANY]:
+    options = search.options
+    most = options.search.rivals if search.returns else options.screen.many
+    for added, _ in known[:most]:
         if str(added) in kept:
             continue
         effects = [*best.effects[:number], added, *best.effects[number + 1 :]]
@@ -126,7 +112,13 @@ def _exchanged(search: Search, best: Trial, number: int) -> tuple[Trial, tuple[R
     if str(chosen) != str(effect):
         likeness = {str(added): value for added, value in _known_rivals(search, chosen)}
     found = [
-        Rival(added, likeness.get(str(added), 0.0), trial, rise - quality)
+        Rival(
+            added,
+            likeness.get(str(added), 0.0),
+            trial,
+            rise - quality,
+            rise - quality < options.search.tied,
+        )
         for rise, trial, added in results[1:]
     ]
     return winner, tuple(found)
@@ -140,23 +132,26 @@ def _few_short(search: Search, best: Trial) -> Trial | None:
         return None
     segments = search.windows(search.stretches.whole(), length)
     try:
-        few = search.bench.again(best, [segments[n] for n in few_of(segments)], length)
+        few = search.bench.again(
+            best, [segments[n] for n in few_of(segments, search.options.search.few)], length
+        )
     except FitError:
         return None
-    return few if few.s2 < AT_NOISE else None
+    return few if few.s2 < search.options.trial.gate_noise else None
 
 
 def _is_far_behind(search: Search, few: Trial | None, effects: Sequence[Added]) -> bool:
     """Whether rivals do so badly on few short windows that long ones need not be tried."""
     if few is None:
         return False
-    target = BEHIND * few.rss
+    target = search.options.search.behind * few.rss
     trial = search.refits.fitted(few, effects, few.windows.segments, target=target)
     return trial is None or trial.rss > target
 
 
 def _known_rivals(search: Search, effect: Added) -> list[tuple[Added, float]]:
     """Effects that looked like one when it was screened, the most likely first."""
+    options = search.options.search
     for step in search.steps:
         rows = {str(row.candidate): row for row in step.screen.best()}
         mine = rows.get(str(effect))
@@ -168,12 +163,13 @@ def _known_rivals(search: Search, effect: Added) -> list[tuple[Added, float]]:
             if len(one.proposal.rows) == 1
         }
         together = len(step.after.effects) > len(step.before.effects) + 1
+        least = options.related_together if together else options.related
         found = []
         for name, row in rows.items():
             if name == str(effect):
                 continue
             likeness = step.screen.columns.likeness(mine.columns, row.columns)
-            if likeness > (ALIKE if together else RELATED) or name in tried:
+            if likeness > least or name in tried:
                 found.append((row.added, likeness, tried.get(name, np.inf)))
         found.sort(key=lambda item: (item[2], -item[1]))
         return [(added, likeness) for added, likeness, _ in found]
@@ -194,7 +190,8 @@ def _opened_shapes(search: Search, best: Trial) -> Trial:
             wider = replace(effect, values={**effect.values, shape: first})
             effects = [*best.effects[:number], wider, *best.effects[number + 1 :]]
             trial = _refitted(search, best, effects)
-            if trial is not None and trial.quality(best.part) < best.quality(best.part) - CHEAP:
+            worth = search.options.search.cheap
+            if trial is not None and trial.quality(best.part) < best.quality(best.part) - worth:
                 best = trial
                 effect = best.effects[number]
     return best
@@ -224,18 +221,21 @@ def _pruned(search: Search, best: Trial) -> Trial:
     At the noise BIC decides, and what is many standard errors from nothing is not tried without;
     far above the noise an effect must take a third off the squared error.
     """
+    options = search.options
     while len(best.effects) > 1:
         costs = []
+        at_noise = best.s2 < options.trial.gate_noise
         for effect in best.effects:
-            if best.s2 < AT_NOISE and _is_certain(best, effect):
+            if at_noise and _is_certain(best, effect, options.search.certain):
                 continue
             search.tell(f"trying without {effect}")
             smaller = _refitted(search, best, [e for e in best.effects if e is not effect])
             if smaller is None:
                 continue
             loss = smaller.quality(best.part) - best.quality(best.part)
-            immaterial = best.s2 > AT_NOISE and best.rss > (1 - MATERIAL) * smaller.rss
-            if loss < CHEAP or immaterial:
+            left = 1 - options.trial.gate_material
+            immaterial = not at_noise and best.rss > left * smaller.rss
+            if loss < options.search.cheap or immaterial:
                 costs.append((loss, smaller))
         if not costs:
             return best
@@ -243,29 +243,31 @@ def _pruned(search: Search, best: Trial) -> Trial:
     return best
 
 
-def _is_certain(best: Trial, effect: Added) -> bool:
+def _is_certain(best: Trial, effect: Added, errors: float) -> bool:
     """Whether a coefficient is many standard errors from that of no effect."""
     candidate = effect.candidate
     error = best.standard_errors.get(candidate.coefficient, np.inf)
-    return bool(abs(effect.coefficient - candidate.neutral) > CERTAIN * error)
+    return bool(abs(effect.coefficient - candidate.neutral) > errors * error)
 
 
 def _dropped(search: Search, best: Trial) -> tuple[Trial, tuple[str, ...]]:
     """The best model without declared terms that the effects make superfluous, and their names."""
     names = []
+    options = search.options.search
     own = search.bench.declared.flat.parameters
     for unknown in best.windows.criterion.unknowns:
         if unknown.low != 0.0 or unknown.name not in own:
             continue
-        certain = best.values[unknown.name] > CERTAIN * best.standard_errors[unknown.name]
-        if certain and best.s2 < AT_NOISE:
+        at_noise = best.s2 < search.options.trial.gate_noise
+        error = best.standard_errors[unknown.name]
+        if at_noise and best.values[unknown.name] > options.certain * error:
             continue
         fixed = {**best.windows.criterion.parameters, unknown.name: 0.0}
         smaller = _refitted(search, best, best.effects, fixed)
         if smaller is None:
             continue
         loss = smaller.quality(best.part) - best.quality(best.part)
-        if loss < 0 or (best.s2 > AT_NOISE and best.rss > 0.98 * smaller.rss):
+        if loss < 0 or (not at_noise and best.rss > (1 - options.immaterial) * smaller.rss):
             names.append(unknown.name)
             best = smaller
     return best, tuple(names)

@@ -9,23 +9,10 @@ import numpy as np
 
 from tracewire.errors import DiagramError, FitError
 from tracewire.residual import CREEPS, SETTLING, Segment
+from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal
+from tracewire.trace.thresholds import SearchOptions
 from tracewire.trace.trials.trial import Added, Bench, Trial
-
-FAR = 30.0
-"""Longer windows than those that leave this many times the noise's variance say little: there the
-residual does not depend linearly any more on what is missing."""
-AT_NOISE, NEAR = 1.3, 3.0
-KEPT = 3
-SLOWER = 6.0
-"""How many times the cost of the model before an effect may take, in steps of a run."""
-WITHIN, WITHIN_NOISE = 2.0, 1.2
-"""How many times the sum of squares of another one a refit must come near; where that one is at the
-noise, it must come nearer."""
-STEPS, FIRST_STEPS, FEW = 20, 5, 30
-"""Steps of a refit and of the first round of refits, and about how many windows that takes."""
-SMALL = 0.1
-"""The part of its promised size at which an effect begins again that led a refit astray."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +47,11 @@ class Refits:
     tell: Callable[[str], None]
     words: list[str]
 
+    @property
+    def options(self) -> SearchOptions:
+        """The thresholds of refits."""
+        return self.bench.options.search
+
     def tried(
         self, now: Trial, singles: Sequence[Proposal], pairs: Sequence[Proposal]
     ) -> list[Tried]:
@@ -70,9 +62,9 @@ class Refits:
         refitted on all windows.
         """
         begun = self.begun(now, singles)
-        near = any(one.trial.s2 < NEAR for one in begun)
+        near = any(one.trial.s2 < self.options.near for one in begun)
         tried = self.whole(now, begun) if near else []
-        if any(one.trial.s2 < AT_NOISE for one in tried):
+        if any(one.trial.s2 < self.bench.options.at_noise for one in tried):
             return tried
         begun = [*([] if near else begun), *self.begun(now, pairs)]
         target = min((one.trial.rss for one in tried), default=np.inf)
@@ -81,19 +73,20 @@ class Refits:
     def begun(self, now: Trial, proposals: Sequence[Proposal]) -> list[Begun]:
         """The proposals after a few steps on few windows."""
         segments = now.windows.segments
-        rows = few_of(segments)
+        rows = few_of(segments, self.options.few)
         few, least = [segments[n] for n in rows], float(now.windows.squares[rows].sum())
         begun = []
         for number, proposal in enumerate(proposals, start=1):
             names = " and ".join(str(row.candidate) for row in proposal.rows)
             self.tell(f"refitting with {names} ({number} of {len(proposals)})")
             added = [row.added for row in proposal.rows]
-            trial = self.extended(now, added, few, FIRST_STEPS)
+            trial = self.extended(now, added, few, self.options.first_steps)
             if trial is not None and trial.rss > least:  # the promised size led it astray
                 small = [
-                    one.having(one.candidate.parameter, SMALL * one.coefficient) for one in added
+                    one.having(one.candidate.parameter, self.options.small * one.coefficient)
+                    for one in added
                 ]
-                again = self.extended(now, small, few, FIRST_STEPS) or trial
+                again = self.extended(now, small, few, self.options.first_steps) or trial
                 trial = min(trial, again, key=lambda one: one.rss)
             if trial is not None:
                 begun.append(Begun(trial, proposal))
@@ -104,10 +97,10 @@ class Refits:
 
         Those that are too slow to come near the best, or below `target`, are given up on the way.
         """
-        most = KEPT if now.s2 < FAR else KEPT + 2
+        most = self.options.kept if now.s2 < self.options.far else self.options.kept_far
         kept: list[Begun] = []
         for one in sorted(begun, key=lambda one: one.trial.rss):
-            near = not kept or one.trial.rss < WITHIN * kept[0].trial.rss
+            near = not kept or one.trial.rss < self.options.within * kept[0].trial.rss
             if near and sum(other.is_pair == one.is_pair for other in kept) < most:
                 kept.append(one)
         tried = []
@@ -117,7 +110,7 @@ class Refits:
             trial = self.extended(one.trial, (), now.windows.segments, target=target)
             if trial is not None:
                 tried.append(Tried(trial, one.proposal, 0.0, 0.0))
-                target = min(target, target_of(trial))
+                target = min(target, target_of(trial, self.bench.options))
         return self.ranked(now, tried)
 
     def ranked(self, now: Trial, tried: Sequence[Tried]) -> list[Tried]:
@@ -139,7 +132,7 @@ class Refits:
         now: Trial,
         added: Sequence[Added],
         segments: Sequence[Segment],
-        steps: int = STEPS,
+        steps: int | None = None,
         target: float = np.inf,
     ) -> Trial | None:
         """The model with more effects, refitted from where it stood; None if it does not run."""
@@ -153,7 +146,7 @@ class Refits:
         segments: Sequence[Segment],
         *,
         fixed: Mapping[str, float] | None = None,
-        steps: int = STEPS,
+        steps: int | None = None,
         target: float = np.inf,
         good: float = 2.0,
         creeps: float = CREEPS,
@@ -161,6 +154,7 @@ class Refits:
     ) -> Trial | None:
         """The model with other effects, refitted from where it stood; None if it does not run."""
         known = now.windows.criterion.parameters
+        steps = self.options.steps if steps is None else steps
         try:
             return self.bench.fitted(
                 effects,
@@ -169,7 +163,7 @@ class Refits:
                 now.values,
                 fixed=known if fixed is None else fixed,
                 steps=steps,
-                budget=SLOWER * steps * len(segments) * now.cost,
+                budget=self.options.slower * steps * len(segments) * now.cost,
                 target=target,
                 good=good,
                 creeps=creeps,
@@ -184,17 +178,18 @@ class Refits:
             return None
 
 
-def few_of(segments: Sequence[Segment]) -> list[int]:
-    """About 30 of the windows by number, the first ones of each series, as memories go on between
-    them."""
+def few_of(segments: Sequence[Segment], count: int) -> list[int]:
+    """About so many of the windows by number, the first ones of each series, as memories go on
+    between them."""
     names = [segment.measured.name for segment in segments]
-    most = -(-FEW // len(set(names)))
+    most = -(-count // len(set(names)))
     return [n for n, name in enumerate(names) if names[:n].count(name) < most]
 
 
-def target_of(trial: Trial) -> float:
+def target_of(trial: Trial, options: TraceOptions) -> float:
     """The sum of squares that a rival must promise to reach, or be given up."""
-    return (WITHIN_NOISE if trial.s2 < AT_NOISE else WITHIN) * trial.rss
+    search, at_noise = options.search, trial.s2 < options.at_noise
+    return (search.within_noise if at_noise else search.within) * trial.rss
 
 
 def named(trial: Trial, now: Trial) -> str:

@@ -14,15 +14,12 @@ from tracewire.trace.check.repeated import comes_back, visible
 from tracewire.trace.check.strays import without_strays
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Screen, screened
-from tracewire.trace.screen.shortlist import LEAST_GAIN, MANY, SINGLES, shortlist
+from tracewire.trace.screen.shortlist import shortlist
 from tracewire.trace.screen.tangent import Tangent
-from tracewire.trace.search.refits import FAR, FIRST_STEPS, Refits, Tried, named
+from tracewire.trace.search.refits import Refits, Tried, named
 from tracewire.trace.trials.judge import Verdict, gate
 from tracewire.trace.trials.stretches import Stretches
 from tracewire.trace.trials.trial import Bench, Trial
-
-CHANCE = 1e-3
-LONGER = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,12 +45,16 @@ class Search:
     values: Mapping[str, float]
     tell: Callable[[str], None]
     words: list[str]
-    options: TraceOptions = field(default_factory=TraceOptions)
     steps: list[Step] = field(default_factory=list)
     first: Trial | None = None
     best: Trial | None = None
     returns: bool = True
     """Whether a body comes back to where it was: else much looks the same."""
+
+    @property
+    def options(self) -> TraceOptions:
+        """What the user asks, and every threshold."""
+        return self.bench.options
 
     @property
     def standing(self) -> tuple[Trial, Trial]:
@@ -82,8 +83,9 @@ class Search:
         if not self.free:
             return [longest]
         lengths = [min(self.shortest, longest)]
-        while lengths[-1] * LONGER < 0.75 * longest:
-            lengths.append(lengths[-1] * LONGER)
+        split = self.options.split
+        while lengths[-1] * split.longer < split.nearly_whole * longest:
+            lengths.append(lengths[-1] * split.longer)
         return lengths if lengths[-1] == longest else [*lengths, longest]
 
     @property
@@ -98,11 +100,11 @@ class Search:
     def declared(self) -> Trial:
         """The diagram as it is, fitted to the shortest windows."""
         self.tell("fitting the declared model")
-        length = self.lengths[0]
+        options, length = self.options.search, self.lengths[0]
         windows = self.windows(self.stretches.train, length)
-        trial = self.bench.fitted((), windows, length, self.values, steps=FIRST_STEPS)
-        if trial.s2 > FAR:  # a fit that few windows rule also ends where it looks flat
-            trial = without_strays(self.bench, trial, windows, FIRST_STEPS)
+        trial = self.bench.fitted((), windows, length, self.values, steps=options.first_steps)
+        if trial.s2 > options.far:  # a fit that few windows rule also ends where it looks flat
+            trial = without_strays(self.bench, trial, windows, options.first_steps)
         if trial.converged:
             return trial
         return self.bench.fitted((), trial.windows.segments, length, trial.values)
@@ -120,15 +122,18 @@ class Search:
             whole = self.bench.again(trial, windows, trial.length)
         except FitError:
             return trial
-        return whole if whole.s2 < FAR else trial
+        return whole if whole.s2 < self.options.search.far else trial
 
     def climbed(
-        self, trial: Trial, sections: Sequence[Section] | None = None, far: float = FAR
+        self, trial: Trial, sections: Sequence[Section] | None = None, far: float | None = None
     ) -> Trial:
         """A trial refitted on longer and longer windows, as far as its residual stays small."""
         sections = self.stretches.train if sections is None else sections
+        far = self.options.search.far if far is None else far
         longest = max(section.end - section.first for section in sections)
-        lengths = [n for n in self.lengths if trial.length < n < 0.75 * longest]
+        lengths = [
+            n for n in self.lengths if trial.length < n < self.options.split.nearly_whole * longest
+        ]
         for length in [*lengths, *([longest] if trial.length < longest else [])]:
             if trial.s2 > far:
                 break
@@ -154,19 +159,22 @@ class Search:
             if found is None:
                 break
             self.best = self.climbed(self.completed(found))
-            if self.best.s2 > FAR:  # the noise is out of reach: models are compared otherwise
+            if (
+                self.best.s2 > self.options.search.far
+            ):  # the noise is out of reach: models are compared otherwise
                 break
 
     def step(self, now: Trial) -> Trial | None:
         """One more effect, or a pair: screened, refitted, ranked, and passed by the gate."""
         self.tell("screening effects")
-        tangent = Tangent(now.diagram, now.windows, self.places, self.bench.rtol)
+        tangent = Tangent(now.diagram, now.windows, self.places, self.bench.rtol, self.options)
         candidates = self.candidates(tangent, [effect.candidate for effect in now.effects])
         screen = screened(tangent, now, candidates)
         chance = screen.chance()
-        count = SINGLES if now.s2 < FAR else MANY
+        options = self.options.screen
+        count = options.singles if now.s2 < self.options.search.far else options.many
         proposals = shortlist(screen, self.options.effects - len(now.effects), count)
-        if chance > CHANCE or not proposals:
+        if chance > options.chance or not proposals:
             words = f"nothing stands out (p = {chance:.2g})"
             self.steps.append(Step(now, screen, chance, (), None, words))
             return None
@@ -174,7 +182,7 @@ class Search:
         pairs = [p for p in proposals if len(p.rows) > 1]
         tried = self.refits.tried(now, singles, pairs)
         winner = None
-        for number in _worth_judging(tried, now):
+        for number in _worth_judging(tried, now, options.least_gain):
             verdict = self.judged(now, tried[number], tried)
             tried[number] = replace(tried[number], remark=verdict.words)
             if verdict.passed:
@@ -187,11 +195,13 @@ class Search:
 
     def candidates(self, tangent: Tangent, taken: Sequence[Candidate]) -> list[Candidate]:
         """The effects at places that may be tried beside those that are there."""
-        levels = levels_of(tangent.trajectories)
-        found = find_candidates(self.bench.declared, self.places, levels, taken, self.bench.tones)
-        self.returns = comes_back(self.places, tangent.trajectories)
+        options, runs = self.options, tangent.trajectories
+        levels = levels_of(runs, options.candidate)
+        declared, tones = self.bench.declared, self.bench.tones
+        found = find_candidates(declared, self.places, levels, options.candidate, taken, tones)
+        self.returns = comes_back(self.places, runs, options.check.again)
         if not self.returns:
-            found = visible(self.bench.declared, found, tangent.trajectories)
+            found = visible(declared, found, runs)
         only, without = self.options.only, self.options.without
         return [
             c
@@ -214,9 +224,9 @@ class Search:
         return verdict
 
 
-def _worth_judging(tried: Sequence[Tried], now: Trial) -> list[int]:
+def _worth_judging(tried: Sequence[Tried], now: Trial, least_gain: float) -> list[int]:
     """The two best, and the best single effect: where no pair is more than its parts."""
-    gains = [n for n, one in enumerate(tried) if one.rise < -2 * LEAST_GAIN]
+    gains = [n for n, one in enumerate(tried) if one.rise < -2 * least_gain]
     gains = [n for n in gains if len(tried[n].trial.effects) > len(now.effects)]
     singles = [n for n in gains if len(tried[n].trial.effects) == len(now.effects) + 1]
     return sorted({*gains[:2], *singles[:1]})

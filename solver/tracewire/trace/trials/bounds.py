@@ -9,8 +9,6 @@ from typing import Literal
 from tracewire.residual import OWN, SENSED, Unknown
 from tracewire.trace.trials.trial import Added, Trial
 
-NEAR = 1e-3
-"""Of the range between two bounds, or of the size of the number: how near to one is on it."""
 Kind = Literal["parameter", "sensor", "coefficient", "shape"]
 
 
@@ -81,8 +79,9 @@ def at_bounds(trial: Trial) -> list[AtBound]:
     found = []
     for unknown in trial.windows.criterion.unknowns:
         value = trial.windows.values[unknown.name]
-        upper = _near(unknown, value, upper=True)
-        if not upper and not _near(unknown, value, upper=False):
+        near = trial.options.near_bound
+        upper = _near(unknown, value, near, upper=True)
+        if not upper and not _near(unknown, value, near, upper=False):
             continue
         effect = effects.get(unknown.name)
         low, high = unknown.low, unknown.high
@@ -94,16 +93,16 @@ def at_bounds(trial: Trial) -> list[AtBound]:
     return sorted(found, key=lambda one: order.index(one.kind))
 
 
-def _near(unknown: Unknown, value: float, upper: bool) -> bool:
+def _near(unknown: Unknown, value: float, part: float, upper: bool) -> bool:
     """Whether a value sits on the upper, or the lower, bound of its unknown."""
     low, high = unknown.low, unknown.high
     bound = high if upper else low
     if not math.isfinite(bound):
         return False
     if low > 0 and math.isfinite(high) and high > 10 * low and value > 0:
-        return abs(math.log(value / bound)) <= NEAR * math.log(high / low)
+        return abs(math.log(value / bound)) <= part * math.log(high / low)
     size = max(abs(bound), unknown.scale)
-    return abs(value - bound) <= NEAR * min(size, high - low)
+    return abs(value - bound) <= part * min(size, high - low)
 
 
 def _kind(name: str, effect: Added | None) -> Kind:

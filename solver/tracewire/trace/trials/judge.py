@@ -12,16 +12,6 @@ from tracewire.residual import Segment
 from tracewire.trace.trials.trial import Bench, Trial
 
 Vector = NDArray[np.float64]
-LEAST_DROP = 0.02
-AT_NOISE = 1.5
-MATERIAL = 1 / 3
-DECISIVE = 100.0
-"""A fall of BIC that needs less support from the gate."""
-HARM = 0.1
-"""The part of what windows gain that others may lose: a stop is met in few, and harms none."""
-ASTRAY, FEW_ASTRAY = 30.0, 0.1
-"""Times the noise's variance from which on a window has lost its track, as by an impact that comes
-a sample too early, where the model is at the noise elsewhere; and the part that may have."""
 
 
 @dataclass(frozen=True)
@@ -47,11 +37,13 @@ def gate(
     enough, or that hardly any window does worse. `fall` is that fall of BIC. Of a trial at the
     noise, few windows in which both models lose their track say nothing and do not count.
     """
+    options = bench.options.trial
+    at_noise = trial.s2 <= options.gate_noise
     old, new = bench.on(now, windows), bench.on(trial, windows)
     before = np.array([float(np.sum(r**2)) for r in old])
     after = np.array([float(np.sum(r**2)) for r in new])
-    astray = np.minimum(before, after) > ASTRAY * np.array([r.size for r in new])
-    if trial.s2 <= AT_NOISE and astray.sum() <= FEW_ASTRAY * len(astray):
+    astray = np.minimum(before, after) > options.gate_astray * np.array([r.size for r in new])
+    if at_noise and astray.sum() <= options.gate_few_astray * len(astray):
         before, after = before[~astray], after[~astray]
     if not before.sum() > 0:
         return Verdict(False, 0.0, 0.0, 0.0, "gate: nothing to improve")
@@ -61,9 +53,11 @@ def gate(
     mean = float(np.mean(change))
     z = mean / (spread / len(change) ** 0.5) if spread > 0 else np.copysign(np.inf, mean)
     improved = float(np.mean(change > 0))
-    harmless = -float(np.minimum(change, 0.0).sum()) < HARM * float(np.maximum(change, 0.0).sum())
-    supported = z > 2 or improved > 0.75 or (fall > DECISIVE and (z > 1 or harmless))
-    passed = drop > (LEAST_DROP if trial.s2 <= AT_NOISE else MATERIAL) and supported
+    gained, lost = float(np.maximum(change, 0.0).sum()), -float(np.minimum(change, 0.0).sum())
+    supported = z > options.gate_errors or improved > options.gate_improved
+    if fall > options.gate_decisive:
+        supported |= z > options.gate_few_errors or lost < options.gate_harm * gained
+    passed = drop > (options.gate_drop if at_noise else options.gate_material) and bool(supported)
     size = f"{abs(drop):.0%}" if not 0.995 <= drop < 1 else "more than 99.5%"
     words = f"gate: squared error {'falls' if drop > 0 else 'rises'} by {size}"
     return Verdict(

@@ -7,12 +7,12 @@ from collections.abc import Callable
 import numpy as np
 
 from tracewire.residual import Criterion, descended, opened, projection
+from tracewire.trace.thresholds import TrialOptions
 
-STEPS = 8
 TURN = np.linspace(-np.pi, np.pi, 72, endpoint=False)
 
 
-def best_phase(criterion_at: Callable[[float], Criterion]) -> float:
+def best_phase(criterion_at: Callable[[float], Criterion], options: TrialOptions) -> float:
     """The phase in rad that fits windows best, the one unknown of the criterion that begins at it.
 
     A wave that is small moves the residual by a*cos(phase) + b*sin(phase). Two runs, at 0 and at a
@@ -27,5 +27,6 @@ def best_phase(criterion_at: Callable[[float], Criterion]) -> float:
         without = 0.5 * (near.residual.ravel() - a + there.residual.ravel() - b)
         waves = np.outer(off(a), np.cos(TURN)) + np.outer(off(b), np.sin(TURN))
         squares += np.sum((off(without)[:, None] + waves) ** 2, axis=0)
-    windows, _ = descended(opened(criterion_at(float(TURN[np.argmin(squares)]))), STEPS)
+    begun = opened(criterion_at(float(TURN[np.argmin(squares)])))
+    windows, _ = descended(begun, options.phase_steps)
     return float(next(iter(windows.values.values())))

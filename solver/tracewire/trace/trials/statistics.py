@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import chdtrc
 
+from tracewire.trace.thresholds import ScreenOptions
+
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-DRAWS = (50, 200)
-SURE = 1e-5, 0.02
-"""The first draws are enough where the chance they tell is outside of these."""
-SEED = 20
 NEGLIGIBLE = 1e-9
 HIDDEN = 1e-6
 """The part of a column's square beyond which the unknowns that are there imitate it completely."""
@@ -53,6 +51,7 @@ class Columns:
     masked: Vector
     part: float
     freedom: int
+    options: ScreenOptions = field(default_factory=ScreenOptions)
 
     @property
     def rss(self) -> float:
@@ -114,12 +113,12 @@ class Columns:
         most = sum(float(chdtrc(len(group), fall)) for group in groups)
         if most < NEGLIGIBLE:
             return most
-        rng = np.random.default_rng(SEED)
-        for draws in DRAWS:
+        rng = np.random.default_rng(self.options.seed)
+        for draws in self.options.draws:
             chance = self._drawn(
                 groups, signs, fall, rng.standard_normal((draws, len(self.residual)))
             )
-            if not SURE[0] < chance < SURE[1]:
+            if not self.options.sure[0] < chance < self.options.sure[1]:
                 break
         return chance
 

@@ -10,12 +10,7 @@ import numpy as np
 from tracewire.compile import Model
 from tracewire.errors import DataError, Problem
 from tracewire.residual import Measured, Section, Segment, cut
-
-BLOCKS, FEW_BLOCKS = 9, 3
-"""Parts of a series of which every third is the gate; a short series has fewer."""
-VALIDATED = 1 / 6
-SHORTEST = 16
-"""Samples of the shortest window."""
+from tracewire.trace.thresholds import SplitOptions
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +48,7 @@ class Stretches:
         return list(ends.values())
 
 
-def share_out(measured: Sequence[Measured]) -> Stretches:
+def share_out(measured: Sequence[Measured], options: SplitOptions) -> Stretches:
     """The sections of the measured series.
 
     Without a series for it, every third ninth of the train series is the gate (the last third where
@@ -72,15 +67,17 @@ def share_out(measured: Sequence[Measured]) -> Stretches:
     validate = [Section(m, 0, len(m.t)) for m in by_use["validate"]]
     words = []
     for m in by_use["train"]:
-        end = len(m.t) if by_use["validate"] else int(len(m.t) * (1 - VALIDATED))
+        end = len(m.t) if by_use["validate"] else int(len(m.t) * (1 - options.validated))
         if not by_use["validate"]:
-            words.append(f"the last sixth of '{m.name}' is held back for the final claim")
+            last = f"the last {_part(options.validated)} of '{m.name}'"
+            words.append(f"{last} is held back for the final claim")
             validate.append(Section(m, end, len(m.t)))
         if by_use["gate"]:
             train.append(Section(m, 0, end))
             continue
-        blocks = BLOCKS if end >= BLOCKS * SHORTEST else FEW_BLOCKS
-        part = "every third ninth" if blocks == BLOCKS else "the last third"
+        enough = end >= options.blocks * options.shortest
+        blocks = options.blocks if enough else options.few_blocks
+        part = f"every third {_part(1 / blocks)}" if blocks > 3 else "the last third"
         words.append(f"{part} of the rest of '{m.name}' is the gate")
         edges = np.linspace(0, end, blocks + 1).astype(int).tolist()
         for n in range(0, blocks, 3):
@@ -89,7 +86,7 @@ def share_out(measured: Sequence[Measured]) -> Stretches:
     return Stretches(tuple(train), tuple(gate), tuple(validate), tuple(words))
 
 
-def shortest_window(stretches: Stretches) -> int:
+def shortest_window(stretches: Stretches, options: SplitOptions) -> int:
     """The samples of the shortest window: about a fifth of the slowest series' period, at least 16.
 
     A series without a period, as of a falling body, has no phase that a long run could lose: it is
@@ -101,5 +98,14 @@ def shortest_window(stretches: Stretches) -> int:
             y = values[section.first : section.end]
             centred = y - np.mean(y)
             crossings = int(np.sum(np.diff(np.signbit(centred))))
-            lengths.append(2 * len(y) / crossings if crossings > 1 else 5 * len(y))
-    return int(np.clip(np.median(lengths) / 5, SHORTEST, max(stretches.longest, SHORTEST)))
+            lengths.append(
+                2 * len(y) / crossings if crossings > 1 else options.in_a_period * len(y)
+            )
+    longest = max(stretches.longest, options.shortest)
+    return int(np.clip(np.median(lengths) / options.in_a_period, options.shortest, longest))
+
+
+def _part(part: float) -> str:
+    """A part in words: `sixth`, else `12 %`."""
+    names = {3: "third", 4: "quarter", 5: "fifth", 6: "sixth", 9: "ninth", 10: "tenth"}
+    return next((n for k, n in names.items() if abs(part * k - 1) < 1e-9), f"{part:.0%}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
 
@@ -34,13 +34,12 @@ from tracewire.residual import (
 from tracewire.solve import Limits, parameter_values
 from tracewire.trace.candidates.candidates import Candidate, extend, unknowns_of, without_defaults
 from tracewire.trace.candidates.tones import Sine, tones_of
+from tracewire.trace.options import TraceOptions
+from tracewire.trace.thresholds import TrialOptions
 from tracewire.trace.trials.phases import best_phase
 from tracewire.trace.trials.statistics import bic, effective_part
 
 Vector = NDArray[np.float64]
-LEAST_STEPS, STEPS, EVENTS, SECONDS = 1500, 15, 5, 20.0
-"""What a run may cost: steps, steps a sample, events a sample, seconds. An effect that makes a
-model as slow as that is a failure, not a candidate to wait for."""
 
 
 @dataclass(frozen=True)
@@ -97,6 +96,7 @@ class Trial:
     windows: Windows
     length: int
     converged: bool
+    options: TrialOptions = field(default_factory=TrialOptions)
 
     @property
     def values(self) -> dict[str, float]:
@@ -159,18 +159,19 @@ class Trial:
 @dataclass(frozen=True, eq=False)
 class Bench:
     """What the trials of a trace share: the declared model, series, their noise, tolerance, and
-    what the noise of their inputs does."""
+    what the noise of their inputs does; and what the user asks."""
 
     declared: Model
     measured: tuple[Measured, ...]
     sigma: Mapping[str, float]
     rtol: float
     inputs: InputCovariance | None = None
+    options: TraceOptions = field(default_factory=TraceOptions)
 
     @cached_property
     def tones(self) -> dict[str, dict[str, Sine]]:
         """The sine that each measured drive is, by drive and series."""
-        return tones_of(self.measured)
+        return tones_of(self.measured, self.options.candidate)
 
     @property
     def signals(self) -> tuple[str, ...]:
@@ -222,7 +223,7 @@ class Bench:
         windows, converged = descended(windows, steps, target, creeps, settling)
         _refuse_failed(criterion, windows)
         now = tuple(effect.at(windows.values) for effect in effects)
-        return Trial(diagram, model, now, windows, length, converged)
+        return Trial(diagram, model, now, windows, length, converged, self.options.trial)
 
     def again(self, trial: Trial, segments: Sequence[Segment], length: int) -> Trial:
         """A trial fitted to other windows, from where it stands."""
@@ -281,7 +282,9 @@ class Bench:
                     those = self.with_own(mine, [*effects[:number], tried, *effects[number + 1 :]])
                     return self._criterion(trial.model, those, [unknown], fixed)
 
-                effects[number] = effects[number].having(key, best_phase(criterion_at))
+                effects[number] = effects[number].having(
+                    key, best_phase(criterion_at, self.options.trial)
+                )
         return tuple(effects)
 
     def with_own(self, segments: Sequence[Segment], effects: Sequence[Added]) -> list[Segment]:
@@ -313,6 +316,7 @@ class Bench:
         values = {**fixed, **{u.name: u.value for u in unknowns}}
         segments = [begun_before(model, segment, values) for segment in segments]
         longest = max(int(np.sum(s.measured.t[: s.rows[-1] + 1] >= s.begin)) for s in segments)
+        options = self.options.trial
         return Criterion(
             model,
             segments,
@@ -323,7 +327,11 @@ class Bench:
             weighting="sum",
             chained=True,
             covariance=self.inputs.factor if self.inputs and self.inputs.series else None,
-            limits=Limits(LEAST_STEPS + STEPS * longest, SECONDS, EVENTS * (longest + 10)),
+            limits=Limits(
+                options.least_steps + options.steps_a_sample * longest,
+                options.seconds,
+                options.events_a_sample * (longest + 10),
+            ),
         )
 
     def _unknowns(self, effects: Sequence[Added], values: Mapping[str, float]) -> list[Unknown]:

@@ -6,8 +6,6 @@ from collections.abc import Mapping
 
 from tracewire.trace.found import Experiment, Found
 
-CLEAR = 1.0
-"""A separation in sigma below which an experiment does not decide."""
 NOTHING = 0.1
 """A separation in sigma that needs no number."""
 START, AMPLITUDE, FREQUENCY = "start.", " amplitude", " frequency"
@@ -32,7 +30,7 @@ def experiment_words(found: Found, experiment: Experiment) -> str:
     """What to do, by how much the two predictions then differ, and how much that depends on how
     well it is done; or that nothing within reach decides."""
     how = _how(found, experiment)
-    if experiment.separation < CLEAR or not how:
+    if experiment.separation < found.options.experiment.decides or not how:
         return f"{experiment.words.rstrip('.')}."
     told = (
         f"To decide between {experiment.one} and {experiment.other}: {how}. The predictions then "

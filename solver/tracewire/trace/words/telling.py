@@ -28,14 +28,10 @@ from tracewire.trace.words.words import (
     variables_words,
 )
 
-LITTLE = 0.5
-"""The share of the excess below which the variables found explain little of it."""
 RANDOM = (
     "a random disturbance of the motion (process noise), or something that is not measured, looks "
     "like that"
 )
-FAR = 2.0
-"""Times the noise from which on a null needs a word about what the noise is not."""
 
 
 def paragraph_of(found: Found) -> str:
@@ -187,7 +183,7 @@ def _null(found: Found) -> list[str]:
     parts = []
     if not found.interrupted:
         parts.append("No effect of the library reduces it on unseen data.")
-        if found.s2_before**0.5 > FAR:
+        if found.s2_before**0.5 > found.options.far_null:
             parts.append(
                 "It is more than the noise that was assumed, and follows nothing that was tried: "
                 f"{RANDOM}, and so does a noise that is larger than assumed."
@@ -252,7 +248,7 @@ def _unexplained(found: Found) -> list[str]:
     parts = []
     if found.missing is None:
         parts.append(f"The residual depends on nothing that was tried: {RANDOM}.")
-    elif found.missing.share < LITTLE:
+    elif found.missing.share < found.options.map.explains_little:
         parts.append(f"The rest depends on no variable that was tried: {RANDOM}.")
     if found.effects:
         names = both_of([_named(found, effect) for effect in found.effects])

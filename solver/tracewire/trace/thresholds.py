@@ -1,0 +1,383 @@
+"""Every threshold of the stages of a trace but its choice: meaning, unit, and where it comes from.
+
+The reduced chi-square is the squared residual in sigma per degree of freedom: 1 at the noise of the
+sensors. Where a number says "Study:", a study on generated records with known truth asked for it,
+which preceded this program; the others are judgements that the benchmark has borne out as a whole
+(`python -m benchmarks tracing`), but that were not varied one by one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class SplitOptions:
+    """How series are shared out between fit, gate and final claim, and cut into windows."""
+
+    blocks: int = 9
+    """Parts of a series of which every third is the gate."""
+    few_blocks: int = 3
+    """The same of a series whose ninths are too short for a window."""
+    validated: float = 1 / 6
+    """The part at the end of a series that is held back for the final claim."""
+    shortest: int = 16
+    """Samples of the shortest window, at least."""
+    in_a_period: float = 5.0
+    """The shortest windows in a period of the slowest measured signal. Study: with windows of 0.25
+    and 0.5 s the true effect came first in 7 of 8 screens, of 2 s in fewer, of 8 s some were lost:
+    over long ones the residual does not depend linearly on what is missing."""
+    longer: int = 3
+    """How many times longer the next windows are."""
+    nearly_whole: float = 0.75
+    """The part of a section from which on a window is as good as the whole section."""
+    first_part: float = 0.2
+    """The part of a record on which the start of a free run, and a phase, is fitted."""
+
+
+@dataclass(frozen=True)
+class CheckOptions:
+    """From when on a record, or the declared model, is not fit to be traced."""
+
+    least_samples: int = 40
+    """Samples of a series, at least."""
+    above_noise: float = 1.5
+    """A signal that spreads less than this many times its noise shows nothing else."""
+    neighbours: float = 8.0
+    """By how much, over the root of N, the mean square of differences of white noise may fall
+    below twice its variance (von Neumann 1941: its standard error is about 2 there)."""
+    sure_rate: float = 0.9
+    """The part of a signal that the integral of its rate explains before their ratio counts."""
+    near_factor: float = 0.02
+    """How near to a factor between units that ratio is, as a part of it."""
+
+    again: float = 1.2
+    """The way a body goes over the range of its coordinate, from which on it has come back."""
+
+    spike: float = 8.0
+    """Standard deviations by which a single wrong sample is off its neighbours, at least."""
+    spike_neighbour: float = 3.0
+    """Standard deviations by which these are off theirs once it stands on its own, at most."""
+    spike_alike: float = 1 / 3
+    """The part of its height by which both sides agree on what should stand there."""
+    most_spikes: float = 0.02
+    """The part of a record that may be spikes: what is more is no mistake of single samples."""
+    even: float = 0.01
+    """The part by which the sample intervals around a spike may differ."""
+
+    mistake_from: float = 30.0
+    """The reduced chi-square in short windows from which on a record may hold a mistake."""
+    mistake_undone: float = 2.0
+    """The reduced chi-square at which no other mistake is looked for."""
+    mistake_nearer: float = 30.0
+    """How many times less is left once a mistake is undone: no effect of the library does that."""
+    mistake_samples: int = 250
+    """Samples at the beginning of a record on which mistakes are tried."""
+    mistake_window: int = 25
+    """Samples of the windows there."""
+    mistake_steps: int = 4
+    """Steps of a fit with a mistake undone."""
+    lag_hopeful: float = 5.0
+    """How many times less is left at a lag beside which others are tried."""
+    lag_better: float = 0.9
+    """The part of the squared error that a step of the lag must leave, at most, to go on."""
+    lag_steps: int = 10
+    """Samples by which a lag is followed, at most."""
+    lag_longest: float = 2.0
+    """The longest lag in s that is looked for."""
+    lag_bump: int = 9
+    """Half the samples of the smooth bump that takes derivatives of noisy signals."""
+    lag_before: int = 4
+    """Samples by which a response comes before its drive that no effect explains, at least."""
+    lag_after: int = 15
+    """Samples by which it comes after its drive that no effect explains, at least."""
+    suspicious: float = 3.0
+    """The reduced chi-square that no effect explains, from which on mistakes are looked for."""
+
+    tighter: float = 0.1
+    """The factor by which a solver's tolerance is tightened."""
+    tightened: int = 2
+    """How many times it may be tightened."""
+    solver_error: float = 0.3
+    """What the residual of a window may move with the tolerance, as a part of the larger of the
+    noise and what is left, as a root mean square: a tenth of its squares. Study: with too long
+    steps the solver's error looked like an effect of the speed."""
+
+    stray: float = 30.0
+    """A window with this many times the squared residual of the middle one is a stray."""
+    strays_left: float = 0.5
+    """The part of the windows that stays at least where strays are left out."""
+    strays_left_converged: float = 0.8
+    """The same where the fit converged: windows that are many and far off show what is missing."""
+    stray_rounds: int = 4
+    """Rounds of leaving strays out, at most."""
+    led_astray: float = 30.0
+    """The reduced chi-square from which on strays may lead a fit."""
+
+
+@dataclass(frozen=True)
+class CandidateOptions:
+    """What is tried of an effect: the sizes of its numbers, by what the record shows."""
+
+    wide: float = 10.0
+    """The upper bound of a shape, in units of the largest value that is tried first."""
+    narrow: float = 0.1
+    """The lower bound of a shape that may not be zero, in units of the smallest one."""
+    resolved_rates: float = 0.01
+    """The part of the samples, of those that move, below whose rates nothing is resolved."""
+    slowest_rate: float = 0.01
+    """The least part of the largest rate that counts as resolved."""
+    moves: float = 1e-3
+    """Of the largest rate: what is slower rests."""
+    parts: tuple[float, ...] = (-1.3, -0.6, 0.4, 1.0, 1.4)
+    """Of the root mean square of a signal: where the size of an effect is looked at."""
+    variants: int = 128
+    """Choices of the shapes of one candidate that are screened, at most."""
+    memory_tolerance: float = 1e-4
+    """The relative tolerance of what memories put out: a thousandth of it is no matter to a
+    screen."""
+    pure_tone: float = 0.02
+    """The part of a drive's variance that its sine may leave."""
+
+    samples_in_a_wave: float = 4.0
+    """Samples that a wave along the coordinate takes at least, at the median rate."""
+    most_waves: int = 400
+    """Waves in the longest way of the coordinate, at most."""
+    lengths_a_wave: int = 2
+    """Lengths that are scanned for each wave more on the way."""
+    wave_peaks: int = 6
+    """Lengths of the best waves that are tried first."""
+    teeth: int = 48
+    """The most teeth, slots or poles of a turn that are tried one by one."""
+
+
+@dataclass(frozen=True)
+class TrialOptions:
+    """What a fit with effects may cost, and how it passes the gate."""
+
+    least_steps: int = 1500
+    """Steps of a run that are always allowed."""
+    steps_a_sample: int = 15
+    """Steps of a run for each sample beside them: what is slower is a failure, and no candidate to
+    wait for."""
+    events_a_sample: int = 5
+    """Events of a run for each sample, at most."""
+    seconds: float = 20.0
+    """Seconds of one run, at most."""
+    near_bound: float = 1e-3
+    """Of the range between two bounds, or of the size of a number: how near to one is on it."""
+    phase_steps: int = 8
+    """Steps of the fit of a phase to a series that no fit has seen."""
+
+    gate_drop: float = 0.02
+    """The part by which the squared error falls on the gate, at least, of a model at the noise.
+    Study: with many samples everything tiny is significant."""
+    gate_material: float = 1 / 3
+    """The same of a model far above the noise, where everything is significant."""
+    gate_noise: float = 1.5
+    """The reduced chi-square up to which the gate and the pruning take a model to be at the
+    noise."""
+    gate_errors: float = 2.0
+    """Standard errors over windows by which the squared error falls."""
+    gate_improved: float = 0.75
+    """Or the part of the windows that improve."""
+    gate_decisive: float = 100.0
+    """A fall of BIC that needs less support from the gate. Study: on 16 short windows a true
+    second effect was refused whose BIC fell by more than 300."""
+    gate_few_errors: float = 1.0
+    """Standard errors that are then enough."""
+    gate_harm: float = 0.1
+    """Or the part of what windows gain that others may lose: a stop is met in few, and harms
+    none."""
+    gate_astray: float = 30.0
+    """Times the noise's variance from which on a window has lost its track, as by an impact that
+    comes a sample too early, where the model is at the noise elsewhere."""
+    gate_few_astray: float = 0.1
+    """The part of the windows that may have."""
+
+
+@dataclass(frozen=True)
+class ScreenOptions:
+    """What one linearisation promises, and what of it is worth a refit."""
+
+    nodes: int = 13
+    """Samples of a piece of the linearised run: few hats at a time keep a run cheap, many pieces
+    cost runs."""
+    chance: float = 1e-3
+    """The probability that noise does as well, below which what stands out is tried. Study: an
+    error of the solver alone can go below it; the gate then refuses."""
+    draws: tuple[int, int] = (50, 200)
+    """Draws of white noise that tell that probability: at first, and where that is not enough."""
+    sure: tuple[float, float] = (1e-5, 0.02)
+    """The first draws are enough where they tell less than the one, or more than the other."""
+    seed: int = 20
+    """Of the random numbers of the draws."""
+
+    trust: float = 0.7
+    """The part of an expected coefficient at which a refit begins, as in the study."""
+    wrong_sign: float = 0.1
+    """The part of a promise of the wrong sign at which a refit begins with the right one."""
+    paired: int = 24
+    """How many single effects are paired with each other."""
+    least_gain: float = 5.0
+    """Half the fall of BIC from which on an effect is worth a refit."""
+    singles: int = 6
+    """Single effects that are refitted."""
+    pairs: int = 4
+    """Pairs that are refitted."""
+    simple_pairs: int = 2
+    """Of these: the best one at each of the smallest numbers of fitted numbers."""
+    many: int = 10
+    """Single effects that are refitted far from the noise, where promises are poor."""
+    shows: float = 5.0
+    """Standard errors of a coefficient that the data would show."""
+
+
+@dataclass(frozen=True)
+class MapOptions:
+    """The smooth maps that say where something is missing and what it depends on."""
+
+    coarse: int = 11
+    """Bumps over the range of a variable."""
+    medium: int = 41
+    """The same, finer. Study: of sin(12 q) 11 bumps explain 11 %, 41 explain 97.5 %."""
+    fine: int = 121
+    """The same, where the samples resolve them."""
+    rates: tuple[int, int] = (31, 21)
+    """Bumps over the range of a rate, on a linear and on an asinh scale."""
+    surfaces: tuple[tuple[int, int, bool], ...] = (
+        (7, 7, False), (9, 9, True), (21, 5, False), (21, 5, True),
+    )  # fmt: skip
+    """Bumps over a coordinate and a rate, and whether the rate is on its asinh scale."""
+    others: int = 7
+    """Bumps over each of two variables of different bodies."""
+    slopes: tuple[float, ...] = (0.05, 0.005)
+    """Of the root mean square of a rate: where its asinh scale turns from linear to logarithmic."""
+    lags: tuple[float, ...] = (0.03, 0.06, 0.12, 0.25, 0.5, 1.0)
+    """Time constants of low-passed signals, as parts of the period of the motion."""
+    plays: tuple[float, ...] = (0.03, 0.08, 0.2, 0.4, 0.7)
+    """Widths of stop operators as parts of the largest coordinate."""
+    harmonics: int = 4
+    """Multiples of the phase of a drive."""
+    in_time: int = 10
+    """Bumps in time in each series."""
+    tonal: float = 0.8
+    """The part of a drive's variance that one sine explains where its phase has a meaning."""
+
+    folds: int = 4
+    """Groups of pieces that are left out in turn."""
+    pieces: int = 24
+    """Pieces of a series that are left out as wholes."""
+    seed: int = 7
+    """Of the random order of the folds."""
+    ridges: tuple[float, ...] = (1e-9, 10**-7.5, 1e-6, 10**-4.5, 1e-3, 10**-1.5, 1.0)
+    """The weights of smoothness that compete, in units of the mean square of a column."""
+    near: float = 0.95
+    """Of the best share: what is as good as it, at the same place."""
+    near_elsewhere: float = 0.98
+    """The same at another place."""
+    least_share: float = 0.1
+    """The share of the excess below which nothing is said to depend on anything."""
+    least_fall: float = 25.0
+    """A smaller fall of the squared residual, in the noise's variance, is noise."""
+    history_counts: int = 3
+    """How many variables the history of a motion counts as."""
+    grid: tuple[int, int] = (81, 25)
+    """Points of the table of a missing torque, along one variable, and along each of two."""
+
+    force_bins: int = 9
+    """Bins of a variable with equally many samples, and bins of equal width; both kinds of edges
+    are used: a body that mostly rests moves fast in few samples."""
+    force_samples: int = 8
+    """Samples of such a bin, at least."""
+    force_smooth: float = 0.3
+    """The size that a missing torque may have between neighbouring samples, of the sum at its
+    place."""
+    explains_little: float = 0.5
+    """The share of the excess below which the variables found are said to explain little of it."""
+
+
+@dataclass(frozen=True)
+class SearchOptions:
+    """The refits in the loop, and how what they found is pruned and compared."""
+
+    far: float = 30.0
+    """Reduced chi-square: longer windows than those that leave this much say little, as there the
+    residual does not depend linearly any more on what is missing."""
+    near: float = 3.0
+    """The same from which on a single effect comes near the noise, and pairs are for later."""
+    kept: int = 3
+    """Proposals of a kind that are refitted on all windows."""
+    kept_far: int = 5
+    """The same far from the noise."""
+    slower: float = 6.0
+    """How many times the cost of the model before an effect may take, in steps of a run."""
+    within: float = 2.0
+    """How many times the sum of squares of another one a refit must come near."""
+    within_noise: float = 1.2
+    """The same where that one is at the noise."""
+    steps: int = 20
+    """Steps of a refit."""
+    first_steps: int = 5
+    """Steps of the first round of refits."""
+    few: int = 30
+    """About how many windows that takes."""
+    small: float = 0.1
+    """The part of its promised size at which an effect begins again that led a refit astray."""
+
+    cheap: float = 6.0
+    """The rise of BIC below which an effect is superfluous. Study: in two of five searches for a
+    pair the first effect was a stand-in, which this took out again."""
+    immaterial: float = 0.02
+    """The part by which a declared term far above the noise must lower the squared error."""
+    certain: float = 10.0
+    """The standard errors from which on no model without a term is tried: it is there."""
+    related: float = 0.9
+    """The likeness from which on an effect is a rival of another one."""
+    related_together: float = 0.5
+    """The same where two effects came together."""
+    rivals: int = 5
+    """Rivals of an effect that are refitted."""
+    behind: float = 10.0
+    """How many times the sum of squares of the best model a rival may leave in few short windows,
+    where few steps may not bring it further."""
+    tied: float = 10.0
+    """A rival that BIC puts less than this behind is a tie."""
+
+
+@dataclass(frozen=True)
+class ExperimentOptions:
+    """Experiments that would tell effects apart."""
+
+    tied: int = 2
+    """Ties of an effect for which an experiment is looked for."""
+    decides: float = 1.0
+    """A separation in sigma (root mean square) below which an experiment does not decide."""
+    alike: float = 0.1
+    """A best separation below which the two are the same law on this rig."""
+    sizes: tuple[float, ...] = (0.2, 0.5, 1.0, 1.7, 3.0)
+    """Of the largest drive, or of the widest motion, that was measured."""
+    pitches: tuple[float, ...] = (0.15, 0.4, 0.8, 1.25, 2.5)
+    """Of the main frequency that was measured."""
+    near_sizes: tuple[float, float] = (0.8, 1.25)
+    """Releases, and frequencies, that are tried around the best one, as parts of it."""
+    near_amplitudes: tuple[float, float] = (0.75, 1.33)
+    """The same of amplitudes."""
+    rounds: int = 2
+    """How many times experiments around the best one are tried."""
+    samples: int = 300
+    """Samples of an experiment, at most."""
+    samples_a_period: int = 30
+    """Samples in a period of the measured motion."""
+    coarser: int = 20
+    """How many times the interval of the record the samples may be apart."""
+    highest: float = 0.05
+    """The highest frequency, in samples^-1."""
+    windows: tuple[int, int] = (3, 12)
+    """Windows of the rival's fit: least, most."""
+    steps: int = 100_000
+    """Steps of the solver in an experiment."""
+    seconds: float = 30.0
+    """Seconds that one may take."""
+    events: int = 20_000
+    """Events in one."""
