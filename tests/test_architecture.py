@@ -16,8 +16,8 @@ BLOCKS = ROOT / "blocks"
 ROOMS = ["errors", "shipped", "formula", "library", "data", "diagram", "compile", "solve"]
 ROOMS += ["residual", "fit", "trace", "analyse", "show", "paper", "cli"]
 # the same for the stages of a trace, files and folders of that room
-STAGES = ["thresholds", "options", "found", "candidates", "trials", "check", "screen", "missing"]
-STAGES += ["search", "choose", "experiment", "words", "saved", "trace"]
+STAGES = ["thresholds", "options", "found", "candidates", "units", "trials", "check", "screen"]
+STAGES += ["missing", "search", "choose", "experiment", "saved", "trace"]
 # a room of these is used by the others of these through its face alone, what its `__init__` names
 FACED = ("residual", "fit", "trace")
 FACADE = {"__init__", "__main__"}  # they stand above the rooms and may import each of them

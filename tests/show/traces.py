@@ -165,7 +165,6 @@ FOUND = Found(
         curve("swing_3", "validate", 1.3, 3),
     ),
     find_forces=lambda: (force(),),
-    paragraph="'Swing & rest' was fitted as it stands.",
     words=("every third window of the train series is kept back as the gate",),
     original=read_text(TEXT),
     diagram=read_text(ADDED),

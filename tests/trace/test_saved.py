@@ -16,9 +16,9 @@ from show.traces import FOUND, NULL, TEXT, UNEXPLAINED, missing_of_two
 from tracewire.diagram import read_text
 from tracewire.errors import OptionError
 from tracewire.show import report
+from tracewire.show.trace_summary import paragraph_of
 from tracewire.trace import Found, TraceOptions
 from tracewire.trace.found import Dependence, Explained, Force, HeldOut, Remainder
-from tracewire.trace.words.telling import paragraph_of
 
 JUDGED = replace(
     FOUND,

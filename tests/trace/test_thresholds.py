@@ -18,13 +18,11 @@ ROUNDING = 1e-6
 """A number that is not larger than this, or that near to 1, guards against rounding."""
 # the other numbers with a name, none of which a physicist could want to be another one
 FORMATS = {
-    "words/words.py": "how numbers are written, and how many of a kind",
-    "words/experiment_words.py": "how numbers are written",
     "candidates/places.py:MOST_TOLD": "how many of a kind are written",
     "saved.py": "the version of a file",
     "choose/horizons.py:REST": "a label",
-    "candidates/effect_units.py:BASES": "exponents of units",
-    "candidates/effect_units.py:SYMBOL_UNITS": "exponents of units",
+    "units.py:BASES": "exponents of units",
+    "units.py:SYMBOL_UNITS": "exponents of units",
     "check/refusals.py:FACTORS": "between units",
     "check/spikes.py:CUBIC": "the coefficients of a filter",
     "check/spikes.py:SIDE": "the length of a filter",

@@ -12,6 +12,7 @@ from tracewire.compile import compile
 from tracewire.diagram import read
 from tracewire.errors import DataError, FitError, TracewireError
 from tracewire.fit import fit
+from tracewire.show import paragraph_of
 from tracewire.trace import Found, trace
 from tracewire.trace.found import Curve
 
@@ -56,7 +57,7 @@ def test_it_tells_what_was_tried_and_what_the_declared_parameters_did(found: Fou
     first = found.steps[0]
     assert first.chance < 1e-3 and first.words == "accepted: coulomb @ acceleration"
     assert len(first.tried) > 5
-    assert "coulomb" in found.paragraph
+    assert "coulomb" in paragraph_of(found)
     moved = {m.name: m for m in found.moved}
     assert moved["c"].before > moved["c"].after + 2 * moved["c"].error, "friction was taken for it"
     assert {(e.use, e.kind) for e in found.errors} >= {

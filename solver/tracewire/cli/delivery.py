@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import typer
 
@@ -67,7 +67,7 @@ def deliver(found: Found, model: Model, own: Diagram, targets: Targets, as_json:
     attempt(lambda: _edit(found, model, own, targets, quiet=as_json))
     if as_json:
         planned = [*written, *([targets.report] if targets.report else [])]
-        data = found.as_json() | {"written": planned}
+        data = as_data(found) | {"written": planned}
         wrong = [problem.what for error in failed for problem in error.problems]
         print_json(data | {"not_written": wrong} if wrong else data)
     else:
@@ -84,16 +84,24 @@ def deliver(found: Found, model: Model, own: Diagram, targets: Targets, as_json:
 
 def print_trace(found: Found) -> None:
     """The answer in one sentence and in short, the same in words, the steps, tables and remarks."""
+    from tracewire.show import paragraph_of
     from tracewire.show.trace_tables import trace_tables
     from tracewire.show.trace_text import answer_lines, remarks_of, step_lines
 
     print_text("\n".join(answer_lines(found)))
-    print_text(f"\n{found.paragraph}\n")
+    print_text(f"\n{paragraph_of(found)}\n")
     print_text("\n".join(step_lines(found)))
     for table in trace_tables(found):
         print_table(table)
     for text in remarks_of(found):
         print_text(f"note: {text}")
+
+
+def as_data(found: Found) -> dict[str, Any]:
+    """A trace as plain data, what it says in words included."""
+    from tracewire.show import paragraph_of
+
+    return found.as_json() | {"paragraph": paragraph_of(found)}
 
 
 def _save(found: Found, path: str | None) -> list[str]:

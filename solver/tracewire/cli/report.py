@@ -30,13 +30,13 @@ def report(
       tracewire report trace.json
       tracewire report trace.json --report trace.html
     """
-    from tracewire.cli.delivery import print_trace
+    from tracewire.cli.delivery import as_data, print_trace
     from tracewire.trace import load
 
     check_target(report, (".md", ".html"), "report")
     found = load(saved, library or ())
     if as_json:
-        print_json(found.as_json() | {"written": [report] if report else []})
+        print_json(as_data(found) | {"written": [report] if report else []})
     elif report is None:
         print_trace(found)
     for path in write_report(found, report):

@@ -27,12 +27,14 @@ if TYPE_CHECKING:
         plot_spectrum,
     )
     from tracewire.show.sweep_figures import plot_chart, plot_sweep
+    from tracewire.show.trace_summary import paragraph_of
 
 __all__ = [
     "Report",
     "optimplotfit",
     "optimplotfval",
     "optimplotx",
+    "paragraph_of",
     "plot_bifurcation",
     "plot_chart",
     "plot_comparisons",
@@ -70,6 +72,7 @@ FILE_OF = {
     "any_report": "report",
     "signal_figures": "plot_growth plot_invariants plot_lyapunov plot_scalogram plot_spectrum",
     "sweep_figures": "plot_chart plot_sweep",
+    "trace_summary": "paragraph_of",
 }
 
 

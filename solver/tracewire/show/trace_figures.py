@@ -29,7 +29,7 @@ from tracewire.show.style import (
 )
 from tracewire.trace import Found
 from tracewire.trace.found import Curve, Ranked
-from tracewire.trace.words.words import users_unit
+from tracewire.trace.units import users_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -23,7 +23,7 @@ from tracewire.show.style import (
 )
 from tracewire.trace import Found
 from tracewire.trace.found import Force
-from tracewire.trace.words.words import unit_of_place
+from tracewire.trace.units import unit_at
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -97,7 +97,7 @@ def _chosen(found: Found) -> tuple[Force, ...]:
 
 
 def _label(force: Force, found: Found) -> str:
-    return with_unit(f"needed at {cut(force.place)}", unit_of_place(found, force.place))
+    return with_unit(f"needed at {cut(force.place)}", unit_at(found, force.place))
 
 
 def _draw(panel: Axes, force: Force, over: int, found: Found) -> tuple[float, float]:

@@ -21,11 +21,11 @@ from tracewire.show.style import (
     styled,
     with_unit,
 )
+from tracewire.show.trace_experiments import setting_unit
+from tracewire.show.trace_words import percent
 from tracewire.trace import Found
-from tracewire.trace.candidates.effect_units import signal_of
 from tracewire.trace.found import Dependence, Experiment, Missing
-from tracewire.trace.words.experiment_words import setting_unit
-from tracewire.trace.words.words import percent, unit_of_place
+from tracewire.trace.units import signal_of, unit_at
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -90,7 +90,7 @@ def plot_missing(found: Found, path: Path) -> Path:
     assert missing is not None
     with styled():
         figure, panel = _square(7.0, 4.0)
-        unit = unit_of_place(found, missing.place)
+        unit = unit_at(found, missing.place)
         label = with_unit(f"missing at {missing.place}", unit)
         if len(missing.variables) == 1:
             _draw_line(panel, missing)

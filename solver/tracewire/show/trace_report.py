@@ -8,6 +8,7 @@ from pathlib import Path
 
 from tracewire.show.document import Figure, Report, Section
 from tracewire.show.fit_tables import sentence
+from tracewire.show.trace_experiments import experiment_words
 from tracewire.show.trace_figures import plot_candidates, plot_free_runs, plot_residuals
 from tracewire.show.trace_law import plot_forces, plot_law
 from tracewire.show.trace_maps import (
@@ -19,6 +20,7 @@ from tracewire.show.trace_maps import (
     plot_where,
 )
 from tracewire.show.trace_shares import plot_held_out
+from tracewire.show.trace_summary import details_of, headline_of
 from tracewire.show.trace_tables import (
     effects_table,
     errors_table,
@@ -32,10 +34,8 @@ from tracewire.show.trace_tables import (
     where_table,
 )
 from tracewire.show.trace_text import answer_lines, remarks_of, step_lines
+from tracewire.show.trace_words import stood_in
 from tracewire.trace import Found
-from tracewire.trace.words.experiment_words import experiment_words
-from tracewire.trace.words.telling import details_of, headline_of
-from tracewire.trace.words.words import stood_in
 
 ERRORS = (
     "A free run is one run over the whole series, so small errors add up. A windowed error is that "

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tracewire.show.style import AFTER, BAND, BEFORE, QUIET, cut, plain_log, save, styled
+from tracewire.show.trace_words import share_words
 from tracewire.trace import Found
 from tracewire.trace.found import Explained, HeldOut
-from tracewire.trace.words.words import share_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -6,21 +6,17 @@ import math
 from collections.abc import Sequence
 
 from tracewire.show.summary import Table, shown
-from tracewire.trace import Found
-from tracewire.trace.candidates.effect_units import signal_of
-from tracewire.trace.found import Dependence, Ranked
-from tracewire.trace.words.experiment_words import settings_words
-from tracewire.trace.words.words import (
-    coefficient_of,
+from tracewire.show.trace_experiments import settings_words
+from tracewire.show.trace_words import (
     common_powers,
     percent,
     remainder_numbers,
     stood_in,
     to_its_interval,
-    unit_of,
-    unit_of_power,
-    users_unit,
 )
+from tracewire.trace import Found
+from tracewire.trace.found import Dependence, Ranked
+from tracewire.trace.units import coefficient_of, signal_of, unit_of, unit_of_power, users_unit
 
 MOST_POWERS, MOST_WHERE = 12, 8
 ALL = 10_000

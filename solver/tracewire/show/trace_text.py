@@ -4,14 +4,10 @@ from __future__ import annotations
 
 import math
 
-from tracewire.trace import Found, FoundEffect
-from tracewire.trace.candidates.effect_units import signal_of
-from tracewire.trace.found import StepTold
-from tracewire.trace.words.experiment_words import experiment_words
-from tracewire.trace.words.telling import ties_words
-from tracewire.trace.words.words import (
+from tracewire.show.trace_experiments import experiment_words
+from tracewire.show.trace_summary import ties_words
+from tracewire.show.trace_words import (
     chance_words,
-    coefficient_of,
     common_powers,
     error_words,
     in_sigma,
@@ -22,11 +18,13 @@ from tracewire.trace.words.words import (
     share_words,
     stood_in,
     told_once,
-    unit_of_power,
     unseen_errors,
     value_words,
     variables_words,
 )
+from tracewire.trace import Found, FoundEffect
+from tracewire.trace.found import StepTold
+from tracewire.trace.units import coefficient_of, signal_of, unit_of_power
 
 MOST_CHANNELS = 4
 NONE = "no effect of the library explains it"

@@ -265,12 +265,11 @@ class Found:
     each.
     `s2_before` and `s2_after` are squared residuals per degree of freedom in units of the noise, on
     the fitted windows. `dropped` are declared parameters that went to zero, `values` the refitted
-    and `declared` the fitted parameters of the diagram as it was. `paragraph` says it all in plain
-    words. `explained` is the share of the excess that the effects explain, `remainder` what is left
-    of each signal, `remainder_depends` on what that depends (the map of the remainder, the best
-    first), `held_out` the errors on held-out blocks at each horizon, all None or empty where the
-    residual is at the noise; `options` is what the user asked for, with every threshold.
-    `diagram` is the edited diagram. `units` are the SI units of signals and parameters by
+    and `declared` the fitted parameters of the diagram as it was. `explained` is the share of the
+    excess that the effects explain, `remainder` what is left of each signal, `remainder_depends` on
+    what that depends (the map of the remainder, the best first), `held_out` the errors on held-out
+    blocks at each horizon, all None or empty where the residual is at the noise; `options` is what
+    the user asked for, with every threshold. `diagram` is the edited diagram. `units` are the SI units of signals and parameters by
     name, also of those that were added ('coulomb.level', 'offset.theta'). `interrupted`: the user
     stopped the trace, and this is what was known by then. `users_units` are the unit of a signal in
     the user's files and its factor to SI, where they are not to be taken from `original`.
@@ -296,7 +295,6 @@ class Found:
     confusable: tuple[tuple[str, ...], Matrix]
     curves: tuple[Curve, ...]
     find_forces: Callable[[], tuple[Force, ...]] = field(repr=False)
-    paragraph: str
     words: tuple[str, ...]
     original: Diagram
     diagram: Diagram
@@ -413,6 +411,5 @@ class Found:
                 for h in self.held_out
             ],
             "options": asdict(self.options),
-            "paragraph": self.paragraph,
             "words": list(self.words),
         }

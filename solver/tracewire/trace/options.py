@@ -134,9 +134,6 @@ class TraceOptions:
     """Standard errors of a reduced chi-square, sqrt(2/freedom), up to which it is at the noise."""
     confidence: float = 0.95
     """Of the intervals of fitted values and of shares."""
-    far_null: float = 2.0
-    """Times the noise, root mean square, from which on a `null` is told with a word about what the
-    rest is."""
     shown: int = 12
     """Rows of each table of what was tried."""
 

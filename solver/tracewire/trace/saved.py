@@ -22,7 +22,7 @@ from tracewire.diagram import Diagram, read_text
 from tracewire.errors import OptionError, Place, Problem, TracewireError
 from tracewire.library import load_library
 from tracewire.trace.found import Force, Found
-from tracewire.trace.words.words import known_units, users_unit
+from tracewire.trace.units import known_units, users_unit
 
 KIND, VERSION = "a trace of tracewire", 1
 OTHER_KINDS = {

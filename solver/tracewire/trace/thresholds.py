@@ -293,8 +293,6 @@ class MapOptions:
     force_smooth: float = 0.3
     """The size that a missing torque may have between neighbouring samples, of the sum at its
     place."""
-    explains_little: float = 0.5
-    """The share of the excess below which the variables found are said to explain little of it."""
 
 
 @dataclass(frozen=True)

@@ -48,7 +48,6 @@ from tracewire.trace.search.search import Search
 from tracewire.trace.trials.bounds import at_bounds
 from tracewire.trace.trials.stretches import share_out, shortest_window
 from tracewire.trace.trials.trial import Bench, Trial
-from tracewire.trace.words.telling import paragraph_of
 
 
 def trace(
@@ -227,7 +226,7 @@ def _found(
     units = dict(best.model.flat.units)
     units |= {name: p.unit for name, p in best.model.flat.parameters.items()}
     interval = float(np.median([np.median(np.diff(m.t)) for m in bench.measured]))
-    found = Found(
+    return Found(
         verdict=judgement.verdict,
         effects=told_effects(search, final),
         dropped=final.dropped,
@@ -248,7 +247,6 @@ def _found(
         confusable=confusable(search),
         curves=tuple(curve for part in parts for curve in part.curves(sigma, units)),
         find_forces=partial(_forces, search, best),
-        paragraph="",
         words=tuple(search.words),
         original=bench.declared.diagram,
         diagram=edited(bench.declared, best, values),
@@ -260,7 +258,6 @@ def _found(
         remainder_depends=judgement.remainder_depends,
         held_out=judgement.held_out,
     )
-    return replace(found, paragraph=paragraph_of(found))
 
 
 def _experiments(search: Search, final: Final) -> tuple[Experiment, ...]:

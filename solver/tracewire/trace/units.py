@@ -1,4 +1,4 @@
-"""The unit of every parameter of an effect: it follows from the formulas and from the place.
+"""The units of a result; that of a parameter of an effect follows from its formulas and its place.
 
 A formula is of one kind on both sides: what is added or compared has one unit, and the argument of
 `exp` or `sin` has none. With the units of the place (of its sum, its coordinate, s) these are
@@ -17,7 +17,7 @@ from tracewire.diagram import EffectType, effects_of
 from tracewire.errors import TracewireError
 from tracewire.formula import Call, Expression, Name, Number
 from tracewire.trace.candidates.places import Place, find_places
-from tracewire.trace.found import Found
+from tracewire.trace.found import Found, FoundEffect, Power
 
 BASES = 3
 """Of exponents: what is summed at the place, its coordinate, and time."""
@@ -94,6 +94,63 @@ def _units_of(found: Found, place: Place) -> tuple[str, str, str]:
     if not own and place.a == place.name and coordinate:
         own = _product([(coordinate, 1.0), ("s", -2.0)])
     return own, coordinate, "s"
+
+
+def unit_of(found: Found, effect: FoundEffect, name: str) -> str:
+    """The SI unit of a parameter of an effect; '' where it has none, or where it is not known."""
+    if not effect.block:
+        return found.units.get(f"{name}.{effect.place.partition('.')[2]}", "")
+    own = found.units.get(f"{effect.block}.{name}", "")
+    return own or unit_of_effect(found, effect.name, effect.place, name)
+
+
+def unit_of_power(found: Found, power: Power) -> str:
+    """The SI unit of the smallest coefficient; '' where it has none, or where it is not known."""
+    if found.units.get(power.coefficient):
+        return found.units[power.coefficient]
+    if power.name.startswith("sensor_"):
+        signal = power.place.partition(".")[2]
+        unit = found.units.get(signal, "")
+        return {
+            "offset": unit,
+            "delay": "s",
+            "drift": f"{unit}/s" if unit else "",
+            "quad": f"1/({unit})" if "/" in unit or " " in unit else f"1/{unit}" if unit else "",
+        }.get(coefficient_of(power), "")
+    return unit_of_effect(found, power.name, power.place, coefficient_of(power))
+
+
+def coefficient_of(power: Power) -> str:
+    """The coefficient of an effect as its block, or the sensor, calls it."""
+    first, _, last = power.coefficient.partition(".")
+    return first if power.name.startswith("sensor_") or not last else last
+
+
+def known_units(found: Found) -> dict[str, str]:
+    """The units of parameters of effects, by `block.parameter`, and of places, as far as known."""
+    units = {f"{e.block}.{name}": unit_of(found, e, name)
+             for e in found.effects if e.block for name in e.params}  # fmt: skip
+    units |= {p.coefficient: unit_of_power(found, p) for p in found.power}
+    places = {*(e.place for e in found.effects), *(d.place for d in found.dependences)}
+    units |= {place: unit_at(found, place) for place in places}
+    return {name: unit for name, unit in units.items() if unit}
+
+
+def users_unit(found: Found, signal: str) -> tuple[str, float]:
+    """The unit in which the user's files have a signal, and its factor to SI: `deg`, pi/180.
+
+    Where the series differ, or the diagram names no unit, it is that of SI.
+    """
+    if signal in found.users_units:
+        return found.users_units[signal]
+    channels = [
+        s.channels[signal] for s in found.original.measured.values() if signal in s.channels
+    ]
+    units = {(c.declared, c.factor) for c in channels if c.declared}
+    if len(units) == 1 and all(c.declared for c in channels):
+        ((unit, factor),) = units
+        return str(unit), factor
+    return found.units.get(signal, ""), 1.0
 
 
 # --- exponents ----------------------------------------------------------------------------------

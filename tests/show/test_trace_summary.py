@@ -9,17 +9,15 @@ from pathlib import Path
 import pytest
 from show.traces import FOUND, NULL, SIGMA, TEXT, UNEXPLAINED, errors, missing_of_two
 from tracewire.diagram import read_text
-from tracewire.trace.found import Dependence, Explained, FoundEffect, Remainder, Tie
-from tracewire.trace.options import TraceOptions
-from tracewire.trace.words.experiment_words import experiment_words
-from tracewire.trace.words.telling import (
+from tracewire.show.trace_experiments import experiment_words
+from tracewire.show.trace_summary import (
     details_of,
     headline_of,
     limits_words,
     paragraph_of,
     ties_words,
 )
-from tracewire.trace.words.words import (
+from tracewire.show.trace_words import (
     chance_words,
     in_sigma,
     percent,
@@ -28,9 +26,11 @@ from tracewire.trace.words.words import (
     to_its_interval,
     told_once,
     unseen_errors,
-    users_unit,
     value_words,
 )
+from tracewire.trace.found import Dependence, Explained, FoundEffect, Remainder, Tie
+from tracewire.trace.options import TraceOptions
+from tracewire.trace.units import users_unit
 
 EXPLAINED = replace(
     FOUND,

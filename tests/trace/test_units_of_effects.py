@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from show.traces import FOUND
 from tracewire.diagram import read_text
-from tracewire.trace.candidates.effect_units import unit_at, unit_of_effect
+from tracewire.trace.units import unit_at, unit_of_effect
 
 CART = """\
 blocks:

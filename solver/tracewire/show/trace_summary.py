@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import math
 
-from tracewire.trace.found import Found, FoundEffect, Tie
-from tracewire.trace.options import TraceOptions
-from tracewire.trace.words.experiment_words import experiment_words
-from tracewire.trace.words.words import (
+from tracewire.show.trace_experiments import experiment_words
+from tracewire.show.trace_words import (
     MOST_TOLD,
     SENSORS,
     both_of,
-    coefficient_of,
     common_powers,
     error_words,
     few_of,
@@ -22,12 +19,18 @@ from tracewire.trace.words.words import (
     remainder_numbers,
     share_words,
     stood_in,
-    unit_of_power,
     unseen_errors,
     value_words,
     variables_words,
 )
+from tracewire.trace.found import Found, FoundEffect, Tie
+from tracewire.trace.options import TraceOptions
+from tracewire.trace.units import coefficient_of, unit_of_power
 
+LITTLE = 0.5
+"""The share of the excess below which the variables found explain little of it."""
+FAR = 2.0
+"""Times the noise from which on a null needs a word about what the noise is not."""
 RANDOM = (
     "a random disturbance of the motion (process noise), or something that is not measured, looks "
     "like that"
@@ -36,9 +39,7 @@ RANDOM = (
 
 def paragraph_of(found: Found) -> str:
     """The headline, then what was fitted, what the effects are, what is left, what cannot be told
-    apart, and what declared parameters had absorbed.
-
-    It reads every field of `found` but `paragraph`. σ is the noise of a sensor.
+    apart, and what declared parameters had absorbed. σ is the noise of a sensor.
     """
     cut = "The trace was interrupted: this is the best result by then." if found.interrupted else ""
     return " ".join(part for part in (cut, headline_of(found), *details_of(found)) if part)
@@ -183,7 +184,7 @@ def _null(found: Found) -> list[str]:
     parts = []
     if not found.interrupted:
         parts.append("No effect of the library reduces it on unseen data.")
-        if found.s2_before**0.5 > found.options.far_null:
+        if found.s2_before**0.5 > FAR:
             parts.append(
                 "It is more than the noise that was assumed, and follows nothing that was tried: "
                 f"{RANDOM}, and so does a noise that is larger than assumed."
@@ -248,7 +249,7 @@ def _unexplained(found: Found) -> list[str]:
     parts = []
     if found.missing is None:
         parts.append(f"The residual depends on nothing that was tried: {RANDOM}.")
-    elif found.missing.share < found.options.map.explains_little:
+    elif found.missing.share < LITTLE:
         parts.append(f"The rest depends on no variable that was tried: {RANDOM}.")
     if found.effects:
         names = both_of([_named(found, effect) for effect in found.effects])

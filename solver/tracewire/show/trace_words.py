@@ -6,7 +6,6 @@ import math
 import re
 from collections.abc import Iterable, Sequence
 
-from tracewire.trace.candidates.effect_units import signal_of, unit_at, unit_of_effect
 from tracewire.trace.found import (
     ChannelError,
     Explained,
@@ -16,6 +15,7 @@ from tracewire.trace.found import (
     Power,
     Remainder,
 )
+from tracewire.trace.units import signal_of, unit_of, users_unit
 
 SENSORS = {
     "sensor_offset": "an offset",
@@ -107,49 +107,6 @@ def share_words(explained: Explained) -> str:
     return f"{percent(explained.share)} (95 % interval: {low} to {high} %)"
 
 
-# --- units --------------------------------------------------------------------------------------
-
-
-def unit_of(found: Found, effect: FoundEffect, name: str) -> str:
-    """The SI unit of a parameter of an effect; '' where it has none, or where it is not known."""
-    if not effect.block:
-        return found.units.get(f"{name}.{effect.place.partition('.')[2]}", "")
-    own = found.units.get(f"{effect.block}.{name}", "")
-    return own or unit_of_effect(found, effect.name, effect.place, name)
-
-
-def unit_of_place(found: Found, place: str) -> str:
-    """The SI unit of what is missing at a place; '' where it is not known."""
-    return unit_at(found, place)
-
-
-def known_units(found: Found) -> dict[str, str]:
-    """The units of parameters of effects, by `block.parameter`, and of places, as far as known."""
-    units = {f"{e.block}.{name}": unit_of(found, e, name)
-             for e in found.effects if e.block for name in e.params}  # fmt: skip
-    units |= {p.coefficient: unit_of_power(found, p) for p in found.power}
-    places = {*(e.place for e in found.effects), *(d.place for d in found.dependences)}
-    units |= {place: unit_of_place(found, place) for place in places}
-    return {name: unit for name, unit in units.items() if unit}
-
-
-def users_unit(found: Found, signal: str) -> tuple[str, float]:
-    """The unit in which the user's files have a signal, and its factor to SI: `deg`, pi/180.
-
-    Where the series differ, or the diagram names no unit, it is that of SI.
-    """
-    if signal in found.users_units:
-        return found.users_units[signal]
-    channels = [
-        s.channels[signal] for s in found.original.measured.values() if signal in s.channels
-    ]
-    units = {(c.declared, c.factor) for c in channels if c.declared}
-    if len(units) == 1 and all(c.declared for c in channels):
-        ((unit, factor),) = units
-        return str(unit), factor
-    return found.units.get(signal, ""), 1.0
-
-
 # --- errors -------------------------------------------------------------------------------------
 
 
@@ -239,28 +196,6 @@ def common_powers(found: Found) -> list[Power]:
     """What these data would have shown, the effects first that a reader is most likely to know."""
     order = {name: n for n, name in enumerate(COMMON)}
     return sorted(found.power, key=lambda p: order.get(p.name, len(order)))
-
-
-def coefficient_of(power: Power) -> str:
-    """The coefficient of an effect as its block, or the sensor, calls it."""
-    first, _, last = power.coefficient.partition(".")
-    return first if power.name in SENSORS or not last else last
-
-
-def unit_of_power(found: Found, power: Power) -> str:
-    """The SI unit of the smallest coefficient; '' where it has none, or where it is not known."""
-    if found.units.get(power.coefficient):
-        return found.units[power.coefficient]
-    if power.name in SENSORS:
-        signal = power.place.partition(".")[2]
-        unit = found.units.get(signal, "")
-        return {
-            "offset": unit,
-            "delay": "s",
-            "drift": f"{unit}/s" if unit else "",
-            "quad": f"1/({unit})" if "/" in unit or " " in unit else f"1/{unit}" if unit else "",
-        }.get(coefficient_of(power), "")
-    return unit_of_effect(found, power.name, power.place, coefficient_of(power))
 
 
 def few_of(texts: Sequence[str], word: str = "and", most: int = MOST_TOLD) -> str:

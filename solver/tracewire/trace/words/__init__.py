@@ -1,1 +1,0 @@
-"""What a trace found, in words."""
