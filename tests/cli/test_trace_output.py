@@ -49,7 +49,8 @@ def test_the_answer_comes_first_and_the_change_last(traced: Any) -> None:
     order = [
         told.out.index(text)
         for text in ("VERDICT", paragraph_of(FOUND), "declared model", "step 1",
-                     "effects that were", "note: every third window", "the change of the diagram:\n--- a/swing.yaml")
+                     "effects that were", "note: every third window",
+                     "the change of the diagram:\n--- a/swing.yaml")
     ]  # fmt: skip
     assert order == sorted(order)
     assert lines[-1].startswith("+  coulomb: {type: coulomb")

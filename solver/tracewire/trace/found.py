@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field, fields, is_dataclass
 from functools import cached_property
 from typing import Any, Literal
 
@@ -16,6 +16,12 @@ from tracewire.trace.options import TraceOptions
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 Verdict = Literal["null", "effect", "unexplained"]
+IN_JSON = (
+    "verdict interrupted effects dropped depends_on missing rmse_before rmse_after sigma s2_before "
+    "s2_after declared moved errors steps power experiments explained remainder remainder_depends "
+    "held_out options words"
+)
+"""What a result has in JSON by its own name."""
 
 
 @dataclass(frozen=True)
@@ -262,17 +268,19 @@ class Found:
     `unexplained` (something is missing, and no effect of the library explains it; `effects` are
     then partial approximations). `rmse_before` and `rmse_after` are root mean square errors in SI
     of free runs on data that played no part, over all measured signals; `sigma` is the noise of
-    each.
-    `s2_before` and `s2_after` are squared residuals per degree of freedom in units of the noise, on
-    the fitted windows. `dropped` are declared parameters that went to zero, `values` the refitted
-    and `declared` the fitted parameters of the diagram as it was. `explained` is the share of the
-    excess that the effects explain, `remainder` what is left of each signal, `remainder_depends` on
-    what that depends (the map of the remainder, the best first), `held_out` the errors on held-out
-    blocks at each horizon, all None or empty where the residual is at the noise; `options` is what
-    the user asked for, with every threshold. `diagram` is the edited diagram. `units` are the SI units of signals and parameters by
-    name, also of those that were added ('coulomb.level', 'offset.theta'). `interrupted`: the user
-    stopped the trace, and this is what was known by then. `users_units` are the unit of a signal in
-    the user's files and its factor to SI, where they are not to be taken from `original`.
+    each. `s2_before` and `s2_after` are squared residuals per degree of freedom in units of the
+    noise, on the fitted windows. `dropped` are declared parameters that went to zero, `values` the
+    refitted and `declared` the fitted parameters of the diagram as it was.
+
+    `explained` is the share of the excess that the effects explain, `remainder` what is left of
+    each signal, `remainder_depends` on what that depends (the map of the remainder, the best
+    first), `held_out` the errors on held-out blocks at each horizon, all None or empty where the
+    residual is at the noise. `options` is what the user asked for, with every threshold;
+    `interrupted`: the user stopped the trace, and this is what was known by then.
+
+    `diagram` is the edited diagram. `units` are the SI units of signals and parameters by name,
+    also of those that were added ('coulomb.level', 'offset.theta'), `users_units` the unit of a
+    signal in the user's files and its factor to SI, where they are not to be taken from `original`.
     """
 
     verdict: Verdict
@@ -329,87 +337,29 @@ class Found:
         return self.diagram
 
     def as_json(self) -> dict[str, Any]:
-        """The result as plain data."""
-        return {
-            "verdict": self.verdict,
-            "interrupted": self.interrupted,
-            "effects": [
-                {
-                    "name": effect.name,
-                    "place": effect.place,
-                    "params": dict(effect.params),
-                    "ties": [str(tie) for tie in effect.ties],
-                    "tied": [vars(tie) for tie in effect.ties],
-                    "block": effect.block,
-                    "intervals": {name: list(ends) for name, ends in effect.intervals.items()},
-                    "gain": effect.gain,
-                    "masked": effect.masked,
-                    "weight": effect.weight,
-                }
-                for effect in self.effects
-            ],
-            "dropped": list(self.dropped),
-            "depends_on": list(self.depends_on),
-            "missing": None
-            if self.missing is None
-            else {
-                "place": self.missing.place,
-                "variables": list(self.missing.variables),
-                "share": self.missing.share,
-                "grid": [axis.tolist() for axis in self.missing.grid],
-                "torque": self.missing.torque.tolist(),
-            },
-            "rmse_before": self.rmse_before,
-            "rmse_after": self.rmse_after,
-            "sigma": dict(self.sigma),
-            "s2_before": self.s2_before,
-            "s2_after": self.s2_after,
-            "parameters": dict(self.values),
-            "declared": dict(self.declared),
-            "moved": [vars(moved) for moved in self.moved],
-            "errors": [vars(error) for error in self.errors],
-            "steps": [
-                {
-                    "window": step.window,
-                    "s2": step.s2,
-                    "chance": step.chance,
-                    "tried": [vars(row) for row in step.tried],
-                    "words": step.words,
-                }
-                for step in self.steps
-            ],
-            "power": [vars(power) for power in self.power],
-            "where_what": [
-                {"place": d.place, "variables": list(d.variables), "share": d.share}
-                for d in self.dependences
-            ],
-            "experiments": [
-                {
-                    "one": e.one,
-                    "other": e.other,
-                    "settings": dict(e.settings),
-                    "separation": e.separation,
-                    "words": e.words,
-                }
-                for e in self.experiments
-            ],
-            "explained": None if self.explained is None else vars(self.explained),
-            "remainder": [vars(left) for left in self.remainder],
-            "remainder_depends": [
-                {"place": d.place, "variables": list(d.variables), "share": d.share}
-                for d in self.remainder_depends
-            ],
-            "held_out": [
-                {
-                    "horizon": h.horizon,
-                    "series": list(h.series),
-                    "begin": h.begin.tolist(),
-                    "declared": h.declared.tolist(),
-                    "best": h.best.tolist(),
-                    "floor": h.floor.tolist(),
-                }
-                for h in self.held_out
-            ],
-            "options": asdict(self.options),
-            "words": list(self.words),
-        }
+        """The result as plain data, without curves and diagrams."""
+        data = {name: plain(getattr(self, name)) for name in IN_JSON.split()}
+        data |= {"parameters": plain(self.values), "where_what": plain(self.dependences)}
+        for told, effect in zip(data["effects"], self.effects, strict=True):
+            told |= {"ties": [str(tie) for tie in effect.ties], "tied": told["ties"]}
+        for experiment in data["experiments"]:
+            del experiment["map"]
+        return data
+
+
+def plain(value: Any, number: Callable[[float], Any] = float) -> Any:
+    """A value in plain types: records as dictionaries, arrays and tuples as lists.
+
+    `number` says what a float becomes.
+    """
+    if isinstance(value, bool | int | str | None):
+        return value
+    if isinstance(value, float):
+        return number(value)
+    if isinstance(value, np.ndarray | np.generic):
+        return plain(value.tolist(), number)
+    if isinstance(value, Mapping):
+        return {str(key): plain(item, number) for key, item in value.items()}
+    if is_dataclass(value) and not isinstance(value, type):
+        return {f.name: plain(getattr(value, f.name), number) for f in fields(value)}
+    return [plain(item, number) for item in value]

@@ -21,7 +21,7 @@ import numpy as np
 from tracewire.diagram import Diagram, read_text
 from tracewire.errors import OptionError, Place, Problem, TracewireError
 from tracewire.library import load_library
-from tracewire.trace.found import Force, Found
+from tracewire.trace.found import Force, Found, plain
 from tracewire.trace.units import known_units, users_unit
 
 KIND, VERSION = "a trace of tracewire", 1
@@ -120,20 +120,10 @@ def _kept(forces: tuple[Force, ...]) -> tuple[Force, ...]:
 
 
 def _plain(value: Any) -> Any:
-    """A value in JSON types; nan is null, and what is infinite a text."""
-    if isinstance(value, bool | int | str | None):
-        return value
-    if isinstance(value, float):
-        return None if math.isnan(value) else INFINITE.get(value, float(value))
-    if isinstance(value, np.ndarray | np.generic):
-        return _plain(value.tolist())
+    """A field of a trace in JSON types; nan is null, and what is infinite a text."""
     if isinstance(value, Diagram):
         return {"file": str(value.file), "title": value.title, "text": value.text}
-    if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if is_dataclass(value) and not isinstance(value, type):
-        return {f.name: _plain(getattr(value, f.name)) for f in fields(value)}
-    return [_plain(item) for item in value]
+    return plain(value, lambda x: None if math.isnan(x) else INFINITE.get(x, float(x)))
 
 
 def _diagram(data: Any, where: str, libraries: tuple[str | Path, ...]) -> Diagram:
