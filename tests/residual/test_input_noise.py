@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -15,12 +15,9 @@ from tracewire.residual import Criterion, Measured, Sensor
 from tracewire.residual.input_noise import (
     InputCovariance,
     likely_input_noise,
-    needed_input_noise,
     response_in_windows,
-    window_noise,
-    with_input_noise,
 )
-from tracewire.residual.input_response import input_response, states_in_windows
+from tracewire.residual.input_response import InputResponse, input_response, states_in_windows
 from tracewire.residual.segment import Segment
 from tracewire.residual.unknowns import free_unknowns
 from tracewire.solve import Driving, Held, simulate
@@ -59,6 +56,13 @@ SENSOR_NOISE, FORCE_NOISE = 2e-5, 0.02
 def series(signals: Sequence[str], driving: Driving, sigma: float = SIGMA) -> Measured:
     zeros = {name: np.zeros(len(T)) for name in signals}
     return Measured("run", "train", T, zeros, inputs={"u": driving}, input_sigma={"u": sigma})
+
+
+def window_noise(response: InputResponse, sigma: Mapping[str, float], length: int) -> float:
+    """What white noise of inputs makes of x in windows of so many samples with free starts."""
+    count = len(response.forward)
+    rows = [np.arange(first, min(first + length, count)) for first in range(0, count, length)]
+    return response.noise(sigma, rows, response.states)["x"].size
 
 
 def deviations(model: Model, measured: Measured) -> Vector:
@@ -107,10 +111,12 @@ def test_a_fitted_start_takes_a_part_of_the_noise() -> None:
 def test_the_gain_of_a_sensor_and_the_unit_of_an_input_scale_the_noise() -> None:
     model = made(ONE)
     measured = series(("x",), (T, np.sin(T)))
-    plain = window_noise(model, measured, 10)["x"].size
+    response = response_in_windows(model, measured, {}, 10)
+    plain = window_noise(response, {"u": SIGMA}, 10)
     louder = replace(measured, sensors={"x": Sensor(gain=-3.0)})
-    assert window_noise(model, louder, 10)["x"].size == pytest.approx(3 * plain)
-    assert window_noise(model, measured, 10, {"u": 1.0})["x"].size == pytest.approx(plain / SIGMA)
+    there = response_in_windows(model, louder, {}, 10)
+    assert window_noise(there, {"u": SIGMA}, 10) == pytest.approx(3 * plain)
+    assert window_noise(response, {"u": 1.0}, 10) == pytest.approx(plain / SIGMA)
 
 
 def cart(seed: int, sigma: float | None = FORCE_NOISE) -> Measured:
@@ -225,17 +231,13 @@ def test_a_window_of_another_series_or_without_noise_of_inputs_stays_as_it_is() 
     model, measured = made(CART, ("x",)), cart(1, None)
     covariance = InputCovariance({"x": SENSOR_NOISE}, model, [measured], 50)
     assert covariance.factor(Segment(measured, 0.0, np.arange(50))) is None
-    sigma = {"x": SENSOR_NOISE}
-    assert with_input_noise(sigma, model, [measured], 50) == sigma
 
 
 def test_a_longer_window_has_more_of_the_noise() -> None:
     model, measured = made(CART, ("x",)), cart(1)
     response = response_in_windows(model, measured, TRUE, 50)
-    sizes = [response.in_windows(measured.input_sigma, n)["x"].size for n in (10, 50, 250)]
+    sizes = [window_noise(response, measured.input_sigma, n) for n in (10, 50, 250)]
     assert sizes[0] * 5 < sizes[1] and sizes[1] * 3 < sizes[2]
-    sigma = with_input_noise({"x": SENSOR_NOISE}, model, [measured], 250)["x"]
-    assert sigma == pytest.approx(np.hypot(SENSOR_NOISE, sizes[2]), rel=0.3)
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
@@ -259,18 +261,6 @@ def test_a_fit_that_lacks_friction_is_not_explained_by_the_noise_of_the_input() 
     (one,) = diagnose(found)
     assert "the declared noise of sensor and inputs" in one.words
     assert "something is missing" in one.words
-
-
-def test_the_noise_of_an_input_that_would_explain_an_excess() -> None:
-    needed = needed_input_noise({"x": 4e-6, "v": 9e-4}, {"x": 1e-2, "v": 1.0})
-    assert (needed.least, needed.most) == (pytest.approx(0.02), pytest.approx(0.03))
-    assert needed.sigma == pytest.approx(0.0006**0.5)
-    assert needed_input_noise({"x": -1.0}, {"x": 1.0}).sigma == 0.0
-    # the force of the cart: the excess of the true diagram asks for its own noise
-    model, measured = made(CART, ("x",)), cart(4)
-    there = window_noise(model, measured, 100)["x"].size ** 2
-    unit = window_noise(model, measured, 100, {"F": 1.0})["x"].size ** 2
-    assert needed_input_noise({"x": there}, {"x": unit}).sigma == pytest.approx(FORCE_NOISE)
 
 
 def test_the_likely_noise_of_an_input_is_its_own_and_leaves_nothing() -> None:

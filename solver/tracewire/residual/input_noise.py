@@ -34,16 +34,6 @@ GRID = 40
 
 
 @dataclass(frozen=True)
-class NeededNoise:
-    """The noise of an input that would explain an excess, and that each signal alone asks for:
-    between `least` and `most`. Where these differ much, it does not explain it."""
-
-    sigma: float
-    least: float
-    most: float
-
-
-@dataclass(frozen=True)
 class LikelyNoise:
     """The noise of an input that makes residuals in windows most likely: `sigma` in SI, and the
     reduced chi-square of the windows without it (`before`) and with it (`after`).
@@ -149,31 +139,6 @@ def likely_input_noise(
     return LikelyNoise(found**0.5, float(np.mean(square)), after)
 
 
-def with_input_noise(
-    sigma: Mapping[str, float], model: Model, series: Sequence[Measured], length: int
-) -> dict[str, float]:
-    """The noise of each signal with what that of the inputs adds in windows of `length` samples:
-    sqrt(sigma^2 + its mean square), the median over the series. The longer, the more."""
-    added: dict[str, list[float]] = {name: [] for name in sigma}
-    for measured in series:
-        found = window_noise(model, measured, length) if measured.input_sigma else {}
-        for name in measured.values:
-            added[name].append(found[name].size ** 2 if found else 0.0)
-    return {
-        name: float((level**2 + np.median(added[name] or [0.0])) ** 0.5)
-        for name, level in sigma.items()
-    }
-
-
-def window_noise(
-    model: Model, measured: Measured, length: int, sigma: Mapping[str, float] | None = None
-) -> dict[str, InputNoise]:
-    """What the noise of a series' inputs makes of its signals in windows of `length` samples: that
-    which is declared, or another (1 for what `needed_input_noise` asks)."""
-    response = response_in_windows(model, measured, {}, length)
-    return response.in_windows(measured.input_sigma if sigma is None else sigma, length)
-
-
 def response_in_windows(
     model: Model, measured: Measured, values: Mapping[str, float], length: int
 ) -> InputResponse:
@@ -215,14 +180,3 @@ def run_noise(
     response = input_response(model, measured, states, values)
     rows = [np.arange(len(measured.t))]
     return response.noise(measured.input_sigma, rows, segment.free, slopes)
-
-
-def needed_input_noise(excess: Mapping[str, float], unit: Mapping[str, float]) -> NeededNoise:
-    """The noise of an input that would explain the excess variance of each signal.
-
-    `unit` is the variance that an input noise of 1 makes of it. The geometric mean over signals.
-    """
-    asked = [(excess[n] / unit[n]) ** 0.5 for n in excess if excess[n] > 0 and unit.get(n, 0) > 0]
-    if not asked:
-        return NeededNoise(0.0, 0.0, 0.0)
-    return NeededNoise(float(np.exp(np.mean(np.log(asked)))), min(asked), max(asked))

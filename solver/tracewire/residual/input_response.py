@@ -80,13 +80,6 @@ class InputResponse:
             for name, one in zip(self.signals, squares, strict=True)
         }
 
-    def in_windows(self, sigma: Mapping[str, float], length: int) -> dict[str, InputNoise]:
-        """What white noise of these inputs makes of each signal in windows of `length` samples that
-        tile the series, whose starts are free."""
-        count = len(self.forward)
-        rows = [np.arange(first, min(first + length, count)) for first in range(0, count, length)]
-        return self.noise(sigma, rows, self.states)
-
     def impulses(self, sigma: Mapping[str, float], rows: NDArray[np.intp]) -> Matrix:
         """What one standard deviation of each input at each sample does in a window of W samples
         with fixed start: (W, m, (W + 1) k)."""

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from tracewire.compile import Model
-from tracewire.errors import OptionError, Problem, unknown
+from tracewire.errors import OptionError, Place, Problem, unknown
 from tracewire.residual.measured import Measured
 from tracewire.residual.segment import Unknown, own_name
 
@@ -32,16 +32,27 @@ def free_unknowns(
     for name in dict.fromkeys(names):
         parameter, value = flat.parameters[name], values[name]
         low, high = parameter.fit or (-np.inf, np.inf)
-        if not low <= value <= high:
-            what = f"'{name}' begins at {value:g}, outside its bounds {low:g} to {high:g} (SI)"
-            hint = "Begin inside them, or widen `fit:`."
-            problems.append(Problem(what, parameter.place, hint=hint))
-        width = high - low if np.isfinite(high - low) else 0.0
-        size = max(abs(value), TINY * width) if value else 0.1 * (width or 1.0)
-        unknowns.append(Unknown(name, value, low, high, size))
+        problems += _outside(name, value, low, high, parameter.place)
+        unknowns.append(Unknown(name, value, low, high, _size(value, high - low)))
     if problems:
         raise OptionError(problems)
     return unknowns
+
+
+def _outside(
+    name: str, value: float, low: float, high: float, place: Place = Place()
+) -> list[Problem]:
+    """That a start lies outside its bounds, where it does."""
+    if low <= value <= high:
+        return []
+    what = f"'{name}' begins at {value:g}, outside its bounds {low:g} to {high:g} (SI)"
+    return [Problem(what, place, hint="Begin inside them, or widen `fit:`.")]
+
+
+def _size(value: float, width: float) -> float:
+    """The size by which a number is scaled that begins at a value between bounds."""
+    width = width if np.isfinite(width) else 0.0
+    return max(abs(value), TINY * width) if value else 0.1 * (width or 1.0)
 
 
 def sensor_unknowns(measured: Sequence[Measured]) -> list[Unknown]:
@@ -74,16 +85,12 @@ def own_unknowns(measured: Sequence[Measured]) -> list[Unknown]:
     Raises OptionError: a start outside the bounds.
     """
     found: dict[str, Unknown] = {}
-    problems = []
+    problems: list[Problem] = []
     for series in measured:
         for parameter, (low, high) in series.free.items():
             name, value = own_name(parameter, series), series.parameters[parameter]
-            if not low <= value <= high:
-                what = f"'{name}' begins at {value:g}, outside its bounds {low:g} to {high:g} (SI)"
-                problems.append(Problem(what, hint="Begin inside them, or widen `fit:`."))
-            width = high - low if np.isfinite(high - low) else 0.0
-            size = max(abs(value), TINY * width) if value else 0.1 * (width or 1.0)
-            found.setdefault(name, Unknown(name, value, low, high, size))
+            problems += _outside(name, value, low, high)
+            found.setdefault(name, Unknown(name, value, low, high, _size(value, high - low)))
     if problems:
         raise OptionError(problems)
     return list(found.values())
