@@ -6,6 +6,7 @@ from tracewire.residual.files import series_from_files
 from tracewire.residual.input_noise import InputCovariance, run_noise
 from tracewire.residual.input_response import InputNoise
 from tracewire.residual.levenberg_marquardt import CREEPS, LEAST_DAMPING, bounded_step, descended
+from tracewire.residual.linearised import difference
 from tracewire.residual.loss import LOSSES
 from tracewire.residual.measured import (
     Measured,
@@ -82,6 +83,7 @@ __all__ = [
     "degrees_of",
     "descend",
     "descended",
+    "difference",
     "eliminated",
     "estimate_noise",
     "free_unknowns",

@@ -20,7 +20,7 @@ from tracewire.residual.loss import LOSSES
 from tracewire.residual.measured import LARGEST
 from tracewire.residual.segment import Segment, Unknown, of_diagram
 from tracewire.residual.sensing import Sensing
-from tracewire.solve import Interrupted, Limits, simulate
+from tracewire.solve import Interrupted, Limits, Run, simulate
 from tracewire.solve.interrupt import until_interrupted
 from tracewire.solve.limits import beyond_budget
 from tracewire.solve.many import cores
@@ -300,8 +300,25 @@ class Criterion:
         self, segment: Segment, named: Mapping[str, float], start: Mapping[str, float]
     ) -> Vector:
         """What the sensors of a segment show in a run, shape (N, signals)."""
+        run, sensing = self.run(segment, named, start)
+        return sensing.shown(run)
+
+    def run(
+        self,
+        segment: Segment,
+        named: Mapping[str, float],
+        start: Mapping[str, float],
+        until: float | None = None,
+        sensitivities: Sequence[str] = (),
+    ) -> tuple[Run, Sensing]:
+        """The run of a segment, up to the time `until` where that is given, and its sensors.
+
+        Raises SimulationError where it fails, KeyboardInterrupt for Ctrl-C: the whole search shall
+        stop.
+        """
         values = {**self.parameters, **named}
-        sensing = Sensing([segment], values)
+        sensing = Sensing([segment], values, rates=self._rates and bool(sensitivities))
+        times = sensing.times[0] if until is None else np.append(sensing.times[0], until)
         if self.steps > self.budget:
             raise beyond_budget(self.budget)
         self.runs += 1
@@ -310,20 +327,21 @@ class Criterion:
                 self.model,
                 parameters=of_diagram(values, segment.measured),
                 start={**segment.start, **start},
-                span=(sensing.begins[0], sensing.ends[0]),
-                times=sensing.times[0],
+                span=(sensing.begins[0], max(sensing.ends[0], float(times[-1]))),
+                times=times,
                 rtol=self.rtol,
                 preset=segment.measured.preset,
                 inputs=segment.measured.inputs,
                 limits=self.limits,
+                sensitivities=sensitivities,
             )
-        except Interrupted as error:  # no failed run: the whole search shall stop
+        except Interrupted as error:
             raise KeyboardInterrupt from error
         except SimulationError:
             self.steps += self.limits.steps
             raise
         self.steps += run.statistics.steps
-        return sensing.shown(run)
+        return run, sensing
 
     def difference(self, n: int, shown: Vector) -> Vector:
         """Residuals of what is shown: shown - measured in sigma, the shortest way around."""

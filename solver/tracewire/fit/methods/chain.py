@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from tracewire.compile import Model, compile
 from tracewire.errors import SimulationError
 from tracewire.fit.methods.cutting import cut
-from tracewire.residual import LIMITS, LOSSES, Criterion, Segment, Sensing, of_diagram, parameter_in
-from tracewire.solve import Interrupted, Run, simulate
+from tracewire.residual import LOSSES, Criterion, Segment, Sensing, parameter_in
+from tracewire.solve import Run
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -147,29 +147,8 @@ class Chain:
         sensitivities: Sequence[str] = (),
     ) -> tuple[Run, Sensing]:
         """The run of a segment up to the start of the next, and its sensors."""
-        segment, criterion = self.segments[n], self.criterion
-        values = {**criterion.parameters, **named}
-        rates = any(name.startswith("delay.") for name in named)
-        sensing = Sensing([segment], values, rates=rates)
-        times = sensing.times[0]
-        if self.follows[n]:
-            times = np.append(times, self.segments[n + 1].begin)
-        try:
-            run = simulate(
-                criterion.model,
-                parameters=of_diagram(values, segment.measured),
-                start={**segment.start, **starts[n]},
-                span=(sensing.begins[0], float(times[-1])),
-                times=times,
-                rtol=criterion.rtol,
-                preset=segment.measured.preset,
-                inputs=segment.measured.inputs,
-                limits=LIMITS,
-                sensitivities=sensitivities,
-            )
-        except Interrupted as error:
-            raise KeyboardInterrupt from error
-        return run, sensing
+        until = self.segments[n + 1].begin if self.follows[n] else None
+        return self.criterion.run(self.segments[n], named, starts[n], until, sensitivities)
 
 
 def _with_states(model: Model) -> Model:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -11,8 +12,8 @@ from tracewire.compile import Model
 from tracewire.errors import SimulationError
 from tracewire.fit.methods.following import PARTS, followed, spread_of
 from tracewire.formula import evaluate
-from tracewire.residual import LIMITS, Criterion, Segment, Sensing, of_diagram, start_from_data
-from tracewire.solve import Interrupted, Run, parameter_values, simulate
+from tracewire.residual import Criterion, Segment, difference, of_diagram, start_from_data
+from tracewire.solve import Run, parameter_values
 
 Vector = NDArray[np.float64]
 FEWEST = 10
@@ -31,6 +32,7 @@ def cut(model: Model, whole: Criterion, segment: Segment) -> list[Segment]:
     has come. `model` records all states.
     """
     named, starts = whole.split(whole.begin())
+    follower = Criterion(model, [], whole.unknowns, whole.parameters, whole.rtol)
     values = {**whole.parameters, **named}
     own = starts[whole.segments.index(segment)]
     spread = spread_of(segment, PARTS)
@@ -42,11 +44,11 @@ def cut(model: Model, whole: Criterion, segment: Segment) -> list[Segment]:
         last = min(first + LONGER * longest, len(segment.rows) - 1)
         rows = segment.rows[first : last + 1]
         part = replace(segment, begin=float(segment.t[first]), rows=rows)
-        run = _run(model, whole, values, part, {**segment.start, **own} if first == 0 else now)
         length = least
-        if run is not None:
-            sensing = Sensing([part], values)
-            off = _around(part, sensing.shown(run) - part.samples())
+        run: Run | None = None
+        with suppress(SimulationError):
+            run, sensing = follower.run(part, named, own if first == 0 else now)
+            off = difference(part.measured, part.samples(), sensing.shown(run))
             length = max(least, followed(off, spread))
         longest = max(longest, min(length, last - first))
         after = min(first + length, last)
@@ -88,39 +90,3 @@ def _begin(
     known = parameter_values(model, of_diagram(values, segment.measured), segment.measured.preset)
     there = {s.name: evaluate(s.start, known, s.place) for s in model.flat.states}
     return {**there, **segment.start, **own}
-
-
-def _around(segment: Segment, off: Vector) -> Vector:
-    """Differences of signals with a period, the shortest way around."""
-    for column, signal in enumerate(segment.signals):
-        period = segment.measured.periods.get(signal, 0.0)
-        if period > 0:
-            off[:, column] -= period * np.round(off[:, column] / period)
-    return off
-
-
-def _run(
-    model: Model,
-    whole: Criterion,
-    values: dict[str, float],
-    part: Segment,
-    start: dict[str, float],
-) -> Run | None:
-    """The run of a part, None where it fails."""
-    sensing = Sensing([part], values)
-    try:
-        return simulate(
-            model,
-            parameters=of_diagram(values, part.measured),
-            start=start,
-            span=(sensing.begins[0], sensing.ends[0]),
-            times=sensing.times[0],
-            rtol=whole.rtol,
-            preset=part.measured.preset,
-            inputs=part.measured.inputs,
-            limits=LIMITS,
-        )
-    except Interrupted as error:
-        raise KeyboardInterrupt from error
-    except SimulationError:
-        return None
