@@ -14,18 +14,14 @@ from tracewire.compile import Model
 from tracewire.errors import DataError, FormulaError, Problem, TracewireError
 from tracewire.formula import Name, same_quantity
 from tracewire.residual import (
-    Criterion,
     Measured,
     Section,
     channel_noise,
     cut,
-    descended,
-    free_unknowns,
-    opened,
-    sensor_unknowns,
 )
-from tracewire.solve import parameter_values, values_at, with_points
+from tracewire.solve import values_at, with_points
 from tracewire.trace.thresholds import CheckOptions
+from tracewire.trace.trials.trial import Bench
 
 Vector = NDArray[np.float64]
 
@@ -85,26 +81,13 @@ def declared_s2(
     Infinity where it cannot be simulated.
     """
     try:
-        segments = [
-            window
-            for m in measured
-            for window in cut(model, Section(m, 0, len(m.t)), length, model.states)
+        windows = [
+            w for m in measured for w in cut(model, Section(m, 0, len(m.t)), length, model.states)
         ]
-        unknowns = [
-            replace(u, value=min(max(u.value, u.low), u.high))
-            for u in [
-                *free_unknowns(model, None, parameter_values(model, {})),
-                *sensor_unknowns(measured),
-            ]
-        ]
-        sigma = channel_noise(measured)
-        criterion = Criterion(model, segments, unknowns, {}, rtol, sigma, weighting="sum")
-        windows, _ = descended(opened(criterion), steps)
+        bench = Bench(model, tuple(measured), channel_noise(measured), rtol)
+        return bench.fitted((), windows, length, {}, steps=steps).s2
     except TracewireError:
         return np.inf
-    count = sum(r.size for r in windows.residuals)
-    fitted = len(windows.values) + sum(len(start) for start in windows.starts)
-    return windows.rss / max(count - fitted, 1)
 
 
 def _beginning(model: Model, m: Measured, samples: int) -> Measured:

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
 
 from tracewire.trace.candidates.levels import Trajectory
 from tracewire.trace.candidates.places import Place
+from tracewire.trace.candidates.tones import sine_of
 from tracewire.trace.thresholds import MapOptions
 
 Vector = NDArray[np.float64]
@@ -96,31 +96,10 @@ def bases_of(place: Place, runs: Sequence[Trajectory], options: MapOptions) -> I
 
 
 def drive_phase(t: Vector, u: Vector, tonal: float) -> Vector | None:
-    """The phase of a drive in rad, 0 where it rises through its mean; None where it is no sine.
-
-    The frequency is that of the sine that explains most of its variance, at least the part
-    `tonal`.
-    """
-    centred = u - np.mean(u)
-    total = float(centred @ centred)
-    span = float(t[-1] - t[0])
-    if not total > 1e-20 * float(u @ u) or span <= 0:
-        return None
-    even = np.interp(np.linspace(t[0], t[-1], len(t)), t, centred)
-    first = int(np.argmax(np.abs(np.fft.rfft(even))[1:])) + 1
-
-    def fitted(frequency: float) -> tuple[float, Vector]:
-        angle = 2 * np.pi * frequency * t
-        matrix = np.stack([np.sin(angle), np.cos(angle), np.ones(len(t))], axis=1)
-        found, *_ = np.linalg.lstsq(matrix, centred, rcond=None)
-        return float(np.sum((centred - matrix @ found) ** 2)), found
-
-    ends = (first - 1) / span + 1e-3 / span, (first + 1) / span
-    best = minimize_scalar(lambda f: fitted(f)[0], bounds=ends, method="bounded")
-    left, found = fitted(float(best.x))
-    if left > (1 - tonal) * total:
-        return None
-    return np.asarray(2 * np.pi * best.x * t + math.atan2(found[1], found[0]))
+    """The phase of a drive in rad, 0 where it rises through its mean; None where it is no sine, as
+    one explains less than the part `tonal` of its variance."""
+    sine = sine_of(t, u, 1 - tonal)
+    return None if sine is None else np.asarray(2 * np.pi * t / sine.period + sine.phase)
 
 
 def in_time(runs: Sequence[Trajectory], count: int) -> Basis:

@@ -18,7 +18,7 @@ from tracewire.trace.candidates.waves import as_measured, scanned
 from tracewire.trace.screen.answers import without, without_starts
 from tracewire.trace.screen.tangent import Tangent
 from tracewire.trace.thresholds import ScreenOptions
-from tracewire.trace.trials.statistics import HIDDEN, Columns
+from tracewire.trace.trials.statistics import HIDDEN, Columns, orthonormal
 from tracewire.trace.trials.trial import Added, Trial
 
 Vector = NDArray[np.float64]
@@ -152,7 +152,7 @@ def screened(tangent: Tangent, trial: Trial, candidates: Sequence[Candidate]) ->
     unknowns = unknowns[
         :, [not _on_bound(u, windows.values[u.name]) for u in windows.criterion.unknowns]
     ]
-    basis = _basis(unknowns)
+    basis = orthonormal(unknowns)
     residual = residual - basis @ (basis.T @ residual)
 
     def answer(place: str, torques: Sequence[Matrix]) -> Matrix:
@@ -308,12 +308,3 @@ def _count(candidate: Candidate, shapes: Mapping[str, float], series: Sequence[s
 def _squares(rows: Matrix) -> Vector:
     """The sum of squares of each row."""
     return np.asarray(np.einsum("ij,ij->i", rows, rows))
-
-
-def _basis(matrix: Matrix) -> Matrix:
-    """An orthonormal basis of the columns of a matrix, without its negligible directions."""
-    if matrix.shape[1] == 0:
-        return np.zeros((matrix.shape[0], 0))
-    scaled = matrix / np.maximum(np.linalg.norm(matrix, axis=0), 1e-300)
-    left, singular, _ = np.linalg.svd(scaled, full_matrices=False)
-    return np.asarray(left[:, singular > 1e-8 * max(float(singular[0]), 1e-300)])

@@ -36,6 +36,19 @@ def bic(rss: float, count: int, part: float, unknowns: int) -> float:
     return count * part * float(np.log(max(rss, 1e-300) / count)) + unknowns * float(np.log(count))
 
 
+def orthonormal(columns: Matrix, least: float = 1e-8) -> Matrix:
+    """An orthonormal basis of columns (M, K), without directions less than a part of the strongest.
+
+    The columns count alike, whatever their sizes; those that are zero do not.
+    """
+    sizes = np.linalg.norm(columns, axis=0)
+    kept = columns[:, sizes > 0] / sizes[sizes > 0]
+    if not kept.size:
+        return np.zeros((len(columns), 0))
+    left, singular, _ = np.linalg.svd(kept, full_matrices=False)
+    return np.asarray(left[:, singular > least * singular[0]])
+
+
 @dataclass(frozen=True, eq=False)
 class Columns:
     """Candidate columns beside what is there already: d residual/d coefficient, without what
@@ -91,13 +104,8 @@ class Columns:
 
     def likeness(self, one: Sequence[int], other: Sequence[int]) -> float:
         """The canonical correlation of two groups of columns: 1 where no data tell them apart."""
-        bases = []
-        for indices in (one, other):
-            left, singular, _ = np.linalg.svd(self.matrix[:, list(indices)], full_matrices=False)
-            bases.append(left[:, singular > 1e-8 * max(float(singular[0]), 1e-300)])
-        return (
-            float(np.linalg.norm(bases[0].T @ bases[1], 2)) if all(b.size for b in bases) else 0.0
-        )
+        mine, its = (orthonormal(self.matrix[:, list(indices)]) for indices in (one, other))
+        return float(np.linalg.norm(mine.T @ its, 2)) if mine.size and its.size else 0.0
 
     def chance(self, groups: Sequence[Sequence[int]], signs: Sequence[int], best: float) -> float:
         """The probability that noise alone gives some group a fall of `best` or more.
