@@ -51,6 +51,9 @@ class CheckOptions:
     near_factor: float = 0.02
     """How near to a factor between units that ratio is, as a part of it."""
 
+    input_ends: float = 1.5
+    """Samples by which an input may begin later, or end earlier, than the signals."""
+
     again: float = 1.2
     """The way a body goes over the range of its coordinate, from which on it has come back."""
 
@@ -75,6 +78,8 @@ class CheckOptions:
     """Samples at the beginning of a record on which mistakes are tried."""
     mistake_window: int = 25
     """Samples of the windows there."""
+    mistake_first_steps: int = 8
+    """Steps of the fit of the declared model there."""
     mistake_steps: int = 4
     """Steps of a fit with a mistake undone."""
     lag_hopeful: float = 5.0
@@ -164,6 +169,11 @@ class TrialOptions:
     """Events of a run for each sample, at most."""
     seconds: float = 20.0
     """Seconds of one run, at most."""
+    steps: int = 20
+    """Steps of a fit, at most."""
+    not_astray: float = 2.0
+    """The mean squared residual of a window, in the noise's variance, up to which its start has not
+    been led astray."""
     near_bound: float = 1e-3
     """Of the range between two bounds, or of the size of a number: how near to one is on it."""
     phase_steps: int = 8

@@ -56,7 +56,7 @@ def refuse_mistakes(
     if s2 < options.mistake_from or not train:
         return
     m = _beginning(model, train[0], options.mistake_samples)
-    before = declared_s2(model, [m], rtol, options.mistake_window)
+    before = declared_s2(model, [m], rtol, options.mistake_window, options.mistake_first_steps)
     if before < options.mistake_from:
         return
     best, found = np.inf, None
@@ -73,7 +73,7 @@ def refuse_mistakes(
 
 
 def declared_s2(
-    model: Model, measured: Sequence[Measured], rtol: float, length: int, steps: int = 8
+    model: Model, measured: Sequence[Measured], rtol: float, length: int, steps: int
 ) -> float:
     """RSS per degree of freedom of the declared model, fitted to windows of `length` samples with
     free starts.

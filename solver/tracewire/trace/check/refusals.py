@@ -39,7 +39,11 @@ def check_series(model: Model, measured: Sequence[Measured], options: CheckOptio
     if problems:
         raise DataError(problems)
     for m in measured:
-        found = [*_short(m, options.least_samples), *_still(m, options), *_inputs(m)]
+        found = [
+            *_short(m, options.least_samples),
+            *_still(m, options),
+            *_inputs(m, options.input_ends),
+        ]
         problems += found or _rates(model, m, options)
     problems += _dead_channels(measured, options) if not problems else []
     if problems:
@@ -126,11 +130,11 @@ def _is_noise(m: Measured, name: str, options: CheckOptions) -> bool:
     return bool(white and spread < options.above_noise * noise_level(values))
 
 
-def _inputs(m: Measured) -> Iterator[Problem]:
+def _inputs(m: Measured, ends: float) -> Iterator[Problem]:
     """Inputs that are not known over the whole series, or are in another time."""
-    step = float(np.median(np.diff(m.t))) if len(m.t) > 1 else 0.0
+    late = ends * float(np.median(np.diff(m.t))) if len(m.t) > 1 else 0.0
     for name, (t, _) in m.inputs.items():
-        if len(t) and t[0] <= m.t[0] + 1.5 * step and t[-1] >= m.t[-1] - 1.5 * step:
+        if len(t) and t[0] <= m.t[0] + late and t[-1] >= m.t[-1] - late:
             continue
         known = f"from {t[0]:g} to {t[-1]:g} s" if len(t) else "at no time"
         what = (

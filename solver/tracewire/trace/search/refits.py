@@ -148,7 +148,7 @@ class Refits:
         fixed: Mapping[str, float] | None = None,
         steps: int | None = None,
         target: float = np.inf,
-        good: float = 2.0,
+        good: float | None = None,
         creeps: float = CREEPS,
         settling: int = SETTLING,
     ) -> Trial | None:

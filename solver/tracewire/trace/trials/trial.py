@@ -195,10 +195,10 @@ class Bench:
         values: Mapping[str, float],
         *,
         fixed: Mapping[str, float] | None = None,
-        steps: int = 20,
+        steps: int | None = None,
         budget: float = np.inf,
         target: float = np.inf,
-        good: float = 2.0,
+        good: float | None = None,
         creeps: float = CREEPS,
         settling: int = SETTLING,
     ) -> Trial:
@@ -210,6 +210,8 @@ class Bench:
         `descended`. Raises FitError where the
         model cannot be simulated, DiagramError where an effect cannot be wired.
         """
+        steps = self.options.trial.steps if steps is None else steps
+        good = self.options.trial.not_astray if good is None else good
         added = [(effect.candidate, effect.values) for effect in effects]
         diagram = extend(self.declared.diagram, added) if added else self.declared.diagram
         model = self.compiled(diagram) if added else self.declared
