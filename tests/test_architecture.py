@@ -17,7 +17,7 @@ ROOMS = ["errors", "shipped", "formula", "library", "data", "diagram", "compile"
 ROOMS += ["residual", "fit", "trace", "analyse", "show", "paper", "cli"]
 # the same for the stages of a trace, files and folders of that room
 STAGES = ["thresholds", "options", "found", "candidates", "units", "trials", "check", "screen"]
-STAGES += ["missing", "search", "choose", "experiment", "saved", "trace"]
+STAGES += ["missing", "search", "choose", "experiment", "results", "saved", "trace"]
 # a room of these is used by the others of these through its face alone, what its `__init__` names
 FACED = ("residual", "fit", "trace")
 FACADE = {"__init__", "__main__"}  # they stand above the rooms and may import each of them
@@ -183,6 +183,28 @@ def test_fit_trace_and_residual_use_each_other_s_faces_alone() -> None:
     faces = {room: face(read[f"{room}/__init__.py"]) for room in FACED}
     assert all(faces.values())
     assert [line for file, text in read.items() for line in past_a_face(file, text, faces)] == []
+
+
+@pytest.mark.parametrize("room", FACED)
+def test_no_file_of_a_room_needs_one_that_needs_it(room: str) -> None:
+    inside = {file: text for file, text in sources().items() if file.startswith(f"{room}/")}
+    names = {Path(file).with_suffix("").as_posix().replace("/", "."): file for file in inside}
+    needs = {
+        file: {
+            names[short]
+            for _, module in modules(text, ".".join(("tracewire", *Path(file).parts[:-1])))
+            for short in (
+                module.removeprefix("tracewire."),
+                module.removeprefix("tracewire.").rpartition(".")[0],
+            )
+            if short in names
+        }
+        for file, text in inside.items()
+    }
+    while free := [file for file, others in needs.items() if not others & needs.keys() - {file}]:
+        for file in free:
+            del needs[file]
+    assert needs == {}
 
 
 def test_block_files_import_the_library_and_nothing_else() -> None:

@@ -12,7 +12,7 @@ from oracles.oscillator import model_of, record
 from tracewire.residual import Measured
 from tracewire.trace.check.spikes import spikes, without_spikes
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.trace import begun
+from tracewire.trace.search.begin import begun
 
 OPTIONS = TraceOptions()
 

@@ -1,1 +1,1 @@
-"""The choice between finalists by what they predict, and the verdict."""
+"""The choice between finalists by what they predict, the verdict, and what it must withstand."""

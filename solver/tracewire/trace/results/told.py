@@ -11,8 +11,8 @@ from tracewire.compile import Model
 from tracewire.diagram import Diagram, set_sensors, set_values
 from tracewire.residual import SENSED
 from tracewire.trace.candidates.candidates import extend
-from tracewire.trace.choose.account import intervals
 from tracewire.trace.found import FoundEffect, Ranked, StepTold, Tie
+from tracewire.trace.results.account import intervals
 from tracewire.trace.search.finish import Final, Rival
 from tracewire.trace.search.search import Search, Step
 from tracewire.trace.trials.trial import Added, Trial

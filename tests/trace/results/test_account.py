@@ -9,8 +9,8 @@ import pytest
 from oracles.oscillator import NOISE, bench_of, later, record, search_of, trial_of
 from tracewire.residual import Measured, Segment
 from tracewire.residual.windows import Section, cut
-from tracewire.trace.choose.account import compared, free_run, intervals, moved, rmse
 from tracewire.trace.options import TraceOptions
+from tracewire.trace.results.account import compared, free_run, intervals, moved, rmse
 from tracewire.trace.trials.trial import Bench
 
 OPTIONS = TraceOptions()

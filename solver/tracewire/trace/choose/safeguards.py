@@ -1,0 +1,71 @@
+"""What a judgement must withstand: a tighter solver, unseen data, and mistakes of the record."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from tracewire.trace.check.mistakes import refuse_mistakes
+from tracewire.trace.check.tolerance import is_loose, tightened
+from tracewire.trace.choose.verdict import Judgement, raises_unseen, residual_map
+from tracewire.trace.search.finish import Final
+from tracewire.trace.search.search import Search
+from tracewire.trace.trials.trial import Trial
+
+
+def fit_declared(search: Search) -> Trial:
+    """The declared fit, with a tolerance at which the solver's error does not count."""
+    declared = search.declared()
+    for _ in range(search.options.check.tightened):
+        if not is_loose(search.bench, declared):
+            break
+        _tighten(search)
+        declared = search.declared()
+    return declared
+
+
+def _tighten(search: Search) -> None:
+    search.bench = tightened(search.bench)
+    search.words.append(
+        f"the solver's error counted beside the residual: rtol is {search.bench.rtol:.0e} now"
+    )
+
+
+def safeguard(search: Search, judgement: Judgement) -> Judgement:
+    """The judgement where the solver is precise enough, and no effect raises the error on unseen
+    data; without the effects where they do."""
+    final = judgement.final
+    for _ in range(search.options.check.tightened):
+        if not (final.best.effects and is_loose(search.bench, final.best)):
+            break
+        _tighten(search)
+        declared, best = (
+            search.bench.again(trial, trial.windows.segments, trial.length)
+            for trial in (final.declared, final.best)
+        )
+        final = replace(final, declared=declared, best=best)
+    if final.best.effects:
+        lengths = sorted({min(search.short, final.best.length), final.best.length})
+        harm = raises_unseen(search, final, lengths)
+        if harm:
+            names = " and ".join(map(str, final.best.effects))
+            search.words.append(f"{names} is not named: it {harm}")
+            final = Final(final.declared, final.declared, {}, ())
+            dependences, missing = residual_map(search, final.declared)
+            return Judgement("unexplained", final, dependences, missing)
+    return replace(judgement, final=final)
+
+
+def refuse_mistaken(search: Search, declared: Trial, judgement: Judgement) -> None:
+    """Refuse records that a mistake explains better than what was found.
+
+    Only where no effect explains what is left far above the noise, or where what was found may
+    itself be a mistake: a sensor or a drive.
+    """
+    best = judgement.final.best
+    suspicious = any(e.candidate.place.kind != "sum" for e in best.effects)
+    if suspicious or (
+        judgement.verdict == "unexplained" and best.s2 > search.options.check.suspicious
+    ):
+        search.tell("looking for mistakes in the records")
+        bench, options = search.bench, search.options.check
+        refuse_mistakes(bench.declared, bench.measured, options, declared.s2, bench.rtol)

@@ -1,0 +1,1 @@
+"""What a finished search says: errors, effects, ties, and the edited diagram."""

@@ -1,0 +1,52 @@
+"""From a diagram and its series to a search that is ready to run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from tracewire.compile import Model
+from tracewire.fit import Fit
+from tracewire.residual import (
+    InputCovariance,
+    Measured,
+    channel_noise,
+    load_measured,
+    with_measured_signals,
+)
+from tracewire.trace.candidates.places import find_places, untried
+from tracewire.trace.check.option_checks import check_options
+from tracewire.trace.check.refusals import check_series, remarks
+from tracewire.trace.check.spikes import without_spikes
+from tracewire.trace.options import TraceOptions
+from tracewire.trace.search.search import Search
+from tracewire.trace.trials.stretches import share_out, shortest_window
+from tracewire.trace.trials.trial import Bench
+
+
+def begun(
+    subject: Model | Fit,
+    measured: Sequence[Measured] | None,
+    rtol: float,
+    progress: Callable[[str], None],
+    options: TraceOptions,
+) -> Search:
+    """The search on a subject, ready to run."""
+    values: dict[str, float] = {}
+    if isinstance(subject, Fit):
+        values = dict(subject.values)
+        measured = subject.measured if measured is None else measured
+        subject = subject.model
+    model = with_measured_signals(subject, measured)
+    series = tuple(load_measured(model) if measured is None else measured)
+    check_series(model, series, options.check)
+    check_options(options, model)
+    sigma = channel_noise([m for m in series if m.use != "validate"])
+    series = tuple(without_spikes(m, sigma, options.check) for m in series)
+    stretches = share_out(series, options.split)
+    shortest = shortest_window(stretches, options.split)
+    inputs = InputCovariance(sigma, model, series, shortest)
+    bench = Bench(model, series, sigma, rtol, inputs, options)
+    places = find_places(model)
+    words = [*remarks(series, options.check), *stretches.words]
+    words += untried(model.diagram, [place for place in places if place.q])
+    return Search(bench, stretches, places, shortest, values, progress, words)
