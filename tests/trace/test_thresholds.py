@@ -7,9 +7,16 @@ from collections.abc import Iterator
 from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 
+import numpy as np
 import pytest
-from tracewire.trace import SearchOptions, TraceOptions
+from show.traces import FOUND, TEXT
+from tracewire.compile import compile
+from tracewire.diagram import read_text
+from tracewire.errors import DataError
+from tracewire.residual import Measured
+from tracewire.trace import CheckOptions, SearchOptions, SplitOptions, TraceOptions, trace
 from tracewire.trace.saved import from_data, to_data
+from tracewire.trace.trials.stretches import share_out
 
 ROOM = Path(__file__).parents[2] / "solver/tracewire/trace"
 OPTIONS = TraceOptions()
@@ -126,7 +133,16 @@ def test_every_threshold_is_read() -> None:
 
 
 def test_thresholds_are_kept_in_a_saved_trace() -> None:
-    from show.traces import FOUND
-
     asked = TraceOptions(search=SearchOptions(rivals=8))
     assert from_data(to_data(replace(FOUND, options=asked))).options == asked
+
+
+def test_thresholds_that_are_set_are_those_of_the_trace() -> None:
+    model = compile(read_text(TEXT))
+    t = np.linspace(0.0, 6.0, 200)
+    swing = Measured("swing", "train", t, {"theta": 0.3 * np.cos(3 * t)}, start={"theta": None})
+    asked = TraceOptions(check=CheckOptions(least_samples=1000), split=SplitOptions(validated=0.5))
+    with pytest.raises(DataError, match="At least 1000 are needed"):
+        trace(model, [swing], options=asked)
+    (section,) = share_out([swing], asked.split).validate
+    assert (section.first, section.end) == (100, 200)

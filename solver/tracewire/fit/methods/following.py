@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.residual import Segment
+from tracewire.residual import Segment, noise_level
 
 Vector = NDArray[np.float64]
 FOLLOWED = 0.2
@@ -28,12 +28,7 @@ def spread_of(segment: Segment, parts: int = 1) -> Vector:
     With `parts`, the median of those of so many parts: what a signal usually swings, without its
     drift. It is not less than what the noise of the series makes of it.
     """
-    noise = np.array(
-        [
-            np.std(np.diff(values, 2)) / np.sqrt(6.0) if len(values) > 2 else 0.0
-            for values in segment.measured.values.values()
-        ]
-    )
+    noise = np.array([noise_level(values) for values in segment.measured.values.values()])
     samples = segment.samples()
     pieces = np.array_split(samples, min(parts, max(len(samples) // 10, 1)))
     spread = np.median([np.std(piece, axis=0) for piece in pieces], axis=0)
