@@ -11,7 +11,7 @@ from tracewire.diagram import read_text
 from tracewire.residual import Criterion, Measured, Segment
 from tracewire.residual.levenberg_marquardt import descended
 from tracewire.residual.settling import settled
-from tracewire.residual.windows import Section, cut, eliminated, opened, projection
+from tracewire.residual.windows import Section, cut, eliminated, opened
 
 BALL = """\
 span: [0, 2]
@@ -77,8 +77,7 @@ def test_the_starts_eliminated_the_fit_is_that_of_all_numbers_at_once() -> None:
 
 def test_what_is_left_without_the_starts_is_the_dense_least_squares() -> None:
     windows = trial_of(bench_of(record()), length=80).windows
-    views = [projection(windows, n) for n in range(len(windows.near))]
-    reduced, residual = eliminated(windows, views)
+    reduced, residual = eliminated(windows)
     blocks = [near.slopes for near in windows.near]
     starts = np.zeros((len(residual), sum(b.shape[1] - 2 for b in blocks)))
     row = column = 0
@@ -97,7 +96,7 @@ def test_what_is_left_without_the_starts_is_the_dense_least_squares() -> None:
 
 def test_the_answer_of_a_start_takes_away_what_a_start_can_explain() -> None:
     windows = trial_of(bench_of(record()), length=80).windows
-    view = projection(windows, 1)
+    view = windows.near[1].projection
     slopes = windows.near[1].slopes[:, 2:]
     np.testing.assert_allclose(view.answer @ slopes, np.eye(2), atol=1e-8)
     np.testing.assert_allclose(view.off(slopes) / np.linalg.norm(slopes, axis=0), 0, atol=1e-9)

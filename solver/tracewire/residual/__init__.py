@@ -6,7 +6,7 @@ from tracewire.residual.files import series_from_files
 from tracewire.residual.input_noise import InputCovariance, run_noise
 from tracewire.residual.input_response import InputNoise
 from tracewire.residual.levenberg_marquardt import CREEPS, LEAST_DAMPING, bounded_step, descended
-from tracewire.residual.linearised import difference
+from tracewire.residual.linearised import Projection, difference
 from tracewire.residual.loss import LOSSES
 from tracewire.residual.measured import (
     Measured,
@@ -43,14 +43,12 @@ from tracewire.residual.unknowns import (
     sensor_unknowns,
 )
 from tracewire.residual.windows import (
-    Projection,
     Section,
     Windows,
     begun_before,
     cut,
     eliminated,
     opened,
-    projection,
 )
 
 __all__ = [
@@ -97,7 +95,6 @@ __all__ = [
     "opened",
     "own_unknowns",
     "parameter_in",
-    "projection",
     "run_noise",
     "sensor_unknowns",
     "series_from_files",

@@ -384,9 +384,10 @@ class Criterion:
     ) -> Linearised:
         """The same by differences to one side, away from a bound; none where the run fails."""
         failures = self.failures.total()
+        scales = self.segments[n].start_scales(start)
         at = self._residual(n, named, start)
         if self.failures.total() > failures:
-            return Linearised(at, np.zeros((at.size, len(named) + len(start))), {}, False)
+            return Linearised(at, np.zeros((at.size, len(named) + len(start))), scales, {}, False)
         parts = []
         for u, scale in zip(self.unknowns, self.scales.tolist(), strict=False):
             h = STEP * max(scale, abs(named[u.name]))
@@ -398,7 +399,7 @@ class Criterion:
             there = self._residual(n, named, {**start, state: value + h})
             parts.append(((there - at) / h).ravel())
         slopes = np.stack(parts, axis=1) if parts else np.zeros((at.size, 0))
-        return Linearised(at, slopes, {})
+        return Linearised(at, slopes, scales, {})
 
 
 @cache

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
+from tracewire.residual.linearised import Projection
 from tracewire.residual.settling import (
     SETTLED,
     SETTLING,
@@ -19,7 +20,7 @@ from tracewire.residual.settling import (
     settled,
     settled_some,
 )
-from tracewire.residual.windows import Projection, Windows, begun_at, better, eliminated, projection
+from tracewire.residual.windows import Windows, begun_at, better, eliminated
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -58,8 +59,8 @@ def descended(
         return windows, True
     gained, too_slow = np.inf, 0
     for left_over in reversed(range(steps)):
-        views = [projection(windows, n) for n in range(len(windows.near))]
-        reduced, residual = eliminated(windows, views)
+        views = windows.views
+        reduced, residual = eliminated(windows)
         reduced = reduced * scales
         values = np.array([windows.values[u.name] for u in unknowns])
         room = (low - values) / scales, (high - values) / scales

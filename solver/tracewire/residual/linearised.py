@@ -18,15 +18,32 @@ from tracewire.solve.interrupt import Halt
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
+UNSEEN = 1e-7
+"""A direction of a segment's start that moves its residual less than this part of the strongest."""
+
+
+@dataclass(frozen=True, eq=False)
+class Projection:
+    """A segment without what its start can explain: an orthonormal basis of that, (N*signals, r),
+    and the start's answer to a residual, (states, N*signals)."""
+
+    basis: Matrix
+    answer: Matrix
+
+    def off(self, columns: Matrix) -> Matrix:
+        """Columns without what the start can explain."""
+        return np.asarray(columns - self.basis @ (self.basis.T @ columns))
 
 
 @dataclass(frozen=True, eq=False)
 class Linearised:
     """A segment near some unknowns: residuals (N, signals) in sigma, their derivatives `slopes`
-    (N*signals, unknowns + free starts) in SI, whether it `ran`, and the states where it ended."""
+    (N*signals, unknowns + free starts) in SI, the `scales` of the free starts, the states where it
+    ended, and whether it `ran`."""
 
     residual: Vector
     slopes: Matrix
+    scales: Vector
     final: Mapping[str, float]
     ran: bool = True
 
@@ -34,6 +51,18 @@ class Linearised:
     def square(self) -> float:
         """The sum of the squared residuals."""
         return float(np.sum(self.residual**2))
+
+    @cached_property
+    def projection(self) -> Projection:
+        """What the start can explain."""
+        scales = self.scales
+        moved = self.slopes[:, self.slopes.shape[1] - len(scales) :] * scales
+        if not moved.size:
+            return Projection(np.zeros((len(moved), 0)), np.zeros((0, len(moved))))
+        left, singular, right = np.linalg.svd(moved, full_matrices=False)
+        kept = singular > UNSEEN * max(float(singular[0]), 1e-300)
+        answer = (scales[:, None] * right[kept].T / singular[kept]) @ left[:, kept].T
+        return Projection(left[:, kept], answer)
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +144,8 @@ class Shooting:
             if columns != [*range(len(named), len(answers))]:
                 own = own[:, [*range(len(named)), *columns]]
             final = dict(zip(self.model.states, runs.final[number].tolist(), strict=True))
-            near[number] = Linearised(residual[mine], own, final)
+            scales = self.segments[number].start_scales(start)
+            near[number] = Linearised(residual[mine], own, scales, final)
         steps = int(runs.steps.sum()) + self.limits.steps * len(runs.errors)
         told = frozenset(text for texts in runs.warnings.values() for text in texts)
         return Shots(near, steps, told)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -52,6 +52,10 @@ class Segment:
         """The size of a free start value: what its signal, or the fastest rate of one, spreads."""
         spread = self.measured.spreads.get(state, self.measured.fastest)
         return max(spread, abs(self.start[state])) or 1.0
+
+    def start_scales(self, states: Iterable[str]) -> Vector:
+        """The sizes of some free start values."""
+        return np.array([self.start_scale(name) for name in states])
 
 
 @dataclass(frozen=True)

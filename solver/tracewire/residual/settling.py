@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.residual.windows import Windows, begun_at, better, projection
+from tracewire.residual.windows import Windows, begun_at, better
 
 Vector = NDArray[np.float64]
 SETTLING = 8
@@ -76,7 +76,7 @@ def settled_some(windows: Windows, rows: Sequence[int], steps: int) -> Windows:
         for n in list(share):
             near = windows.near[n]
             if n not in answers:
-                view = projection(windows, n)
+                view = windows.near[n].projection
                 gain = float(np.sum((view.basis.T @ near.residual.ravel()) ** 2))
                 if gain < max(SETTLED, CONVERGED * near.square):
                     del share[n]

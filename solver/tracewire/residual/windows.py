@@ -16,15 +16,13 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.residual.criterion import Criterion
-from tracewire.residual.linearised import Linearised
+from tracewire.residual.linearised import Linearised, Projection
 from tracewire.residual.measured import Measured
 from tracewire.residual.segment import Segment
 from tracewire.residual.starts import start_from_data, whole_segment
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-UNSEEN = 1e-7
-"""A direction of a window's start that moves its residual less than this part of the strongest."""
 AHEAD = 2.0
 """How many delays of a sensor a window's run begins ahead of its first sample: a fit may find a
 longer delay than it began with."""
@@ -110,6 +108,11 @@ class Windows:
         return float(np.sum(self.squares))
 
     @property
+    def views(self) -> list[Projection]:
+        """What the start of each window can explain."""
+        return [near.projection for near in self.near]
+
+    @property
     def residuals(self) -> list[Vector]:
         """The residuals in sigma by window, shape (N, signals)."""
         return [near.residual for near in self.near]
@@ -125,38 +128,11 @@ class Windows:
         return found
 
 
-@dataclass(frozen=True, eq=False)
-class Projection:
-    """A window without what its start can explain: an orthonormal basis of that, (N*signals, r),
-    and the start's answer to a residual, (states, N*signals)."""
-
-    basis: Matrix
-    answer: Matrix
-
-    def off(self, columns: Matrix) -> Matrix:
-        """Columns without what the start can explain."""
-        return np.asarray(columns - self.basis @ (self.basis.T @ columns))
-
-
-def projection(windows: Windows, n: int) -> Projection:
-    """What the start of window n can explain."""
-    segment = windows.criterion.segments[n]
-    scales = np.array([segment.start_scale(name) for name in segment.free])
-    moved = windows.near[n].slopes[:, len(windows.values) :] * scales
-    if not moved.size:
-        return Projection(np.zeros((len(moved), 0)), np.zeros((0, len(moved))))
-    left, singular, right = np.linalg.svd(moved, full_matrices=False)
-    kept = singular > UNSEEN * max(float(singular[0]), 1e-300)
-    answer = (scales[:, None] * right[kept].T / singular[kept]) @ left[:, kept].T
-    return Projection(left[:, kept], answer)
-
-
-def eliminated(windows: Windows, views: Sequence[Projection]) -> tuple[Matrix, Vector]:
+def eliminated(windows: Windows) -> tuple[Matrix, Vector]:
     """Derivatives (M, unknowns) in SI and residuals (M,) without what the starts can explain."""
     count = len(windows.values)
-    pairs = list(zip(views, windows.near, strict=True))
-    reduced = np.concatenate([view.off(near.slopes[:, :count]) for view, near in pairs])
-    residual = np.concatenate([view.off(near.residual.ravel()) for view, near in pairs])
+    reduced = np.concatenate([n.projection.off(n.slopes[:, :count]) for n in windows.near])
+    residual = np.concatenate([n.projection.off(n.residual.ravel()) for n in windows.near])
     return reduced, residual
 
 

@@ -95,20 +95,36 @@ class TraceOptions:
     )  # fmt: skip
     """Effects that come after common ones where both predict as well."""
 
-    singles: int = 20
-    """Single effects that are refitted, the most promising of the screens of all horizons."""
+    most_samples: int = 5000
+    """Samples of the windows on which effects are screened and refits begin; longer records show
+    the same there at some windows of each block."""
+    windows_together: int = 8
+    """Windows in a row that are looked at where not all are: memories go on between them."""
+    most_residuals: int = 20_000
+    """Residuals that a screen looks at: of more, every second, third, ... one; a screen of 400
+    variants then takes 64 MB."""
+    most_scanned: int = 12_000
+    """Residuals up to which the lengths of waves are scanned in each screen: the scan of 800
+    lengths takes most of a screen's time."""
+    singles: int = 5
+    """Single effects that are refitted beside the declared model, by each of two measures of each
+    horizon's screen: on 26 generated records the true one was among the first two 22 times."""
     pairs: int = 2
-    """Pairs of a screen at each number of fitted numbers that may be refitted."""
-    seconds: int = 4
-    """Effects that are refitted beside each of the best smaller models."""
+    """Pairs that are refitted beside the declared model, by each measure."""
+    beside: int = 3
+    """Effects that are refitted beside each of the best smaller models, by each measure; and two
+    pairs less."""
+    imitated: float = 0.1
+    """By which part of its square an effect must be imitated less without a declared term, to be
+    tried there."""
     parents: tuple[int, int] = (2, 1)
     """Single effects, and pairs, beside which a further effect is looked for."""
     finalists: int = 2
     """Models at each number of fitted numbers whose predictions are compared."""
     first_steps: int = 5
     """Steps of a first refit of a model, at the horizon whose screen proposed it."""
-    begun: int = 8
-    """How many of the models of the screens are refitted at all horizons after that."""
+    begun: int = 4
+    """How many of the models of a screen are refitted at all horizons after that."""
     coarse: float = 5e-3
     """The part of the squared error by which a step of such a refit must still lower it."""
     steps: int = 12

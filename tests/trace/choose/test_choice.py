@@ -109,3 +109,13 @@ def test_the_tolerance_is_an_option() -> None:
     entrants = [model(), model("a"), model("a", "b")]
     strict = choose(entrants, scores(1.0, 0.04, 0.0), FOLDS, replace(OPTIONS, near=0.02))
     assert strict.taken == 2
+
+
+def test_a_simpler_effect_takes_the_place_of_one_that_imitates_it() -> None:
+    stribeck = Entrant(frozenset({"stribeck", "drag"}), 5, imitated=frozenset({"coulomb"}))
+    coulomb = Entrant(frozenset({"coulomb", "drag"}), 4)
+    better = model("stribeck", "drag", "gain")
+    # both are pruned one after the other, though the last is 6 % worse than the best
+    assert chosen([model(), better, stribeck, coulomb], 1.0, 0.0, 0.03, 0.06).taken == 3
+    foreign = replace(stribeck, imitated=frozenset())
+    assert chosen([model(), better, foreign, coulomb], 1.0, 0.0, 0.03, 0.06).taken == 2

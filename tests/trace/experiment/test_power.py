@@ -30,7 +30,8 @@ def screen(matrix: np.ndarray, groups: list[tuple[str, tuple[int, ...]]], masked
         for name, indices in groups
     )
     hidden = np.full(matrix.shape[1], masked)
-    return Screen(Columns(RANDOM.standard_normal(N), matrix, hidden, 1.0, N), rows)
+    columns = Columns(RANDOM.standard_normal(N), matrix, hidden, 1.0, N)
+    return Screen(columns, rows, np.arange(N))
 
 
 def test_the_smallest_coefficient_is_five_standard_errors() -> None:

@@ -41,7 +41,7 @@ def screen_of(truth: Mapping[str, float], sign: int = 0, count: int = 10) -> Scr
         start = {"size": float(values[0])}
         gain = columns.gain(fall, 1)
         rows.append(Row(candidate, {}, (n,), fall, gain, start, 0.0, possible))
-    return Screen(columns, tuple(rows))
+    return Screen(columns, tuple(rows), np.arange(len(columns.residual)))
 
 
 def proposed(screen: Screen, room: int = 3) -> list[set[str]]:

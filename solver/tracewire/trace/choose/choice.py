@@ -6,8 +6,9 @@ For a model m, a horizon h, a fold f and a block b, with E/n the mean squared he
 
 and T[m,b] is the mean of S over h and f. Models compare by the differences of T over blocks, with
 their standard error. Taken is the model of fewest numbers that is as near the best as one standard
-error or 5 %, then without each effect that costs as little. The logarithm lets a decay be judged
-by all of its blocks, and not by the first alone.
+error or 5 %, then without each effect that costs as little, and with a simpler effect in the place
+of one that imitates it. The logarithm lets a decay be judged by all of its blocks, and not by the
+first alone.
 
 Source: cross-validation with the one-standard-error rule (Breiman et al. 1984, section 3.4.3;
 Hastie et al., Elements of Statistical Learning, section 7.10).
@@ -30,13 +31,21 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class Entrant:
     """What the choice knows of a model: its effects by name, how many numbers it fits, how much
-    speaks against it (uncommon effects as waves, drifts or a sensor's gain; values on bounds), and
-    how many of its effects may have either sign, so that no physics restricts them."""
+    speaks against it (uncommon effects as waves, drifts or a sensor's gain; values on bounds), how
+    many of its effects may have either sign, so that no physics restricts them, and the effects
+    that its own ones imitate."""
 
     effects: frozenset[str]
     numbers: int
     uncommon: int = 0
     unsigned: int = 0
+    imitated: frozenset[str] = frozenset()
+
+    def simplifies(self, other: Entrant) -> bool:
+        """Whether it is another model with one effect in the place of one that imitates it, as
+        Coulomb friction for a Stribeck curve, and fewer numbers."""
+        new, old = self.effects - other.effects, other.effects - self.effects
+        return len(new) == len(old) == 1 and new <= other.imitated and self.numbers < other.numbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,15 +122,15 @@ def _z(totals: Array, one: int, other: int) -> float:
 def _pruned(
     entrants: Sequence[Entrant], totals: Array, usable: Sequence[int], taken: int, tolerance: float
 ) -> int:
-    """The model without each effect that costs at most the tolerance or two standard errors."""
+    """The model without each effect that costs at most the tolerance or two standard errors, and
+    with a simpler effect where that costs at most the tolerance."""
     while True:
-        mine = entrants[taken].effects
-        smaller = [n for n in usable if entrants[n].effects < mine]
-        costs = [
-            (entrants[n].numbers, _cost(totals, n, taken), n)
-            for n in smaller
-            if _cost(totals, n, taken) <= max(tolerance, 2 * _error(totals, n, taken))
-        ]
+        mine, costs = entrants[taken], []
+        for n in usable:
+            cost, error = _cost(totals, n, taken), _error(totals, n, taken)
+            part = entrants[n].effects < mine.effects and cost <= max(tolerance, 2 * error)
+            if part or (entrants[n].simplifies(mine) and cost <= tolerance):
+                costs.append((entrants[n].numbers, cost, n))
         if not costs:
             return taken
         taken = min(costs)[2]

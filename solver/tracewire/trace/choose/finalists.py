@@ -12,17 +12,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.solve import release
 from tracewire.trace.choose.choice import log_scores
-from tracewire.trace.choose.heldout import Finalist, errors_in_sample
+from tracewire.trace.choose.heldout import Finalist, errors_by_block, errors_in_sample
 from tracewire.trace.choose.horizons import Horizons
+from tracewire.trace.choose.promising import promising, unmasked
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.screen.screening import Proposal, Screen, screened
-from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.screen.screening import Proposal, Screen
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.trial import Added, Trial
 
@@ -56,54 +57,78 @@ class Pool:
         options = self.options
         numbers = range(len(self.horizons.each))
         self.first = [self.screened(declared, number) for number in numbers]
-        self._extend(declared, options.singles // len(numbers), self.first)
-        # what imitates a declared term shows only where that is not there
+        for number in numbers:
+            proposals = self.promising(number, self.first[number], options.singles, options.pairs)
+            self.extend(declared, number, proposals)
         for smaller in self.without_terms(declared):
-            self._extend(smaller, options.seconds, [*self.first[:-1], self.screened(smaller, -1)])
+            self._extend_without(smaller)
         for size, parents in zip(range(1, options.effects), options.parents, strict=False):
             if not self._improves(size):
                 break
             for parent in self.best(size, parents):
-                # what shows in short windows is looked for in those of the declared model
-                screens = [*self.first[:-1], self.screened(parent, -1)]
-                self._extend(parent, options.seconds, screens)
+                self._extend_beside(parent)
             if self._improves(size + 1):
                 self._exchange(size + 1)
         for size in range(1, options.effects + 1):
             for model in self.best(size, options.exchanged):
                 self.without_terms(model)
 
-    def _extend(self, parent: Finalist, count: int, screens: Sequence[Screen]) -> None:
-        """A model with the most promising effects and pairs of a screen at each horizon."""
-        for number, screen in enumerate(screens):
-            rows = [row for row in screen.best() if row.fall > 0]
-            self.extend(parent, number, [Proposal((row,), row.gain) for row in rows[:count]])
-            if self.options.effects > len(parent.names) + 1:
-                pairs = [
-                    pair
-                    for same in screen.by_count(self.options.pairs).values()
-                    for pair in same
-                    if len(pair.rows) == 2
-                ]
-                pairs.sort(key=lambda pair: -pair.gain)
-                self.extend(parent, number, pairs[: self.options.seconds])
+    def _extend_beside(self, parent: Finalist) -> None:
+        """A model with the most promising effects and pairs: what shows in short windows is looked
+        for in those of the declared model."""
+        options, pairs = self.options, max(self.options.beside - 2, 0)
+        for number, screen in enumerate([*self.first[:-1], self.screened(parent, -1)]):
+            self.extend(parent, number, self.promising(number, screen, options.beside, pairs))
+
+    def _extend_without(self, smaller: Finalist) -> None:
+        """A model without a declared term with what imitates that term: it shows only where the
+        term is not there."""
+        options, number = self.options, len(self.horizons.each) - 1
+        screen = self.screened(smaller, number)
+        new = unmasked(screen, self.first[number], options.imitated)
+        proposals = [
+            proposal
+            for proposal in self.promising(number, screen, 2 * options.beside, options.beside)
+            if any(str(row.candidate) in new for row in proposal.rows)
+        ]
+        self.extend(smaller, number, proposals)
+
+    def promising(self, number: int, screen: Screen, singles: int, pairs: int) -> list[Proposal]:
+        """What a screen at a horizon asks to refit."""
+        horizon = self.horizons.each[number]
+        count = len(horizon.segments[0].signals)
+        blocks = np.concatenate([horizon.blocks[n] for n in self.sparse[number]])
+        return promising(screen, np.repeat(blocks, count), singles, pairs)
+
+    @cached_property
+    def sparse(self) -> list[list[int]]:
+        """The windows of each horizon on which effects are screened and refits begin."""
+        options = self.options
+        return [
+            horizon.sparse(options.most_samples, options.least_blocks)
+            for horizon in self.horizons.each
+        ]
+
+    def at(self, parent: Finalist, number: int) -> Trial:
+        """A model on the windows of a horizon on which effects are screened."""
+        trial, chosen = parent.trials[number], self.sparse[number]
+        if len(chosen) == len(trial.windows.near):
+            return trial
+        return self.search.bench.some(trial, chosen)
 
     def screened(self, parent: Finalist, number: int) -> Screen:
         """The screen beside a model at a horizon."""
-        search, trial = self.search, parent.trials[number]
+        search, trial = self.search, self.at(parent, number)
         beside = " and ".join(sorted(parent.names)) or "the declared model"
         search.tell(f"screening effects beside {beside}")
-        tangent = Tangent(
-            trial.diagram, trial.windows, search.places, search.bench.rtol, search.options
-        )
-        candidates = search.candidates(tangent, [effect.candidate for effect in trial.effects])
-        return screened(tangent, trial, candidates)
+        return search.screen(trial)
 
     def extend(self, parent: Finalist, number: int, proposals: Iterable[Proposal]) -> None:
         """Refit a model with each of some proposals in few steps, at the horizon whose screen made
         them, and the best of them at each horizon."""
         options = self.options
         left = options.effects - len(parent.names)
+        now = self.at(parent, number)
         begun: list[Trial] = []
         for proposal in proposals:
             added = {str(row.candidate) for row in proposal.rows}
@@ -114,15 +139,32 @@ class Pool:
             self.search.tell(f"refitting with {' and '.join(sorted(names))}")
             target = options.hopeful * min((trial.rss for trial in begun), default=np.inf)
             first = [row.added for row in proposal.rows]
-            trial = self._refitted(parent.trials[number], first, (), options.first_steps, target)
+            trial = self._refitted(now, first, (), options.first_steps, target)
             if trial is not None:
                 begun.append(trial)
-        begun.sort(key=lambda trial: trial.rss)
-        for trial in begun[: options.begun // len(self.horizons.each)]:
-            if trial.rss <= options.hopeful * begun[0].rss:
-                fitted = self.fitted(parent, trial.effects[len(parent.names) :])
-                if fitted is not None:
-                    self._kept(fitted)
+        for trial in self._hopeful(begun, number):
+            fitted = self.fitted(parent, trial.effects[len(parent.names) :])
+            if fitted is not None:
+                self._kept(fitted)
+
+    def _hopeful(self, begun: Sequence[Trial], number: int) -> list[Trial]:
+        """The best of what was begun at a horizon, by the squares and by the scores of blocks."""
+        if not begun:
+            return []
+        blocks = [self.horizons.each[number].blocks[n] for n in self.sparse[number]]
+        errors = np.stack([
+            errors_by_block(
+                self.horizons.fitted, list(zip(blocks, trial.windows.residuals, strict=True))
+            )
+            for trial in begun
+        ])  # fmt: skip
+        seen = np.unique(np.concatenate(blocks))
+        errors = errors[:, None, None, seen[seen >= 0]]
+        scores = log_scores(errors).mean(axis=(1, 2, 3))
+        scores = scores + self._price * np.array([len(trial.windows.values) for trial in begun])
+        best = np.argsort(scores, kind="stable")[: self.options.begun]
+        near = 0.5 * np.log(self.options.hopeful)
+        return [begun[n] for n in best.tolist() if scores[n] <= scores[best[0]] + near]
 
     def fitted(
         self, parent: Finalist, added: Sequence[Added], dropped: Sequence[str] = ()
@@ -160,9 +202,14 @@ class Pool:
 
     def ranks(self) -> dict[Key, float]:
         """The scores with the price of each fitted number, BIC over twice the number of blocks."""
-        blocks = self.horizons.fitted
-        price = float(np.log(blocks)) / (2 * blocks)
+        price = self._price
         return {key: s + price * self.models[key].numbers for key, s in self.scores().items()}
+
+    @property
+    def _price(self) -> float:
+        """What a fitted number costs in scores."""
+        blocks = self.horizons.fitted
+        return float(np.log(blocks)) / (2 * blocks)
 
     def best(self, size: int, count: int) -> list[Finalist]:
         """The best fits with so many effects, each set of effects once, refitted until they

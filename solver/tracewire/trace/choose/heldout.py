@@ -15,7 +15,6 @@ from tracewire.residual import (
     descended,
     eliminated,
     opened,
-    projection,
     settled,
 )
 from tracewire.trace.choose.horizons import REST, Horizon, Horizons, restricted
@@ -77,7 +76,7 @@ class Finalist:
 def errors_in_sample(finalist: Finalist, horizons: Horizons) -> Array:
     """The mean squared residual E/n of the fit itself, (horizons, 1, blocks, channels)."""
     return np.stack([
-        _by_block(
+        errors_by_block(
             horizons.fitted,
             [(of, r) for of, r in zip(horizon.blocks, trial.windows.residuals, strict=True)],
         )[None]
@@ -104,7 +103,9 @@ def errors_held_out(
                 _predicted(bench, trial, horizon, newton, group, steps, options.coarse)
                 for group in family
             ]
-            families.append(_by_block(horizons.fitted, [row for part in parts for row in part]))
+            families.append(
+                errors_by_block(horizons.fitted, [row for part in parts for row in part])
+            )
         predicted = np.stack(families)
         if horizons.gate:
             judged = _judged(bench, trial, horizons.gate[at], horizons.count - horizons.fitted)
@@ -120,7 +121,7 @@ def _judged(bench: Bench, trial: Trial, horizon: Horizon, count: int) -> Array:
     except FitError:
         columns = trial.windows.residuals[0].shape[1]
         return np.full((count, columns), np.inf)
-    return _by_block(count, list(zip(horizon.blocks, windows.residuals, strict=True)))
+    return errors_by_block(count, list(zip(horizon.blocks, windows.residuals, strict=True)))
 
 
 class _Newton:
@@ -134,9 +135,8 @@ class _Newton:
             for segment, of in zip(windows.criterion.segments, horizon.blocks, strict=True)
         )
         """Whether no window with a free start is left out in part."""
-        views = [projection(windows, n) for n in range(len(windows.near))]
         self.scales = np.array([u.scale for u in windows.criterion.unknowns])
-        reduced, self.residual = eliminated(windows, views)
+        reduced, self.residual = eliminated(windows)
         self.reduced = reduced * self.scales
         self.ridge = np.diag(ridge**0.5 * np.linalg.norm(self.reduced, axis=0))
         self.blocks = np.concatenate([
@@ -209,7 +209,7 @@ def _residuals(
     return settled(begun).residuals
 
 
-def _by_block(count: int, parts: Sequence[tuple[Ints, Vector]]) -> Array:
+def errors_by_block(count: int, parts: Sequence[tuple[Ints, Vector]]) -> Array:
     """The mean of squared residuals by block and channel, (blocks, channels)."""
     blocks = np.concatenate([of for of, _ in parts])
     squares = np.concatenate([r for _, r in parts]) ** 2

@@ -44,6 +44,29 @@ class Horizon:
         """The windows that have rows in some blocks: number and these rows."""
         return self._where(blocks, inside=True)
 
+    def sparse(self, most: int, least_blocks: int) -> list[int]:
+        """The numbers of windows that have about `most` samples together, of all blocks where that
+        can be: the first windows of each, or every so many blocks where windows are as long as
+        they are. All windows where there are no more samples, or where one has several blocks."""
+        sizes = [len(of) for of in self.blocks]
+        of_window = [set(np.unique(of).tolist()) for of in self.blocks]
+        if sum(sizes) <= most or any(len(of) > 1 for of in of_window):
+            return list(range(len(self.blocks)))
+        windows: dict[int, list[int]] = {}
+        for number, (block,) in enumerate(of_window):
+            if block != REST:
+                windows.setdefault(block, []).append(number)
+        wanted = most / max(sum(sizes), 1)
+        found = []
+        if all(len(mine) == 1 for mine in windows.values()):
+            order = sorted(windows)
+            count = min(max(round(wanted * len(order)), least_blocks), len(order))
+            chosen = np.linspace(0, len(order) - 1, count).astype(int).tolist()
+            return [windows[order[n]][0] for n in chosen]
+        for mine in windows.values():
+            found += mine[: max(round(wanted * len(mine)), 1)]
+        return sorted(found)
+
     def _where(self, blocks: Sequence[int], inside: bool) -> list[tuple[int, Ints]]:
         found = []
         for number, of in enumerate(self.blocks):

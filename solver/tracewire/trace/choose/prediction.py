@@ -150,6 +150,11 @@ def _chosen(pool: Pool, errors: dict[Key, Array]) -> Prediction:
             sum(e.candidate.effect in options.uncommon for e in model.trials[0].effects)
             + len(model.at_bounds),
             sum(not e.candidate.sign for e in model.trials[0].effects),
+            frozenset(
+                f"{alias} @ {e.candidate.place.name}"
+                for e in model.trials[0].effects
+                for alias in e.candidate.alias
+            ),
         )
         for model in models
     )

@@ -22,7 +22,6 @@ from tracewire.residual import (
     eliminated,
     of_diagram,
     opened,
-    projection,
     settled,
 )
 from tracewire.solve import Limits, simulate
@@ -55,8 +54,7 @@ def separating(bench: Bench, one: Trial, other: Trial, name: str, rival: str) ->
     rig = rig_of(bench, one)
     states = compile(one.diagram, record=[*bench.signals, *bench.states], backend="quick")
     # what the data at hand say of the rival's unknowns
-    views = [projection(other.windows, n) for n in range(len(other.windows.near))]
-    known, _ = eliminated(other.windows, views)
+    known, _ = eliminated(other.windows)
     information = known.T @ known
     tried: dict[Setting, float] = {}
 
@@ -149,8 +147,7 @@ def _separation(
     windows = settled(opened(criterion))
     if not all(near.ran for near in windows.near):
         raise criterion.failure or SimulationError.one("the rival does not run")
-    views = [projection(windows, n) for n in range(len(windows.near))]
-    columns, residual = eliminated(windows, views)
+    columns, residual = eliminated(windows)
     matrix = columns.T @ columns + information[np.ix_(free, free)]
     right = columns.T @ residual
     sizes = np.sqrt(np.maximum(np.diag(matrix), 1e-300))

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve
 
-from tracewire.residual import Projection, eliminated, projection
+from tracewire.residual import Projection, eliminated
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.found import Dependence, Missing
 from tracewire.trace.missing.bases import Basis, bases_of
@@ -147,8 +147,8 @@ class Problem:
 
 def _problem(tangent: Tangent, trial: Trial) -> Problem:
     windows = tangent.windows
-    views = [projection(windows, n) for n in range(len(windows.near))]
-    unknowns, residual = eliminated(windows, views)
+    views = windows.views
+    unknowns, residual = eliminated(windows)
     sizes = np.linalg.norm(unknowns, axis=0)
     seen = sizes > 1e-12 * max(float(sizes.max(initial=0.0)), 1e-300)
     basis = np.linalg.svd(unknowns[:, seen] / sizes[seen], full_matrices=False)

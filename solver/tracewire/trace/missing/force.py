@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import compile
 from tracewire.diagram import effects_of
-from tracewire.residual import Windows, projection
+from tracewire.residual import Windows
 from tracewire.trace.candidates.levels import Trajectory
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.found import Force, Means
@@ -120,7 +120,7 @@ def _least_squares(
     count = columns[0].shape[1]
     matrix, right = np.zeros((count, count)), np.zeros(count)
     for joined in tangent.joined:
-        view = projection(tangent.windows, joined.window)
+        view = tangent.windows.near[joined.window].projection
         answer = view.off(tangent.window_answer(joined, {place.name: columns}))
         residual = view.off(tangent.windows.near[joined.window].residual.ravel())
         matrix += answer.T @ answer
@@ -140,7 +140,7 @@ def _needed(tangent: Tangent, place: Place) -> list[Vector]:
         unit[samples, np.arange(len(samples))] = 1.0
         given = [np.zeros((len(other.t), len(samples))) for other in tangent.trajectories]
         given[number] = unit
-        view = projection(tangent.windows, joined.window)
+        view = tangent.windows.near[joined.window].projection
         answer = view.off(tangent.window_answer(joined, {place.name: given}))
         residual = view.off(tangent.windows.near[joined.window].residual.ravel())
         size = tangent.options.map.force_smooth * max(

@@ -17,17 +17,25 @@ ROWS = 64
 
 
 def without_starts(
-    tangent: Tangent, views: Sequence[Projection], torques: Mapping[str, Sequence[Matrix]]
+    tangent: Tangent,
+    views: Sequence[Projection],
+    torques: Mapping[str, Sequence[Matrix]],
+    every: int = 1,
 ) -> tuple[Matrix, Vector]:
-    """What torques by place do to the residuals, as rows (K, M), without what the starts of windows
-    imitate; and the squares (K,) of them with it. Window by window: all of them are much memory."""
+    """What torques by place do to the residuals, as rows (K, M) without what the starts of windows
+    imitate, of every so many residuals of a window; and the squares (K,) of them with it.
+
+    Window by window: all of them are much memory. Rows are scaled so that squares stay the same.
+    """
     count = sum(given[0].shape[1] for given in torques.values())
-    rows, whole, first = np.empty((count, tangent.size)), np.zeros(count), 0
+    size = sum(-(-len(view.basis) // every) for view in views)
+    rows, whole, first = np.empty((count, size)), np.zeros(count), 0
     for joined, view in zip(tangent.joined, views, strict=True):
         columns = tangent.window_answer(joined, torques)
         whole += np.einsum("ij,ij->j", columns, columns)
-        last = first + len(columns)
-        rows[:, first:last] = view.off(columns).T
+        shown = view.off(columns)[::every] * every**0.5
+        last = first + len(shown)
+        rows[:, first:last] = shown.T
         first = last
     return rows, whole
 

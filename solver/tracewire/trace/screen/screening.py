@@ -10,7 +10,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.residual import Projection, Unknown, eliminated, projection
+from tracewire.residual import Unknown, eliminated
 from tracewire.trace.candidates.candidates import Candidate, is_default
 from tracewire.trace.candidates.histories import Variant, histories
 from tracewire.trace.candidates.levels import Trajectory
@@ -23,6 +23,7 @@ from tracewire.trace.trials.trial import Added, Trial
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
+Ints = NDArray[np.intp]
 PHASE = "phase"
 """A shape of this name turns a sine into a cosine: the two together span all phases."""
 NEAR = 1e-6
@@ -83,10 +84,12 @@ class Proposal:
 
 @dataclass(frozen=True, eq=False)
 class Screen:
-    """All variants of all candidates, scored on one linearisation."""
+    """All variants of all candidates, scored on one linearisation; `kept` are the residuals that
+    were looked at, by number among all of its windows."""
 
     columns: Columns
     rows: tuple[Row, ...]
+    kept: Ints
 
     def best(self) -> list[Row]:
         """The best possible variant of each candidate, the most promising first."""
@@ -143,11 +146,22 @@ class Screen:
         return dict(sorted(found.items()))
 
 
-def screened(tangent: Tangent, trial: Trial, candidates: Sequence[Candidate]) -> Screen:
-    """The score test of every variant of every candidate, at coefficient zero."""
+def screened(
+    tangent: Tangent,
+    trial: Trial,
+    candidates: Sequence[Candidate],
+    scan: bool = True,
+    most: int = 10**9,
+) -> Screen:
+    """The score test of every variant of every candidate, at coefficient zero.
+
+    `scan`: the lengths of waves are scanned, else they are those of the candidates' grids. Of more
+    than `most` residuals only every second, third, ... one of a window is looked at.
+    """
     windows = tangent.windows
-    views = [projection(windows, n) for n in range(len(windows.near))]
-    unknowns, residual = eliminated(windows, views)
+    every = -(-tangent.size // most)
+    kept = _kept([near.residual.size for near in windows.near], every)
+    unknowns, residual = (part[kept] * every**0.5 for part in eliminated(windows))
     # a value that sits on its bound cannot give way to an effect
     unknowns = unknowns[
         :, [not _on_bound(u, windows.values[u.name]) for u in windows.criterion.unknowns]
@@ -156,30 +170,43 @@ def screened(tangent: Tangent, trial: Trial, candidates: Sequence[Candidate]) ->
     residual = residual - basis @ (basis.T @ residual)
 
     def answer(place: str, torques: Sequence[Matrix]) -> Matrix:
-        rows, _ = without_starts(tangent, views, {place: torques})
+        rows, _ = without_starts(tangent, windows.views, {place: torques}, every)
         return without(rows, basis).T
 
     model = windows.criterion.model
     measured = as_measured(windows, tangent.trajectories)
-    candidates = scanned(model, candidates, measured, residual, answer, tangent.options.candidate)
-    reduced, whole, variants = _rows(tangent, views, candidates, measured)
+    options = tangent.options
+    if scan:
+        candidates = scanned(model, candidates, measured, residual, answer, options.candidate)
+    reduced, whole, variants = _rows(tangent, candidates, measured, every)
     reduced[_squares(reduced) < SEEN * whole] = 0.0
-    reduced, variants = _by_series(tangent, reduced, variants)
+    reduced, variants = _by_series(tangent, reduced, variants, kept)
     seen = _squares(reduced)
     left = without(reduced, basis)
     masked = 1 - _squares(left) / np.maximum(seen, 1e-300)
     masked = np.where(seen > 0, np.clip(masked, 0.0, 1.0), 1.0)
-    columns = Columns(residual, left.T, masked, trial.part, trial.freedom, tangent.options.screen)
+    part = min(trial.part * every, 1.0)
+    freedom = max(trial.freedom // every, 1)
+    columns = Columns(residual, left.T, masked, part, freedom, options.screen)
     names = tuple(run.series for run in tangent.trajectories)
     rows = [_row(columns, group, names) for group in _groups(variants)]
-    return Screen(columns, tuple(rows))
+    return Screen(columns, tuple(rows), kept)
+
+
+def _kept(sizes: Sequence[int], every: int) -> Ints:
+    """Every so many residuals of windows of these sizes, by number among all."""
+    ends = np.cumsum(sizes)
+    parts = [
+        np.arange(end - size, end, every) for size, end in zip(sizes, ends.tolist(), strict=True)
+    ]
+    return np.concatenate(parts)
 
 
 def _rows(
     tangent: Tangent,
-    views: Sequence[Projection],
     candidates: Sequence[Candidate],
     measured: Sequence[Trajectory],
+    every: int,
 ) -> tuple[Matrix, Vector, list[Variant]]:
     """What the coefficients of all variants do to the residuals in sigma, as rows (K, M) without
     what the starts of windows imitate, and their squares (K,) with it.
@@ -187,36 +214,40 @@ def _rows(
     Waves are taken along what is measured: a part of their length matters, and a fit far from the
     noise is off by more than the noise.
     """
+    windows = tangent.windows
     wired = [c for c in candidates if c.place.kind != "sensor"]
-    model, options = tangent.windows.criterion.model, tangent.options.candidate
+    sensors = [c for c in candidates if c.place.kind == "sensor"]
+    model, options = windows.criterion.model, tangent.options.candidate
     known = histories(model, [c for c in wired if not c.waves], tangent.trajectories, options)
     known |= histories(model, [c for c in wired if c.waves], measured, options)
     by_place: dict[str, list[Variant]] = {}
     for variant in known:
         by_place.setdefault(variant.candidate.place.name, []).append(variant)
-    given = {
-        name: [
+    variants = [variant for group in by_place.values() for variant in group]
+    size = sum(-(-near.residual.size // every) for near in windows.near)
+    rows, first = np.empty((len(variants) + len(sensors), size)), 0
+    whole = np.empty(len(rows))
+    for place, group in by_place.items():
+        given = [
             np.stack([known[v][n] for v in group], axis=1) for n in range(len(tangent.trajectories))
         ]
-        for name, group in by_place.items()
-    }
-    variants = [variant for group in by_place.values() for variant in group]
-    del known
-    rows, whole = without_starts(tangent, views, given)
-    sensors = [c for c in candidates if c.place.kind == "sensor"]
-    if not sensors:
-        return rows, np.maximum(whole, 1e-300), variants
-    shown = np.stack([tangent.sensed(c.effect, c.place.definition) for c in sensors], axis=1)
-    edges = np.cumsum([near.residual.size for near in tangent.windows.near])[:-1]
-    parts = zip(views, np.split(shown, edges), strict=True)
-    more = np.concatenate([view.off(part).T for view, part in parts], axis=1)
-    whole = np.concatenate((whole, np.einsum("ij,ij->j", shown, shown)))
-    variants += [Variant(c, ()) for c in sensors]
-    return np.concatenate((rows, more)), np.maximum(whole, 1e-300), variants
+        for variant in group:  # all of them twice are much memory
+            del known[variant]
+        mine = slice(first, first + len(group))
+        rows[mine], whole[mine] = without_starts(tangent, windows.views, {place: given}, every)
+        first += len(group)
+    edges = np.cumsum([near.residual.size for near in windows.near])[:-1]
+    for row, candidate in enumerate(sensors, start=first):
+        shown = tangent.sensed(candidate.effect, candidate.place.definition)
+        whole[row] = shown @ shown
+        parts = zip(windows.views, np.split(shown, edges), strict=True)
+        rows[row] = np.concatenate([view.off(part)[::every] for view, part in parts]) * every**0.5
+    variants += [Variant(candidate, ()) for candidate in sensors]
+    return rows, np.maximum(whole, 1e-300), variants
 
 
 def _by_series(
-    tangent: Tangent, rows: Matrix, variants: list[Variant]
+    tangent: Tangent, rows: Matrix, variants: list[Variant], kept: Ints
 ) -> tuple[Matrix, list[Variant]]:
     """What variants do to the residuals, (K, M), with a row for each series, zero in the others,
     where a phase is its own there."""
@@ -224,7 +255,7 @@ def _by_series(
     if count < 2 or not any(variant.candidate.each for variant in variants):
         return rows, variants
     sizes = [near.residual.size for near in tangent.windows.near]
-    of = np.repeat(tangent.series, sizes)
+    of = np.repeat(tangent.series, sizes)[kept]
     parts = [count if variant.candidate.each else 1 for variant in variants]
     found, first = np.zeros((sum(parts), rows.shape[1])), 0
     for row, own in zip(rows, parts, strict=True):

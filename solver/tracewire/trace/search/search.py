@@ -48,6 +48,8 @@ class Search:
     steps: list[Step] = field(default_factory=list)
     first: Trial | None = None
     best: Trial | None = None
+    waves: dict[str, dict[str, tuple[float, ...]]] = field(default_factory=dict)
+    """The lengths of waves that were scanned last, by candidate and shape."""
     returns: bool = True
     """Whether a body comes back to where it was: else much looks the same."""
 
@@ -167,9 +169,11 @@ class Search:
     def step(self, now: Trial) -> Trial | None:
         """One more effect, or a pair: screened, refitted, ranked, and passed by the gate."""
         self.tell("screening effects")
-        tangent = Tangent(now.diagram, now.windows, self.places, self.bench.rtol, self.options)
-        candidates = self.candidates(tangent, [effect.candidate for effect in now.effects])
-        screen = screened(tangent, now, candidates)
+        seen = now
+        if now.s2 > self.options.search.far and now.count > self.options.most_samples:
+            most, together = self.options.most_samples, self.options.windows_together
+            seen = self.bench.some(now, _spread(now, most, together))
+        screen = self.screen(seen)
         chance = screen.chance()
         options = self.options.screen
         count = options.singles if now.s2 < self.options.search.far else options.many
@@ -192,6 +196,24 @@ class Search:
         after = None if winner is None else winner.trial
         self.steps.append(Step(now, screen, chance, tuple(tried), after, words))
         return after
+
+    def screen(self, trial: Trial) -> Screen:
+        """The screen beside a model. Lengths of waves are scanned where there are few samples; else
+        they are those that were found there last."""
+        options = self.options
+        tangent = Tangent(trial.diagram, trial.windows, self.places, self.bench.rtol, options)
+        candidates = self.candidates(tangent, [effect.candidate for effect in trial.effects])
+        scan = not self.waves or trial.count <= options.most_scanned
+        if not scan:
+            candidates = [
+                replace(c, shapes={**c.shapes, **self.waves.get(str(c), {})}) for c in candidates
+            ]
+        screen = screened(tangent, trial, candidates, scan, options.most_residuals)
+        for candidate in {str(row.candidate): row.candidate for row in screen.rows}.values():
+            if candidate.waves:
+                shapes = {name: candidate.shapes[name] for name in candidate.waves}
+                self.waves[str(candidate)] = shapes
+        return screen
 
     def candidates(self, tangent: Tangent, taken: Sequence[Candidate]) -> list[Candidate]:
         """The effects at places that may be tried beside those that are there."""
@@ -222,6 +244,13 @@ class Search:
                 fall = other.rise - one.rise
                 verdict = gate(self.bench, other.trial, one.trial, windows, fall)
         return verdict
+
+
+def _spread(trial: Trial, most: int, together: int) -> list[int]:
+    """The numbers of windows with about so many samples together, in groups over the record."""
+    sizes = [near.residual.size for near in trial.windows.near]
+    every = -(-sum(sizes) // most)
+    return [n for n in range(len(sizes)) if n // together % every == 0]
 
 
 def _worth_judging(tried: Sequence[Tried], now: Trial, least_gain: float) -> list[int]:

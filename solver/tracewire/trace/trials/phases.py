@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from tracewire.residual import Criterion, descended, opened, projection
+from tracewire.residual import Criterion, descended, opened
 from tracewire.trace.thresholds import TrialOptions
 
 TURN = np.linspace(-np.pi, np.pi, 72, endpoint=False)
@@ -22,7 +22,7 @@ def best_phase(criterion_at: Callable[[float], Criterion], options: TrialOptions
     sine, cosine = (opened(criterion_at(phase)) for phase in (0.0, 0.5 * np.pi))
     squares = np.zeros(len(TURN))
     for n, (near, there) in enumerate(zip(sine.near, cosine.near, strict=True)):
-        off = projection(sine, n).off
+        off = sine.near[n].projection.off
         b, a = near.slopes[:, 0], -there.slopes[:, 0]
         without = 0.5 * (near.residual.ravel() - a + there.residual.ravel() - b)
         waves = np.outer(off(a), np.cos(TURN)) + np.outer(off(b), np.sin(TURN))

@@ -27,7 +27,6 @@ from tracewire.residual import (
     eliminated,
     free_unknowns,
     opened,
-    projection,
     sensor_unknowns,
     settled,
 )
@@ -143,8 +142,7 @@ class Trial:
     def standard_errors(self) -> dict[str, float]:
         """The standard error of each fitted value, with the residual's autocorrelation counted."""
         windows = self.windows
-        views = [projection(windows, n) for n in range(len(windows.near))]
-        reduced, _ = eliminated(windows, views)
+        reduced, _ = eliminated(windows)
         scales = np.array([u.scale for u in windows.criterion.unknowns])
         information = (reduced * scales).T @ (reduced * scales)
         covariance = np.linalg.pinv(information, rcond=1e-12) * max(self.s2, 1e-300) / self.part
@@ -233,6 +231,12 @@ class Bench:
         effects = self.met(trial, segments)
         good = trial.windows.good
         return self.fitted(effects, segments, length, trial.values, fixed=fixed, good=good)
+
+    def some(self, trial: Trial, numbers: Sequence[int]) -> Trial:
+        """A trial on some of its windows, by number, as they are."""
+        segments = trial.windows.segments
+        criterion = self.warm(trial, [segments[n] for n in numbers], trial.values)
+        return replace(trial, windows=opened(criterion, trial.windows.good))
 
     def on(self, trial: Trial, segments: Sequence[Segment]) -> list[Vector]:
         """The residuals in sigma of a trial on other windows, where only starts are fitted."""
