@@ -229,6 +229,9 @@ class ScreenOptions:
     """The part of a promise of the wrong sign at which a refit begins with the right one."""
     paired: int = 24
     """How many single effects are paired with each other."""
+    paired_hidden: int = 8
+    """How many more are paired that have an impossible sign alone, as a quadratic drag beside the
+    dry friction that is missing, too."""
     least_gain: float = 5.0
     """Half the fall of BIC from which on an effect is worth a refit."""
     singles: int = 6

@@ -120,8 +120,15 @@ class Screen:
         return self.columns.chance(groups, [row.candidate.sign for row in self.rows], best)
 
     def pairs(self) -> list[Proposal]:
-        """Pairs of candidates with possible signs, the most promising first."""
-        singles = self.best()[: self.columns.options.paired]
+        """Pairs of candidates with possible signs, the most promising first.
+
+        Also of effects whose sign is impossible alone: beside another one it may be possible.
+        """
+        options, best = self.columns.options, self.best()
+        known = {str(row.candidate) for row in best}
+        hidden = [row for name, row in self.visible().items() if name not in known]
+        hidden.sort(key=lambda row: -row.fall)
+        singles = [*best[: options.paired], *hidden[: options.paired_hidden]]
         found = []
         for one, other in combinations(singles, 2):
             fall, values = self.columns.score((*one.columns, *other.columns))

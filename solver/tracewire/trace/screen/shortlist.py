@@ -10,7 +10,7 @@ COPY = 1 - 1e-6
 
 def shortlist(screen: Screen, room: int, count: int) -> list[Proposal]:
     """What is worth a refit: the best single effects, `count` of them, and pairs that promise more
-    than their parts where there is room for two."""
+    than their parts and than any single effect, where there is room for two."""
     options = screen.columns.options
     least = options.least_gain
     singles: list[Row] = []
@@ -24,7 +24,12 @@ def shortlist(screen: Screen, room: int, count: int) -> list[Proposal]:
         return found
     alone = {str(row.candidate): row.gain for row in screen.best()}
     best = max(alone.values(), default=0.0)
-    pairs = [pair for pair in screen.pairs() if pair.gain > max(best, least) + least]
+
+    def promises_more(pair: Proposal) -> bool:
+        parts = max(alone.get(str(row.candidate), 0.0) for row in pair.rows)
+        return pair.gain > max(best, least, parts + least)
+
+    pairs = [pair for pair in screen.pairs() if promises_more(pair)]
     best_of = {pair.count: pair for pair in reversed(pairs)}
     # what takes many numbers, as waves do, hides no simple pair
     simple = [best_of[count] for count in sorted(best_of)[: options.simple_pairs]]

@@ -57,15 +57,18 @@ class Refits:
     ) -> list[Tried]:
         """The best of the proposals, refitted on all windows and ranked.
 
-        Where a single effect comes near the noise, pairs are for later: they say nothing more if it
-        reaches it. Elsewhere they all begin together, and what a pair leaves far behind is not
-        refitted on all windows.
+        Where a single effect comes near the noise, pairs are for later: if it reaches it, only
+        those of as few numbers can say more. Elsewhere they all begin together, and what a pair
+        leaves far behind is not refitted on all windows.
         """
         begun = self.begun(now, singles)
         near = any(one.trial.s2 < self.options.near for one in begun)
         tried = self.whole(now, begun) if near else []
-        if any(one.trial.s2 < self.bench.options.at_noise for one in tried):
-            return tried
+        at_noise = self.bench.options.at_noise
+        if any(one.trial.s2 < at_noise for one in tried):
+            pairs = [pair for pair in pairs if pair.count <= tried[0].proposal.count]
+            if not pairs:
+                return tried
         begun = [*([] if near else begun), *self.begun(now, pairs)]
         target = min((one.trial.rss for one in tried), default=np.inf)
         return self.ranked(now, [*tried, *self.whole(now, begun, target)])

@@ -186,12 +186,17 @@ class Search:
         pairs = [p for p in proposals if len(p.rows) > 1]
         tried = self.refits.tried(now, singles, pairs)
         winner = None
-        for number in _worth_judging(tried, now, options.least_gain):
-            verdict = self.judged(now, tried[number], tried)
+        queue = _worth_judging(tried, now, options.least_gain)
+        judged: set[int] = set()
+        while queue and winner is None:
+            number = queue.pop(0)
+            judged.add(number)
+            verdict, simpler = self.judged(now, tried[number], tried)
             tried[number] = replace(tried[number], remark=verdict.words)
             if verdict.passed:
                 winner = tried[number]
-                break
+            elif simpler is not None and simpler not in judged:  # its part stands in its place
+                queue = [simpler, *(n for n in queue if n != simpler)]
         words = "no effect passes" if winner is None else f"accepted: {named(winner.trial, now)}"
         after = None if winner is None else winner.trial
         self.steps.append(Step(now, screen, chance, tuple(tried), after, words))
@@ -233,17 +238,32 @@ class Search:
             and str(c) not in without
         ]
 
-    def judged(self, now: Trial, one: Tried, tried: Sequence[Tried]) -> Verdict:
-        """What the gate says of a trial, of a pair also beside each effect alone."""
+    def judged(self, now: Trial, one: Tried, tried: Sequence[Tried]) -> tuple[Verdict, int | None]:
+        """What the gate says of a trial, also beside each simpler one that was tried, and the
+        number of the one that it does not improve on."""
         length = one.trial.length
         windows = self.windows(self.stretches.gate, length)
         verdict = gate(self.bench, now, one.trial, windows, -one.rise)
-        mine = {str(e) for e in one.trial.effects}
-        for other in tried:
-            if verdict.passed and {str(e) for e in other.trial.effects} < mine:
+        for number, other in enumerate(tried):
+            if verdict.passed and _is_simpler(other, one):
                 fall = other.rise - one.rise
                 verdict = gate(self.bench, other.trial, one.trial, windows, fall)
-        return verdict
+                if not verdict.passed:
+                    return verdict, number
+        return verdict, None
+
+
+def _is_simpler(other: Tried, one: Tried) -> bool:
+    """Whether a trial is a part of another one, or has an effect that one of the other's imitates,
+    as Coulomb friction and a Stribeck curve, and fewer numbers."""
+    theirs, mine = ({str(e): e.candidate for e in each.trial.effects} for each in (other, one))
+    new, old = theirs.keys() - mine.keys(), mine.keys() - theirs.keys()
+    if not new:
+        return bool(old)
+    if len(new) != 1 or len(old) != 1 or other.proposal.count >= one.proposal.count:
+        return False
+    (added,), (imitating,) = (theirs[name] for name in new), (mine[name] for name in old)
+    return added.effect in imitating.alias and added.place == imitating.place
 
 
 def _spread(trial: Trial, most: int, together: int) -> list[int]:
