@@ -65,9 +65,20 @@ class TraceOptions:
     """The part of the error by which a model may be worse than the best and still count as near."""
     sure: float = 3.0
     """Standard errors over blocks by which a model must beat the declared one to be named."""
-    explained: float = 0.5
-    """The share of the excess error that named effects explain at least, less its standard error;
-    a wrong single effect had a share of about 0, right models had more than 0.75."""
+    explained: float = 0.6
+    """The share of the excess error that named effects explain at least; a wrong single effect had
+    a share of about 0, right models had more than 0.74."""
+    explained_surely: float = 0.5
+    """The same less its standard error: the greater part."""
+    law_from: float = 2.0
+    """The reduced chi-square of a rest, twice the variance of the noise, from which on it is
+    asked whether it is a law that no block has."""
+    law_share: float = 0.95
+    """The part of a rest that is a smooth function at one place, from which on it is a law. On 20
+    generated records with an unmodelled part it was at most 0.83; on 7 with a law that the library
+    lacks 0.87 to 1."""
+    law_below: float = 0.9
+    """The share explained from which on such a law is a remainder, unless it reaches the noise."""
     map_gain: float = 0.05
     """The part of the error that a smooth map of position, rate, time or history must gain on
     unseen data for a rest to be called unexplained."""
@@ -106,14 +117,19 @@ class TraceOptions:
     most_scanned: int = 12_000
     """Residuals up to which the lengths of waves are scanned in each screen: the scan of 800
     lengths takes most of a screen's time."""
-    singles: int = 5
-    """Single effects that are refitted beside the declared model, by each of two measures of each
-    horizon's screen: on 26 generated records the true one was among the first two 22 times."""
+    singles: int = 10
+    """Single effects that are refitted beside the declared model, by each of two measures, shared
+    by the horizons: on 26 generated records the true one was among the first two 22 times."""
     pairs: int = 2
     """Pairs that are refitted beside the declared model, by each measure."""
     beside: int = 3
     """Effects that are refitted beside each of the best smaller models, by each measure; and two
     pairs less."""
+    cheap_samples: int = 5000
+    """Samples that refits may take together in any case: a record of 50 samples costs next to
+    nothing, and 100 effects are refitted there."""
+    tried_before: int = 3
+    """Models that were refitted on the shortest windows before, and are compared, too."""
     imitated: float = 0.1
     """By which part of its square an effect must be imitated less without a declared term, to be
     tried there."""
@@ -123,8 +139,8 @@ class TraceOptions:
     """Models at each number of fitted numbers whose predictions are compared."""
     first_steps: int = 5
     """Steps of a first refit of a model, at the horizon whose screen proposed it."""
-    begun: int = 4
-    """How many of the models of a screen are refitted at all horizons after that."""
+    begun: int = 8
+    """How many of the models of the screens are refitted at all horizons after that."""
     coarse: float = 5e-3
     """The part of the squared error by which a step of such a refit must still lower it."""
     steps: int = 12

@@ -58,8 +58,14 @@ class Pool:
         numbers = range(len(self.horizons.each))
         self.first = [self.screened(declared, number) for number in numbers]
         for number in numbers:
-            proposals = self.promising(number, self.first[number], options.singles, options.pairs)
+            singles, pairs = self.worth(options.singles) // len(numbers), options.pairs
+            proposals = self.promising(number, self.first[number], singles, pairs)
             self.extend(declared, number, proposals)
+        for effects in self._tried_before():
+            if frozenset(map(str, effects)) not in {model.names for model in self.models.values()}:
+                fitted = self.fitted(declared, effects)
+                if fitted is not None:
+                    self._kept(fitted)
         for smaller in self.without_terms(declared):
             self._extend_without(smaller)
         for size, parents in zip(range(1, options.effects), options.parents, strict=False):
@@ -72,6 +78,20 @@ class Pool:
         for size in range(1, options.effects + 1):
             for model in self.best(size, options.exchanged):
                 self.without_terms(model)
+
+    def worth(self, count: int) -> int:
+        """How many refits are worth their time where a long record is worth `count` of them."""
+        samples = sum(len(of) for of in self.horizons.each[-1].blocks)
+        return max(count, self.options.cheap_samples // samples)
+
+    def _tried_before(self) -> list[tuple[Added, ...]]:
+        """The effects that came through the refits on the shortest windows, the best first: there
+        a screen promises what a refit keeps, where whole runs are far from what was measured."""
+        first = [step for step in self.search.steps if not step.before.effects]
+        tried = [one.trial for step in first[:1] for one in step.tried]
+        best = self.search.best
+        found = [trial.effects for trial in tried[: self.options.tried_before]]
+        return [*found, best.effects] if best and best.effects else found
 
     def _extend_beside(self, parent: Finalist) -> None:
         """A model with the most promising effects and pairs: what shows in short windows is looked
@@ -162,7 +182,8 @@ class Pool:
         errors = errors[:, None, None, seen[seen >= 0]]
         scores = log_scores(errors).mean(axis=(1, 2, 3))
         scores = scores + self._price * np.array([len(trial.windows.values) for trial in begun])
-        best = np.argsort(scores, kind="stable")[: self.options.begun]
+        most = self.worth(self.options.begun) // len(self.horizons.each)
+        best = np.argsort(scores, kind="stable")[:most]
         near = 0.5 * np.log(self.options.hopeful)
         return [begun[n] for n in best.tolist() if scores[n] <= scores[best[0]] + near]
 

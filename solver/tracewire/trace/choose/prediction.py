@@ -123,11 +123,12 @@ def _compare(pool: Pool, declared: Finalist, errors: dict[Key, Array]) -> None:
     scores = {key: float(log_scores(fit[None], floor).mean()) for key, fit in fits.items()}
     best = float(log_scores(errors[declared.key][None], floor).mean())
     compared: dict[int, int] = {}
+    finalists = pool.worth(pool.options.finalists)
     ranks = pool.ranks()
     for key in sorted(ranks, key=lambda key: ranks[key]):
         numbers = pool.models[key].numbers
         behind = scores[key] > best + margin
-        if key in errors or behind or compared.get(numbers, 0) >= pool.options.finalists:
+        if key in errors or behind or compared.get(numbers, 0) >= finalists:
             continue
         compared[numbers] = compared.get(numbers, 0) + 1
         errors[key] = _errors(pool, pool.settled(pool.models[key]))

@@ -12,6 +12,7 @@ from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.choose.remainder import explained, held_out, remainders
 from tracewire.trace.found import Dependence, Explained, HeldOut, Missing, Remainder, Verdict
 from tracewire.trace.missing.dependence import where_what
+from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.tangent import Tangent
 from tracewire.trace.search.finish import Final, Rival
 from tracewire.trace.search.search import Search
@@ -71,9 +72,10 @@ def judge_at_noise(search: Search, final: Final) -> Judgement:
 def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
     """The verdict on the model that predicts held-out blocks best.
 
-    `effect`: it beats the declared one by three standard errors and explains at least half of the
-    excess error, less one standard error. `null`: nothing is sure, and a smooth map of what is left
-    gains next to nothing. Else something is missing that no effect explains: `unexplained`.
+    `effect`: it beats the declared one by three standard errors, explains the greater part of the
+    excess error, and leaves no law behind that no block has. `null`: nothing is sure, and a smooth
+    map of what is left gains next to nothing. Else something is missing that no effect explains:
+    `unexplained`.
     """
     options = search.options
     prediction, harmed = _harmless(search, prediction)
@@ -92,7 +94,14 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
         verdict: Verdict = "unexplained" if missed else "null"
         dependences, missing = maps[0]
     else:
-        verdict = "effect" if share.share - error >= options.explained else "unexplained"
+        enough = share.share >= options.explained
+        enough = enough and share.share - error >= options.explained_surely
+        law = ""
+        if search.returns:  # else all that is left is a function of the one way
+            law = _law_left(taken.trials[0], maps[0][0], share.share, options)
+        if law:
+            search.words.append(f"{_joined(taken.names)} cannot be all: {law}")
+        verdict = "effect" if enough and not law else "unexplained"
         dependences, missing = (
             residual_map(search, prediction.models[0].trials[0])
             if verdict == "unexplained"
@@ -196,6 +205,22 @@ def _left(trial: Trial, shares: Sequence[Dependence]) -> float:
     best = max((d.share for d in shares), default=0.0)
     excess = max(trial.rss - trial.freedom, 0.0)
     return float(np.clip(1 - best * excess / trial.rss, 1e-6, 1.0)) if trial.rss > 0 else 1.0
+
+
+def _law_left(
+    trial: Trial, shares: Sequence[Dependence], explained: float, options: TraceOptions
+) -> str:
+    """In words, the law that the named effects leave behind: a smooth function at one place that
+    takes the rest down to the noise, or nearly all of it where they explain too little."""
+    best = max(shares, key=lambda d: d.share, default=None)
+    if best is None or trial.s2 < options.law_from:
+        return ""
+    left = 1 + (1 - best.share) * (trial.s2 - 1)
+    nearly_all = best.share >= options.law_share and explained < options.law_below
+    if left > options.at_noise and not nearly_all:
+        return ""
+    of = " and ".join(best.variables)
+    return f"{best.share:.1%} of the rest is a function of {of} at {best.place}, of no block's form"
 
 
 def _gate(search: Search, best: Trial) -> float:
