@@ -11,6 +11,7 @@ from tracewire.solve.core.arrays import (
     Ints,
     Matrix,
     Vector,
+    copy,
     crossings_of,
     flow_of,
     plan_of,
@@ -52,13 +53,14 @@ from tracewire.solve.core.flow import (
     guard_rates,
 )
 from tracewire.solve.core.jit import helper, unit
-from tracewire.solve.core.modes import noise
+from tracewire.solve.core.modes import margin, mode_value, noise
 from tracewire.solve.core.record import log
 from tracewire.solve.core.saltation import enter, leave, reset_sensitivities
 from tracewire.solve.core.settle import JUMP, KNOWN, LEFT, settle
 
 CHATTER_PART = 1e-6
 MOST_RESETS = 100
+MOST_FOLLOWED = 4  # rounds in which guards follow the modes of others
 NOTHING = 1e-12
 
 
@@ -95,6 +97,8 @@ def happen(core: int, t: float, x: Vector) -> int:
             marks[i] = LEFT
             flow.m[i] = 1.0 if contact.side_of(core, fired[i]) > 0 else 0.0
     status = settle(core, t, x, marks, False)
+    if status == FINISHED and _unturned(core, t, x, fired, speed, turned, marks):
+        status = settle(core, t, x, marks, False)
     if status != FINISHED:
         return status
     waits = numbers[1]
@@ -126,6 +130,29 @@ def happen(core: int, t: float, x: Vector) -> int:
 
 
 @unit
+def _unturned(
+    core: int, t: float, x: Vector, fired: Ints, speed: Vector, turned: Ints, marks: Ints
+) -> bool:
+    """Let guards cross after all that only seemed to turn: with the modes that have come to rest
+    they go on over their level. Whether there were any; they, and those that turned, are marked."""
+    flow = flow_of(core)
+    found = False
+    if not np.any(turned):
+        return found
+    along = np.empty(len(turned))
+    guard_rates(core, t, x, along)
+    for i in range(len(turned)):
+        marks[i] = LEFT if turned[i] else 0
+        if not turned[i] or flow.bound[i] != FREE:
+            continue
+        side = contact.side_of(core, fired[i])
+        if side * along[i] < contact.STOPPED * speed[i]:
+            turned[i], marks[i], found = 0, KNOWN, True
+            flow.m[i] = 0.0 if side > 0 else 1.0
+    return found
+
+
+@unit
 def _resets(
     core: int,
     t: float,
@@ -144,6 +171,7 @@ def _resets(
     if count == 0:
         return FINISHED
     due, along = np.zeros(count, dtype=np.int64), np.empty(modes)
+    guard_rates(core, t, x, along)
     for reset in range(count):
         i, direction = plan.resets[reset, 0], plan.resets[reset, 1]
         if i >= 0 and (crossings.how[i] in (GUARD, TIME, PASSED)):
@@ -151,13 +179,13 @@ def _resets(
     for _ in range(MOST_RESETS):
         if not np.any(due):
             return FINISHED
-        before = x.copy()
-        guard_rates(core, t, before, along)
+        before, modes_before = x.copy(), flow_of(core).m.copy()
         status = _write(core, t, before, x, due)
         if status != FINISHED:
             return status
         reset_sensitivities(core, t, before, due, flow_of(core).m)
         contact.struck(core, t, before, x)
+        _follow(core, t, x)  # whether a rate has turned is a matter of the field that holds now
         for reset in np.flatnonzero(due):
             i = plan.resets[reset, 0]
             side = contact.side_of(core, reset)
@@ -166,9 +194,30 @@ def _resets(
             turned[i] = not timed and contact.turns(core, t, before, x, i, speed[i], side)
             jumps[i] = x - before
         _driven_together(core, t, before, x, along, due)
+        guard_rates(core, t, x, along)
+        copy(modes_before, flow_of(core).m)
     progress.info[0] = t
     progress.which[0], progress.which[1] = 1, plan.resets[np.flatnonzero(due)[0], 0]
     return NO_END
+
+
+@unit
+def _follow(core: int, t: float, x: Vector) -> None:
+    """Set the modes of the guards that a jump has carried over their levels.
+
+    Not those of what fires now, nor those inside of an algebraic loop: these are decided later.
+    """
+    flow, plan, crossings = flow_of(core), plan_of(core), crossings_of(core)
+    guards, level = np.empty(len(plan.kind)), noise(x)
+    for _ in range(MOST_FOLLOWED):
+        evaluate(core, GUARDS, t, x, guards)
+        changed = False
+        for i in range(len(plan.kind)):
+            later = crossings.how[i] >= 0 or plan.loop[i] >= 0
+            if not later and margin(core, i, guards[i]) < -level:
+                flow.m[i], changed = mode_value(core, i, guards[i]), True
+        if not changed:
+            return
 
 
 @unit
