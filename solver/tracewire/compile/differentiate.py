@@ -79,7 +79,7 @@ def _rate(tape: Tape, index: int, inner: list[int]) -> int:
         return push("*", slope, inner[1])
     if len(entry.operands) == 1:
         return (
-            push("*", _slope(tape, entry.op, a, index), da)
+            push("*", slope_of(tape, entry.op, a, index), da)
             if entry.op != "neg"
             else (push("neg", da))
         )
@@ -138,7 +138,7 @@ def _power_rate(tape: Tape, index: int, base: tuple[int, int], exponent: tuple[i
     return push("+", by_base, by_exponent)
 
 
-def _slope(tape: Tape, op: str, a: int, value: int) -> int:
+def slope_of(tape: Tape, op: str, a: int, value: int) -> int:
     """The derivative of a function of one argument; `value` is the entry of the function itself."""
     push, one = tape.push, tape.constant(1.0)
 

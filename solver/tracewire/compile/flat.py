@@ -140,3 +140,4 @@ class Flat:
     shapes: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     memories: tuple[FlatMemory, ...] = ()
     require: tuple[Condition, ...] = ()
+    max_step: Expression | None = None

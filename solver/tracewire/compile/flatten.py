@@ -108,6 +108,7 @@ class _Flattener:
             record=tuple(self.recorded(name, scope) for name in record),
             span=(self.value(span[0], scope), self.value(span[1], scope)),
             every=None if top.every is None else self.value(top.every, scope),
+            max_step=None if top.max_step is None else self.value(top.max_step, scope),
             presets={
                 name: {key: self.value(value, scope) for key, value in preset.items()}
                 for name, preset in top.presets.items()

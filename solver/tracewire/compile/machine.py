@@ -22,7 +22,7 @@ from tracewire.compile.tape import Entry, Tape
 
 ARITHMETIC = {"+": "fadd", "-": "fsub", "*": "fmul", "/": "fdiv", "and": "fmul"}
 LIBRARY = {name: name for name in (*libm.ONE, *libm.TWO)} | {"**": "pow"}
-INTRINSIC = {"sqrt": "llvm.sqrt.f64", "floor": "llvm.floor.f64"}
+INTRINSIC = {"sqrt": "llvm.sqrt.f64", "floor": "llvm.floor.f64", "abs": FABS}
 PREFIX = "tracewire."
 ARGUMENTS = "double %t, " + ", ".join(f"ptr noalias readonly %{a}" for a in "xmck")
 LONGEST_RUN = 8  # stores of one value to neighbours, beyond which a loop does them
@@ -101,7 +101,7 @@ def machine_text(functions: Sequence[str]) -> str:
     heads = [f"declare double @{PREFIX}{name}(double) {PURE}" for name in libm.ONE]
     heads += [f"declare double @{PREFIX}{name}(double, double) {PURE}" for name in libm.TWO]
     heads.append(f"declare void @{PREFIX}{libm.BOTH}(double, ptr, ptr) nounwind")
-    heads += [f"declare double @{name}(double)" for name in (*INTRINSIC.values(), FABS)]
+    heads += [f"declare double @{name}(double)" for name in INTRINSIC.values()]
     heads += [text for name, text in HELPERS.items() if f"@{name}(" in body]
     return "\n".join([*heads, body, ""])
 

@@ -12,12 +12,21 @@ from tracewire.compile.constants import Constants
 from tracewire.compile.differentiate import differentiate, gradients
 from tracewire.compile.lower import Lowered
 from tracewire.compile.machine import MachineWriter, machine_text
+from tracewire.compile.pace import pace
 from tracewire.compile.pointers import address_of, as_c, when_called
+from tracewire.compile.sizes import sizes
 from tracewire.compile.source import Function, Writer, guarded, load
 
 Backend = Literal["llvm", "quick", "python"]
 BACKENDS: tuple[Backend, ...] = ("llvm", "quick", "python")
 ORDERS = {"guard_second": 2, "guard_third": 3, "guard_fourth": 4}
+SIZES = {
+    "guard_rate_sizes": "guard_rates",
+    "guard_second_sizes": "guard_second",
+    "guard_third_sizes": "guard_third",
+    "guard_fourth_sizes": "guard_fourth",
+    "rate_sizes": "rhs",
+}
 PREPARE = "prepare"
 
 
@@ -75,12 +84,14 @@ class Routines:
             "rhs": _dense("Rates of the states.", low.rates),
             "outputs": _dense("Recorded signals.", outputs),
             "guards": _dense("Guards of the modes.", guards),
+            "guard_sizes": _dense("Sizes of the guards.", sizes(low.tape, guards, self.states)),
             "guard_rates": _dense("Rates of the guards.", self.along_the_flow(guards, 1)),
             "timed": _dense(
                 "Slope and value at t = 0 of each guard that reads only t.",
                 [entry for mode in low.modes for entry in mode.timed or ()],
             ),
             "starts": _dense("Start values of the states.", low.starts),
+            "pace": _dense("Largest pace of the guards that are no known times.", [self._pace()]),
             "resets": _dense(
                 "New values of all resets, one after the other.",
                 [entry for reset in low.resets for entry in reset.values.values()],
@@ -97,6 +108,8 @@ class Routines:
         }
         for name, order in ORDERS.items():
             self.lazy[name] = number, partial(self._guards_along_the_flow, order)
+        for name, of in SIZES.items():
+            self.lazy[name] = self.size(of), partial(self._sizes, of)
         self._made: dict[str, Routine] = {}
         self._addresses: dict[str, int] = {}
         self._callbacks: dict[str, int] = {}
@@ -132,6 +145,21 @@ class Routines:
     def _guards_along_the_flow(self, order: int) -> dict[int, int]:
         rates = list(self.eager["guard_rates"].roots.values())
         return dict(enumerate(self.along_the_flow(rates, order - 1)))
+
+    def _sizes(self, of: str) -> dict[int, int]:
+        """The sizes of what a function computes."""
+        roots = self.routine(of).roots
+        entries = sizes(self.tape, list(roots.values()), self.states)
+        return dict(zip(roots, entries, strict=True))
+
+    def _pace(self) -> int:
+        searched = [m.guard for m in self.lowered.modes if not m.timed and m.kind != "memory"]
+        return pace(self.tape, searched, self.flow)
+
+    @property
+    def has_pace(self) -> bool:
+        """Whether guards may turn faster than the states say."""
+        return self.tape.value(self.eager["pace"].roots[0]) != 0.0
 
     def rows(self, of: str, leaves: Sequence[int]) -> dict[int, int]:
         """The entries of d out / d leaf of an eager function, row by row; zeros are left out."""
@@ -218,7 +246,6 @@ class Routines:
 
     def _callback(self, names: Sequence[str]) -> dict[str, int]:
         found = self.python(names)
-        arrays = self.states, self.modes, self.constants.size
         addresses = {}
         for name in names:
             if name == PREPARE:
@@ -232,7 +259,9 @@ class Routines:
                     0,
                 )
             else:
-                callback = as_c(found[name], tuple(self.routine(name).roots), *arrays)
+                states = 2 * self.states if name.endswith("sizes") else self.states
+                places = tuple(self.routine(name).roots)
+                callback = as_c(found[name], places, states, self.modes, self.constants.size)
             self._kept.append(callback)
             addresses[name] = address_of(callback)
         return addresses

@@ -80,7 +80,13 @@ def _close(step: Sequence[float], scale: Sequence[float]) -> bool:
     return all(abs(a) <= CLOSE * s for a, s in zip(step, scale, strict=True))
 
 
-SHARED: dict[str, Any] = {"max": max, "segment": _segment, "slope": _slope, "newton": _newton}
+SHARED: dict[str, Any] = {
+    "abs": abs,
+    "max": max,
+    "segment": _segment,
+    "slope": _slope,
+    "newton": _newton,
+}
 FAST: dict[str, Any] = {name: getattr(math, name) for name in (*libm.ONE, *libm.TWO, "sqrt")}
 FAST |= {**SHARED, "floor": _floor}
 

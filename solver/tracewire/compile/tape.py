@@ -52,6 +52,7 @@ UNARY: dict[str, Callable[[float], float]] = {
     "log": math.log,
     "sqrt": math.sqrt,
     "floor": math.floor,
+    "abs": abs,
     "neg": lambda a: -a,
     "not": lambda a: 1.0 - a,
 }

@@ -228,6 +228,7 @@ class Diagram:
     title: str = ""
     span: tuple[Value, Value] | None = None
     every: Value | None = None
+    max_step: Value | None = None
     record: Mapping[str, Place] = field(default_factory=dict)
     inputs: Mapping[str, InputPort] = field(default_factory=dict)
     outputs: Mapping[str, Wire] = field(default_factory=dict)

@@ -23,6 +23,7 @@ from tracewire.diagram.sections import (
 )
 from tracewire.diagram.settings import (
     read_every,
+    read_max_step,
     read_presets,
     read_record,
     read_require,
@@ -41,7 +42,7 @@ INSIDE = (
 )
 TOP = (
     *("title", "span", "every", "record", "inputs", "parameters", "blocks", "subsystems"),
-    *("include", "events", "require", "presets", "measured"),
+    *("include", "events", "require", "presets", "measured", "max_step"),
 )
 INCLUDED = ("title", "include", "subsystems")
 
@@ -148,6 +149,8 @@ class _Reader:
             diagram = replace(diagram, span=read_span(given["span"], body))
         if "every" in given:
             diagram = replace(diagram, every=read_every(given["every"], body))
+        if "max_step" in given:
+            diagram = replace(diagram, max_step=read_max_step(given["max_step"], body))
         if "record" in given:
             diagram = replace(diagram, record=read_record(given["record"], body, diagram))
         if "require" in given:

@@ -1,4 +1,4 @@
-"""The sections that only the top of a diagram file has: span, every, record, require, presets."""
+"""The sections that only the top of a diagram file has: span, every, record and so on."""
 
 from __future__ import annotations
 
@@ -31,12 +31,21 @@ def read_span(node: Node, body: Body) -> tuple[Value, Value] | None:
 
 def read_every(node: Node, body: Body) -> Value | None:
     """`every`: the interval of the output in s."""
-    every = read_value(node, body, fit=False)
-    number = None if every is None else _number(every)
+    return _read_interval(node, body, "every", "It is the interval between output samples.")
+
+
+def read_max_step(node: Node, body: Body) -> Value | None:
+    """`max_step`: the longest step of a run in s."""
+    return _read_interval(node, body, "max_step", "It is the longest step that a run may take.")
+
+
+def _read_interval(node: Node, body: Body, key: str, hint: str) -> Value | None:
+    found = read_value(node, body, fit=False)
+    number = None if found is None else _number(found)
     if number is not None and number <= 0:
-        what = f"'every' must be above zero, not {number:g} s"
-        body.problems.add(what, body.place(node), (), "It is the interval between output samples.")
-    return every
+        what = f"'{key}' must be above zero, not {number:g} s"
+        body.problems.add(what, body.place(node), (), hint)
+    return found
 
 
 def _number(value: Value) -> float | None:

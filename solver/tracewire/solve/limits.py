@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from tracewire.errors import Problem, SimulationError
@@ -9,11 +10,14 @@ from tracewire.errors import Problem, SimulationError
 
 @dataclass(frozen=True)
 class Limits:
-    """Limits of one run: accepted and rejected steps, wall time in s, events in the log."""
+    """Limits of one run: accepted and rejected steps, wall time in s, events in the log, and the
+    longest step in s: guards are looked at five times in a step.
+    """
 
     steps: int = 50_000_000
     seconds: float = 600.0
     events: int = 1_000_000
+    max_step: float = math.inf
 
 
 def beyond_budget(steps: float) -> SimulationError:

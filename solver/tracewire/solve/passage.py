@@ -19,6 +19,7 @@ from tracewire.solve.core.codes import (
     FINISHED,
     LENGTH,
     LOG_FULL,
+    LONGEST,
     PAUSED,
     SAMPLED,
     STEPS,
@@ -34,7 +35,13 @@ from tracewire.solve.interrupt import Halt, Interrupted
 from tracewire.solve.limits import Limits
 from tracewire.solve.sensitivities import UNMOVED, new_sensitivity
 from tracewire.solve.setup import kept_plan, new_arrays, new_flow, new_progress, packed, prepare
-from tracewire.solve.simulate import parameter_values, start_of, tables_of, tolerance_of
+from tracewire.solve.simulate import (
+    longest_step,
+    parameter_values,
+    start_of,
+    tables_of,
+    tolerance_of,
+)
 from tracewire.solve.space import Space
 
 Vector = NDArray[np.float64]
@@ -80,7 +87,8 @@ class Passage:
             raise OptionError([Problem(what, hint="Give a finite length above 0.")])
         self.model = model
         self.parameters = parameter_values(model, parameters or {}, preset)
-        tolerance = tolerance_of(model, rtol, atol, method, None, LONG * length)
+        longest = longest_step(model, self.parameters, Limits())
+        tolerance = tolerance_of(model, rtol, atol, method, None, LONG * length, longest)
         model.compiled_addresses(FUNCTIONS)  # several passages may run in threads
         vector = np.array([*self.parameters.values(), 0.0])
         tables = packed(tables_of(model, self.parameters, inputs or {}))
@@ -126,6 +134,7 @@ class Passage:
         arrays.flow.k[:] = packed(tables_of(model, self.parameters, self._inputs))
         now = arrays.progress.now
         now[T], now[END], now[LENGTH] = begin, begin + LONG * length, LONG * length
+        now[LONGEST] = longest_step(model, self.parameters, Limits())
         self._space.keep()
         self._execution.start = begin
         self.begin_at(begin, start_of(model, arrays.flow, self._start) if x is None else x)

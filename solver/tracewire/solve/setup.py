@@ -29,7 +29,9 @@ from tracewire.solve.core.codes import (
     KINDS,
     LENGTH,
     LOG_HEAD,
+    LONGEST,
     METHOD,
+    PACED,
     RTOL,
     H,
     T,
@@ -50,11 +52,14 @@ Table = tuple[Vector, Vector]
 
 @dataclass(frozen=True)
 class Tolerance:
-    """How exact a run is: relative, absolute per state (n,), and the step of a fixed method."""
+    """How exact a run is: relative, absolute per state (n,), the step of a fixed method, and the
+    longest step in s that any may take.
+    """
 
     rtol: float
     atol: Vector
     step: float = np.inf
+    longest: float = np.inf
 
 
 def kept_plan(model: Model) -> Plan:
@@ -170,7 +175,7 @@ def new_progress(
     n, count = len(x), len(model.modes)
     width = LOG_HEAD + 2 * n
     progress = Progress(
-        now=np.zeros(7),
+        now=np.zeros(9),
         x=np.empty(n),
         atol=np.empty(n),
         ints=np.zeros(15, dtype=np.int64),
@@ -184,6 +189,7 @@ def new_progress(
         which=np.zeros(count + 8, dtype=np.int64),
         overlooked=np.zeros(len(model.lowered.resets), dtype=np.int64),
     )
+    progress.now[PACED] = float(model.has_pace)
     set_up(progress, x, span, times, method, tolerance)
     return progress
 
@@ -199,7 +205,7 @@ def set_up(
     """Let a run that has not begun be this one."""
     now = progress.now
     now[T], now[H], now[END], now[LENGTH] = span[0], 0.0, span[1], span[1] - span[0]
-    now[RTOL], now[FIXED] = tolerance.rtol, tolerance.step
+    now[RTOL], now[FIXED], now[LONGEST] = tolerance.rtol, tolerance.step, tolerance.longest
     progress.x[:], progress.atol[:], progress.times[:] = x, tolerance.atol, times
     progress.ints[METHOD] = -1 if method == "auto" else NAMES.index(method)
 

@@ -84,7 +84,8 @@ def simulate(
     samples = samples_of(model, values, begin, end, given)
     if method != "auto" and method not in NAMES:
         raise OptionError([unknown("method", method, ["auto", *NAMES])])
-    tolerance = tolerance_of(model, rtol, atol, method, step, end - begin)
+    longest = longest_step(model, values, limits or Limits())
+    tolerance = tolerance_of(model, rtol, atol, method, step, end - begin, longest)
     tables = packed(tables_of(model, values, inputs or {}))
     moving = moving_with(model, asked, values, parameters or {}, preset)
     space = space_for(model, values, tables, asked, moving, len(samples))
@@ -134,8 +135,9 @@ def tolerance_of(
     method: str,
     step: float | None,
     length: float,
+    longest: float = math.inf,
 ) -> Tolerance:
-    """The tolerances as the core takes them."""
+    """The tolerances as the core takes them. Raises OptionError."""
     given = atol if isinstance(atol, Mapping) else {}
     problems = [unknown("state", name, model.states) for name in given if name not in model.states]
     if problems:
@@ -153,7 +155,19 @@ def tolerance_of(
     if step is not None and not 0 < step <= length:
         what = f"steps of {step:g} s do not fit into a span of {length:g} s"
         raise OptionError([Problem(what, hint="Give a step above 0 and below the span.")])
-    return Tolerance(rtol, np.array(absolute, dtype=float), np.inf if step is None else step)
+    fixed = math.inf if step is None else step
+    return Tolerance(rtol, np.array(absolute, dtype=float), fixed, longest)
+
+
+def longest_step(model: Model, values: Mapping[str, float], limits: Limits) -> float:
+    """The longest step in s: that of the diagram or of the limits. Raises OptionError."""
+    given, longest = model.flat.max_step, limits.max_step
+    if given is not None:
+        longest = min(longest, float(evaluate(given, values)))
+    if not longest > 0:
+        what = f"steps of {longest:g} s at most lead nowhere"
+        raise OptionError([Problem(what, hint="Give a max_step above 0.")])
+    return longest
 
 
 def parameter_values(

@@ -32,7 +32,13 @@ from tracewire.solve.sensitivities import (
     set_sensitivity,
 )
 from tracewire.solve.setup import packed, set_up, starts
-from tracewire.solve.simulate import parameter_values, refuse_nan, tables_of, tolerance_of
+from tracewire.solve.simulate import (
+    longest_step,
+    parameter_values,
+    refuse_nan,
+    tables_of,
+    tolerance_of,
+)
 from tracewire.solve.space import Space, give_back, space_for
 
 Vector = NDArray[np.float64]
@@ -104,7 +110,8 @@ def simulate_spans(
     limits = limits or Limits()
     space = space_for(model, values, tables, asked, moving, 0)
     arrays, progress = space.arrays, space.arrays.progress
-    tolerance = tolerance_of(model, rtol, atol, "auto", None, np.inf)
+    longest = longest_step(model, values, limits)
+    tolerance = tolerance_of(model, rtol, atol, "auto", None, np.inf, longest)
     set_up(progress, np.zeros(len(progress.x)), (0.0, 1.0), np.empty(0), "auto", tolerance)
     if asked:
         of_starts = arrays.sensitivity

@@ -32,6 +32,7 @@ from tracewire.solve.sensitivities import UNMOVED, new_sensitivity
 from tracewire.solve.setup import kept_plan, new_arrays, new_flow, new_progress, packed, prepare
 from tracewire.solve.simulate import (
     ascending,
+    longest_step,
     parameter_values,
     refuse_nan,
     run_of,
@@ -179,7 +180,9 @@ class Task:
             marks, since = instants(section, values, begin, end)
         absolute, step = options.get("atol"), options.get("step")
         rtol = options.get("rtol", 1e-6)
-        tolerance = tolerance_of(model, rtol, absolute, self.method, step, end - begin)
+        longest = longest_step(model, values, self.limits)
+        length = end - begin
+        tolerance = tolerance_of(model, rtol, absolute, self.method, step, length, longest)
         vector = np.array([*values.values(), 0.0])
         if self.tables_vary:
             flow = new_flow(model, vector, packed(tables_of(model, values, self.inputs)))

@@ -26,9 +26,11 @@ FUNCTIONS = (
     "guard_second",
     "guard_third",
     "guard_fourth",
+    "pace",
 )
 RHS, GUARDS, GUARD_RATES, OUTPUTS, TIMED, RESETS = 0, 1, 2, 3, 4, 5
 JACOBIAN, GRADIENTS, CURVES, SECOND = 6, 7, 8, 9
+PACE = 12
 FREE, SLIDING, RESTING = 0, 1, 2
 EVALUATIONS = 3  # counts[SLIDING] and counts[RESTING] hold how many guards are so
 DIFFERENCE = 1e-7

@@ -28,7 +28,9 @@ from tracewire.solve.core.codes import (
     LENGTH,
     LOG_FULL,
     LOGGED,
+    LONGEST,
     METHOD,
+    PACED,
     PASSED,
     PAUSED,
     RATIO,
@@ -48,6 +50,7 @@ from tracewire.solve.core.codes import (
 )
 from tracewire.solve.core.flow import (
     GUARDS,
+    PACE,
     RESTING,
     SLIDING,
     evaluate,
@@ -73,6 +76,8 @@ SOON = 1e-9
 NEAR = 32.0
 PAUSED_INSIDE = 2  # in ints[STAGE]: between two steps of a smooth part
 LARGEST_PART = 0.1  # of the span, for one step
+TURN = 1.5  # of what a guard reads, in a step: five samples see its dips
+SMALLEST_PART = 1e-12  # of the span: no pace asks for a shorter step
 
 
 @unit
@@ -133,7 +138,11 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
             return PAUSED
         if locate.passed(core, hit):  # so slowly that no step has seen it
             return _cross(core, PASSED)
+        longest = _longest_step(core, now[T], x)
+        now[H] = min(now[H], longest)
         status = _attempt(core, rate, limit)
+        if status == FINISHED and longest < np.inf and _outpaced(core):
+            continue
         if status == UNDEFINED:
             return _undefined(core)
         if status != FINISHED:
@@ -166,6 +175,32 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
     if limit == due:
         return _scheduled(core, ahead)
     return FINISHED
+
+
+@helper
+def _longest_step(core: int, t: float, x: Vector) -> float:
+    """The longest step in which guards that the states do not feel are seen to turn."""
+    now = progress_of(core).now
+    if now[PACED] == 0.0:
+        return now[LONGEST]
+    pace = np.empty(1)
+    evaluate(core, PACE, t, x, pace)
+    if not pace[0] > 0.0:
+        return min(now[LONGEST], LARGEST_PART * now[LENGTH])
+    return min(now[LONGEST], max(TURN / pace[0], SMALLEST_PART * now[LENGTH]))
+
+
+@helper
+def _outpaced(core: int) -> bool:
+    """Whether the guards turn much faster at the end of a trial step than it can follow: if so, the
+    next one is shorter."""
+    trial, now = trial_of(core), progress_of(core).now
+    h = trial.ends[1]
+    longest = _longest_step(core, trial.ends[0] + h, trial.x_end)
+    if h <= 2.0 * longest:
+        return False
+    now[H] = max(2.0 * longest, h / 4)
+    return True
 
 
 @helper
@@ -282,7 +317,7 @@ def _attempt(core: int, rate: Vector, limit: float) -> int:
     )  # to the power of 8: 0.27, 0.43
     while True:
         ints[STEPS] += 1
-        h = min(now[H], now[FIXED]) if fixed else min(now[H], LARGEST_PART * now[LENGTH])
+        h = min(now[H], now[FIXED] if fixed else LARGEST_PART * now[LENGTH], now[LONGEST])
         if now[T] + h * (1.0 + 1e-9 if fixed else 1.01) >= limit:
             h = limit - now[T]
         methods.step(core, method, now[T], progress.x, rate, h)

@@ -7,6 +7,8 @@ that two crossings inside one step are not missed.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from tracewire.solve.core import methods
@@ -36,6 +38,7 @@ from tracewire.solve.core.modes import noise, piece
 SAMPLES = 5  # of the margins over a step, both ends included
 SLACK = 0.25  # a parabola that stays above zero by less than bend/32 may be wrong about it
 CLOSE = 1.0 / 16.0  # of a sample's distance: where a dip is looked at more closely
+EDGE = 2.2  # times the bend: a parabola may be wrong about which side of a sample it turns on
 HELD_NOISE = 1e-9
 ROOT = 1e-14
 CLEARLY = 4.0  # beyond its level, in units of the noise
@@ -206,7 +209,7 @@ def _is_quiet(core: int, count: int, level: float) -> bool:
             before, here, after = rows[k - 1, i], rows[k, i], rows[k + 1, i]
             bend, slope = after - 2 * here + before, after - before
             dips = int(slope * slope > bend * (8 * here - SLACK * bend))
-            dips &= int(abs(slope) <= 2 * bend)
+            dips &= int(abs(slope) <= EDGE * bend)
             loud |= int(bend > 0) & dips & int(before > floor)
     return loud == 0
 
@@ -264,23 +267,21 @@ def _dip(core: int, method: int, count: int, item: int, floor: float) -> float:
     for k in range(1, count - 1):
         before, here, after = rows[k - 1, item], rows[k, item], rows[k + 1, item]
         bend, slope = after - 2 * here + before, after - before
-        if not (bend > 0 and abs(slope) <= 2 * bend):
+        if not (bend > 0 and abs(slope) <= EDGE * bend):
             continue
         if not (slope * slope > bend * (8 * here - SLACK * bend) and before > floor):
             continue
-        shift = -slope / (2 * bend)
+        place = min(SAMPLES - 1 - CLOSE, max(CLOSE, k - slope / (2 * bend)))
         values = np.empty((3, rows.shape[1]))
         for i in range(3):  # closer by, where the parabola is better
-            beside = min(float(len(rows) - 1), max(0.0, k + shift + CLOSE * (i - 1)))
-            _margins_inside(core, method, beside * step, values[i])
+            _margins_inside(core, method, (place + CLOSE * (i - 1)) * step, values[i])
         bend = values[2, item] - 2 * values[1, item] + values[0, item]
         if bend > 0:
-            shift -= CLOSE * (values[2, item] - values[0, item]) / (2 * bend)
-        theta = min(1.0, max(0.0, (k + shift) * step))
-        _margins_inside(core, method, theta, values[1])
+            place -= CLOSE * (values[2, item] - values[0, item]) / (2 * bend)
+        place = min(SAMPLES - 1.0, max(0.0, place))
+        _margins_inside(core, method, place * step, values[1])
         if values[1, item] < -floor:
-            low = (k - 1 if shift <= 0 else k) * step
-            return _root(core, method, item, low, theta)
+            return _root(core, method, item, math.ceil(place - 1.0) * step, place * step)
     return np.inf
 
 
