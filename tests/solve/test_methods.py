@@ -53,7 +53,7 @@ def order(coarse: tuple[int, float], fine: tuple[int, float]) -> float:
 def test_the_order_of_a_method_at_and_inside_its_steps(
     method: str, rtol: float, exact: int
 ) -> None:
-    coarse, fine = (worst(method=method, rtol=r) for r in (rtol, rtol / 1000))
+    coarse, fine = (worst(method=method, rtol=r, atol=r * 1e-3) for r in (rtol, rtol / 1000))
     assert exact - 0.3 < order(coarse, fine) < exact + 0.7
 
 
@@ -146,7 +146,7 @@ blocks:
 """)
     t = np.linspace(0, 1, 101)
     result = simulate(model, inputs={"u": (t, np.sin(6 * t))}, times=t)
-    assert result.statistics.stiff_steps > 0.8 * result.statistics.steps
+    assert result.statistics.stiff_steps > 0.7 * result.statistics.steps
     assert result["x"] == pytest.approx(np.sin(6 * t), abs=1e-4)
 
 

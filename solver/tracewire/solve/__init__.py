@@ -37,10 +37,15 @@ one, and with one below zero, k is any whole number, however early the run begin
 A combination is consistent when the first non-zero derivative of each guard along the field of
 that combination, up to order 4, has the sign of its mode. One: it is taken. None: a slide. Several:
 the stored one, at the start with a warning. All derivatives zero: the stored one; of a guard that
-was seen beyond, the mode there; at the start what the comparison says at zero. A derivative counts
-as zero below 1e-12 of the largest rate on any side. Relations on the same signal, up to sign,
-share one mode; where they differ at exactly zero (x > 0 and x >= 0), the first one speaks for both.
-A floor that stands on a whole number goes to the side to which its guard goes.
+was seen beyond, the mode there; at the start what the comparison says at zero. Relations on the
+same signal, up to sign, share one mode; where they differ at exactly zero (x > 0 and x >= 0), the
+first one speaks for both. A floor that stands on a whole number goes to the side to which its guard
+goes.
+
+**Zero** is a matter of what a value is made of. A guard counts as zero below 1e-14 of its size, the
+sum of what is added up in it (`compile.sizes`), a derivative below 1e-12 of its size on any side. A
+state at zero is of the size that it has had of late, or by which it may move in the longest step,
+up to 1. So neither a unit nor another state has a say.
 
 **Sliding.** On a slide over surfaces S the field is the blend sum over patterns of (product of m or
 1 - m) times f, with the fractions m in [0, 1] for which dg/dt = 0 for all g in S. It ends when a

@@ -21,6 +21,7 @@ from tracewire.solve.core.arrays import (
     Watch,
 )
 from tracewire.solve.core.codes import (
+    ABSOLUTE,
     CHATTER_EVENTS,
     DIRECTIONS,
     END,
@@ -53,7 +54,7 @@ Table = tuple[Vector, Vector]
 @dataclass(frozen=True)
 class Tolerance:
     """How exact a run is: relative, absolute per state (n,), the step of a fixed method, and the
-    longest step in s that any may take.
+    longest step in s that any may take. An absolute one of 0 follows the size of the state.
     """
 
     rtol: float
@@ -188,6 +189,10 @@ def new_progress(
         info=np.zeros(4),
         which=np.zeros(count + 8, dtype=np.int64),
         overlooked=np.zeros(len(model.lowered.resets), dtype=np.int64),
+        given=np.empty(n),
+        largest=np.zeros(n),
+        least=np.zeros(n),
+        sizes=np.zeros(2 * n),
     )
     progress.now[PACED] = float(model.has_pace)
     set_up(progress, x, span, times, method, tolerance)
@@ -206,7 +211,9 @@ def set_up(
     now = progress.now
     now[T], now[H], now[END], now[LENGTH] = span[0], 0.0, span[1], span[1] - span[0]
     now[RTOL], now[FIXED], now[LONGEST] = tolerance.rtol, tolerance.step, tolerance.longest
-    progress.x[:], progress.atol[:], progress.times[:] = x, tolerance.atol, times
+    progress.x[:], progress.given[:], progress.times[:] = x, tolerance.atol, times
+    follows = ABSOLUTE * tolerance.rtol  # till the core knows of what size the states are
+    progress.atol[:] = np.where(tolerance.atol > 0, tolerance.atol, follows)
     progress.ints[METHOD] = -1 if method == "auto" else NAMES.index(method)
 
 

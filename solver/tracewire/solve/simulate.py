@@ -66,8 +66,9 @@ def simulate(
     them the diagram's span and its `every`, or 1001 samples. `method` is
     `dormand_prince` (explicit, order 5), `dop853` (explicit, order 8), `rosenbrock` (stiff, order
     5), `rk4` (fixed `step` in s, order 4), or `auto`: dormand_prince, dop853 where rtol is
-    1e-8 or less, and rosenbrock where a mode combination turns out to be stiff. `atol` is rtol/1000
-    unless given, as a number or by state. `inputs` gives measured inputs as (times, values), joined
+    1e-8 or less, and rosenbrock where a mode combination turns out to be stiff. `atol` is given as
+    a number or by state; else it is rtol/1000 of the largest value so far of each state, or of 1,
+    whichever is less. `inputs` gives measured inputs as (times, values), joined
     by straight lines; `Held(times, values)` holds each value until the next. `progress` is told
     about ten times a second the part of the span that is done, and the seconds that are left.
     `sensitivities` names parameters and start values (`start.theta`) whose forward sensitivities
@@ -142,11 +143,11 @@ def tolerance_of(
     problems = [unknown("state", name, model.states) for name in given if name not in model.states]
     if problems:
         raise OptionError(problems)
-    usual = rtol * 1e-3 if atol is None or isinstance(atol, Mapping) else atol
-    absolute = [given.get(name, usual) for name in model.states]
-    if not (1e-14 <= rtol < 1 and all(0 < value < math.inf for value in absolute)):
+    usual = None if atol is None or isinstance(atol, Mapping) else atol
+    wanted = [*given.values(), *([] if usual is None else [usual])]
+    if not (1e-14 <= rtol < 1 and all(0 < value < math.inf for value in wanted)):
         shown = ", ".join(f"{name}: {value:g}" for name, value in given.items())
-        told = f"{{{shown}}}" if given else f"{usual:g}"
+        told = f"{{{shown}}}" if given else f"{rtol * 1e-3 if usual is None else usual:g}"
         what = f"rtol = {rtol:g} and atol = {told} cannot be met"
         raise OptionError([Problem(what, hint="Take rtol between 1e-13 and 0.1 and atol above 0.")])
     if (method == "rk4") != (step is not None):
@@ -155,6 +156,7 @@ def tolerance_of(
     if step is not None and not 0 < step <= length:
         what = f"steps of {step:g} s do not fit into a span of {length:g} s"
         raise OptionError([Problem(what, hint="Give a step above 0 and below the span.")])
+    absolute = [given.get(name, usual or 0.0) for name in model.states]
     fixed = math.inf if step is None else step
     return Tolerance(rtol, np.array(absolute, dtype=float), fixed, longest)
 

@@ -71,7 +71,10 @@ class Progress(NamedTuple):
     `stiff` holds the mode combinations that were found stiff. `recent` holds (time, mode) of the
     last events. `flights` holds, per mode, the last flight of its contact (inf: none) and whether
     it was too short to be resolved. `info` and `which` say what an error is about. `overlooked`
-    marks the resets whose guard is zero at the start and leaves it as if they fired.
+    marks the resets whose guard is zero at the start and leaves it as if they fired. `given` are
+    the absolute tolerances that the user gave, 0 where `atol` follows from `largest`, what was seen
+    of each state. `sizes` (2n,) is work space, and behind it of what size each state has been of
+    late, at least `least`: one that passes through zero has the rounding errors of its size.
     """
 
     now: Vector
@@ -87,6 +90,10 @@ class Progress(NamedTuple):
     info: Vector
     which: Ints
     overlooked: Ints
+    given: Vector
+    largest: Vector
+    least: Vector
+    sizes: Vector
 
 
 class Trial(NamedTuple):
@@ -344,6 +351,10 @@ def progress_of(core: int) -> Progress:
         vector(core, 28),
         ints(core, 29),
         ints(core, 30),
+        vector(core, 31),
+        vector(core, 32),
+        vector(core, 33),
+        vector(core, 34),
     )
 
 
@@ -351,19 +362,19 @@ def progress_of(core: int) -> Progress:
 def trial_of(core: int) -> Trial:
     """The trial step."""
     return Trial(
-        vector(core, 31),
-        vector(core, 32),
-        vector(core, 33),
-        vector(core, 34),
         vector(core, 35),
-        matrix(core, 36),
-        matrix(core, 37),
-        matrix(core, 38),
-        matrix(core, 39),
-        ints(core, 40),
-        vector(core, 41),
-        vector(core, 42),
-        vector(core, 43),
+        vector(core, 36),
+        vector(core, 37),
+        vector(core, 38),
+        vector(core, 39),
+        matrix(core, 40),
+        matrix(core, 41),
+        matrix(core, 42),
+        matrix(core, 43),
+        ints(core, 44),
+        vector(core, 45),
+        vector(core, 46),
+        vector(core, 47),
     )
 
 
@@ -371,16 +382,16 @@ def trial_of(core: int) -> Trial:
 def watch_of(core: int) -> Watch:
     """What is watched."""
     return Watch(
-        ints(core, 44),
-        ints(core, 45),
-        vector(core, 46),
-        vector(core, 47),
-        vector(core, 48),
+        ints(core, 48),
         ints(core, 49),
-        matrix(core, 50),
+        vector(core, 50),
         vector(core, 51),
         vector(core, 52),
         ints(core, 53),
+        matrix(core, 54),
+        vector(core, 55),
+        vector(core, 56),
+        ints(core, 57),
     )
 
 
@@ -388,9 +399,9 @@ def watch_of(core: int) -> Watch:
 def crossings_of(core: int) -> Crossings:
     """What happens now."""
     return Crossings(
-        ints(core, 54),
-        vector(core, 55),
-        ints(core, 56),
+        ints(core, 58),
+        vector(core, 59),
+        ints(core, 60),
     )
 
 

@@ -26,3 +26,4 @@ NOT_UNIQUE = 1
 FLAGS = 5
 ZENO, GRAZES, SIMULTANEOUS, TOUCHES, LOST = range(FLAGS)  # where sensitivities end
 CHATTER_EVENTS = 50
+ABSOLUTE = 1e-3  # of the relative tolerance, of what was seen of a state

@@ -20,14 +20,17 @@ from tracewire.solve.core.flow import (
     GUARDS,
     RESETS,
     RESTING,
+    RHS,
+    SECOND_SIZES,
     bind,
     evaluate,
     guard_rates,
     pin,
     rates,
+    sizes,
 )
 from tracewire.solve.core.jit import helper, unit
-from tracewire.solve.core.modes import noise
+from tracewire.solve.core.modes import NOTHING, levels
 
 RESOLVED = 32.0  # a flight is resolved if it rises over so many times the noise of a guard
 SHORTEST = 1e-11  # of the span
@@ -64,12 +67,16 @@ def turns(
     modes, n = len(flow.bound), len(before)
     along, here, there = np.empty(modes), np.empty(modes), np.empty(modes)
     guard_rates(core, t, after, along)
+    if not (old < 0 and side * along[i] >= STOPPED * old):
+        return False
+    slope = curve(core, t, after, i)[:n]
+    if not side * np.dot(slope, after - before) > 0:
+        return False
+    level = np.empty(modes)
     evaluate(core, GUARDS, t, before, here)
     evaluate(core, GUARDS, t, after, there)
-    slope = curve(core, t, after, i)[:n]
-    pushed = side * np.dot(slope, after - before) > 0
-    stays = abs(there[i] - here[i]) <= noise(before)
-    return bool(old < 0 and side * along[i] >= STOPPED * old and pushed and stays)
+    levels(core, t, before, level)
+    return bool(abs(there[i] - here[i]) <= level[i])
 
 
 @unit
@@ -77,8 +84,9 @@ def wait(core: int, t: float, x: Vector, i: int, old: float, side: float) -> flo
     """The time until the contact closes; FLIES where it flies on."""
     flow = flow_of(core)
     progress = progress_of(core)
-    along = np.empty(len(flow.bound))
+    along, level = np.empty(len(flow.bound)), np.empty(len(flow.bound))
     guard_rates(core, t, x, along)
+    levels(core, t, x, level)
     rate = max(0.0, side * along[i])
     down = side * bend(core, t, x, i)
     if not down < 0:
@@ -86,12 +94,12 @@ def wait(core: int, t: float, x: Vector, i: int, old: float, side: float) -> flo
         return FLIES
     flight = -2 * rate / down
     height = rate * flight / 4
-    small = height <= RESOLVED * noise(x) or flight <= SHORTEST * progress.now[LENGTH]
+    small = height <= RESOLVED * level[i] or flight <= SHORTEST * progress.now[LENGTH]
     last, was_small = progress.flights[i, 0], progress.flights[i, 1]
     progress.flights[i, 0], progress.flights[i, 1] = flight, 1.0 if small else 0.0
     if rate <= -STOPPED * old:
         return 0.0
-    lost = height <= noise(x)  # the next impact could not be seen
+    lost = height <= level[i]  # the next impact could not be seen
     closes = flight < last and (lost or (small and was_small > 0))
     return flight / (1 - flight / last) if closes else FLIES
 
@@ -107,6 +115,25 @@ def close(core: int, t: float, jump: Vector, x: Vector, i: int) -> None:
     progress = progress_of(core)
     pin(core, t, x)  # what the location of the impact has left
     progress.flights[i, 0], progress.flights[i, 1] = np.inf, 0.0
+
+
+@unit
+def force_sizes(core: int, t: float, x: Vector) -> Vector:
+    """Of what size are the forces on the contacts that rest, which their forces balance."""
+    flow = flow_of(core)
+    n, modes, row = len(x), len(flow.bound), 0
+    found, field, curves = np.zeros(flow.counts[RESTING]), np.empty(n), np.empty((modes, n + 1))
+    evaluate(core, RHS, t, x, field)
+    evaluate(core, CURVES, t, x, curves)
+    for i in range(modes):
+        if flow.bound[i] == RESTING:
+            total, turned = abs(curves[i, n]), 0.0
+            for j in range(n):
+                total += abs(curves[i, j] * field[j])
+                turned += abs(curves[i, j] * flow.push[i, j])
+            found[row] = total / turned if turned > 0.0 else 0.0
+            row += 1
+    return found
 
 
 @helper
@@ -152,8 +179,8 @@ def reset_jump(core: int, t: float, x: Vector, reset: int, out: Vector) -> None:
 
 
 @unit
-def touching(core: int, t: float, x: Vector, reset: int, tolerance: float) -> bool:
-    """Whether a contact whose guard is zero stays closed; it then rests.
+def touching(core: int, t: float, x: Vector, reset: int, level: Vector) -> bool:
+    """Whether a contact whose guard is zero stays closed; it then rests. `level`: of the rates.
 
     It does where g' = 0 and g'' < 0 and its reset, had the bodies met, would push them apart.
     """
@@ -164,14 +191,16 @@ def touching(core: int, t: float, x: Vector, reset: int, tolerance: float) -> bo
         return False
     along = np.empty(len(flow.bound))
     guard_rates(core, t, x, along)
-    if abs(along[i]) > tolerance:
+    if abs(along[i]) > level[i]:
         return False
+    bends = np.empty(len(flow.bound))
+    sizes(core, SECOND_SIZES, t, x, bends)
     old = flow.m[i]
     flow.m[i] = 1.0 if side > 0 else 0.0
     slope = curve(core, t, x, i)[:n]
     square = np.dot(slope, slope)
     jump = np.zeros(n)
-    if square > 0 and side * bend(core, t, x, i) < -tolerance:
+    if square > 0 and side * bend(core, t, x, i) < -NOTHING * bends[i]:
         # the reset of bodies that approach tells the direction in which it pushes
         reset_jump(core, t, x - slope * (side / square), reset, jump)
     if side * np.dot(slope, jump) > 0:

@@ -15,6 +15,7 @@ from tracewire.solve.core.flow import (
     GUARD_RATES,
     RESTING,
     SECOND,
+    SECOND_SIZES,
     SLIDING,
     bind,
     evaluate,
@@ -23,12 +24,12 @@ from tracewire.solve.core.flow import (
     is_affine,
     is_independent,
     patterns,
-    rates,
+    sizes,
 )
 from tracewire.solve.core.jit import helper, unit
+from tracewire.solve.core.modes import NOTHING, rate_levels
 
 MOST_TOGETHER = 6
-NOTHING = 1e-12
 SLACK = 1e-9
 BLOCK_ROUNDS = 6
 MOST_ROUNDS = 500
@@ -63,25 +64,25 @@ def decide(core: int, t: float, x: Vector, zero: Ints, fresh: bool) -> int:
 
 
 @unit
-def _nothing(core: int, t: float, x: Vector, zero: Ints) -> float:
-    """Below what a derivative of a guard counts as zero: a part of the largest rate on any side."""
+def _nothing(core: int, t: float, x: Vector, zero: Ints) -> Vector:
+    """Below what the rate of each guard counts as zero: a part of its size on any side."""
     flow = flow_of(core)
     assign(core, zero, np.ones(len(zero), dtype=np.int64))
-    field, largest = np.empty(len(x)), 1e-300
+    level, largest = np.empty(len(flow.bound)), np.zeros(len(flow.bound))
     for n in range(-1, len(zero)):
         if n >= 0:
             flow.m[zero[n]] = 0.0
-        rates(core, t, x, field)
-        for value in field:
-            largest = max(largest, abs(value))
+        rate_levels(core, t, x, level)
+        for i in range(len(level)):
+            largest[i] = max(largest[i], level[i])
         if n >= 0:
             flow.m[zero[n]] = 1.0
-    return NOTHING * largest
+    return largest
 
 
 @helper
 def _combinations(
-    core: int, t: float, x: Vector, zero: Ints, stored: Ints, fresh: bool, small: float
+    core: int, t: float, x: Vector, zero: Ints, stored: Ints, fresh: bool, small: Vector
 ) -> tuple[int, Ints]:
     """How many assignments fit, and the one to take.
 
@@ -122,7 +123,7 @@ def _combinations(
 
 @helper
 def _pivots(
-    core: int, t: float, x: Vector, zero: Ints, stored: Ints, small: float
+    core: int, t: float, x: Vector, zero: Ints, stored: Ints, small: Vector
 ) -> tuple[int, Ints]:
     """How many assignments fit, and the one to take: the complementarity problem of many surfaces.
 
@@ -182,7 +183,7 @@ def assign(core: int, zero: Ints, assignment: Ints) -> None:
 
 @unit
 def _consistent(
-    core: int, t: float, x: Vector, zero: Ints, assignment: Ints, stored: Ints, small: float
+    core: int, t: float, x: Vector, zero: Ints, assignment: Ints, stored: Ints, small: Vector
 ) -> bool:
     flow = flow_of(core)
     some = flow.counts[SLIDING]
@@ -200,8 +201,8 @@ def _consistent(
         if value == HELD:
             continue
         rate = along[i]
-        if abs(rate) <= small:
-            rate = first_higher(core, t, x, i, small)
+        if abs(rate) <= small[i]:
+            rate = first_higher(core, t, x, i)
         if rate == 0.0:  # it stays on the surface: what was stored goes on
             if stored[n] != HELD and value != stored[n]:
                 return False
@@ -223,7 +224,7 @@ def _drives(core: int, t: float, x: Vector) -> bool:
 
 
 @helper
-def first_higher(core: int, t: float, x: Vector, i: int, tolerance: float) -> float:
+def first_higher(core: int, t: float, x: Vector, i: int) -> float:
     """The first derivative of a guard, from the second to the fourth, that is not zero; 0: none.
 
     On a slide or in a contact they are not known, and count as zero.
@@ -231,9 +232,12 @@ def first_higher(core: int, t: float, x: Vector, i: int, tolerance: float) -> fl
     flow = flow_of(core)
     if flow.counts[SLIDING] + flow.counts[RESTING]:
         return 0.0
-    values = np.empty(len(flow.bound))
+    values, size = np.empty(len(flow.bound)), np.empty(len(flow.bound))
     for order in range(3):
         evaluate(core, SECOND + order, t, x, values)
-        if abs(values[i]) > tolerance:
+        if values[i] == 0.0:
+            continue
+        sizes(core, SECOND_SIZES + order, t, x, size)
+        if abs(values[i]) > NOTHING * size[i]:
             return float(values[i])
     return 0.0

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracewire.solve.core.arrays import Matrix, Vector, copy, flow_of
+from tracewire.solve.core.arrays import Matrix, Vector, copy, flow_of, progress_of
+from tracewire.solve.core.codes import LENGTH
 from tracewire.solve.core.jit import helper, invoke, unit
 from tracewire.solve.core.linear import factor, solved
 
@@ -27,13 +28,22 @@ FUNCTIONS = (
     "guard_third",
     "guard_fourth",
     "pace",
+    "guard_sizes",
+    "guard_rate_sizes",
+    "guard_second_sizes",
+    "guard_third_sizes",
+    "guard_fourth_sizes",
+    "rate_sizes",
 )
 RHS, GUARDS, GUARD_RATES, OUTPUTS, TIMED, RESETS = 0, 1, 2, 3, 4, 5
 JACOBIAN, GRADIENTS, CURVES, SECOND = 6, 7, 8, 9
 PACE = 12
+GUARD_SIZES, GUARD_RATE_SIZES, SECOND_SIZES, RATE_SIZES = 13, 14, 15, 18
 FREE, SLIDING, RESTING = 0, 1, 2
 EVALUATIONS = 3  # counts[SLIDING] and counts[RESTING] hold how many guards are so
 DIFFERENCE = 1e-7
+TIME_PART = 1e-3  # of the span: in it a state may move as far as it is large
+ROUNDING = 1e-10  # of t, for a difference
 AFFINE = 1e-9
 INDEPENDENT = 1e-10
 
@@ -67,6 +77,29 @@ def patterns(core: int, which: int, t: float, x: Vector, size: int) -> Matrix:
             rows[row, j] -= rows[0, j]
         flow.m[i] = 0.0
     return rows
+
+
+@unit
+def sizes(core: int, which: int, t: float, x: Vector, out: Vector) -> None:
+    """What the values of a function are made of, in their units; 0 where that is not finite.
+
+    On a slide the larger one of those on its sides.
+    """
+    both, n = progress_of(core).sizes, len(x)
+    for j in range(n):
+        both[j] = x[j]
+        both[n + j] = max(both[n + j], abs(x[j]))
+    if flow_of(core).counts[SLIDING]:
+        rows = patterns(core, which, t, both, len(out))
+        copy(rows[0], out)
+        for row in range(1, len(rows)):
+            for i in range(len(out)):
+                out[i] = max(out[i], rows[0, i] + rows[row, i])
+    else:
+        evaluate(core, which, t, both, out)
+    for i in range(len(out)):
+        if not out[i] < np.inf:
+            out[i] = 0.0
 
 
 @helper
@@ -185,13 +218,16 @@ def jacobian(core: int, t: float, x: Vector, out: Matrix) -> None:
         evaluate(core, JACOBIAN, t, x, out)
         return
     base, moved, at = np.empty(n), np.empty(n), x.copy()
+    progress = progress_of(core)
+    length = progress.now[LENGTH]
     rates(core, t, x, base)
     for j in range(n):
-        at[j] = x[j] + DIFFERENCE * max(1.0, abs(x[j]))
+        size = max(abs(x[j]), progress.sizes[n + j], abs(base[j]) * TIME_PART * length)
+        at[j] = x[j] + DIFFERENCE * (size if size > 0.0 else 1.0)
         rates(core, t, at, moved)
         out[:, j] = (moved - base) / (at[j] - x[j])
         at[j] = x[j]
-    later = t + DIFFERENCE * max(1.0, abs(t))
+    later = t + max(DIFFERENCE * TIME_PART * length, ROUNDING * abs(t))
     rates(core, later, x, moved)
     out[:, n] = (moved - base) / (later - t)
 

@@ -18,6 +18,7 @@ from tracewire.solve.core.arrays import (
     watch_of,
 )
 from tracewire.solve.core.codes import (
+    ABSOLUTE,
     BUDGET,
     CALM,
     CURRENT,
@@ -51,12 +52,14 @@ from tracewire.solve.core.codes import (
 from tracewire.solve.core.flow import (
     GUARDS,
     PACE,
+    RATE_SIZES,
     RESTING,
     SLIDING,
     evaluate,
     guard_rates,
     pin,
     rates,
+    sizes,
 )
 from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.locate import AT_ONCE, NOTHING
@@ -77,6 +80,10 @@ NEAR = 32.0
 PAUSED_INSIDE = 2  # in ints[STAGE]: between two steps of a smooth part
 LARGEST_PART = 0.1  # of the span, for one step
 TURN = 1.5  # of what a guard reads, in a step: five samples see its dips
+FADING = 0.95  # in a step: how a state's size is forgotten
+SOON_PART = LARGEST_PART  # of the span, as long as a step may be
+ROUNDING = 1e-9  # of what a state moves by: to so much do derivatives by differences round
+DEPTH = 2  # integrators behind each other, from what moves to a state
 SMALLEST_PART = 1e-12  # of the span: no pace asks for a shorter step
 
 
@@ -92,6 +99,7 @@ def advance(core: int) -> int:
     modes = len(plan.kind)
     ahead = np.empty(len(plan.timed))
     if ints[STAGE] == 0:
+        _first_sizes(core)
         status = begin(core)
         if status != FINISHED:
             return status
@@ -161,6 +169,7 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
         copy(trial.x_end, x)
         if flow.counts[SLIDING] + flow.counts[RESTING]:
             pin(core, now[T], x)
+        _remember(core, x)
         now[H] = max(now[H], trial.ends[1] * ratio) if last else trial.ends[1] * ratio
         if method == ROSENBROCK or flow.counts[SLIDING] + flow.counts[RESTING]:
             rates(core, now[T], x, rate)
@@ -175,6 +184,46 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
     if limit == due:
         return _scheduled(core, ahead)
     return FINISHED
+
+
+@unit
+def _first_sizes(core: int) -> None:
+    """Of what size the states are at the begin: as large as they are, or as they may move soon.
+
+    What a state at zero moves by follows from the sizes of rates, and these from those of other
+    states, which may be at zero, too. Of a state of which all that says nothing the size is 1. The
+    tolerance of a state begins with what it is, as far as that is more than rounding.
+    """
+    progress = progress_of(core)
+    now, x, n = progress.now, progress.x, len(progress.x)
+    soon, moves = SOON_PART * now[LENGTH], np.empty(n)
+    progress.sizes[:] = 0.0
+    for _ in range(DEPTH):
+        sizes(core, RATE_SIZES, now[T] + soon, x, moves)
+        for j in range(n):
+            progress.sizes[n + j] = max(progress.sizes[n + j], soon * moves[j])
+    for j in range(n):
+        size = progress.sizes[n + j] if progress.sizes[n + j] > 0.0 else 1.0
+        progress.least[j] = min(1.0, size)
+        rounding = ROUNDING / now[RTOL] * progress.least[j]
+        progress.largest[j] = max(abs(x[j]), rounding)
+        progress.sizes[n + j] = max(abs(x[j]), progress.least[j])
+        if progress.given[j] == 0.0:
+            progress.atol[j] = ABSOLUTE * now[RTOL] * min(1.0, progress.largest[j])
+
+
+@helper
+def _remember(core: int, x: Vector) -> None:
+    """Keep of what size the states are; the tolerances that nobody gave follow."""
+    progress, n = progress_of(core), len(x)
+    for j in range(n):
+        size = abs(x[j])
+        if size > progress.largest[j]:
+            progress.largest[j] = size
+            if progress.given[j] == 0.0:
+                progress.atol[j] = ABSOLUTE * progress.now[RTOL] * min(1.0, size)
+        progress.least[j] = max(progress.least[j], min(1.0, size))
+        progress.sizes[n + j] = max(size, progress.least[j], FADING * progress.sizes[n + j])
 
 
 @helper
@@ -372,6 +421,9 @@ def _crossed(core: int) -> int:
     sample_inside(core, ints[CURRENT], end)
     now[T] = end
     copy(trial.x_end, x)
+    if flow_of(core).counts[SLIDING] + flow_of(core).counts[RESTING]:
+        pin(core, end, x)
+    _remember(core, x)
     hit = watched.hit
     locate.margins(core, end, x, watched.start)
     locate.reached(core, end, x, TOGETHER * now[LENGTH], hit)
@@ -385,10 +437,11 @@ def _crossed(core: int) -> int:
         crossings.how[i], crossings.to[i] = kind, watched.to[row]
         up = watched.sign[row] < 0 if kind == GUARD else watched.to[row] > 0.5
         crossings.up[i] = int(up)
+    before = x.copy()
     status = happen(core, end, x)
-    same = True  # as at the end of the trial, which is x before the event
+    same = True
     for i in range(len(x)):
-        same = same and x[i] == trial.x_end[i]
+        same = same and x[i] == before[i]
     now[H] = now[H] / 4 if same else 0.0
     ints[SUSPICIOUS] = 0
     return status

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from tracewire.solve.core import methods
+from tracewire.solve.core import contact, methods
 from tracewire.solve.core.arrays import (
     Ints,
     Vector,
@@ -33,13 +33,13 @@ from tracewire.solve.core.flow import (
     held,
 )
 from tracewire.solve.core.jit import helper, unit
-from tracewire.solve.core.modes import noise, piece
+from tracewire.solve.core.modes import levels, piece
 
 SAMPLES = 5  # of the margins over a step, both ends included
 SLACK = 0.25  # a parabola that stays above zero by less than bend/32 may be wrong about it
 CLOSE = 1.0 / 16.0  # of a sample's distance: where a dip is looked at more closely
 EDGE = 2.2  # times the bend: a parabola may be wrong about which side of a sample it turns on
-HELD_NOISE = 1e-9
+HELD_NOISE = 1e-9  # of a fraction, and of what the force of a contact balances
 ROOT = 1e-14
 CLEARLY = 4.0  # beyond its level, in units of the noise
 MOST_ROUNDS = 200
@@ -96,14 +96,19 @@ def _add(core: int, row: int, mode: int, kind: int, to: float, level: float, sig
 @unit
 def passed(core: int, out: Ints) -> int:
     """Mark the guards that are clearly beyond their level, and move away from it; how many."""
-    watched, level, count = watch_of(core), noise(progress_of(core).x), 0
-    rates = trial_of(core).guards
+    watched, progress, count, beyond = watch_of(core), progress_of(core), 0, False
     for row in range(watched_count(core)):
         out[row] = 0
-        if watched.kind[row] != GUARD or watched.start[row] >= -CLEARLY * level:
+        beyond = beyond or (watched.kind[row] == GUARD and watched.start[row] < 0.0)
+    if not beyond:
+        return 0
+    rates, level = trial_of(core).guards, np.empty(len(trial_of(core).guards))
+    levels(core, progress.now[T], progress.x, level)
+    guard_rates(core, progress.now[T], progress.x, rates)
+    for row in range(watched_count(core)):
+        clearly = -CLEARLY * level[watched.mode[row]]
+        if watched.kind[row] != GUARD or watched.start[row] >= clearly:
             continue
-        if count == 0:
-            guard_rates(core, progress_of(core).now[T], progress_of(core).x, rates)
         if watched.sign[row] * rates[watched.mode[row]] < 0.0:
             out[row] = 1
             count += 1
@@ -138,22 +143,23 @@ def find(core: int, method: int) -> int:
     Fills `found` with theta in (0, 1] for what crosses first, else with infinity. AT_ONCE: it
     crosses right where the step begins.
     """
-    watched, trial = watch_of(core), trial_of(core)
+    watched = watch_of(core)
     rows, start, found = watched.rows, watched.start, watched.found
     count = watched_count(core)
     if count == 0:
         return NOTHING
-    level = noise(trial.x)
     for k in range(1, SAMPLES):
         _margins_inside(core, method, k / (SAMPLES - 1), rows[k])
     copy(start, rows[0])
-    if _is_quiet(core, count, level):
+    if _is_quiet(core, count):
         return NOTHING
+    floors = np.empty(count)
+    _floors(core, floors)
     found[:] = np.inf
     first, fresh = SAMPLES - 1, False
     for k in range(1, SAMPLES):
         for i in range(count):
-            floor = level if watched.kind[i] == GUARD else HELD_NOISE
+            floor = floors[i]
             if rows[k, i] < min(start[i], 0.0) - floor:
                 first = min(first, k - 1)
                 if watched.armed[i] or np.max(rows[:k, i]) > floor:
@@ -164,24 +170,21 @@ def find(core: int, method: int) -> int:
             break
     if fresh:
         for i in range(count):
-            floor = level if watched.kind[i] == GUARD else HELD_NOISE
-            below = rows[first + 1, i] < min(start[i], 0.0) - floor
+            below = rows[first + 1, i] < min(start[i], 0.0) - floors[i]
             found[i] = 1.0 if below and found[i] > 0.0 else np.inf
         return AT_ONCE
     any_found = False
     for i in range(count):
-        floor = level if watched.kind[i] == GUARD else HELD_NOISE
         if found[i] == 0.0:
             low, high = first / (SAMPLES - 1), (first + 1) / (SAMPLES - 1)
             found[i] = _root(core, method, i, low, high)
-        dip = _dip(core, method, min(first + 2, SAMPLES), i, floor)
+        dip = _dip(core, method, min(first + 2, SAMPLES), i, floors[i])
         found[i] = min(found[i], dip)
         any_found = any_found or found[i] < np.inf
     if not any_found:
         for i in range(count):
             if not watched.armed[i]:
-                floor = level if watched.kind[i] == GUARD else HELD_NOISE
-                watched.armed[i] = int(np.max(rows[:, i]) > floor)
+                watched.armed[i] = int(np.max(rows[:, i]) > floors[i])
         return NOTHING
     earliest = np.min(found)  # beyond the count it is infinite
     for i in range(count):
@@ -190,17 +193,34 @@ def find(core: int, method: int) -> int:
     return INSIDE
 
 
+@unit
+def _floors(core: int, out: Vector) -> None:
+    """How far below zero each margin may be by rounding."""
+    flow, trial, watched = flow_of(core), trial_of(core), watch_of(core)
+    level, total = np.empty(len(flow.bound)), len(out)
+    levels(core, trial.ends[0], trial.x, level)
+    forces = total - flow.counts[RESTING]
+    for row in range(total):
+        guard = watched.kind[row] == GUARD
+        out[row] = level[watched.mode[row]] if guard else HELD_NOISE
+    if forces < total:
+        size = contact.force_sizes(core, trial.ends[0], trial.x)
+        for row in range(forces, total):
+            out[row] = HELD_NOISE * size[row - forces]
+
+
 @helper
-def _is_quiet(core: int, count: int, level: float) -> bool:
+def _is_quiet(core: int, count: int) -> bool:
     """Whether all margins are armed, none is below zero at a sample, and none may dip below it.
 
-    Nearly all steps are so; without branches the loop takes several margins at a time.
+    What rounding may explain is asked later. Nearly all steps are quiet; without branches the loop
+    takes several margins at a time.
     """
     watched = watch_of(core)
     rows, kind, armed = watched.rows, watched.kind, watched.armed
     loud = 0
     for i in range(count):
-        floor = level if kind[i] == GUARD else HELD_NOISE
+        floor = HELD_NOISE if kind[i] == FRACTION else 0.0
         least = min(rows[0, i], 0.0) - floor
         loud |= int(armed[i] == 0)
         for k in range(1, SAMPLES):
@@ -295,12 +315,13 @@ def reached(core: int, t: float, x: Vector, reach: float, out: Ints) -> int:
         return 0
     rates = trial_of(core).guards
     guard_rates(core, t, x, rates)
-    level, count = noise(x), 0
+    level, count = np.empty(len(rates)), 0
+    levels(core, t, x, level)
     for row in range(total):
         if watched.kind[row] != GUARD:
             continue
         falls = -watched.sign[row] * rates[watched.mode[row]]
-        if start[row] < -level or (falls > 0 and start[row] <= reach * falls):
+        if start[row] < -level[watched.mode[row]] or (falls > 0 and start[row] <= reach * falls):
             out[row] = 1
             count += 1
     return count

@@ -8,19 +8,28 @@ import numpy as np
 
 from tracewire.solve.core.arrays import Vector, flow_of, plan_of
 from tracewire.solve.core.codes import FLOOR, MEMORY, SIGN
-from tracewire.solve.core.flow import FREE
-from tracewire.solve.core.jit import helper
+from tracewire.solve.core.flow import FREE, GUARD_RATE_SIZES, GUARD_SIZES, sizes
+from tracewire.solve.core.jit import helper, unit
 
-NOISE = 1e-14
+NOISE = 1e-14  # of the size of a guard
+NOTHING = 1e-12  # of the size of a rate
+JUMP = 1e-9 / NOISE  # times its level a guard moves at once
 
 
-@helper
-def noise(x: Vector) -> float:
-    """How large a guard may be and still count as zero."""
-    largest = 0.0
-    for value in x:
-        largest = max(largest, abs(value))
-    return NOISE * (1.0 + largest)
+@unit
+def levels(core: int, t: float, x: Vector, out: Vector) -> None:
+    """How large each guard may be and still count as zero: a part of what it is made of."""
+    sizes(core, GUARD_SIZES, t, x, out)
+    for i in range(len(out)):
+        out[i] *= NOISE
+
+
+@unit
+def rate_levels(core: int, t: float, x: Vector, out: Vector) -> None:
+    """How large the rate of each guard may be and still count as zero."""
+    sizes(core, GUARD_RATE_SIZES, t, x, out)
+    for i in range(len(out)):
+        out[i] *= NOTHING
 
 
 @helper
@@ -38,14 +47,15 @@ def mode_value(core: int, i: int, guard: float) -> float:
 
 
 @helper
-def right_limit(core: int, i: int, slope: float, guard: float) -> float:
-    """The mode of a timed guard just after now."""
+def right_limit(core: int, i: int, slope: float, t: float, offset: float) -> float:
+    """The mode of a timed guard slope*t + offset just after now."""
     plan = plan_of(core)
+    guard, size = slope * t + offset, abs(slope * t) + abs(offset)
     if plan.kind[i] == SIGN:
-        if abs(guard) <= NOISE:
+        if abs(guard) <= NOISE * size:
             return 1.0 if slope > 0 or (slope == 0 and plan.at_zero[i]) else 0.0
         return 1.0 if guard > 0 else 0.0
-    near = NOISE * 100 * max(1.0, abs(guard))
+    near = NOISE * 100 * (max(1.0, size) if plan.kind[i] == FLOOR else size)
     return mode_value(core, i, guard + near if slope >= 0 else guard - near)
 
 

@@ -44,7 +44,7 @@ from tracewire.solve.core.flow import (
 )
 from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.linear import factor, substitute
-from tracewire.solve.core.modes import noise
+from tracewire.solve.core.modes import levels
 from tracewire.solve.core.sensitivity import flag, total_of
 from tracewire.solve.core.variation import (
     OF_GUARD_RATES,
@@ -185,12 +185,14 @@ def _instant(core: int, t: float, x: Vector, rate: Vector, i: int, out: Vector) 
         speed = lines[2 * line]
     elif how == GUARD:
         rows, along, bends = np.empty((modes, w)), np.empty(modes), np.empty(modes)
+        level = np.empty(modes)
+        levels(core, t, x, level)
         derive(core, OF_GUARDS, t, x, rows)
         guard_rates(core, t, x, along)
         row[:] = rows[i]
         speed = along[i]
         evaluate(core, SECOND, t, x, bends)
-        if not speed * speed > 2.0 * abs(bends[i]) * SHALLOW * noise(x):
+        if not speed * speed > 2.0 * abs(bends[i]) * SHALLOW * level[i]:
             speed = 0.0
     else:
         rows = np.empty((flow.counts[SLIDING] + flow.counts[RESTING], w))

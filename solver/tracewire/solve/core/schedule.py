@@ -33,8 +33,7 @@ def begin(core: int, t: float, x: Vector) -> None:
     for _ in range(len(plan.timed) + 1):  # the times of one mode may depend on another
         lines, changed = _lines(core, t, x), False
         for row, i in enumerate(plan.timed):
-            guard = lines[2 * row] * t + lines[2 * row + 1]
-            value = right_limit(core, i, lines[2 * row], guard)
+            value = right_limit(core, i, lines[2 * row], t, lines[2 * row + 1])
             changed = changed or value != flow.m[i]
             flow.m[i] = value
         if not changed:
@@ -52,7 +51,7 @@ def upcoming(core: int, t: float, x: Vector, to: Vector) -> float:
     best = np.inf
     to[:] = np.nan
     lines = _lines(core, t, x)
-    times = np.full(len(plan.timed), np.inf)
+    times, rounding = np.full(len(plan.timed), np.inf), np.zeros(len(plan.timed))
     for row, i in enumerate(plan.timed):
         slope, offset = lines[2 * row], lines[2 * row + 1]
         if slope == 0.0 or not np.isfinite(slope):
@@ -60,11 +59,16 @@ def upcoming(core: int, t: float, x: Vector, to: Vector) -> float:
         level, value = _change(core, i, slope)
         if np.isfinite(level):
             times[row] = max(t, (level - offset) / slope)
+            rounding[row] = TOGETHER * (abs(level) + abs(offset)) / abs(slope)
             to[row] = value
             best = min(best, times[row])
-    near = best + TOGETHER * max(1.0, abs(best))
+    nearest = 0.0
     for row in range(len(times)):
-        if not times[row] <= near:
+        if times[row] == best:
+            nearest = max(nearest, rounding[row])
+    near = best + TOGETHER * abs(best)
+    for row in range(len(times)):
+        if not times[row] <= near + max(nearest, rounding[row]):
             to[row] = np.nan
     return best
 

@@ -22,7 +22,6 @@ from tracewire.solve.core.decide import (
     MOST_TOGETHER,
     NO_BLEND,
     NONE,
-    NOTHING,
     UNIQUE,
     decide,
     first_higher,
@@ -37,14 +36,12 @@ from tracewire.solve.core.flow import (
     evaluate,
     guard_rates,
     held,
-    rates,
 )
 from tracewire.solve.core.jit import helper, unit
-from tracewire.solve.core.modes import NOISE, margin, mode_value, noise
+from tracewire.solve.core.modes import JUMP, NOTHING, levels, margin, mode_value, rate_levels
 from tracewire.solve.core.record import log
 from tracewire.solve.core.saltation import reset_sensitivities
 
-JUMP = 1e-9
 MOST_ROUNDS = 200
 MOST_EDGES = 20
 KNOWN, LEFT = 1, 2  # marks: a guard known to be zero; a slide that was left, its mode stays
@@ -63,20 +60,20 @@ def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
     plan = plan_of(core)
     progress = progress_of(core)
     modes = len(plan.kind)
-    guards, after = np.empty(modes), np.empty(modes)
+    guards, after, level = np.empty(modes), np.empty(modes), np.empty(modes)
     seen = np.empty((0, 3 * modes))  # until a second round needs it, which is rare
     flags = np.empty((3, modes), dtype=np.int64)
     zero, moved = flags[0], flags[1]
     rounds = 0
     _floor_edges(core, t, x, marks)
     while True:
-        level = noise(x)
+        levels(core, t, x, level)
         evaluate(core, GUARDS, t, x, guards)
         flags[:] = 0
         for i in range(modes):
             if plan.is_timed[i] or plan.kind[i] == MEMORY or flow.bound[i] == RESTING:
                 continue
-            if flow.bound[i] == SLIDING and abs(guards[i]) > JUMP * (1.0 + level / NOISE):
+            if flow.bound[i] == SLIDING and abs(guards[i]) > JUMP * level[i]:
                 bind(core, i, FREE)  # a jump has carried the run off the surface
                 flow.m[modes + i] = 0.0
                 flow.m[i] = mode_value(core, i, guards[i])
@@ -85,9 +82,9 @@ def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
                 zero[i] = 1
             elif marks[i] == LEFT:
                 continue
-            elif plan.kind[i] == SIGN and abs(guards[i]) <= level:
+            elif plan.kind[i] == SIGN and abs(guards[i]) <= level[i]:
                 zero[i] = 1
-            elif margin(core, i, guards[i]) < -level:
+            elif margin(core, i, guards[i]) < -level[i]:
                 # modes of one algebraic loop change one at a time, the first one first: this ends
                 # where every mode moves its own guard the right way (Murty)
                 loop = plan.loop[i]
@@ -105,15 +102,15 @@ def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
                 progress.ints[WARNINGS] |= NOT_UNIQUE
             evaluate(core, GUARDS, t, x, after)
             for i in undecided:
-                if abs(after[i] - guards[i]) > JUMP * (1.0 + abs(guards[i])):
+                if abs(after[i] - guards[i]) > JUMP * level[i]:
                     marks[i] = zero[i] = 0
-        if _open_contacts(core, t, x, marks, level):
+        if _open_contacts(core, t, x, marks):
             continue
         evaluate(core, GUARDS, t, x, guards)
         wrong = flags[2]
         for i in range(modes):
             fixed = zero[i] == 1 or marks[i] == LEFT
-            if not fixed and not margin(core, i, guards[i]) >= -level:
+            if not fixed and not margin(core, i, guards[i]) >= -level[i]:
                 wrong[i] = 1
         if not np.any(wrong):
             if rounds < MOST_EDGES and _floor_edges(core, t, x, marks):
@@ -144,20 +141,21 @@ def _floor_edges(core: int, t: float, x: Vector, marks: Ints) -> bool:
         some = some or kind == FLOOR
     if not some:
         return False
-    modes, level = len(plan.kind), noise(x)
-    guards, along, field = np.empty(modes), np.empty(modes), np.empty(len(x))
+    modes = len(plan.kind)
+    guards, along = np.empty(modes), np.empty(modes)
+    level, small = np.empty(modes), np.empty(modes)
     evaluate(core, GUARDS, t, x, guards)
     guard_rates(core, t, x, along)
-    rates(core, t, x, field)
-    small = NOTHING * max(np.max(np.abs(field)) if len(x) else 0.0, 1e-300)
+    levels(core, t, x, level)
+    rate_levels(core, t, x, small)
     for i in range(modes):
         whole = np.rint(guards[i])
-        near = abs(guards[i] - whole) <= level and marks[i] != LEFT
+        near = abs(guards[i] - whole) <= level[i] and marks[i] != LEFT
         if plan.kind[i] != FLOOR or plan.is_timed[i] or not near:
             continue
         rate = along[i]
-        if abs(rate) <= small:
-            rate = first_higher(core, t, x, i, small)
+        if abs(rate) <= small[i]:
+            rate = first_higher(core, t, x, i)
         value = flow.m[i] if rate == 0.0 else (whole if rate > 0.0 else whole - 1.0)
         changed = changed or value != flow.m[i]
         flow.m[i] = value
@@ -177,27 +175,31 @@ def _refuse(core: int, status: int, t: float, guards: Ints) -> int:
 def _close_contacts(core: int, t: float, x: Vector, zero: Ints) -> None:
     """Let contacts rest whose guard is zero, with a rate of zero, and pressed."""
     plan = plan_of(core)
-    if len(plan.resets) == 0 or not np.any(zero):
-        return
-    field = np.empty(len(x))
-    rates(core, t, x, field)
-    tolerance = NOTHING * max(np.max(np.abs(field)) if len(x) else 0.0, 1e-300)
+    some = False
     for reset in range(len(plan.resets)):
         i = plan.resets[reset, 0]
-        if i >= 0 and zero[i] and contact.touching(core, t, x, reset, tolerance):
+        some = some or (i >= 0 and zero[i] == 1)
+    if not some:
+        return
+    level = np.empty(len(plan.kind))
+    rate_levels(core, t, x, level)
+    for reset in range(len(plan.resets)):
+        i = plan.resets[reset, 0]
+        if i >= 0 and zero[i] and contact.touching(core, t, x, reset, level):
             zero[i] = 0
 
 
 @unit
-def _open_contacts(core: int, t: float, x: Vector, marks: Ints, level: float) -> bool:
+def _open_contacts(core: int, t: float, x: Vector, marks: Ints) -> bool:
     """Let contacts go that would have to pull; whether there were any."""
     flow = flow_of(core)
     if flow.counts[RESTING] == 0:
         return False
     forces = held(core, t, x)[flow.counts[SLIDING] :]
+    size = contact.force_sizes(core, t, x)
     opened = False
     for row, i in enumerate(np.flatnonzero(flow.bound == RESTING)):
-        if not forces[row] >= -level:
+        if not forces[row] >= -NOTHING * size[row]:
             contact.release(core, i)
             marks[i], opened = LEFT, True
     return opened
@@ -243,7 +245,7 @@ def _fire_transitions(core: int, t: float, x: Vector) -> Ints:
 
 
 @unit
-def _only_one(core: int, t: float, x: Vector, wrong: Ints, level: float) -> bool:
+def _only_one(core: int, t: float, x: Vector, wrong: Ints, level: Vector) -> bool:
     """Try all values of modes whose guards read what they change; whether just one fits, taken."""
     flow = flow_of(core)
     plan = plan_of(core)
@@ -260,7 +262,7 @@ def _only_one(core: int, t: float, x: Vector, wrong: Ints, level: float) -> bool
         evaluate(core, GUARDS, t, x, guards)
         good = True
         for i in some:
-            good = good and margin(core, i, guards[i]) >= -level
+            good = good and margin(core, i, guards[i]) >= -level[i]
         if good:
             if found >= 0:
                 return False

@@ -9,7 +9,7 @@ from tracewire.solve.core.arrays import Vector, crossings_of, flow_of, plan_of, 
 from tracewire.solve.core.codes import DOWN, FINISHED, FLOOR, MEMORY, SIGN, TIME, UP, T
 from tracewire.solve.core.flow import FREE, GUARDS, TIMED, evaluate
 from tracewire.solve.core.jit import unit
-from tracewire.solve.core.modes import NOISE, mode_value, noise
+from tracewire.solve.core.modes import NOISE, levels, mode_value
 from tracewire.solve.core.settle import settle
 from tracewire.solve.core.transition import happen, no_crossings
 
@@ -58,12 +58,13 @@ def _overlooked(core: int, t: float, x: Vector) -> None:
     flow = flow_of(core)
     plan = plan_of(core)
     progress = progress_of(core)
-    guards = np.empty(len(plan.kind))
+    guards, level = np.empty(len(plan.kind)), np.empty(len(plan.kind))
     evaluate(core, GUARDS, t, x, guards)
+    levels(core, t, x, level)
     for reset in range(len(plan.resets)):
         i = plan.resets[reset, 0]
         if i < 0 or plan.kind[i] != SIGN or plan.is_timed[i] or flow.bound[i] != FREE:
             continue
         way = UP if flow.m[i] > 0.5 else DOWN
-        if abs(guards[i]) <= noise(x) and plan.resets[reset, 1] == way:
+        if abs(guards[i]) <= level[i] and plan.resets[reset, 1] == way:
             progress.overlooked[reset] = 1

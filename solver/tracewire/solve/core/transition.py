@@ -53,15 +53,14 @@ from tracewire.solve.core.flow import (
     guard_rates,
 )
 from tracewire.solve.core.jit import helper, unit
-from tracewire.solve.core.modes import margin, mode_value, noise
+from tracewire.solve.core.modes import JUMP, levels, margin, mode_value, rate_levels
 from tracewire.solve.core.record import log
 from tracewire.solve.core.saltation import enter, leave, reset_sensitivities
-from tracewire.solve.core.settle import JUMP, KNOWN, LEFT, settle
+from tracewire.solve.core.settle import KNOWN, LEFT, settle
 
 CHATTER_PART = 1e-6
 MOST_RESETS = 100
 MOST_FOLLOWED = 4  # rounds in which guards follow the modes of others
-NOTHING = 1e-12
 
 
 @helper
@@ -208,13 +207,14 @@ def _follow(core: int, t: float, x: Vector) -> None:
     Not those of what fires now, nor those inside of an algebraic loop: these are decided later.
     """
     flow, plan, crossings = flow_of(core), plan_of(core), crossings_of(core)
-    guards, level = np.empty(len(plan.kind)), noise(x)
+    guards, level = np.empty(len(plan.kind)), np.empty(len(plan.kind))
+    levels(core, t, x, level)
     for _ in range(MOST_FOLLOWED):
         evaluate(core, GUARDS, t, x, guards)
         changed = False
         for i in range(len(plan.kind)):
             later = crossings.how[i] >= 0 or plan.loop[i] >= 0
-            if not later and margin(core, i, guards[i]) < -level:
+            if not later and margin(core, i, guards[i]) < -level[i]:
                 flow.m[i], changed = mode_value(core, i, guards[i]), True
         if not changed:
             return
@@ -250,20 +250,28 @@ def _driven_together(
     flow = flow_of(core)
     plan = plan_of(core)
     modes = len(plan.kind)
-    guards, along = np.empty(modes), np.empty(modes)
-    evaluate(core, GUARDS, t, x, guards)
-    guard_rates(core, t, x, along)
-    level = noise(x)
+    candidates = 0
     for reset in range(len(plan.resets)):
         i, was = plan.resets[reset, 0], due[reset]
-        due[reset] = 0
-        if i < 0 or plan.kind[i] != SIGN or plan.is_timed[i] or plan.resets[reset, 1] == 0:
-            continue
-        side = contact.side_of(core, reset)
-        small = NOTHING * (1.0 + abs(old[i]))
-        closing = side * along[i] < -small and (was == 1 or side * old[i] >= -small)
-        if flow.bound[i] == FREE and abs(guards[i]) <= level and closing and was == 0:
-            due[reset] = 1
+        fits = i >= 0 and plan.kind[i] == SIGN and not plan.is_timed[i]
+        due[reset] = fits and was == 0 and plan.resets[reset, 1] != 0 and flow.bound[i] == FREE
+        candidates += due[reset]
+    if candidates == 0:
+        return
+    values = np.empty((4, modes))
+    guards, level, along, small = values[0], values[1], values[2], values[3]
+    evaluate(core, GUARDS, t, x, guards)
+    levels(core, t, x, level)
+    for reset in np.flatnonzero(due):
+        i = plan.resets[reset, 0]
+        due[reset] = abs(guards[i]) <= level[i]
+    if not np.any(due):
+        return
+    guard_rates(core, t, x, along)
+    rate_levels(core, t, x, small)
+    for reset in np.flatnonzero(due):
+        i, side = plan.resets[reset, 0], contact.side_of(core, reset)
+        due[reset] = side * along[i] < -small[i] and side * old[i] >= -small[i]
 
 
 @unit
@@ -272,12 +280,16 @@ def _cross(core: int, t: float, before: Vector, after: Vector, turned: Ints, mar
     flow = flow_of(core)
     crossings = crossings_of(core)
     plan = plan_of(core)
-    modes = len(plan.kind)
-    guards = np.empty((2, modes))
-    here, there = guards[0], guards[1]
+    modes, some = len(plan.kind), False
+    for i in range(modes):
+        some = some or (crossings.how[i] >= 0 and not turned[i])
+    if not some:
+        return
+    guards = np.empty((3, modes))
+    here, there, level = guards[0], guards[1], guards[2]
     evaluate(core, GUARDS, t, before, here)
     evaluate(core, GUARDS, t, after, there)
-    level = noise(before)
+    levels(core, t, before, level)
     for i in range(modes):
         how = crossings.how[i]
         if how < 0 or turned[i]:
@@ -293,14 +305,14 @@ def _cross(core: int, t: float, before: Vector, after: Vector, turned: Ints, mar
             flow.m[i] = crossings.to[i]
         elif plan.kind[i] != SIGN:
             flow.m[i] = crossings.to[i]
-            if abs(there[i] - here[i]) <= level:
+            if abs(there[i] - here[i]) <= level[i]:
                 marks[i] = LEFT  # though rounding may have located it too early
-        elif abs(there[i] - here[i]) <= level:
+        elif abs(there[i] - here[i]) <= level[i]:
             # it was seen beyond: this counts where the derivatives do not tell
             flow.m[i], marks[i] = crossings.to[i], KNOWN
     evaluate(core, GUARDS, t, after, here)
     for i in range(modes):
-        jumps = abs(here[i] - there[i]) > JUMP * (1.0 + abs(there[i]))
+        jumps = abs(here[i] - there[i]) > JUMP * level[i]
         if marks[i] == KNOWN and jumps:  # a guard that its own mode moves is decided by trial
             flow.m[i] = 1.0 - flow.m[i]
 
