@@ -17,6 +17,7 @@ import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from threading import RLock
 from types import FunctionType, ModuleType
 from typing import Any, TypeVar, cast
 
@@ -67,17 +68,22 @@ TYPES = {
 UNITS: dict[str, Unit] = {}
 STUBS: dict[int, Unit] = {}
 KEPT: list[Any] = []
+LOCK = RLock()  # of all that makes machine code
 FIRST = "tracewire: compiling the integrators, once for this installation (one to two minutes) ..."
 
 
 @contextmanager
 def _cached_here() -> Iterator[None]:
-    given = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = given or str(CACHE)
-    try:
-        yield
-    finally:
-        numba.config.CACHE_DIR = given
+    """Let numba keep machine code in our folder: its setting is one of the process, so that one
+    thread at a time may change it. Another would else find it reset half way, and make its folder
+    where the process works."""
+    with LOCK:
+        given = numba.config.CACHE_DIR
+        numba.config.CACHE_DIR = given or str(CACHE)
+        try:
+            yield
+        finally:
+            numba.config.CACHE_DIR = given
 
 
 def helper(function: Function) -> Function:
@@ -206,17 +212,23 @@ def _called(function: Callable[..., Any]) -> set[Unit]:
 def ready(function: Callable[..., Any]) -> Any:
     """The C function of a unit, with all that it calls, for Python to call."""
     if STUBS[id(function)].code is None:
-        graph: nx.DiGraph[Unit] = nx.DiGraph()
-        graph.add_nodes_from(UNITS.values())
-        for caller in UNITS.values():
-            found = _called(caller.function) - {caller}
-            graph.add_edges_from((callee, caller) for callee in found)
-        waiting = [made for made in nx.topological_sort(graph) if made.code is None]
-        if not any(CACHE.rglob("*.nbi")):
-            print(FIRST, file=sys.stderr, flush=True)  # noqa: T201
-        for made in waiting:
-            made.compile()
+        with LOCK:  # what another thread has made meanwhile is not made again
+            _make_all()
     return STUBS[id(function)].code.ctypes
+
+
+def _make_all() -> None:
+    """Make the units that have no machine code yet, each after those that it calls."""
+    graph: nx.DiGraph[Unit] = nx.DiGraph()
+    graph.add_nodes_from(UNITS.values())
+    for caller in UNITS.values():
+        found = _called(caller.function) - {caller}
+        graph.add_edges_from((callee, caller) for callee in found)
+    waiting = [made for made in nx.topological_sort(graph) if made.code is None]
+    if not any(CACHE.rglob("*.nbi")):
+        print(FIRST, file=sys.stderr, flush=True)  # noqa: T201
+    for made in waiting:
+        made.compile()
 
 
 def _invoke(
