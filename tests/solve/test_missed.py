@@ -139,3 +139,22 @@ def test_a_longest_step_of_nothing_is_refused() -> None:
         run(text + "max_step: 0\n")
     with pytest.raises(OptionError, match="steps of 0 s at most lead nowhere"):
         run(text, limits=tw.Limits(max_step=0.0))
+
+
+@pytest.mark.parametrize("phase", np.linspace(0.0, 0.4, 9).tolist())
+def test_a_dip_before_a_crossing_in_the_same_part_of_a_step_is_found(phase: float) -> None:
+    """A wave touches its level just where its slope, another guard, turns."""
+    result = run(
+        f"""
+span: [0, 2]
+record: [n]
+blocks:
+  p: {{type: expression, formula: sin(7*t - {phase})}}
+  turns: {{type: sign, of: slope}}
+  slope: {{type: expression, formula: cos(7*t - {phase})}}
+  n: {{type: counter, of: p, threshold: 0.9995}}
+  x: {{type: integrator, of: turns}}
+""",
+        limits=LIMITS,
+    )
+    assert result["n"][-1] == sum(math.pi / 2 + phase + 2 * math.pi * k < 14 for k in range(3))

@@ -178,7 +178,8 @@ def find(core: int, method: int) -> int:
         if found[i] == 0.0:
             low, high = first / (SAMPLES - 1), (first + 1) / (SAMPLES - 1)
             found[i] = _root(core, method, i, low, high)
-        dip = _dip(core, method, min(first + 2, SAMPLES), i, floors[i])
+        # three samples at least: a dip may come before a crossing between the first two
+        dip = _dip(core, method, min(max(first + 2, 3), SAMPLES), i, floors[i])
         found[i] = min(found[i], dip)
         any_found = any_found or found[i] < np.inf
     if not any_found:
