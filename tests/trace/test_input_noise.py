@@ -41,25 +41,41 @@ def text(friction: bool) -> str:
     return whole.replace(" OF", ", coulomb" if friction else "")
 
 
-@pytest.mark.parametrize("declared", [True, False])
-def test_noise_of_a_force_is_no_effect_and_hides_none(tmp_path: Path, declared: bool) -> None:
+def write_record(folder: Path, declared: bool) -> Path:
+    """The diagram of a cart whose force is measured with a noise of 0.02 N, with its record."""
     rng = np.random.default_rng(6)
     t = 0.01 * np.arange(1501)
     force = 4 * np.sin(2.3 * t + 1) + 3 * np.sin(6.1 * t) + 2 * np.sin(11 * t + 2)
-    file = tmp_path / "cart.yaml"
+    file = folder / "cart.yaml"
     noisy = force + 0.02 * rng.standard_normal(len(t))
     np.savetxt(
-        tmp_path / "run.csv", np.stack([t, t, noisy], 1), delimiter=",", header="t,x,F", comments=""
+        folder / "run.csv", np.stack([t, t, noisy], 1), delimiter=",", header="t,x,F", comments=""
     )
     file.write_text(text(True), encoding="utf-8")
     true = {"c": 4.0, "level": 1.2}
     run = simulate(compile(read(file)), parameters=true, times=t, inputs={"F": (t, force)})
     x = run["x"] + 2e-5 * rng.standard_normal(len(t))
     np.savetxt(
-        tmp_path / "run.csv", np.stack([t, x, noisy], 1), delimiter=",", header="t,x,F", comments=""
+        folder / "run.csv", np.stack([t, x, noisy], 1), delimiter=",", header="t,x,F", comments=""
     )
     file.write_text(text(declared), encoding="utf-8")
-    found = trace(compile(read(file)))
+    return file
+
+
+@pytest.mark.parametrize("declared", [True, False])
+def test_noise_of_a_force_is_no_effect_and_hides_none(tmp_path: Path, declared: bool) -> None:
+    found = trace(compile(read(write_record(tmp_path, declared))))
     assert found.verdict == ("null" if declared else "effect")
     assert [str(effect) for effect in found.effects] == ([] if declared else ["coulomb @ force"])
     assert found.s2_after == pytest.approx(1.0, abs=0.15)
+
+
+def test_what_the_noise_of_an_input_would_explain_is_told_with_its_size(tmp_path: Path) -> None:
+    file = write_record(tmp_path, True)
+    whole = file.read_text(encoding="utf-8").replace(", sigma: 0.02", "")
+    file.write_text(whole, encoding="utf-8")
+    found = trace(compile(read(file)))
+    assert found.verdict == "unexplained"
+    (told,) = [words for words in found.words if "noise of the input 'F'" in words]
+    size = float(told.split(" of ")[2].split()[0])
+    assert size == pytest.approx(0.02, rel=0.15) and " N would explain" in told

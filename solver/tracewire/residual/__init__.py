@@ -3,7 +3,12 @@
 from tracewire.residual.criterion import LIMITS, Criterion, half_square
 from tracewire.residual.descent import Descent, descend
 from tracewire.residual.files import series_from_files
-from tracewire.residual.input_noise import InputCovariance, run_noise
+from tracewire.residual.input_noise import (
+    InputCovariance,
+    likely_input_noise,
+    response_in_windows,
+    run_noise,
+)
 from tracewire.residual.input_response import InputNoise
 from tracewire.residual.levenberg_marquardt import CREEPS, LEAST_DAMPING, bounded_step, descended
 from tracewire.residual.linearised import Projection, difference
@@ -86,6 +91,7 @@ __all__ = [
     "estimate_noise",
     "free_unknowns",
     "half_square",
+    "likely_input_noise",
     "load_measured",
     "noise_in",
     "noise_level",
@@ -95,6 +101,7 @@ __all__ = [
     "opened",
     "own_unknowns",
     "parameter_in",
+    "response_in_windows",
     "run_noise",
     "sensor_unknowns",
     "series_from_files",

@@ -91,6 +91,10 @@ class TraceOptions:
     at_noise: float = 1.3
     """The reduced chi-square below which a residual is at the sensor's noise: there the noise is
     white, likelihood is right, and BIC chooses."""
+    input_windows: int = 40
+    """Windows of a series on which the likely noise of an input is found."""
+    input_left: float = 2.0
+    """The reduced chi-square below which the noise of an input explains a residual."""
     refused: int = 4
     """Models that may be refused because they raise the error on unseen data, before none is
     named."""

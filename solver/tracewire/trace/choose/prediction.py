@@ -132,7 +132,16 @@ def _compare(pool: Pool, declared: Finalist, errors: dict[Key, Array]) -> None:
             continue
         compared[numbers] = compared.get(numbers, 0) + 1
         errors[key] = _errors(pool, pool.settled(pool.models[key]))
+        _stand(pool, errors)
         best = min(best, float(log_scores(errors[key][None], floor).mean()))
+
+
+def _stand(pool: Pool, errors: dict[Key, Array]) -> None:
+    """Let the search stand at the best model so far: it is kept where the comparison is ended."""
+    prediction = _chosen(pool, errors)
+    if prediction.choice.sure:
+        declared, taken = prediction.models[0], prediction.taken
+        pool.search.first, pool.search.best = declared.trials[-1], taken.trials[-1]
 
 
 def _errors(pool: Pool, model: Finalist) -> Array:

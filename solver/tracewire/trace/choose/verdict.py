@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tracewire.errors import FitError
+from tracewire.trace.choose.noisy_inputs import describe_noisy_inputs
 from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.choose.remainder import explained, held_out, remainders
 from tracewire.trace.found import Dependence, Explained, HeldOut, Missing, Remainder, Verdict
@@ -107,6 +108,8 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
             if verdict == "unexplained"
             else ((), None)
         )
+    if verdict == "unexplained":
+        search.words += describe_noisy_inputs(search, prediction.models[0].trials[0])
     return Judgement(
         verdict,
         final,
