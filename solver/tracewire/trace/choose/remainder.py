@@ -49,6 +49,13 @@ def _by_block(prediction: Prediction, model: int) -> Array:
     return np.asarray(prediction.errors[model][:, 0].mean(axis=2))
 
 
+def error_left(prediction: Prediction) -> float:
+    """The part of the error on held-out blocks that the named effects leave, the geometric mean
+    over horizons and blocks: a block that is far off counts as much as one that is near."""
+    declared, named = (_by_block(prediction, n) for n in (0, prediction.choice.taken))
+    return float(np.exp(0.5 * np.mean(np.log(np.maximum(named, 1e-300) / declared))))
+
+
 def held_out(prediction: Prediction, floors: Sequence[float]) -> tuple[HeldOut, ...]:
     """The errors on held-out blocks at each horizon."""
     horizons = prediction.horizons

@@ -10,7 +10,7 @@ import numpy as np
 from tracewire.errors import FitError
 from tracewire.trace.choose.noisy_inputs import describe_noisy_inputs
 from tracewire.trace.choose.prediction import Prediction
-from tracewire.trace.choose.remainder import explained, held_out, remainders
+from tracewire.trace.choose.remainder import error_left, explained, held_out, remainders
 from tracewire.trace.found import Dependence, Explained, HeldOut, Missing, Remainder, Verdict
 from tracewire.trace.missing.dependence import where_what
 from tracewire.trace.options import TraceOptions
@@ -97,6 +97,8 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
     else:
         enough = share.share >= options.explained
         enough = enough and share.share - error >= options.explained_surely
+        if taken.trials[-1].s2 > options.at_noise:  # no model leaves less than the noise
+            enough = enough and error_left(prediction) <= options.error_left
         law = ""
         if search.returns:  # else all that is left is a function of the one way
             law = _law_left(taken.trials[0], maps[0][0], share.share, options)
