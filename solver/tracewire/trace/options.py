@@ -99,6 +99,10 @@ class TraceOptions:
     """Windows of a series on which the likely noise of an input is found."""
     input_left: float = 2.0
     """The reduced chi-square below which the noise of an input explains a residual."""
+    input_depends: float = 0.8
+    """The share of an excess that a smooth map explains, from which on it is no noise of an input:
+    any force that is missing where the input acts has the size of some noise. A map of the rate of
+    the rate explained 0.70 of a force's noise, one of a hidden law 0.87 and more."""
     refused: int = 4
     """Models that may be refused because they raise the error on unseen data, before none is
     named."""

@@ -12,7 +12,6 @@ from tracewire.diagram import Diagram, difference, read_text
 from tracewire.solve import simulate
 from tracewire.trace.candidates.candidates import (
     Candidate,
-    aliases_of,
     extend,
     find_candidates,
     unknowns_of,
@@ -289,20 +288,11 @@ def test_a_subsystem_of_the_diagram_is_an_effect_with_its_own_units() -> None:
     assert f"torque: {{type: sum, of: [gravity, {magnet.block}]}}" in new.text
 
 
-def test_aliases_count_both_ways_and_at_the_same_place() -> None:
+def test_an_effect_imitates_what_its_block_says_at_its_own_place() -> None:
     known = named(found_in(read_text(TWO_MASSES)))
-    candidates = list(known.values())
-    asym = {str(c) for c in aliases_of(known["asym_coulomb @ force1"], candidates)}
-    assert asym == {"bias @ force1"}, "no sensor is declared here"
-    bias = {str(c) for c in aliases_of(known["bias @ force1"], candidates)}
-    assert bias == {"asym_coulomb @ force1"}
-    assert "stiffness @ force1" in map(str, aliases_of(known["backlash @ force1"], candidates))
-
-
-def test_a_lag_a_delay_and_a_viscous_friction_are_aliases_across_places(tmp_path: Path) -> None:
-    known = named(found_in(driven(tmp_path)))
-    lag = {str(c) for c in aliases_of(known["drive_lag @ drive.u"], list(known.values()))}
-    assert {"sensor_delay @ sensor.x", "drive_delay @ drive.u", "viscous @ force"} <= lag
+    assert "coulomb @ force1" in known["stribeck @ force1"].imitated
+    assert not any(name.endswith("force2") for name in known["stribeck @ force1"].imitated)
+    assert known["coulomb @ force1"].imitated == frozenset()
 
 
 def test_a_fixed_shape_is_written_and_not_fitted() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from tracewire.library import Scale
@@ -60,6 +60,11 @@ class Candidate:
         """The name of the coefficient in its block or sensor."""
         return self.coefficient.partition(".")[0 if not self.block else 2]
 
+    @property
+    def imitated(self) -> frozenset[str]:
+        """The effects at its place that it imitates, as `name @ place`."""
+        return frozenset(f"{alias} @ {self.place.name}" for alias in self.alias)
+
 
 def unknowns_of(candidate: Candidate, values: Mapping[str, float]) -> list[Unknown]:
     """The coefficient and the shapes of a candidate as unknowns of a fit, begun at `values`.
@@ -85,19 +90,6 @@ def unknowns_of(candidate: Candidate, values: Mapping[str, float]) -> list[Unkno
         size = max(abs(value), min((abs(v) for v in grid if v), default=1.0))
         found.append(Unknown(f"{candidate.block}.{name}", value, *candidate.limits[name], size))
     return found
-
-
-def aliases_of(candidate: Candidate, candidates: Sequence[Candidate]) -> list[Candidate]:
-    """The candidates that may imitate one: what its declaration names, or what names it.
-
-    At the same place; of a sensor, or a drive, at any.
-    """
-    return [
-        other
-        for other in candidates
-        if (other.effect in candidate.alias or candidate.effect in other.alias)
-        and (other.place == candidate.place or {other.place.kind, candidate.place.kind} != {"sum"})
-    ]
 
 
 def is_default(candidate: Candidate, shape: str, value: float) -> bool:

@@ -10,7 +10,6 @@ from tracewire.diagram import SENSOR, Diagram, EffectType, effects_of
 from tracewire.library import Effect, Shape
 from tracewire.trace.candidates.candidate import (
     Candidate,
-    aliases_of,
     is_default,
     unknowns_of,
     without_defaults,
@@ -24,7 +23,6 @@ from tracewire.trace.thresholds import CandidateOptions
 
 __all__ = [
     "Candidate",
-    "aliases_of",
     "extend",
     "find_candidates",
     "is_default",

@@ -91,7 +91,8 @@ class Pool:
         tried = [one.trial for step in first[:1] for one in step.tried]
         best = self.search.best
         found = [trial.effects for trial in tried[: self.options.tried_before]]
-        return [*found, best.effects] if best and best.effects else found
+        found += [best.effects] if best else []
+        return [effects for effects in found if 0 < len(effects) <= self.options.effects]
 
     def _extend_beside(self, parent: Finalist) -> None:
         """A model with the most promising effects and pairs: what shows in short windows is looked

@@ -160,11 +160,7 @@ def _chosen(pool: Pool, errors: dict[Key, Array]) -> Prediction:
             sum(e.candidate.effect in options.uncommon for e in model.trials[0].effects)
             + len(model.at_bounds),
             sum(not e.candidate.sign for e in model.trials[0].effects),
-            frozenset(
-                f"{alias} @ {e.candidate.place.name}"
-                for e in model.trials[0].effects
-                for alias in e.candidate.alias
-            ),
+            frozenset().union(*(e.candidate.imitated for e in model.trials[0].effects)),
         )
         for model in models
     )

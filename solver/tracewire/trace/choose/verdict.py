@@ -95,10 +95,7 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
         verdict: Verdict = "unexplained" if missed else "null"
         dependences, missing = maps[0]
     else:
-        enough = share.share >= options.explained
-        enough = enough and share.share - error >= options.explained_surely
-        if taken.trials[-1].s2 > options.at_noise:  # no model leaves less than the noise
-            enough = enough and error_left(prediction) <= options.error_left
+        enough = _is_enough(prediction, share.share, share.share - error)
         law = ""
         if search.returns:  # else all that is left is a function of the one way
             law = _law_left(taken.trials[0], maps[0][0], share.share, options)
@@ -110,7 +107,8 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
             if verdict == "unexplained"
             else ((), None)
         )
-    if verdict == "unexplained":
+    depends = max((d.share for d in dependences), default=0.0)
+    if verdict == "unexplained" and depends < options.input_depends:
         search.words += describe_noisy_inputs(search, prediction.models[0].trials[0])
     return Judgement(
         verdict,
@@ -122,6 +120,15 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
         maps[0][0],
         held_out(prediction, floors),
     )
+
+
+def _is_enough(prediction: Prediction, share: float, surely: float) -> bool:
+    """Whether the named effects explain enough of the excess error, and leave little enough of the
+    error on held-out blocks; at the noise no model leaves less."""
+    options = prediction.options
+    at_noise = prediction.taken.trials[-1].s2 <= options.at_noise
+    little = at_noise or error_left(prediction) <= options.error_left
+    return share >= options.explained and surely >= options.explained_surely and little
 
 
 def _harmless(search: Search, prediction: Prediction) -> tuple[Prediction, bool]:

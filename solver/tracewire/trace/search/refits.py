@@ -175,9 +175,9 @@ class Refits:
         except (FitError, DiagramError) as error:
             there = {str(effect) for effect in now.effects}
             names = " and ".join(str(e) for e in effects if str(e) not in there)
-            words = f"{names} was not tried: {error.problems[0].what}"
-            if names and words not in self.words:
-                self.words.append(words)
+            beginning = f"{names} was not tried: "
+            if names and not any(words.startswith(beginning) for words in self.words):
+                self.words.append(f"{beginning}{error.problems[0].what}")
             return None
 
 

@@ -260,10 +260,8 @@ def _is_simpler(other: Tried, one: Tried) -> bool:
     new, old = theirs.keys() - mine.keys(), mine.keys() - theirs.keys()
     if not new:
         return bool(old)
-    if len(new) != 1 or len(old) != 1 or other.proposal.count >= one.proposal.count:
-        return False
-    (added,), (imitating,) = (theirs[name] for name in new), (mine[name] for name in old)
-    return added.effect in imitating.alias and added.place == imitating.place
+    fewer = other.proposal.count < one.proposal.count
+    return fewer and len(new) == len(old) == 1 and new <= mine[next(iter(old))].imitated
 
 
 def _spread(trial: Trial, most: int, together: int) -> list[int]:
