@@ -143,11 +143,76 @@ def test_two_events_of_one_jump_read_the_same_and_write_together() -> None:
     assert result.final["n"] == 1
 
 
-def test_guards_that_move_as_well_fire_where_they_pass_zero_and_only_there() -> None:
-    """The first one is carried over zero by a jump at 0.5, the second one at 0.5, 1, 1.5 and 2."""
-    assert fired(run(rising("x - 0.7 - wave/4", WAVE))) == []
-    assert fired(run(rising("(x - 0.3)*wave", WAVE))) == [(0.3, "up")]
-    assert fired(run(rising("x - 0.7 + wave/4", WAVE))) == [(0.45, "up"), (0.95, "up")]
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(
+    ("guard", "crosses", "wanted"),
+    [
+        ("wave + 0.1*sin(20*t)", "both", ALL),
+        ("wave + 0.1*sin(20*t)", "up", ALL[1::2]),
+        ("-wave + 0.1*sin(20*x)", "up", [(0.5, "up"), (1.5, "up")]),
+        ("x - 0.7 - wave/4", "both", [(0.5, "up")]),
+        ("t - 0.7 - wave/4", "both", [(0.5, "up")]),
+        ("(x - 0.3)*wave", "both", [(0.3, "up"), *ALL]),
+        ("x - 0.7 + wave/4", "both", [(0.45, "up"), (0.5, "down"), (0.95, "up")]),
+        ("t - 0.7 + wave/4", "both", [(0.45, "up"), (0.5, "down"), (0.95, "up")]),
+    ],
+)
+def test_guards_that_move_as_well_fire_where_they_pass_zero_and_where_they_jump_over_it(
+    guard: str, crosses: str, wanted: list[tuple[float, str]], method: str
+) -> None:
+    assert fired(run(rising(guard, WAVE, crosses), method=method)) == wanted
+
+
+def test_a_counter_counts_a_trigger_with_a_ripple() -> None:
+    text = """
+span: [0, 2.2]
+blocks:
+  wave: {type: square, amplitude: 1, frequency: 5}
+  ripple: {type: sine, amplitude: 0.1, omega: 400}
+  noisy: {type: sum, of: [wave, ripple]}
+  clean: {type: counter, of: wave}
+  count: {type: counter, of: noisy, threshold: 0.5}
+  toggle: {type: toggle, of: noisy}
+record: [clean, count, toggle]
+"""
+    result = run(text)
+    assert result["clean"][-1] == result["count"][-1] == 11
+    assert result["toggle"][-1] == 1
+
+
+def test_a_reset_that_carries_another_guard_over_zero_sets_it_off() -> None:
+    """At 1 n becomes 2 and carries the guard of the second event up; this one carries n back."""
+    more = "- {when: n - 1 + x/100, crosses: up, set: {n: n - 10}}"
+    result = run(rising("x - 1", more=more, crosses="up").replace("n: n + 1", "n: n + 2"))
+    times = [(event.time, event.block) for event in result.events if event.kind == "reset"]
+    assert times == [(pytest.approx(1.0), "events[0]"), (pytest.approx(1.0), "events[1]")]
+    assert result.final["n"] == -8
+
+
+def test_a_mode_of_a_line_in_time_follows_the_jumps_of_the_line() -> None:
+    """t - 0.7 + wave/2 is above zero on [0.2, 0.5] and from 1 on."""
+    source = f"""{WAVE}
+  above: {{type: expression, formula: "1 if t - 0.7 + wave/2 >= 0 else 0"}}
+  z: {{type: integrator, of: above}}"""
+    assert run(rising("x - 9", source)).final["z"] == pytest.approx(1.3, abs=1e-12)
+
+
+def test_two_jumps_that_write_one_state_differently_are_an_error() -> None:
+    text = rising("wave", WAVE, "up", "- {when: wave, crosses: up, set: {n: n + 2}}")
+    with pytest.raises(SimulationError) as caught:
+        run(text)
+    assert str(caught.value) == (
+        "<text>:6:3: block 'n': two resets write 'n' at t = 1 s: events[0] gives 1, "
+        "events[1] gives 2. Merge the two events."
+    )
+    assert run(text.replace("n + 2", "1 + n")).final["n"] == 2
+
+
+def test_a_jump_that_carries_a_body_over_its_stop_is_an_error() -> None:
+    source = "stop: {type: hard_stop, force: zero, high: 1, low: -1}"
+    text = rising("x - 1", source, "up").replace("n: n + 1", "stop.x: 3")
+    with pytest.raises(SimulationError, match=r"a jump carries 'stop.x - 1' from -1 to 2, over"):
+        run(text)
 
 
 def test_a_guard_of_parameters_alone_never_fires() -> None:
@@ -165,6 +230,10 @@ def test_events_that_set_each_other_off_without_end_are_an_error() -> None:
         "Let what they set not carry their guards back over zero, or give one 'crosses: up'."
     )
 
+    text = text.replace("when: n,", "when: n + x/100,")
+    with pytest.raises(SimulationError, match=r"the event 'events.0.' fires again and again"):
+        run(text)
+
 
 DRIVEN = """
 span: [0, 2]
@@ -181,8 +250,12 @@ events:
 """
 
 
-def test_sensitivities_go_through_them() -> None:
-    model, names = made(DRIVEN), {"f": 1.1, "r": 0.7, "top": 0.3}
+@pytest.mark.parametrize("guard", ["wave", "wave + 0.1*x"])
+def test_sensitivities_go_through_them(guard: str) -> None:
+    model, names = (
+        made(DRIVEN.replace("when: wave", f"when: {guard}")),
+        {"f": 1.1, "r": 0.7, "top": 0.3},
+    )
     options: dict[str, Any] = {"times": [0.2, 0.7, 1.0, 1.3, 1.9], "rtol": 1e-11}
     result = simulate(model, sensitivities=list(names), **options)
     for name, value in names.items():

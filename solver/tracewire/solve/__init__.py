@@ -14,15 +14,18 @@ at the time of an event is the right limit; the log keeps x⁻ and x⁺.
 **Events.** All resets that are due read x⁻ and write x⁺ together; two that write different values
 to one state are an error that names both. Then the modes are evaluated anew until they stand still,
 and the run restarts. The mode is stored, never derived again from a state that sits on the
-surface. A guard that a reset carries over zero changes its mode, but fires no reset of its own; one
-that is zero and that the reset drives over it (a ball that lies at a wall and is struck) fires at
-the same instant, and reads what the first one wrote. Modes that do not stand still are an error.
+surface. A guard that is zero and that a reset drives over it (a ball that lies at a wall and is
+struck) fires at the same instant, and reads what the first one wrote. Modes that do not stand still
+are an error.
 An event whose guard only jumps (a square wave, a relay, a counter, a sample: constant between other
 events) fires at the instant of the jump, when all other modes stand still there: up, where it jumps
 from below zero to zero or above, or from zero, where that was no arrival from below, to above; down
-likewise. Its reset reads what the other resets of that instant wrote. A start fires nothing. Of a
-guard that moves as well, such as a ramp minus a square wave, only the passages through zero fire.
-Of two jumps at one instant that write one state, the later event of the diagram has the last word.
+likewise. Its reset reads what the other resets of that instant wrote. A start fires nothing. Two
+events of one jump that write different values to one state are an error that names both.
+A guard that moves as well, such as a square wave with a ripple, fires where it passes through zero,
+and at an instant that carries it over: when all modes stand still there, after the events whose
+guards only jump. What these resets carry over zero fires next, until nothing is left; events that
+set each other off without end are an error, and so is a jump that carries a body over a contact.
 
 **Memory.** A block with memory has named modes that only its transitions change: while the memory
 is `source` and the condition of the transition holds, it becomes `target`, and its reset, if it has
@@ -69,7 +72,8 @@ is no signal; `is_held(g)` tells that it acts. A start that lies on a contact an
 not fire there, and a warning says so.
 
 **Known times.** Guards that are a line in t (square, step, ramp, clocks, breakpoints of tables in
-t) change at computed times that steps end on; breakpoints of tables are not logged.
+t) change at computed times that steps end on; breakpoints of tables are not logged. Where the line
+jumps with another mode (`t - 0.7 + wave/2`), they change at the jump, too.
 
 **Sensitivities.** S = dx/dp follows S' = f_x S + f_p between events. At an event the instant moves
 by dτ = -(g_x S + g_p)/g', and S⁺ = R_x (S⁻ + f⁻ dτ) + R_p + R_t dτ - f⁺ dτ, with R the reset and f⁺
@@ -83,7 +87,7 @@ events and wall time stop a run with block, time, values and what to try. A run 
 times a second; there Ctrl-C is heard, and raises `Interrupted`, which carries the run up to there.
 
 **Order at one instant.** What crosses there and what is scheduled there (clocks, too, which read
-left limits), resets, modes and transitions, one sample.
+left limits), resets, modes and transitions, resets of guards that were carried over, one sample.
 
 **How it runs.** `core` holds all of this as functions that numba compiles once per installation;
 they call the model's machine code by address. This room's other files are Python: they fill the

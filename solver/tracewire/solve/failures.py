@@ -13,8 +13,10 @@ from tracewire.errors import Place, Problem, SimulationError
 from tracewire.solve.core.arrays import Arrays, Flow, Progress
 from tracewire.solve.core.codes import (
     BAD_RESET,
+    CARRIED,
     CHATTER,
     CHATTER_EVENTS,
+    ENDLESS,
     LENGTH,
     LOG_HEAD,
     NO_END,
@@ -82,6 +84,10 @@ def failure(model: Model, arrays: Arrays, status: int) -> SimulationError:
     guards = [int(i) for i in which[1 : 1 + which[0]]]
     if status == CHATTER:
         return _chatter(model, progress, guards[0])
+    if status == CARRIED:
+        return _carried(model, progress)
+    if status == ENDLESS:
+        return _endless(model, float(info[0]), (model.modes[guards[0]].signal,))
     if status == NO_END:
         mode = model.modes[guards[0]]
         what = f"the impacts of '{mode.text}' and its neighbours do not come to an end"
@@ -134,6 +140,19 @@ def _bad_write(model: Model, progress: Progress, status: int) -> SimulationError
     )
     place = place_of(model, which)
     return SimulationError([Problem(what, place, (), "Merge the two events.")])
+
+
+def _carried(model: Model, progress: Progress) -> SimulationError:
+    """A jump that carries a body over its stop."""
+    t, before, after = (float(v) for v in progress.info[:3])
+    reset, guard = (int(v) for v in progress.which[:2])
+    mode, event = model.modes[guard], model.lowered.resets[reset].name
+    what = (
+        f"a jump carries '{mode.text}' from {before:.6g} to {after:.6g}, "
+        f"over the contact of {event}"
+    )
+    hint = "Let no event set a position beyond a contact."
+    return stopped(model, t, progress.x, what, hint, mode.signal)
 
 
 def _chatter(model: Model, progress: Progress, guard: int) -> SimulationError:

@@ -15,7 +15,7 @@ LOG_HEAD = 4  # time, kind, mode, direction; behind them the states before and a
 
 FINISHED, PAUSED, LOG_FULL = 0, 1, 2
 UNDERFLOW, UNDEFINED, CHATTER, NO_MODE, NO_SLIDE = 10, 11, 12, 13, 14
-UNSETTLED, TWO_WRITES, BAD_RESET, NO_END = 15, 16, 17, 18
+UNSETTLED, TWO_WRITES, BAD_RESET, NO_END, CARRIED, ENDLESS = 15, 16, 17, 18, 19, 20
 
 # places in Progress.now
 T, H, END, LENGTH, RTOL, FIXED, RATIO, LONGEST, PACED = range(9)

@@ -71,16 +71,22 @@ def piece(core: int, table: int, value: float) -> tuple[float, float]:
 
 
 @helper
-def margin(core: int, i: int, guard: float) -> float:
-    """How far a guard is inside the range of its mode; negative where it is outside."""
-    flow = flow_of(core)
-    plan = plan_of(core)
-    if plan.is_timed[i] or plan.kind[i] == MEMORY or flow.bound[i] != FREE:
-        return np.inf
-    value = flow.m[i]
-    if plan.kind[i] == SIGN:
+def inside(core: int, i: int, guard: float) -> float:
+    """How far the value of a guard is inside the range of its mode; negative where outside."""
+    value, kind = flow_of(core).m[i], plan_of(core).kind[i]
+    if kind == SIGN:
         return guard if value > 0.5 else -guard
-    if plan.kind[i] == FLOOR:
+    if kind == FLOOR:
         return min(guard - value, value + 1.0 - guard)
-    low, high = piece(core, plan.table[i], value)
+    low, high = piece(core, plan_of(core).table[i], value)
     return min(guard - low, high - guard)
+
+
+@helper
+def margin(core: int, i: int, guard: float) -> float:
+    """As `inside`; infinite for modes that no value of a guard decides: known times, memories,
+    guards that are held."""
+    plan = plan_of(core)
+    if plan.is_timed[i] or plan.kind[i] == MEMORY or flow_of(core).bound[i] != FREE:
+        return np.inf
+    return inside(core, i, guard)

@@ -8,9 +8,10 @@ from tracewire.solve.core.arrays import Vector, flow_of, plan_of
 from tracewire.solve.core.codes import FLOOR, SIGN
 from tracewire.solve.core.flow import TIMED, evaluate
 from tracewire.solve.core.jit import helper, unit
-from tracewire.solve.core.modes import right_limit
+from tracewire.solve.core.modes import inside, right_limit
 
 TOGETHER = 1e-13
+CARRIED = 1e-12  # of the size of a line: what is farther beyond its level was carried there
 
 
 @helper
@@ -45,16 +46,24 @@ def upcoming(core: int, t: float, x: Vector, to: Vector) -> float:
     """The next time at which timed modes change; infinity if none.
 
     Fills `to` with the new value of each timed mode that changes then, else with NaN. A change
-    that an event has overtaken by rounding is due now.
+    that an event has overtaken by rounding is due now, and so is one of a guard that the jump of
+    another mode has carried over its level: the guard of `t - 0.7 + wave/2` is a line between the
+    jumps of the wave.
     """
-    plan = plan_of(core)
+    flow, plan = flow_of(core), plan_of(core)
     best = np.inf
     to[:] = np.nan
     lines = _lines(core, t, x)
     times, rounding = np.full(len(plan.timed), np.inf), np.zeros(len(plan.timed))
     for row, i in enumerate(plan.timed):
         slope, offset = lines[2 * row], lines[2 * row + 1]
-        if slope == 0.0 or not np.isfinite(slope):
+        if not np.isfinite(slope):
+            continue
+        size, now = abs(slope * t) + abs(offset), right_limit(core, i, slope, t, offset)
+        if inside(core, i, slope * t + offset) < -CARRIED * size and now != flow.m[i]:
+            times[row], to[row], best = t, now, t
+            continue
+        if slope == 0.0:
             continue
         level, value = _change(core, i, slope)
         if np.isfinite(level):

@@ -14,7 +14,6 @@ from tracewire.solve.core.codes import (
     NO_SLIDE,
     NOT_UNIQUE,
     SIGN,
-    TRANSITION,
     UNSETTLED,
     WARNINGS,
 )
@@ -29,7 +28,6 @@ from tracewire.solve.core.decide import (
 from tracewire.solve.core.flow import (
     FREE,
     GUARDS,
-    RESETS,
     RESTING,
     SLIDING,
     bind,
@@ -39,8 +37,7 @@ from tracewire.solve.core.flow import (
 )
 from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.modes import JUMP, NOTHING, levels, margin, mode_value, rate_levels
-from tracewire.solve.core.record import log
-from tracewire.solve.core.saltation import reset_sensitivities
+from tracewire.solve.core.resets import fire_transitions
 
 MOST_ROUNDS = 200
 MOST_EDGES = 20
@@ -116,9 +113,9 @@ def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
             if rounds < MOST_EDGES and _floor_edges(core, t, x, marks):
                 rounds += 1
                 continue
-            wrong = _fire_transitions(core, t, x)
-            if not np.any(wrong):
-                return FINISHED
+            status = fire_transitions(core, t, x, wrong)
+            if status != FINISHED or not np.any(wrong):
+                return status
             marks[:] = 0
         if len(seen) == 0:
             seen = np.full((MOST_ROUNDS, 3 * modes), np.nan)
@@ -203,45 +200,6 @@ def _open_contacts(core: int, t: float, x: Vector, marks: Ints) -> bool:
             contact.release(core, i)
             marks[i], opened = LEFT, True
     return opened
-
-
-@unit
-def _fire_transitions(core: int, t: float, x: Vector) -> Ints:
-    """Fire every transition that is due, at most one of a memory; marks the memories that moved.
-
-    All resets read x before and write together.
-    """
-    flow = flow_of(core)
-    plan = plan_of(core)
-    moved = np.zeros(len(plan.kind), dtype=np.int64)
-    if len(plan.transitions) == 0:
-        return moved
-    before, old, values = x.copy(), flow.m.copy(), np.empty(len(plan.writes))
-    fired = np.zeros(len(plan.resets), dtype=np.int64)
-    evaluate(core, RESETS, t, before, values)
-    for row in range(len(plan.transitions)):
-        memory, trigger = plan.transitions[row, 0], plan.transitions[row, 2]
-        if moved[memory] or old[memory] != plan.transitions[row, 1]:
-            continue
-        if flow.bound[trigger] == FREE:
-            ready = old[trigger] == plan.transitions[row, 5]
-        else:
-            ready = plan.transitions[row, 6] == 1
-        if not ready:
-            continue
-        moved[memory] = 1
-        flow.m[memory] = plan.transitions[row, 3]
-        reset = plan.transitions[row, 4]
-        if reset >= 0:
-            fired[reset] = 1
-            first = plan.resets[reset, 2]
-            for k in range(first, first + plan.resets[reset, 3]):
-                x[plan.writes[k]] = values[k]
-    if np.any(fired):
-        reset_sensitivities(core, t, before, fired, old)
-    for memory in np.flatnonzero(moved):
-        log(core, t, TRANSITION, memory, int(np.sign(flow.m[memory] - old[memory])), before, x)
-    return moved
 
 
 @unit

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from tracewire.solve.core import contact
@@ -18,11 +16,12 @@ from tracewire.solve.core.arrays import (
     progress_of,
 )
 from tracewire.solve.core.codes import (
-    BAD_RESET,
+    BOTH,
     CHATTER,
     CHATTER_EVENTS,
     CROSSING,
     DOWN,
+    ENDLESS,
     FINISHED,
     FORCE,
     FRACTION,
@@ -39,13 +38,11 @@ from tracewire.solve.core.codes import (
     SLIP,
     STICK,
     TIME,
-    TWO_WRITES,
     UP,
 )
 from tracewire.solve.core.flow import (
     FREE,
     GUARDS,
-    RESETS,
     RESTING,
     SLIDING,
     bind,
@@ -55,6 +52,7 @@ from tracewire.solve.core.flow import (
 from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.modes import JUMP, levels, margin, mode_value, rate_levels
 from tracewire.solve.core.record import log
+from tracewire.solve.core.resets import carried, fire_carried, write
 from tracewire.solve.core.saltation import enter, leave, reset_sensitivities
 from tracewire.solve.core.settle import KNOWN, LEFT, settle
 
@@ -118,14 +116,15 @@ def happen(core: int, t: float, x: Vector) -> int:
         if status != FINISHED:
             return status
     _write_log(core, t, before, x, done, fired, waits, old, bound)
-    leave(core, t, before, x, old, waits)
     for i in range(modes):
         shrinks = progress.flights[i, 0] < np.inf
         if crossings.how[i] >= 0 and crossings.how[i] != TIME and not shrinks:
             status = _count(core, t, i)
             if status != FINISHED:
                 return status
-    return FINISHED
+    status = _carry_on(core, t, before, x, old, bound, fired, marks)
+    leave(core, t, before, x, old, waits)
+    return status
 
 
 @unit
@@ -179,7 +178,7 @@ def _resets(
         if not np.any(due):
             return FINISHED
         before, modes_before = x.copy(), flow_of(core).m.copy()
-        status = _write(core, t, before, x, due)
+        status = write(core, t, before, x, due)
         if status != FINISHED:
             return status
         reset_sensitivities(core, t, before, due, flow_of(core).m)
@@ -201,6 +200,48 @@ def _resets(
 
 
 @unit
+def _carry_on(
+    core: int,
+    t: float,
+    before: Vector,
+    x: Vector,
+    old: Vector,
+    bound: Ints,
+    fired: Ints,
+    marks: Ints,
+) -> int:
+    """Fire the resets whose guards the jumps of this instant have carried over zero, then those
+    that these carry over in turn. `fired` marks the guards whose resets have fired. A status."""
+    flow, plan, crossings = flow_of(core), plan_of(core), crossings_of(core)
+    progress, due = progress_of(core), np.zeros(len(plan.resets), dtype=np.int64)
+    if len(due) == 0:
+        return FINISHED
+    for reset in range(len(due)):
+        i = plan.resets[reset, 0]
+        if i >= 0 and (crossings.how[i] >= 0 or fired[i] >= 0):
+            due[reset] = -1
+    no_crossings(core)
+    states, modes, held, waits = before, old, bound, np.full(len(plan.kind), contact.FLIES)
+    for _ in range(MOST_RESETS):
+        status = carried(core, t, states, x, modes, held, due)
+        if status != FINISHED or not np.any(due):
+            return status
+        fired[:], marks[:] = -1, 0
+        for reset in np.flatnonzero(due):
+            i = plan.resets[reset, 0]
+            fired[i], progress.which[0], progress.which[1] = reset, 1, i
+        states, modes, held = x.copy(), flow.m.copy(), flow.bound.copy()
+        status = fire_carried(core, t, x, due)
+        if status == FINISHED:
+            status = settle(core, t, x, marks, False)
+        if status != FINISHED:
+            return status
+        _write_log(core, t, states, x, due, fired, waits, modes, held)
+    progress.info[0] = t
+    return ENDLESS
+
+
+@unit
 def _follow(core: int, t: float, x: Vector) -> None:
     """Set the modes of the guards that a jump has carried over their levels.
 
@@ -218,28 +259,6 @@ def _follow(core: int, t: float, x: Vector) -> None:
                 flow.m[i], changed = mode_value(core, i, guards[i]), True
         if not changed:
             return
-
-
-@unit
-def _write(core: int, t: float, before: Vector, x: Vector, due: Ints) -> int:
-    """Write the new values of all resets that are due, each of which reads x⁻."""
-    plan = plan_of(core)
-    progress = progress_of(core)
-    values, by = np.empty(len(plan.writes)), np.full(len(x), -1)
-    evaluate(core, RESETS, t, before, values)
-    for reset in np.flatnonzero(due):
-        first = plan.resets[reset, 2]
-        for row in range(first, first + plan.resets[reset, 3]):
-            state, value = plan.writes[row], values[row]
-            other = by[state] >= 0 and x[state] != value
-            if not math.isfinite(value) or other:
-                progress.info[0], progress.info[1], progress.info[2] = t, value, x[state]
-                progress.which[0], progress.which[1] = state, reset
-                progress.which[2] = by[state]
-                return TWO_WRITES if other else BAD_RESET
-            x[state] = value
-            by[state] = reset
-    return FINISHED
 
 
 @unit
@@ -340,6 +359,8 @@ def _write_log(
         way = plan.resets[reset, 1]
         if crossings.how[i] >= 0:
             way = UP if crossings.up[i] else DOWN
+        elif way == BOTH:
+            way = UP if flow.m[i] > 0.5 else DOWN
         log(core, t, plan.resets[reset, 4], i, way, before, after)
     for i in range(len(plan.kind)):
         how, up = crossings.how[i], UP if crossings.up[i] else DOWN

@@ -1,0 +1,151 @@
+"""Resets: what an event writes, those of transitions, and those whose guard a jump carries over.
+
+A guard that passes through zero is located, and its reset is due there (`transition`). A guard that
+a jump carries over zero, that of a square wave with a ripple, fires at the instant of the jump,
+when all modes stand still there: its reset reads what the others wrote.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tracewire.solve.core import contact
+from tracewire.solve.core.arrays import (
+    Ints,
+    Vector,
+    copy,
+    flow_of,
+    plan_of,
+    progress_of,
+)
+from tracewire.solve.core.codes import (
+    BAD_RESET,
+    BOTH,
+    CARRIED,
+    DOWN,
+    FINISHED,
+    IMPACT,
+    SIGN,
+    TRANSITION,
+    TWO_WRITES,
+    UP,
+)
+from tracewire.solve.core.flow import FREE, GUARDS, RESETS, evaluate
+from tracewire.solve.core.jit import unit
+from tracewire.solve.core.modes import JUMP, levels
+from tracewire.solve.core.record import log
+from tracewire.solve.core.saltation import reset_sensitivities
+
+
+@unit
+def write(core: int, t: float, before: Vector, x: Vector, due: Ints) -> int:
+    """Write the new values of all resets that are due, each of which reads x⁻. A status:
+    TWO_WRITES where two of them give one state different values, BAD_RESET for no number."""
+    plan = plan_of(core)
+    progress = progress_of(core)
+    values, by = np.empty(len(plan.writes)), np.full(len(x), -1)
+    evaluate(core, RESETS, t, before, values)
+    for reset in np.flatnonzero(due):
+        first = plan.resets[reset, 2]
+        for row in range(first, first + plan.resets[reset, 3]):
+            state, value = plan.writes[row], values[row]
+            other = by[state] >= 0 and x[state] != value
+            if not math.isfinite(value) or other:
+                progress.info[0], progress.info[1], progress.info[2] = t, value, x[state]
+                progress.which[0], progress.which[1] = state, reset
+                progress.which[2] = by[state]
+                return TWO_WRITES if other else BAD_RESET
+            x[state] = value
+            by[state] = reset
+    return FINISHED
+
+
+@unit
+def fire_transitions(core: int, t: float, x: Vector, moved: Ints) -> int:
+    """Fire every transition that is due, at most one of a memory; `moved` marks the memories that
+    moved. All their resets read x before and write together. A status."""
+    flow, plan = flow_of(core), plan_of(core)
+    moved[:] = 0
+    if len(plan.transitions) == 0:
+        return FINISHED
+    before, old, to = x.copy(), flow.m.copy(), flow.m.copy()
+    fired = np.zeros(len(plan.resets), dtype=np.int64)
+    for row in range(len(plan.transitions)):
+        memory, trigger = plan.transitions[row, 0], plan.transitions[row, 2]
+        if moved[memory] or old[memory] != plan.transitions[row, 1]:
+            continue
+        if flow.bound[trigger] == FREE:
+            ready = old[trigger] == plan.transitions[row, 5]
+        else:
+            ready = plan.transitions[row, 6] == 1
+        if not ready:
+            continue
+        moved[memory], to[memory] = 1, plan.transitions[row, 3]
+        reset = plan.transitions[row, 4]
+        if reset >= 0:
+            fired[reset] = 1
+    if np.any(fired):
+        status = write(core, t, before, x, fired)
+        if status != FINISHED:
+            return status
+    copy(to, flow.m)
+    if np.any(fired):
+        reset_sensitivities(core, t, before, fired, old)
+    for memory in np.flatnonzero(moved):
+        log(core, t, TRANSITION, memory, int(np.sign(flow.m[memory] - old[memory])), before, x)
+    return FINISHED
+
+
+@unit
+def carried(
+    core: int, t: float, before: Vector, x: Vector, old: Vector, bound: Ints, due: Ints
+) -> int:
+    """Mark in `due` the resets whose guard has jumped over zero since the states `before`, with the
+    modes `old` and what was held then, `bound`. A status: CARRIED where a body jumps over a stop.
+
+    Not those of guards that crossed or fired on their own: `due` is -1 there.
+    """
+    flow, plan, progress = flow_of(core), plan_of(core), progress_of(core)
+    some, modes = False, len(plan.kind)
+    for reset in range(len(plan.resets)):
+        i, direction = plan.resets[reset, 0], plan.resets[reset, 1]
+        was, due[reset] = due[reset], 0
+        if i < 0 or was < 0 or plan.kind[i] != SIGN or plan.is_timed[i]:
+            continue
+        if flow.bound[i] != FREE or bound[i] != FREE or flow.m[i] == old[i]:
+            continue
+        due[reset] = direction == BOTH or direction == (UP if flow.m[i] > 0.5 else DOWN)
+        some = some or due[reset] == 1
+    if not some:
+        return FINISHED
+    here, there, level = np.empty(modes), np.empty(modes), np.empty(modes)
+    now = flow.m.copy()
+    levels(core, t, x, level)
+    evaluate(core, GUARDS, t, x, there)
+    copy(old, flow.m)
+    evaluate(core, GUARDS, t, before, here)
+    copy(now, flow.m)
+    for reset in range(len(plan.resets)):
+        i = plan.resets[reset, 0]
+        if due[reset] == 0:
+            continue
+        due[reset] = abs(there[i] - here[i]) > JUMP * level[i]
+        if due[reset] and plan.resets[reset, 4] == IMPACT:
+            progress.which[0], progress.which[1] = reset, i
+            progress.info[0], progress.info[1], progress.info[2] = t, here[i], there[i]
+            return CARRIED
+    return FINISHED
+
+
+@unit
+def fire_carried(core: int, t: float, x: Vector, due: Ints) -> int:
+    """Fire the resets that are due because a jump has carried their guards over zero. A status."""
+    before, old = x.copy(), flow_of(core).m.copy()
+    status = write(core, t, before, x, due)
+    if status != FINISHED:
+        return status
+    reset_sensitivities(core, t, before, due, old)
+    contact.struck(core, t, before, x)
+    return FINISHED
