@@ -58,7 +58,11 @@ combinations, more by pivoting. Fields in which two sliding modes multiply each 
 the fields points in; not where its sign is wrong, so that it drives. A jump that carries the run
 off the surface ends the slide. Recorded signals on a slide are blends, too. What rounding moves
 off the surface is put back after each step: a body at rest stays where it is for ever. A floor does
-not slide: fields that point to its jump from both sides end as chatter.
+not slide: fields that point to its jump from both sides end as chatter. Where the fields of the
+sides agree at an instant (friction whose level passes through zero) the fraction is 0/0, and its
+limit follows from the first higher derivative that is not zero. A guard that rests at zero while
+nothing decides its mode (friction on a prescribed rate of exactly zero) keeps the last side, with a
+warning where that makes a difference.
 
 **Loops.** The modes of an algebraic loop read what they change. They are changed one at a time, the
 first one first, which ends where each of them moves its own guard the right way; where that goes

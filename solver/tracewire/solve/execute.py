@@ -206,6 +206,13 @@ class Execution:
             said.append(
                 f"the start at t = {t:g} s lies on the guard of {name}, which does not fire there"
             )
+        for i, since in enumerate(self.progress.undetermined.tolist()):
+            if since < np.inf:
+                mode = self.model.modes[i]
+                said.append(
+                    f"'{mode.text}' of {mode.signal or 'an event'} rests at exactly zero from "
+                    f"t = {since:.9g} s on, and nothing decides on which side: the last one goes on"
+                )
         if self.asked:
             said.extend(undefined(self.model, self.arrays.sensitivity))
         return tuple(said)

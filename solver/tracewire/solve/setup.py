@@ -189,6 +189,7 @@ def new_progress(
         info=np.zeros(4),
         which=np.zeros(count + 8, dtype=np.int64),
         overlooked=np.zeros(len(model.lowered.resets), dtype=np.int64),
+        undetermined=np.full(len(model.modes), np.inf),
         given=np.empty(n),
         largest=np.zeros(n),
         least=np.zeros(n),

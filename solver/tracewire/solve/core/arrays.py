@@ -75,6 +75,8 @@ class Progress(NamedTuple):
     the absolute tolerances that the user gave, 0 where `atol` follows from `largest`, what was seen
     of each state. `sizes` (2n,) is work space, and behind it of what size each state has been of
     late, at least `least`: one that passes through zero has the rounding errors of its size.
+    `undetermined` (M,): since when the guard of a mode has rested at zero where nothing decides
+    the mode although the rates differ with it; inf: never.
     """
 
     now: Vector
@@ -94,6 +96,7 @@ class Progress(NamedTuple):
     largest: Vector
     least: Vector
     sizes: Vector
+    undetermined: Vector
 
 
 class Trial(NamedTuple):
@@ -355,6 +358,7 @@ def progress_of(core: int) -> Progress:
         vector(core, 32),
         vector(core, 33),
         vector(core, 34),
+        vector(core, 35),
     )
 
 
@@ -362,19 +366,19 @@ def progress_of(core: int) -> Progress:
 def trial_of(core: int) -> Trial:
     """The trial step."""
     return Trial(
-        vector(core, 35),
         vector(core, 36),
         vector(core, 37),
         vector(core, 38),
         vector(core, 39),
-        matrix(core, 40),
+        vector(core, 40),
         matrix(core, 41),
         matrix(core, 42),
         matrix(core, 43),
-        ints(core, 44),
-        vector(core, 45),
+        matrix(core, 44),
+        ints(core, 45),
         vector(core, 46),
         vector(core, 47),
+        vector(core, 48),
     )
 
 
@@ -382,16 +386,16 @@ def trial_of(core: int) -> Trial:
 def watch_of(core: int) -> Watch:
     """What is watched."""
     return Watch(
-        ints(core, 48),
         ints(core, 49),
-        vector(core, 50),
+        ints(core, 50),
         vector(core, 51),
         vector(core, 52),
-        ints(core, 53),
-        matrix(core, 54),
-        vector(core, 55),
+        vector(core, 53),
+        ints(core, 54),
+        matrix(core, 55),
         vector(core, 56),
-        ints(core, 57),
+        vector(core, 57),
+        ints(core, 58),
     )
 
 
@@ -399,9 +403,9 @@ def watch_of(core: int) -> Watch:
 def crossings_of(core: int) -> Crossings:
     """What happens now."""
     return Crossings(
-        ints(core, 58),
-        vector(core, 59),
-        ints(core, 60),
+        ints(core, 59),
+        vector(core, 60),
+        ints(core, 61),
     )
 
 

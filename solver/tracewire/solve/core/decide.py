@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracewire.solve.core.arrays import Ints, Vector, flow_of, plan_of
+from tracewire.solve.core.arrays import Ints, Vector, flow_of, plan_of, progress_of
 from tracewire.solve.core.flow import (
+    AFFINE,
     FREE,
     GUARD_RATES,
+    RATE_SIZES,
     RESTING,
     SECOND,
     SECOND_SIZES,
@@ -24,6 +26,7 @@ from tracewire.solve.core.flow import (
     is_affine,
     is_independent,
     patterns,
+    rates,
     sizes,
 )
 from tracewire.solve.core.jit import helper, unit
@@ -221,6 +224,38 @@ def _drives(core: int, t: float, x: Vector) -> bool:
     for row, i in enumerate(slides):
         drives = drives or (plan.can_hold[i] == 1 and moves[1 + row, i] > 0.0)
     return drives
+
+
+@unit
+def note_undetermined(core: int, t: float, x: Vector, zero: Ints) -> None:
+    """Keep since when guards have rested at zero whose modes nothing decides, but matter.
+
+    Such is friction on a rate that it does not change: a prescribed one that is exactly zero.
+    """
+    flow, undetermined = flow_of(core), progress_of(core).undetermined
+    modes, n = len(flow.bound), len(x)
+    along, beyond, small = np.empty(modes), np.empty(modes), np.empty(modes)
+    guard_rates(core, t, x, along)
+    rate_levels(core, t, x, small)
+    for i in zero:
+        free = flow.bound[i] == FREE and undetermined[i] == np.inf
+        if not free or abs(along[i]) > small[i] or first_higher(core, t, x, i) != 0.0:
+            continue
+        here, there, size = np.empty(n), np.empty(n), np.empty(n)
+        sizes(core, RATE_SIZES, t, x, size)
+        rates(core, t, x, here)
+        flow.m[i] = 1.0 - flow.m[i]
+        rates(core, t, x, there)
+        guard_rates(core, t, x, beyond)
+        fits = abs(beyond[i]) <= small[i]
+        if flow.counts[SLIDING]:  # the others may hold with one of the sides alone
+            for part in held(core, t, x)[: flow.counts[SLIDING]]:
+                fits = fits and -SLACK <= part <= 1 + SLACK
+        flow.m[i] = 1.0 - flow.m[i]
+        for j in range(n):
+            differ = abs(there[j] - here[j]) > AFFINE * size[j]
+            if differ and fits:
+                undetermined[i] = t
 
 
 @helper

@@ -3,6 +3,10 @@
 On a slide over surfaces S the field is the sum over patterns of (product of m or 1 - m) times the
 frozen field, with the fractions m for which every sliding guard keeps d(guard)/dt = 0. A contact
 that rests adds force times push, with the forces for which d2(guard)/dt2 = 0.
+
+Where no mode moves a sliding guard and its rate is zero (friction whose level passes through zero)
+the fraction is 0/0, and its limit along the flow follows from the first higher derivative that is
+not zero on all sides: the rule of de l'Hopital.
 """
 
 from __future__ import annotations
@@ -111,8 +115,51 @@ def _held_alone(core: int, t: float, x: Vector) -> Vector:
     for i in range(modes):
         if flow.bound[i] == SLIDING:
             change = moves[1, i]
+            if change == 0.0 and moves[0, i] == 0.0:
+                row, right = np.zeros(1), 0.0
+                right = _limit(core, t, x, i, row)
+                change, moves[0, i] = row[0], -right
             fraction[0] = -moves[0, i] / change if 0.0 < abs(change) < np.inf else np.nan
     return fraction
+
+
+@unit
+def _limit(core: int, t: float, x: Vector, i: int, row: Vector) -> float:
+    """The right side of the equation of the fraction of a slide where it is 0/0, and its row: how
+    the first higher derivative that is not zero changes with each fraction.
+
+    Zeros where the field differs with its mode: the mode then never moves the guard's rate itself,
+    as that of a relay on a position does not.
+    """
+    flow = flow_of(core)
+    fields, column = patterns(core, RHS, t, x, len(x)), np.sum(flow.bound[: i + 1] == SLIDING)
+    if np.any(fields[column] != 0.0):
+        row[:] = 0.0
+        return 0.0
+    for order in range(3):
+        moves = patterns(core, SECOND + order, t, x, len(flow.bound))
+        for column in range(flow.counts[SLIDING]):
+            row[column] = moves[1 + column, i]
+        if moves[0, i] != 0.0 or np.any(row != 0.0):
+            return -moves[0, i]
+    return 0.0
+
+
+@unit
+def slide_equations(core: int, t: float, x: Vector, matrix: Matrix, right: Vector) -> None:
+    """The equations of the fractions: a row (of at least as many columns) for each slide."""
+    flow = flow_of(core)
+    some, slides = flow.counts[SLIDING], np.flatnonzero(flow.bound == SLIDING)
+    moves, parts = patterns(core, GUARD_RATES, t, x, len(flow.bound)), np.empty(some)
+    for row in range(some):
+        right[row], still = -moves[0, slides[row]], moves[0, slides[row]] == 0.0
+        for column in range(some):
+            parts[column] = moves[1 + column, slides[row]]
+            still = still and parts[column] == 0.0
+        if still:
+            right[row] = _limit(core, t, x, slides[row], parts)
+        for column in range(some):
+            matrix[row, column] = parts[column]
 
 
 @unit
@@ -126,11 +173,7 @@ def held(core: int, t: float, x: Vector) -> Vector:
     rests = np.flatnonzero(flow.bound == RESTING)
     some, count = len(slides), len(slides) + len(rests)
     matrix, right = np.empty((count, count)), np.empty(count)
-    moves = patterns(core, GUARD_RATES, t, x, modes)
-    for row in range(some):
-        right[row] = -moves[0, slides[row]]
-        for column in range(some):
-            matrix[row, column] = moves[1 + column, slides[row]]
+    slide_equations(core, t, x, matrix, right)
     if len(rests):
         fields = patterns(core, RHS, t, x, n)
         curves, gradients = np.empty((modes, n + 1)), np.empty((modes, n))
@@ -239,13 +282,11 @@ def is_independent(core: int, t: float, x: Vector) -> bool:
     some = flow.counts[SLIDING]
     if some < 2:
         return True
-    slides = np.flatnonzero(flow.bound == SLIDING)
-    moves = patterns(core, GUARD_RATES, t, x, len(flow.bound))
-    matrix = np.empty((some, some))
+    matrix, right = np.empty((some, some)), np.empty(some)
+    slide_equations(core, t, x, matrix, right)
     for row in range(some):
         largest = 0.0
         for column in range(some):
-            matrix[row, column] = moves[1 + column, slides[row]]
             largest = max(largest, abs(matrix[row, column]))
         if not largest > 0.0:
             return False

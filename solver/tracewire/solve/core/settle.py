@@ -24,6 +24,7 @@ from tracewire.solve.core.decide import (
     UNIQUE,
     decide,
     first_higher,
+    note_undetermined,
 )
 from tracewire.solve.core.flow import (
     FREE,
@@ -97,6 +98,7 @@ def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
                 return _refuse(core, NO_MODE if how == NONE else NO_SLIDE, t, undecided)
             if how != UNIQUE and fresh:
                 progress.ints[WARNINGS] |= NOT_UNIQUE
+            note_undetermined(core, t, x, undecided)
             evaluate(core, GUARDS, t, x, after)
             for i in undecided:
                 if abs(after[i] - guards[i]) > JUMP * level[i]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numba
+import numpy as np
 
 from tracewire.solve.core.arrays import (
     BEHIND,
@@ -162,6 +163,8 @@ def _is_odd(core: int, events: int) -> bool:
     odd = progress.ints[WARNINGS] != 0 or progress.ints[LOGGED] > events
     for mark in progress.overlooked:
         odd = odd or mark != 0
+    for since in progress.undetermined:
+        odd = odd or since < np.inf
     if is_sensitive(core):
         flags = sensitivity_of(core).flags
         for kind in range(len(flags)):
