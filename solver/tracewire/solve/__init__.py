@@ -40,7 +40,8 @@ one, and with one below zero, k is any whole number, however early the run begin
 A combination is consistent when the first non-zero derivative of each guard along the field of
 that combination, up to order 4, has the sign of its mode. One: it is taken. None: a slide. Several:
 the stored one, at the start with a warning. All derivatives zero: the stored one; of a guard that
-was seen beyond, the mode there; at the start what the comparison says at zero. Relations on the
+was seen beyond, the mode there; at the start what the comparison says at zero. On a slide a higher
+derivative is known as far as no lower one differs between the sides. Relations on the
 same signal, up to sign, share one mode; where they differ at exactly zero (x > 0 and x >= 0), the
 first one speaks for both. A floor that stands on a whole number goes to the side to which its guard
 goes.

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracewire.solve.core.arrays import Ints, Vector, flow_of, plan_of, progress_of
+from tracewire.solve.core.contact import bend
 from tracewire.solve.core.flow import (
     AFFINE,
     FREE,
@@ -20,7 +21,6 @@ from tracewire.solve.core.flow import (
     SECOND_SIZES,
     SLIDING,
     bind,
-    evaluate,
     guard_rates,
     held,
     is_affine,
@@ -258,21 +258,33 @@ def note_undetermined(core: int, t: float, x: Vector, zero: Ints) -> None:
                 undetermined[i] = t
 
 
-@helper
+@unit
 def first_higher(core: int, t: float, x: Vector, i: int) -> float:
     """The first derivative of a guard, from the second to the fourth, that is not zero; 0: none.
 
-    On a slide or in a contact they are not known, and count as zero.
+    On a slide each is the blend of those on the sides, as long as no lower one differs between
+    these; in a contact the second one alone is known. What is not known counts as zero.
     """
     flow = flow_of(core)
-    if flow.counts[SLIDING] + flow.counts[RESTING]:
+    size, count = np.empty(len(flow.bound)), len(flow.bound)
+    moves = patterns(core, GUARD_RATES, t, x, count)
+    if np.any(moves[1:, i] != 0.0):
         return 0.0
-    values, size = np.empty(len(flow.bound)), np.empty(len(flow.bound))
+    if flow.counts[RESTING]:
+        sizes(core, SECOND_SIZES, t, x, size)
+        second = bend(core, t, x, i)
+        return second if abs(second) > NOTHING * size[i] else 0.0
+    fractions = held(core, t, x) if flow.counts[SLIDING] else size[:0]
     for order in range(3):
-        evaluate(core, SECOND + order, t, x, values)
-        if values[i] == 0.0:
-            continue
-        sizes(core, SECOND_SIZES + order, t, x, size)
-        if abs(values[i]) > NOTHING * size[i]:
-            return float(values[i])
+        values = patterns(core, SECOND + order, t, x, count)
+        value, differs = values[0, i], False
+        for row in range(flow.counts[SLIDING]):
+            value += fractions[row] * values[1 + row, i]
+            differs = differs or values[1 + row, i] != 0.0
+        if value != 0.0:
+            sizes(core, SECOND_SIZES + order, t, x, size)
+            if abs(value) > NOTHING * size[i]:
+                return float(value)
+        if differs:
+            return 0.0
     return 0.0

@@ -50,13 +50,11 @@ from tracewire.solve.core.codes import (
     T,
 )
 from tracewire.solve.core.flow import (
-    GUARDS,
     PACE,
     RATE_SIZES,
     RESTING,
     SLIDING,
     evaluate,
-    guard_rates,
     pin,
     rates,
     sizes,
@@ -73,7 +71,6 @@ STIFF, STIFF_HIGH = 3.0, 6.1  # h*eigenvalue at the edge of stability, of order 
 TIGHT = 1e-8  # where order 8 takes fewer steps, and its errors add up to less
 MANY_STIFF = 8
 MANY_CALM = 6
-POLISH = 3
 TOGETHER = 1e-12
 SOON = 1e-9
 NEAR = 32.0
@@ -342,14 +339,6 @@ def _first_step(core: int, rate: Vector, limit: float) -> float:
     return min(100 * h, after, length)
 
 
-@helper
-def smallest_step(core: int) -> float:
-    """The step below which a run cannot go on."""
-    progress = progress_of(core)
-    t = abs(progress.now[T])
-    return max(1e-15 * progress.now[LENGTH], 16 * (np.nextafter(t, np.inf) - t))
-
-
 @unit
 def _attempt(core: int, rate: Vector, limit: float) -> int:
     """A step within the tolerances, in `trial`; the factor for the next one in now[RATIO].
@@ -381,7 +370,7 @@ def _attempt(core: int, rate: Vector, limit: float) -> int:
         ints[REJECTED] += 1
         finite = math.isfinite(error)
         now[H] = h * (max(0.1, safety * error**power) if finite else 0.1)
-        if not now[H] >= smallest_step(core):  # or no number, where the rates are none
+        if not now[H] >= locate.smallest_step(core):  # or no number, where the rates are none
             return UNDERFLOW if finite else UNDEFINED
 
 
@@ -389,7 +378,7 @@ def _attempt(core: int, rate: Vector, limit: float) -> int:
 def _undefined(core: int) -> int:
     """Where the rates end to be defined: at a guard it is an event, elsewhere an error."""
     progress, hit = progress_of(core), watch_of(core).hit
-    reach = NEAR * smallest_step(core)
+    reach = NEAR * locate.smallest_step(core)
     if locate.reached(core, progress.now[T], progress.x, reach, hit) == 0:
         return UNDEFINED
     progress.now[H] = 0.0
@@ -416,7 +405,7 @@ def _crossed(core: int) -> int:
     watched, crossings = watch_of(core), crossings_of(core)
     now, ints, x, found = progress.now, progress.ints, progress.x, watched.found
     first = int(np.argmin(found))
-    _polish(core, found[first], first)
+    locate.polish(core, found[first], first)
     end = trial.ends[0] + trial.ends[1]
     sample_inside(core, ints[CURRENT], end)
     now[T] = end
@@ -445,39 +434,6 @@ def _crossed(core: int) -> int:
     now[H] = now[H] / 4 if same else 0.0
     ints[SUSPICIOUS] = 0
     return status
-
-
-@unit
-def _polish(core: int, theta: float, row: int) -> None:
-    """Make the trial end at the crossing: located on the polynomial, then on true steps.
-
-    It ends at the far side of the guard, where the formula of the mode to come is defined.
-    """
-    flow = flow_of(core)
-    progress = progress_of(core)
-    trial = trial_of(core)
-    watched = watch_of(core)
-    t, x, whole = trial.ends[0], progress.x, trial.ends[1]
-    method, i = progress.ints[CURRENT], watched.mode[row]
-    h = max(theta * whole, smallest_step(core))
-    methods.step(core, method, t, x, trial.rate, h)
-    if watched.kind[row] != GUARD or not np.all(np.isfinite(trial.x_end)):
-        return
-    guards, along = np.empty(len(flow.bound)), np.empty(len(flow.bound))
-    for _ in range(POLISH):
-        evaluate(core, GUARDS, t + h, trial.x_end, guards)
-        guard_rates(core, t + h, trial.x_end, along)
-        change = -(guards[i] - watched.level[row]) / along[i] if along[i] != 0.0 else 0.0
-        if not 0 < h + change <= whole:
-            return
-        if abs(change) <= 1e-14 * progress.now[LENGTH]:
-            if change > 0.0 and h + 2 * change <= whole:
-                methods.step(core, method, t, x, trial.rate, h + 2 * change)
-            return
-        if abs(change) > 0.1 * whole:
-            return
-        h += change
-        methods.step(core, method, t, x, trial.rate, h)
 
 
 @unit

@@ -22,7 +22,18 @@ from tracewire.solve.core.arrays import (
     trial_of,
     watch_of,
 )
-from tracewire.solve.core.codes import FLOOR, FORCE, FRACTION, GUARD, MEMORY, SIGN, WATCHED, T
+from tracewire.solve.core.codes import (
+    CURRENT,
+    FLOOR,
+    FORCE,
+    FRACTION,
+    GUARD,
+    LENGTH,
+    MEMORY,
+    SIGN,
+    WATCHED,
+    T,
+)
 from tracewire.solve.core.flow import (
     FREE,
     GUARDS,
@@ -43,6 +54,8 @@ HELD_NOISE = 1e-9  # of a fraction, and of what the force of a contact balances
 ROOT = 1e-14
 CLEARLY = 4.0  # beyond its level, in units of the noise
 MOST_ROUNDS = 200
+POLISH = 3  # corrections of a located instant
+BACK = 1e-4  # of a step: how far back a secant begins
 NOTHING, INSIDE, AT_ONCE = 0, 1, 2
 
 
@@ -326,3 +339,74 @@ def reached(core: int, t: float, x: Vector, reach: float, out: Ints) -> int:
             out[row] = 1
             count += 1
     return count
+
+
+@helper
+def smallest_step(core: int) -> float:
+    """The step below which a run cannot go on."""
+    progress = progress_of(core)
+    t = abs(progress.now[T])
+    return max(1e-15 * progress.now[LENGTH], 16 * (np.nextafter(t, np.inf) - t))
+
+
+@unit
+def polish(core: int, theta: float, row: int) -> None:
+    """Make the trial end at the crossing: located on the polynomial, then on true steps.
+
+    At a guard it ends on the far side, where the formula of the mode to come is defined. The end
+    of a slide or of a contact is where its fraction or force is zero, but for rounding: how far a
+    rate is from zero there decides other modes.
+    """
+    flow = flow_of(core)
+    progress = progress_of(core)
+    trial = trial_of(core)
+    watched = watch_of(core)
+    t, x, whole = trial.ends[0], progress.x, trial.ends[1]
+    method, i = progress.ints[CURRENT], watched.mode[row]
+    h = max(theta * whole, smallest_step(core))
+    methods.step(core, method, t, x, trial.rate, h)
+    if not np.all(np.isfinite(trial.x_end)):
+        return
+    if watched.kind[row] != GUARD:
+        _polish_end(core, h, whole, row)
+        return
+    guards, along = np.empty(len(flow.bound)), np.empty(len(flow.bound))
+    for _ in range(POLISH):
+        evaluate(core, GUARDS, t + h, trial.x_end, guards)
+        guard_rates(core, t + h, trial.x_end, along)
+        change = -(guards[i] - watched.level[row]) / along[i] if along[i] != 0.0 else 0.0
+        if not 0 < h + change <= whole:
+            return
+        if abs(change) <= 1e-14 * progress.now[LENGTH]:
+            if change > 0.0 and h + 2 * change <= whole:
+                methods.step(core, method, t, x, trial.rate, h + 2 * change)
+            return
+        if abs(change) > 0.1 * whole:
+            return
+        h += change
+        methods.step(core, method, t, x, trial.rate, h)
+
+
+@unit
+def _polish_end(core: int, h: float, whole: float, row: int) -> None:
+    """Make the trial end where the margin of a slide or a contact is zero: secants over steps."""
+    progress, trial = progress_of(core), trial_of(core)
+    t, x, method = trial.ends[0], progress.x, progress.ints[CURRENT]
+    values = np.empty(len(watch_of(core).mode))
+    margins(core, t + h, trial.x_end, values)
+    here, at, other = values[row], h, h * (1.0 - BACK)
+    methods.step(core, method, t, x, trial.rate, other)
+    margins(core, t + other, trial.x_end, values)
+    there = values[row]
+    for _ in range(POLISH):
+        change = -here * (at - other) / (here - there) if here != there else 0.0
+        if not (0.0 < at + change <= whole and abs(change) <= 0.1 * whole):
+            break
+        there, other = here, at
+        at += change
+        methods.step(core, method, t, x, trial.rate, at)
+        if abs(change) <= ROOT * progress.now[LENGTH]:
+            return
+        margins(core, t + at, trial.x_end, values)
+        here = values[row]
+    methods.step(core, method, t, x, trial.rate, at)
