@@ -44,7 +44,9 @@ def test_the_matrices_of_an_oscillator() -> None:
     assert found.D.tolist() == [[0, 0, 0], [0, 0.5, 0], [0, 0, 1]]
     assert found.rates.tolist() == [0, -4]
     assert found.eigenvalues == pytest.approx(np.roots([1, 0.1, 4]))
-    assert found.verdict == "stable"
+    assert found.verdict == "not a steady state"
+    assert found.told == "the rates are v' = -4"
+    assert linearise(made(OSCILLATOR), at={"x": 0}).verdict == "stable"
 
 
 def test_a_linearisation_predicts_small_changes() -> None:
@@ -188,8 +190,93 @@ def test_a_driven_model_has_no_steady_state() -> None:
         assert "Set its drive to zero" in str(caught.value)
 
 
-def test_where_there_is_none_the_rate_that_is_left_is_told() -> None:
+def test_where_there_is_none_the_rates_that_are_left_are_told() -> None:
     model = made("span: [0, 1]\nblocks:\n  x: {type: integrator, of: r}\n"
                  "  r: {type: expression, formula: 1 + x*x}\n")  # fmt: skip
-    with pytest.raises(AnalysisError, match="the rate of 'x' is still 1"):
-        steady_state(model)
+    with pytest.raises(AnalysisError, match=r"no steady state was found: at x = .* x' = 1"):
+        steady_state(model, guess={"x": 0.3})
+
+
+@pytest.mark.parametrize("start", [0.1, 0.8, 1.4, 1.56, -1.5])
+def test_a_pendulum_that_is_let_go_has_its_steady_state_below(start: float) -> None:
+    """At 1.4 Newton's whole step leads to -4.4."""
+    found = steady_state(made(PENDULUM), guess={"phi": start}, parameters={"b": 0.2})
+    assert found.x == pytest.approx([0, 0], abs=1e-9)
+    assert found.verdict == "stable"
+
+
+STOPS = """
+span: [0, 10]
+parameters: {push: 0, c: 0.1}
+blocks:
+  stop: {type: hard_stop, force: force, high: 0.5236, low: -1.5708, start: 0.3}
+  force: {type: expression, formula: push - 9.81*sin(stop.x) - c*stop.v}
+"""
+
+
+@pytest.mark.parametrize("start", [-1.57, -1.0, 0.3, 0.52])
+def test_a_pendulum_between_stops_has_its_steady_state_between_them(start: float) -> None:
+    found = steady_state(made(STOPS), guess={"stop.x": start})
+    assert found.x == pytest.approx([0, 0], abs=1e-9)
+    assert found.verdict == "stable"
+
+
+@pytest.mark.parametrize(("push", "side"), [(6, 0.5236), (30, 0.5236), (-12, -1.5708)])
+@pytest.mark.parametrize("rate", [0.0, 0.7])
+def test_a_body_that_is_pressed_against_a_stop_lies_on_it(
+    push: float, side: float, rate: float
+) -> None:
+    guess = {"stop.v": rate}
+    found = steady_state(made(STOPS), guess=guess, parameters={"push": push})
+    assert found.x == pytest.approx([side, 0], abs=1e-12)
+    assert found.verdict == "nonsmooth"
+    assert "is held at zero" in found.guards[0]
+
+
+def test_a_start_beyond_a_stop_is_refused() -> None:
+    with pytest.raises(AnalysisError, match=r"beyond a contact: 'stop.x - 0.5236' is 0.4764"):
+        steady_state(made(STOPS), guess={"stop.x": 1.0})
+
+
+KINKED = """
+span: [0, 1]
+parameters: {c: 0.3, u: 1}
+blocks:
+  x: {type: integrator, of: v, start: 2}
+  v: {type: integrator, of: a}
+  a: {type: expression, formula: "FORCE"}
+"""
+
+
+@pytest.mark.parametrize(
+    ("force", "start", "rest"),
+    [
+        ("-x - v - c*sign(v)", 2.0, 0.3),  # creeps to where the friction just holds it
+        ("-x - v - c*sign(v)", 0.2, 0.2),
+        ("u - v - max(2*x, 0) - 0.1*x", -3.0, 1 / 2.1),
+        ("u - v - 2*max(x, 0) + min(x + 1, 0)", 3.0, 0.5),
+    ],
+)
+def test_guards_on_the_way_are_passed_or_hold(force: str, start: float, rest: float) -> None:
+    found = steady_state(made(KINKED.replace("FORCE", force)), guess={"x": start})
+    assert found.x == pytest.approx([rest, 0], abs=1e-9)
+
+
+def test_an_event_on_the_way_is_named() -> None:
+    text = KINKED.replace("FORCE", "-x - v") + (
+        "events: [{when: x - 1, crosses: down, set: {x: 3}}]\n"
+    )
+    with pytest.raises(AnalysisError, match=r"ends where 'x - 1' is zero, where events.0. fires"):
+        steady_state(made(text))
+    assert steady_state(made(text), guess={"x": 0.5}).x == pytest.approx([0, 0], abs=1e-9)
+
+
+@pytest.mark.parametrize("unit", [1e-12, 1.0, 1e9])
+def test_a_steady_state_is_one_in_any_unit(unit: float) -> None:
+    text = KINKED.replace("FORCE", f"-x - v + c*{unit}*cos(x/{unit})")
+    text = text.replace("start: 2", f"start: {2 * unit}")
+    found = steady_state(made(text), guess={"x": 2 * unit})
+    assert found["x"] / unit == pytest.approx(0.28761, abs=1e-4)
+    assert found.verdict == "stable"
+    assert linearise(made(text), at={"x": 2 * unit}).verdict == "not a steady state"
+    assert linearise(made(text), at=found.values).verdict == "stable"

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.analyse import verdict
+from tracewire.analyse.equilibrium import is_steady, state_sizes, told_rates
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, OptionError, Problem, unknown
 from tracewire.solve import Passage
@@ -20,6 +21,7 @@ Matrix = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 AT_ZERO = 1e-9  # of the size of the states: a guard that is nearer to its level is at it
 ALIKE = 1e-9
+NOT_STEADY = "not a steady state"
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +29,8 @@ class Linear:
     """A linear model dx' = A dx + B du, dy = C dx + D du around the states `x` (n,) at the time t.
 
     A (n, n), B (n, p), C (q, n), D (q, p) in SI; `states`, `inputs` (p) and `outputs` (q) name the
-    rows and columns. `rates` (n,) are those at x: zero at a steady state.
+    rows and columns. `rates` (n,) are those at x: zero at a steady state; `told` says in words
+    those that are not.
     """
 
     states: tuple[str, ...]
@@ -40,6 +43,7 @@ class Linear:
     B: Matrix
     C: Matrix
     D: Matrix
+    told: str = ""
 
     @property
     def eigenvalues(self) -> Complexes:
@@ -48,9 +52,9 @@ class Linear:
         return found[np.lexsort((-found.imag, -found.real))]
 
     @property
-    def verdict(self) -> verdict.Verdict:
-        """Whether the linear model is stable."""
-        return verdict.of_eigenvalues(self.eigenvalues)
+    def verdict(self) -> str:
+        """Whether the steady state is stable; "not a steady state" where rates are not zero."""
+        return NOT_STEADY if self.told else verdict.of_eigenvalues(self.eigenvalues)
 
     def to_control(self) -> Any:
         """The same as a StateSpace of python-control; stop.v is called `stop_v` there.
@@ -107,6 +111,7 @@ def linearise(
         function = shown.derivative(of, by)
         return seen.value(function, rows * len(by), x, t).reshape(rows, len(by))
 
+    sizes = state_sizes(passage)
     found = Linear(
         states=model.states,
         inputs=names,
@@ -118,6 +123,7 @@ def linearise(
         B=slopes("rhs", names, n),
         C=slopes("outputs", model.states, q),
         D=slopes("outputs", names, q),
+        told="" if is_steady(passage, sizes) else told_rates(passage, sizes),
     )
     for name in "ABCD":
         if not np.isfinite(getattr(found, name)).all():

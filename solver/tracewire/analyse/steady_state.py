@@ -7,19 +7,18 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import root
 
 from tracewire.analyse import verdict
 from tracewire.analyse.drive import is_driven
+from tracewire.analyse.equilibrium import find_equilibrium
 from tracewire.analyse.linearise import nonsmooth
 from tracewire.compile import Model
-from tracewire.errors import AnalysisError, Problem, SimulationError
+from tracewire.errors import AnalysisError, Problem
 from tracewire.solve import Passage
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
-CLOSED = 1e-9  # of the size of what adds up to a rate
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,10 +56,12 @@ def steady_state(
     parameters: Mapping[str, float] | None = None,
     preset: str = "",
 ) -> SteadyState:
-    """Find an equilibrium near the start values, or near `guess` by state, with the exact Jacobian.
+    """Find the equilibrium next to the start values, or next to `guess` by state.
 
-    Raises AnalysisError: a model whose rates change with time by themselves has none, or the search
-    has not found one, with the rate that is left.
+    The search stays on the near side of contacts; a body may lie on one. See `equilibrium`.
+
+    Raises AnalysisError: a model whose rates change with time by themselves has none, the start
+    lies beyond a contact, or the search has not found one, with the rates that are left.
     """
     passage = Passage(
         model, length=1.0, begin=t, parameters=parameters, start=guess, preset=preset, rtol=1e-9
@@ -69,38 +70,8 @@ def steady_state(
         what = "the rates change with time by themselves: this model has no steady state"
         hint = "Set its drive to zero (parameters=, --set), or find its periodic orbit."
         raise AnalysisError([Problem(what, hint=hint)])
-    first = passage.x
-
-    def rates(x: Vector) -> Vector:
-        try:
-            passage.begin_at(t, x)
-            found = passage.rates()
-        except SimulationError:  # beyond where the model is defined
-            return np.full(len(x), 1e30)
-        return np.where(np.isfinite(found), found, 1e30)
-
-    def slopes(x: Vector) -> Matrix:
-        return np.nan_to_num(passage.jacobian(x, t))
-
-    x, left = first, float(np.abs(rates(first)).max(initial=0.0))
-
-    def size(x: Vector) -> float:
-        return 1.0 + float((np.abs(slopes(x)) @ np.abs(x)).max(initial=0.0))
-
-    for method in ("hybr", "lm"):
-        if left <= CLOSED * size(x) or not len(first):
-            break
-        found = root(rates, first, jac=slopes, method=method, options={"xtol": 1e-13})
-        now = float(np.abs(rates(found.x)).max())
-        if now < left:
-            x, left = np.asarray(found.x, dtype=float), now
-    final = rates(x)
-    if left > CLOSED * size(x):
-        worst = int(np.argmax(np.abs(final)))
-        name = model.states[worst]
-        what = f"no steady state was found: the rate of '{name}' is still {final[worst]:.3g}"
-        hint = "Give a guess nearer to it (guess=, --start); there may be none."
-        raise AnalysisError([Problem(what, hint=hint)])
+    find_equilibrium(passage)
+    x, left = passage.x, float(np.abs(passage.rates()).max(initial=0.0))
     guards = tuple(nonsmooth(passage))
     jacobian = passage.jacobian()
     none = np.empty(0, dtype=np.complex128)

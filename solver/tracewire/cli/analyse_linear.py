@@ -150,5 +150,6 @@ def linearise(
     columns = {name: matrix for name, matrix, _, _ in given} | {"x": found.x}
     if output is not None and output.endswith(".csv"):
         columns = {name: found.A[:, n] for n, name in enumerate(found.states)}  # A alone
-    lines = [f"eigenvalues [1/s]: {listed}", found.verdict]
+    verdict = f"{found.verdict}: {found.told}" if found.told else found.verdict
+    lines = [f"eigenvalues [1/s]: {listed}", verdict]
     tell(data, tables, lines, as_json=as_json, columns=columns, output=output)

@@ -25,7 +25,7 @@ from tracewire.solve.core.codes import (
     STEPS,
     T,
 )
-from tracewire.solve.core.flow import FREE, FUNCTIONS, rates
+from tracewire.solve.core.flow import FREE, FUNCTIONS, jacobian, rates
 from tracewire.solve.core.integrate import advance
 from tracewire.solve.core.jit import invoke_at, ready
 from tracewire.solve.core.methods import NAMES
@@ -181,6 +181,11 @@ class Passage:
         sensitivity.s[:] = columns
         sensitivity.peak[:] = np.maximum(np.abs(columns), self.arrays.progress.atol[:, None])
 
+    @property
+    def declared_start(self) -> Vector:
+        """The states (n,) with which the diagram begins."""
+        return start_of(self.model, self.arrays.flow, {})
+
     def go_to(self, end: float, inner: ArrayLike = ()) -> None:
         """Go on to the time `end` in s; what happens there has happened then.
 
@@ -255,10 +260,22 @@ class Passage:
 
     def rates(self) -> Vector:
         """The rates (n,) at the stop: on a slide those along it."""
-        x, out = self.x, np.zeros(len(self.model.states))
-        pointers = [as_ctypes(array) for array in (x, out)]
-        ready(rates)(self._address, self.t, pointers[0], len(x), pointers[1], len(x))
+        return self.rates_at(self.x)
+
+    def rates_at(self, x: Vector) -> Vector:
+        """The rates (n,) at other states, with the modes, slides and contacts of the stop."""
+        at, out = np.ascontiguousarray(x, dtype=float), np.zeros(len(self.model.states))
+        pointers = [as_ctypes(array) for array in (at, out)]
+        ready(rates)(self._address, self.t, pointers[0], len(at), pointers[1], len(at))
         return out
+
+    def slopes(self) -> Matrix:
+        """d rates / d x (n, n) at the stop: on slides and contacts by differences."""
+        x, n = self.x, len(self.model.states)
+        out = np.zeros(n * (n + 1))
+        pointers = [as_ctypes(array) for array in (x, out)]
+        ready(jacobian)(self._address, self.t, pointers[0], n, pointers[1], n, n + 1)
+        return out.reshape(n, n + 1)[:, :n]
 
     @property
     def steps(self) -> int:
