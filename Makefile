@@ -6,7 +6,7 @@ ARGS ?=
 BIN := .venv/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: help demo test check benchmark format clean
+.PHONY: help demo test check benchmark fuzz format clean
 .DEFAULT_GOAL := help
 # a .venv that could not be finished is made anew the next time
 .DELETE_ON_ERROR:
@@ -27,6 +27,9 @@ check: .venv/installed-test            ## style and types
 
 benchmark: .venv/installed-benchmark            ## time it beside other solvers: make benchmark ARGS=--quick
 	$(BIN)/python -m benchmarks $(ARGS)
+
+fuzz: .venv/installed-test            ## random systems beside exact solutions: make fuzz ARGS="--count 10000"
+	PYTHONPATH=tests $(BIN)/python -m fuzz $(ARGS)
 
 format: .venv/installed-test            ## repair style where it can be done by rule
 	$(BIN)/ruff check --fix

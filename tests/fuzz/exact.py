@@ -1,0 +1,342 @@
+"""An exact solution of piecewise linear hybrid systems: a series between events, roots of it.
+
+Between two events every mode is frozen and z' = A z, where z holds the states, the number 1, and a
+sine and a cosine for each wave. Its Taylor series is summed in cells in which it has converged to
+rounding; guards are linear in z, and their first roots in a cell are those of a polynomial. What
+the theory leaves open (a guard that is only touched, two things at one instant, no unique mode)
+raises `Unclear`: such a system judges nobody. Nothing here knows the product.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from fuzz.elements import (
+    CLOSE,
+    Element,
+    Guard,
+    Play,
+    Reset,
+    Stop,
+    Switch,
+    System,
+    Unclear,
+    Wave,
+)
+from numpy.typing import NDArray
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+ORDER = 16
+CELL = 0.5  # of 1/|A|: there a term of the series is below 1e-17 of the first one
+POINTS = np.linspace(0.0, 1.0, 9)
+POWERS = POINTS[None, :] ** np.arange(ORDER + 1)[:, None]
+MOST_EVENTS = 400
+LOWEST = 2 * CLOSE  # a flight that rises no higher counts as lying
+
+
+class Solution:
+    """The solution of a system: `at(times)` are the values of z; `events` counts what happened."""
+
+    def __init__(self, system: System, end: float) -> None:
+        self.system, self.end = system, end
+        self.t, self.z = 0.0, system.start.copy()
+        self.pieces: list[tuple[float, float, Matrix]] = []  # begin, length, coefficients
+        self.events = 0
+        self.cell = math.inf  # how long the next cell may be
+        for element in system.elements:
+            element.begin(self.z)
+        self.hold()
+        while self.t < end:
+            self.advance(min(end, self.known()))
+            self.events += 1
+            if self.events > MOST_EVENTS:
+                raise Unclear("many events")
+
+    def at(self, times: Sequence[float]) -> Matrix:
+        """z at ascending times (N, len z)."""
+        found, number = [], 0
+        for t in times:
+            while number + 1 < len(self.pieces) and self.pieces[number + 1][0] <= t:
+                number += 1
+            begin, length, series = self.pieces[number]
+            found.append(series @ ((t - begin) / length) ** np.arange(ORDER + 1))
+        return np.array(found)
+
+    def known(self) -> float:
+        """The next known time."""
+        later = [math.inf]
+        for part in (*self.waves(), *self.system.clocks):
+            period = part.half if isinstance(part, Wave) else part.period
+            later.append((math.floor(self.t / period + 1e-9) + 1) * period)
+        return min(later)
+
+    def waves(self) -> list[Wave]:
+        return [element for element in self.system.elements if isinstance(element, Wave)]
+
+    def field(self, without: Sequence[Element] = ()) -> Matrix:
+        """A with the modes as they stand."""
+        matrix = self.system.matrix.copy()
+        for element in self.system.elements:
+            if not any(element is other for other in without):
+                matrix += np.outer(element.into, element.output())
+        for element in self.system.elements:
+            if isinstance(element, Stop):
+                element.force = matrix[element.v].copy()
+                if element.side:
+                    matrix[[element.x, element.v]] = 0.0
+        return matrix
+
+    def hold(self) -> None:
+        """Let the switches that have met their surface cross it, or hold it."""
+        switches = [e for e in self.system.elements if isinstance(e, Switch)]
+        met = [s for s in switches if s.met]
+        if met:
+            self.decide([s for s in switches if s.met or s.held is not None])
+        else:
+            if not self.solve_held([s for s in switches if s.held is not None]):
+                raise Unclear("surfaces that their modes do not move any more")
+        for switch in switches:
+            switch.met = False
+
+    def solve_held(self, held: Sequence[Switch]) -> bool:
+        """Find the rows of the modes that hold these switches; whether there are any."""
+        if not held:
+            return True
+        base = self.field(without=held)
+        rows = np.array([s.row for s in held])
+        ways = np.array([s.level * s.into for s in held])
+        for stop in (e for e in self.system.elements if isinstance(e, Stop) and e.side):
+            ways[:, [stop.x, stop.v]] = 0.0
+        matrix = rows @ ways.T
+        if abs(np.linalg.det(matrix)) < 1e-9:
+            return False
+        found = np.linalg.solve(matrix, -rows @ base)
+        for switch, row in zip(held, found, strict=True):
+            switch.held = row
+        return True
+
+    def decide(self, switches: Sequence[Switch]) -> None:
+        """Which of these switches, all on their surfaces, hold, and which side the others take."""
+        fits: list[tuple[int, tuple[int, ...]]] = []
+        for modes in itertools.product((0, 1, -1), repeat=len(switches)):
+            if not self.assign(switches, modes):
+                continue
+            rate = self.field() @ self.z
+            good = True
+            for switch, mode in zip(switches, modes, strict=True):
+                if mode == 0:
+                    need = abs(float(np.asarray(switch.held) @ self.z))
+                    self.clear(need - switch.stick)
+                    good = good and need < switch.stick
+                else:
+                    along = float(switch.row @ rate)
+                    self.clear(along)
+                    good = good and along * mode > 0
+            if good:
+                fits.append((modes.count(0), modes))
+        most = max((count for count, _ in fits), default=-1)
+        best = [modes for count, modes in fits if count == most]
+        if len(best) != 1:
+            raise Unclear(f"{len(best)} modes fit")
+        self.assign(switches, best[0])
+
+    def assign(self, switches: Sequence[Switch], modes: Sequence[int]) -> bool:
+        """Give switches their modes; whether those that are to hold can."""
+        for switch, mode in zip(switches, modes, strict=True):
+            switch.mode, switch.held = mode, None
+        return self.solve_held([s for s, mode in zip(switches, modes, strict=True) if mode == 0])
+
+    def clear(self, value: float) -> None:
+        if abs(value) < CLOSE:
+            raise Unclear("a decision on the edge")
+
+    def advance(self, limit: float) -> None:
+        """Go on to the next event, at `limit` at the latest, and let it happen."""
+        matrix = self.field()
+        guards = [guard for element in self.system.elements for guard in element.guards()]
+        rows = np.array([guard.row for guard in guards]).reshape(len(guards), len(self.z))
+        values = rows @ self.z
+        armed = values > CLOSE
+        if np.any(values < -CLOSE):
+            raise Unclear("a guard is passed where a piece begins")
+        size = float(np.abs(matrix).sum(axis=1).max()) or 1.0
+        while self.t < limit:
+            length = min(CELL / size, limit - self.t, self.cell)
+            self.cell *= 2
+            series = self.series(matrix, length)
+            samples = (rows @ series) @ POWERS  # (guards, points)
+            hits = self.hits(samples, armed)
+            if hits:
+                self.happen(guards, rows, series, length, hits, armed)
+                return
+            armed |= samples[:, -1] > CLOSE
+            if np.any(~armed & (samples[:, -1] < -CLOSE)):
+                raise Unclear("a guard turns where a piece begins")
+            self.pieces.append((self.t, length, series))
+            self.z = series.sum(axis=1)
+            self.t = limit if length == limit - self.t else self.t + length
+        self.scheduled()
+
+    def series(self, matrix: Matrix, length: float) -> Matrix:
+        """The coefficients (len z, ORDER + 1) of z over a cell, in parts of its length."""
+        found = np.empty((len(self.z), ORDER + 1))
+        found[:, 0] = self.z
+        for k in range(1, ORDER + 1):
+            found[:, k] = matrix @ found[:, k - 1] * (length / k)
+        return found
+
+    def hits(self, samples: Matrix, armed: NDArray[np.bool_]) -> list[int]:
+        """The guards that are passed in a cell."""
+        found = []
+        near = (
+            samples.min(axis=1, initial=np.inf) < 10 * np.ptp(samples, axis=1)
+            if len(samples)
+            else []
+        )
+        for number in np.flatnonzero(near):
+            line = samples[number]
+            if not armed[number]:  # from where it has left zero
+                line = line[int(np.argmax(line > CLOSE)) :]
+            if armed[number] or line[0] > CLOSE:
+                low = int(np.argmin(line))
+                least = line[low]
+                if 0 < low < len(line) - 1:  # the bottom of a parabola
+                    bend = line[low + 1] - 2 * line[low] + line[low - 1]
+                    slope = (line[low + 1] - line[low - 1]) / 2
+                    least -= slope**2 / (2 * bend) if bend > 0 else 0.0
+                    if abs(least) < CLOSE:
+                        raise Unclear("a guard is touched")
+                if least < 0:
+                    found.append(int(number))
+                elif armed[number] and line[0] < CLOSE:
+                    raise Unclear("a guard is touched")
+        return found
+
+    def happen(
+        self,
+        guards: list[Guard],
+        rows: Matrix,
+        series: Matrix,
+        length: float,
+        hits: list[int],
+        armed: NDArray[np.bool_],
+    ) -> None:
+        """Go to the first of the guards that are passed in a cell, and let it act."""
+        least = np.where(armed, -CLOSE, CLOSE)
+        roots = sorted((self.root(rows[i] @ series, least[i]), i) for i in hits)
+        part, first = roots[0]
+        self.pieces.append((self.t, length, series))
+        powers = part ** np.arange(ORDER + 1)
+        self.t += part * length
+        self.z = series @ powers
+        values = np.abs(rows @ self.z)
+        values[first] = np.inf
+        before = rows @ series[:, 0]
+        if np.any((values < CLOSE) & (np.abs(before) > CLOSE)):
+            raise Unclear("two things at one instant")
+        guards[first].act()
+        self.react()
+
+    def root(self, line: Vector, least: float) -> float:
+        """The first root of a polynomial in (0, 1], behind where it is above `least`."""
+        values = line @ POWERS
+        below = int(np.argmax((values < 0) & (np.maximum.accumulate(values) > least)))
+        if values[below] >= 0:  # between two samples
+            near = np.linspace(0, 1, 1001)
+            values = np.polynomial.polynomial.polyval(near, line)
+            below = int(np.argmax((values < 0) & (np.maximum.accumulate(values) > least)))
+            if below == 0:
+                raise Unclear("a guard is touched")
+            low, high = near[below - 1], near[below]
+        else:
+            low, high = POINTS[below - 1], POINTS[below]
+        for _ in range(60):
+            middle = (low + high) / 2
+            if float(np.polynomial.polynomial.polyval(middle, line)) > 0:
+                low = middle
+            else:
+                high = middle
+        return float(high)
+
+    def scheduled(self) -> None:
+        """What happens at a known time: waves turn, clocks write."""
+        due: dict[int, Vector] = {}
+        for wave in self.waves():
+            number = self.t / wave.half
+            if abs(number - round(number)) < 1e-9 and round(number) > 0:
+                wave.value = 1 if round(number) % 2 == 0 else -1
+        for clock in self.system.clocks:
+            number = self.t / clock.period
+            if abs(number - round(number)) < 1e-9 and round(number) > 0:
+                due |= clock.rows
+        self.write(due)
+        self.react()
+
+    def write(self, rows: dict[int, Vector]) -> None:
+        before = self.z.copy()
+        for place, row in rows.items():
+            self.z[place] = float(row @ before)
+
+    def react(self) -> None:
+        """What follows at the same instant: impacts, resets, plays that let go, modes."""
+        for _ in range(20):
+            for element in self.system.elements:
+                if isinstance(element, Play) and element.leaves:
+                    self.z[element.at] = float(element.row @ self.z) - element.leaves * element.half
+                    element.leaves = 0.0
+                if isinstance(element, Stop) and element.hit:
+                    self.strike(element)
+            writes: dict[int, Vector] = {}
+            for reset in self.due():
+                if set(reset.rows) & set(writes):
+                    raise Unclear("two resets of one state")
+                reset.due = False
+                writes |= reset.rows
+            self.write(writes)
+            self.carry()
+            if not self.due():
+                self.hold()
+                return
+        raise Unclear("resets without end")
+
+    def due(self) -> list[Reset]:
+        return [e for e in self.system.elements if isinstance(e, Reset) and e.due]
+
+    def carry(self) -> None:
+        """Let the guards act that a jump has carried over zero."""
+        for element in self.system.elements:
+            if isinstance(element, Switch) and element.held is not None:
+                if abs(float(element.row @ self.z)) > CLOSE:
+                    element.held = None
+                    element.mode = 1 if float(element.row @ self.z) > 0 else -1
+                continue
+            for _ in range(10):
+                values = [float(guard.row @ self.z) for guard in element.guards()]
+                passed = [n for n, value in enumerate(values) if value < -CLOSE]
+                if not passed:
+                    break
+                if isinstance(element, Stop):
+                    raise Unclear("a body beyond a stop")
+                if isinstance(element, Switch):
+                    element.mode = -element.mode
+                else:
+                    element.guards()[passed[0]].act()
+                    if isinstance(element, Play) and element.leaves:
+                        raise Unclear("a play that jumps")
+
+    def strike(self, stop: Stop) -> None:
+        side, stop.hit = stop.hit, 0
+        self.z[stop.x] = stop.high if side > 0 else stop.low
+        self.z[stop.v] *= -stop.restitution
+        self.field()
+        pressed = side * float(stop.force @ self.z)
+        if pressed != 0:  # a quarter of the flight to come
+            self.cell = abs(self.z[stop.v] / pressed) / 2
+        if self.z[stop.v] ** 2 < 2 * LOWEST * abs(pressed) or self.z[stop.v] == 0.0:
+            self.clear(pressed)
+            if pressed > 0:
+                self.z[stop.v], stop.side = 0.0, side

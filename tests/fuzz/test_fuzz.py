@@ -1,0 +1,62 @@
+"""The product agrees with the exact solution on random hybrid systems in random units."""
+
+from __future__ import annotations
+
+import os
+import secrets
+
+import numpy as np
+import pytest
+from fuzz.compare import fuzz
+from fuzz.elements import Element, Reset, Stop, Switch, System, Unclear
+from fuzz.exact import Solution
+
+COUNT = 200
+ONE = np.array([1.0, 0.0, 0.0])
+
+
+def test_random_systems_agree_with_their_exact_solutions(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """New systems in each run; `FUZZ_SEED=... pytest tests/fuzz` draws them again."""
+    seed = int(os.environ.get("FUZZ_SEED", secrets.randbelow(10**9)))
+    tally = fuzz(COUNT, seed)
+    with capsys.disabled():
+        print(f"\nfuzz: seed {seed}: {tally}")  # noqa: T201
+    assert tally.wrong == [], seed
+    assert tally.unexplained == [], seed
+    assert tally.judged > 0.6 * COUNT, tally
+
+
+def solved(matrix: list[list[float]], start: list[float], *elements: Element) -> Solution:
+    return Solution(System(np.array(matrix), np.array(start), elements), 6.0)
+
+
+def test_the_exact_solution_of_an_oscillator_with_dry_friction() -> None:
+    """Half circles about +-0.1 from 1.05: to -0.85, 0.65, -0.45, 0.25, and -0.05, where it lies."""
+    into = np.array([0.0, 0.0, 1.0])
+    friction = Switch(into, np.array([0.0, 0.0, 1.0]), -0.1, 1.0, ONE)
+    matrix = [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]
+    found = Solution(System(np.array(matrix), np.array([1.0, 1.05, -1e-6]), [friction]), 20.0)
+    assert found.at([20.0])[0, 1:] == pytest.approx([-0.05, 0.0], abs=1e-6)
+    assert found.at([4 * np.pi])[0, 1:] == pytest.approx([0.25, 0.0], abs=1e-5)
+
+
+def test_the_exact_solution_of_a_ball_that_comes_to_rest() -> None:
+    """Dropped from 1 with g = 2 and restitution 1/2: at rest after 1*(1 + 1/2)/(1 - 1/2) = 3."""
+    nothing = np.zeros(3)
+    stop = Stop(nothing, 1, 2, 0.0, 9.0, 0.5, ONE)
+    matrix = [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [-2.0, 0.0, 0.0]]
+    found = solved(matrix, [1.0, 1.0, 0.0], stop)
+    rows = found.at([1.5, 4.0])
+    assert rows[0, 1] == pytest.approx(0.5 * 1.0 - 0.25, abs=1e-12)
+    assert rows[1, 1:] == pytest.approx([0.0, 0.0], abs=1e-7)
+
+
+def test_the_exact_solution_refuses_what_is_not_clear() -> None:
+    """x = (t - 1)^2 touches zero."""
+    nothing = np.zeros(3)
+    reset = Reset(nothing, np.array([0.0, -1.0, 0.0]), {})
+    matrix = [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [2.0, 0.0, 0.0]]
+    with pytest.raises(Unclear, match="touched"):
+        solved(matrix, [1.0, 1.0, -2.0], reset)
