@@ -291,12 +291,15 @@ class Solution:
                 if isinstance(element, Stop) and element.hit:
                     self.strike(element)
             writes: dict[int, Vector] = {}
-            for reset in self.due():
+            before, fired = self.z.copy(), self.due()
+            for reset in fired:
                 if set(reset.rows) & set(writes):
                     raise Unclear("two resets of one state")
                 reset.due = False
                 writes |= reset.rows
             self.write(writes)
+            if any(-CLOSE < float(r.row @ (self.z - before)) < 0 for r in fired):
+                raise Unclear("a reset that hardly moves its own guard back")
             self.carry()
             if not self.due():
                 self.hold()

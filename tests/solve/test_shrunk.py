@@ -9,6 +9,7 @@ import pytest
 from solve.logs import METHODS, TIGHT, when
 from solve.models import run
 from tracewire.errors import SimulationError
+from tracewire.solve import Run
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -227,3 +228,25 @@ record: [x, play]
     result = run(text, method=method, times=[0.05, 1.0, 2.5, 3.0], **TIGHT)
     assert result["x"] == pytest.approx([0.049375, 0.75, 0.9375, 0.75], abs=1e-9)
     assert result["play"] == pytest.approx([0.0, 0.65, 0.9, 0.85], abs=1e-9)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_large_rate_that_friction_holds_takes_no_steps_of_its_rounding(method: str) -> None:
+    """v was 1e12 and is held: its forces round to more than a tolerance of 1e-11."""
+
+    def pushed(length: float, time: float) -> Run:
+        text = f"""
+span: [0, {5 * time}]
+blocks:
+  x: {{type: integrator, of: v, start: {-length}}}
+  v: {{type: integrator, of: a, start: {-1.5 * length / time}}}
+  z: {{type: integrator, of: leak, start: {length}}}
+  leak: {{type: gain, of: z, k: {-0.6 / time}}}
+  friction: {{type: dry_friction, rate: v, slip: 0.9, stick: 1.1}}
+  a: {{type: expression, formula: "{length / time**2}*friction + {0.7 / time**2}*(z - x)"}}
+"""
+        return run(text, method=method, rtol=1e-8)
+
+    large, plain = pushed(5e5, 3e-7), pushed(1.0, 1.0)
+    assert large.statistics.steps < 2 * plain.statistics.steps
+    assert large.final["x"] / 5e5 == pytest.approx(plain.final["x"], abs=1e-7)

@@ -77,6 +77,7 @@ NEAR = 32.0
 PAUSED_INSIDE = 2  # in ints[STAGE]: between two steps of a smooth part
 LARGEST_PART = 0.1  # of the span, for one step
 TURN = 1.5  # of what a guard reads, in a step: five samples see its dips
+RESOLVED = 1e-15  # of the largest value of a state: its rounding
 FADING = 0.95  # in a step: how a state's size is forgotten
 SOON_PART = LARGEST_PART  # of the span, as long as a step may be
 ROUNDING = 1e-9  # of what a state moves by: to so much do derivatives by differences round
@@ -206,7 +207,14 @@ def _first_sizes(core: int) -> None:
         progress.largest[j] = max(abs(x[j]), rounding)
         progress.sizes[n + j] = max(abs(x[j]), progress.least[j])
         if progress.given[j] == 0.0:
-            progress.atol[j] = ABSOLUTE * now[RTOL] * min(1.0, progress.largest[j])
+            progress.atol[j] = _usual_tolerance(now[RTOL], progress.largest[j])
+
+
+@helper
+def _usual_tolerance(rtol: float, largest: float) -> float:
+    """The absolute tolerance of a state that was as large as that: no finer than its rounding,
+    which is all that moves a state of size 1e12 where friction holds it at zero."""
+    return max(ABSOLUTE * rtol * min(1.0, largest), RESOLVED * largest)
 
 
 @helper
@@ -218,7 +226,7 @@ def _remember(core: int, x: Vector) -> None:
         if size > progress.largest[j]:
             progress.largest[j] = size
             if progress.given[j] == 0.0:
-                progress.atol[j] = ABSOLUTE * progress.now[RTOL] * min(1.0, size)
+                progress.atol[j] = _usual_tolerance(progress.now[RTOL], size)
         progress.least[j] = max(progress.least[j], min(1.0, size))
         progress.sizes[n + j] = max(size, progress.least[j], FADING * progress.sizes[n + j])
 
