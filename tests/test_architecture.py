@@ -13,7 +13,7 @@ PACKAGE = ROOT / "solver" / "tracewire"
 BLOCKS = ROOT / "blocks"
 
 # a room may import itself and the rooms before it
-ROOMS = ["errors", "shipped", "formula", "library", "data", "diagram", "compile", "solve"]
+ROOMS = ["errors", "files", "shipped", "formula", "library", "data", "diagram", "compile", "solve"]
 ROOMS += ["residual", "fit", "trace", "analyse", "show", "paper", "cli"]
 # the same for the stages of a trace, files and folders of that room
 STAGES = ["thresholds", "options", "found", "candidates", "units", "trials", "check", "screen"]
@@ -25,6 +25,9 @@ BLOCKS_MAY_IMPORT = {"__future__", "tracewire.library"}
 MOST_LINES = 500
 # the functions of a model, and the callers of the core by the names of their arguments
 RUN_THEIR_OWN_SOURCE = {"compile/source.py", "solve/core/jit.py"}
+WRITES_FILES = {"files.py", "cli/streams.py"}
+WRITING = {"write_text", "write_bytes", "savez_compressed", "savetxt", "tofile"}
+TAKES_A_FILE = {"savez", "savefig"}
 UNSAFE_YAML = {"unsafe_load", "unsafe_load_all", "full_load", "full_load_all"}
 SAFE_LOADERS = {"SafeLoader", "CSafeLoader"}
 
@@ -165,6 +168,24 @@ def runs_text(file: str, source: str, bases: Mapping[str, set[str]]) -> list[str
     return found
 
 
+def writes_past(file: str, source: str) -> list[str]:
+    """Where `source` writes a file by its name, past the one place that writes files whole."""
+    found = []
+    for node in ast.walk(ast.parse(source)):
+        if file in WRITES_FILES or not isinstance(node, ast.Call):
+            continue
+        name, first = last_name(node.func), node.args[0] if node.args else None
+        modes = [k.value for k in node.keywords if k.arg == "mode"] + node.args[:2]
+        texts = [mode.value for mode in modes if isinstance(mode, ast.Constant)]
+        opened = name == "open" and any(
+            set(str(text)) & set("wax+") and len(str(text)) < 4 for text in texts
+        )
+        by_name = name in TAKES_A_FILE and last_name(first or node.func) != "file"
+        if name in WRITING or opened or by_name:
+            found.append(f"{file}:{node.lineno}: {name}")
+    return found
+
+
 def sources() -> dict[str, str]:
     return {
         file.relative_to(PACKAGE).as_posix(): file.read_text(encoding="utf-8")
@@ -239,6 +260,10 @@ def test_nothing_runs_text_as_code() -> None:
     read = sources()
     bases = bases_of_classes(read)
     assert [line for file, text in read.items() for line in runs_text(file, text, bases)] == []
+
+
+def test_files_are_written_whole_in_one_place() -> None:
+    assert [line for file, text in sources().items() for line in writes_past(file, text)] == []
 
 
 # The checks themselves are checked: each of these sources must be refused, or let pass.
@@ -327,6 +352,21 @@ def test_text_run_as_code_is_found(source: str) -> None:
 )
 def test_what_runs_no_text_passes(source: str) -> None:
     assert runs_text("fit/fit.py", source, {"Strict": {"Marked"}, "Marked": {"SafeLoader"}}) == []
+
+
+@pytest.mark.parametrize(
+    ("source", "found"),
+    [
+        ("Path(name).write_text('a')", 1),
+        ("with open(name, 'w') as file:\n    pass", 1),
+        ("with Path(name).open('ab') as file:\n    pass", 1),
+        ("figure.savefig(path)", 1),
+        ("np.savez(path, x=x)", 1),
+        ("with open(name) as file, replacing(name) as file:\n    np.savez(file)", 0),
+    ],
+)
+def test_a_file_that_is_not_written_whole_is_found(source: str, found: int) -> None:
+    assert len(writes_past("fit/fit.py", source)) == found
 
 
 def test_generated_source_is_executed_in_one_place_of_a_file() -> None:

@@ -150,17 +150,20 @@ def test_all_is_printed_saved_and_applied_before_anything_is_drawn(
 
 @pytest.mark.parametrize("as_json", [False, True])
 def test_a_file_that_cannot_be_written_does_not_keep_others_from_it(
-    traced: Any, tmp_path: Path, as_json: bool
+    traced: Any, tmp_path: Path, as_json: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / "c.json.part").mkdir()  # so that the result cannot be saved
+    def refused(*_: object) -> None:
+        raise OSError(30, "Read-only file system")
+
+    monkeypatch.setattr(import_module("tracewire.trace.saved"), "write_file", refused)
     told = traced(FOUND, "--save", "c.json", "--report", "a.md", "--patch", "b.patch",
                   *(["--json"] if as_json else []))  # fmt: skip
     assert told.code == 2
-    assert "c.json: the file cannot be written" in told.err
+    assert "'c.json' cannot be written" in told.err
     assert (tmp_path / "a.md").is_file()
     assert (tmp_path / "b.patch").is_file()
     if as_json:
-        assert told.data["not_written"] == ["the file cannot be written: Is a directory"]
+        assert told.data["not_written"] == ["'c.json' cannot be written: Read-only file system"]
         assert told.data["written"] == ["b.patch", "a.md"]
     else:
         assert told.out.startswith("VERDICT effect")

@@ -85,4 +85,4 @@ def test_other_unknowns_are_told(tmp_path: Path) -> None:
 
 def test_a_file_that_cannot_be_written_is_told(tmp_path: Path) -> None:
     told = refused(save=tmp_path / "no" / "fit.json")
-    assert "the file cannot be written: No such file or directory" in told
+    assert "fit.json' cannot be written: No such file or directory" in told

@@ -175,7 +175,9 @@ def test_another_ending_is_told(tmp_path: Path) -> None:
 
 
 def test_a_folder_that_does_not_exist_is_told(tmp_path: Path) -> None:
-    with pytest.raises(OptionError, match=r"cannot be written: No such file.*Name a folder that"):
+    with pytest.raises(
+        OptionError, match=r"cannot be written: No such file.*Name a file in a folder that"
+    ):
         DOCUMENT.write(tmp_path / "no" / "report.md")
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import time
 import zipfile
 from collections.abc import Mapping
@@ -15,6 +14,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Place, Problem
+from tracewire.files import replacing, writing
 from tracewire.formula import to_text
 
 EVERY = 2.0  # s between two writings, at least
@@ -25,7 +25,7 @@ class Partial:
     """The rows of a sweep (count, width) as they are done, in memory and, with a path, in a file.
 
     A file that is there is read, and must belong to the same diagram, grid and options. It is
-    written every two seconds, first beside itself, so that it is never half a file.
+    written every two seconds, and is never half a file.
     """
 
     def __init__(
@@ -58,17 +58,10 @@ class Partial:
         if self.path is None:
             return
         self._written = time.monotonic()
-        beside = self.path.with_name(self.path.name + ".part")
         content = {"kind": KIND, "identity": self.identity, "errors": self.errors}
-        try:
-            with beside.open("wb") as file:
-                np.savez(file, allow_pickle=False, rows=self.rows, done=self.done,
-                         content=np.array(json.dumps(content)))  # fmt: skip
-            os.replace(beside, self.path)
-        except OSError as error:
-            what = f"the file cannot be written: {error.strerror or error}"
-            hint = "Name a file in a folder that exists and may be written to."
-            raise OptionError.one(what, Place(str(self.path)), hint=hint) from None
+        arrays = {"rows": self.rows, "done": self.done, "content": np.array(json.dumps(content))}
+        with writing(self.path), replacing(self.path) as file:
+            np.savez(file, allow_pickle=False, **arrays)
 
     def _read(self) -> None:
         place = Place(str(self.path))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 import traceback
 from collections.abc import Sequence
@@ -23,6 +22,7 @@ from tracewire.cli.report import report
 from tracewire.cli.run import run
 from tracewire.cli.several import Several
 from tracewire.cli.show import show
+from tracewire.cli.streams import close_streams, open_streams
 from tracewire.cli.sweep import sweep
 from tracewire.cli.trace import trace
 from tracewire.errors import Problem, TracewireError
@@ -75,25 +75,26 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code.
 
     0: done; 1: the work failed; 2: the input is wrong; 130: interrupted. Every error is told in
-    words on stderr, and with --json on stdout as well; --debug shows the traceback, too.
+    words on stderr, and with --json on stdout as well; --debug shows the traceback, too. A stdout
+    that takes no more ends the command with 1; one that is closed, and stderr, change nothing.
     """
     given = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
     as_json, debug = "--json" in given, "--debug" in given
-    for stream in (sys.stdout, sys.stderr):  # a terminal without a letter must not stop the work
-        if hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors="replace")
+    open_streams()
+    return close_streams(_ended(given, as_json, debug))
+
+
+def _ended(given: list[str], as_json: bool, debug: bool) -> int:
+    """Run a command, and tell its errors; the exit code."""
     try:
         ended: object = get_command(app).main(given, prog_name="tracewire", standalone_mode=False)
-        sys.stdout.flush()
         if ended != INTERRUPTED:  # what typer makes of an interrupt
             return ended if isinstance(ended, int) else 0
         problems, code = [STOPPED], INTERRUPTED
     except Cut:
-        sys.stdout.flush()
         return INTERRUPTED
-    except BrokenPipeError:  # the reader, such as `head`, has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 1
+    except SystemExit as end:  # what typer makes of a reader that has gone
+        return end.code if isinstance(end.code, int) else 1
     except (Exception, KeyboardInterrupt) as error:
         problems, code = _told(error)
         if debug:

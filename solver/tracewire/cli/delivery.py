@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import typer
-
 from tracewire.cli.output import (
     Cut,
+    flush,
     print_json,
-    print_problems,
     print_table,
     print_text,
 )
-from tracewire.cli.reporting import patch_of, store, with_table, write_report, write_table
-from tracewire.errors import FitError, Problem, TracewireError
+from tracewire.cli.reporting import Attempts, patch_of, store, with_table, write_report, write_table
 
 if TYPE_CHECKING:
     from tracewire.compile import Model
@@ -45,39 +40,24 @@ def deliver(found: Found, model: Model, own: Diagram, targets: Targets, as_json:
     from being written. Raises TracewireError for those, after all is done, and Cut where the trace
     was interrupted.
     """
-    written: list[str] = []
-    failed: list[TracewireError] = []
-
-    def attempt(step: Callable[[], list[str]]) -> None:
-        try:
-            written.extend(step())
-        except TracewireError as error:
-            failed.append(error)
-        except Exception as error:  # the result has been printed: what comes after cannot undo it
-            what = f"internal error ({error!r})"
-            hint = "Please report it; --debug shows the traceback."
-            problem = FitError.one(what, hint=hint)
-            problem.__cause__ = error
-            failed.append(problem)
-
+    attempt = Attempts()
     if not as_json:
         print_trace(found)
-        sys.stdout.flush()
+        flush()
     attempt(lambda: _save(found, targets.save))
     attempt(lambda: _edit(found, model, own, targets, quiet=as_json))
     if as_json:
-        planned = [*written, *([targets.report] if targets.report else [])]
+        planned = [*attempt.written, *([targets.report] if targets.report else [])]
         data = as_data(found) | {"written": planned}
-        wrong = [problem.what for error in failed for problem in error.problems]
-        print_json(data | {"not_written": wrong} if wrong else data)
+        print_json(data | attempt.not_written)
     else:
-        for path in written:
+        for path in attempt.written:
             print_text(f"written: {path}")
-    sys.stdout.flush()
+    flush()
     attempt(lambda: write_report(found, targets.report))
-    if not as_json and targets.report in written:
+    if not as_json and targets.report in attempt.written:
         print_text(f"written: {targets.report}")
-    _raise(failed, as_json)
+    attempt.finish(as_json)
     if found.interrupted:
         raise Cut
 
@@ -129,14 +109,3 @@ def _edit(found: Found, model: Model, own: Diagram, targets: Targets, *, quiet: 
     if change:
         print_text(f"the change of the diagram:\n{change.rstrip()}")
     return written + store(own, edited, targets.apply, output, targets.patch)
-
-
-def _raise(failed: list[TracewireError], as_json: bool) -> None:
-    """Raise what could not be written as one error; after JSON tell it on stderr alone."""
-    if not failed:
-        return
-    problems: list[Problem] = [problem for error in failed for problem in error.problems]
-    if not as_json:
-        raise type(failed[0])(problems) from failed[0].__cause__
-    print_problems(problems)
-    raise typer.Exit(failed[0].exit_code)

@@ -10,9 +10,10 @@ import typer
 
 from tracewire.cli.check import check
 from tracewire.cli.options import Debug
-from tracewire.cli.output import print_text, writing
+from tracewire.cli.output import print_text
 from tracewire.cli.run import run
 from tracewire.cli.trace import trace
+from tracewire.files import writing
 
 
 def demo(

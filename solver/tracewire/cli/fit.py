@@ -11,6 +11,7 @@ from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries, load_mo
 from tracewire.cli.output import Cut, note, print_json, print_table, print_text, working
 from tracewire.cli.reporting import (
     Apply,
+    Attempts,
     Output,
     ReportFile,
     check_home,
@@ -140,18 +141,20 @@ def fit(
                 note(f"the profile of {name} was interrupted")
                 cut = True
                 break
-    written = write_report(found, report, profiles)
+    attempt = Attempts()
     own = {n: v for n, v in found.values.items() if n in model.flat.parameters}
     sensors = {n: v for n, v in found.values.items() if n not in own}
 
     def edited() -> Diagram:
         return set_sensors(set_values(model.diagram, own), sensors)
 
-    written += store(model.diagram, edited, apply, output)
+    attempt(lambda: store(model.diagram, edited, apply, output))
+    attempt(lambda: write_report(found, report, profiles))
     if as_json:
-        print_json(_json(found, profiles) | {"written": written})
+        print_json(_json(found, profiles) | {"written": attempt.written} | attempt.not_written)
     else:
-        _print(found, profiles, written)
+        _print(found, profiles, attempt.written)
+    attempt.finish(as_json)
     if cut:
         raise Cut
 

@@ -22,15 +22,44 @@ if TYPE_CHECKING:
 INTERRUPTED = 130
 WIDTH_OF_A_PIPE = 200
 SOON = 1.0  # s: what takes no longer needs no progress
+CONTROLS = {
+    number: f"\\x{number:02x}" if number < 256 else f"\\u{number:04x}"
+    for first, last in (
+        (0, 8),
+        (11, 31),
+        (127, 159),
+        (0x200E, 0x200F),
+        (0x202A, 0x202E),
+        (0x2066, 0x2069),
+    )
+    for number in range(first, last + 1)
+}
+"""The escape of each control character but tab and new line; those that turn the direction, too."""
+
+LOST: list[OSError] = []
+"""Why stdout did not take what was printed."""
 
 
 class Cut(Exception):
     """The work was interrupted, and what there is of it has been told."""
 
 
+def visible(text: str) -> str:
+    """Text whose control characters are written as escapes: a title cannot steer a terminal."""
+    return text.translate(CONTROLS)
+
+
 def print_text(text: str) -> None:
     """Print plain text to stdout."""
-    typer.echo(text)
+    _echo(visible(text))
+
+
+def flush() -> None:
+    """Bring out what was printed, so that it is there whatever comes after."""
+    try:
+        sys.stdout.flush()
+    except OSError as error:
+        LOST.append(error)
 
 
 def print_table(table: Table) -> None:
@@ -43,7 +72,7 @@ def print_table(table: Table) -> None:
     terminal = sys.stdout.isatty()
     console = Console(width=None if terminal else WIDTH_OF_A_PIPE, highlight=False)
     shown = RichTable(
-        title=Text(table.title, style="bold") if table.title else None,
+        title=Text(visible(table.title), style="bold") if table.title else None,
         title_justify="left",
         box=box.SIMPLE_HEAD,
         pad_edge=False,
@@ -51,16 +80,22 @@ def print_table(table: Table) -> None:
     for n, name in enumerate(table.header):
         right = n in table.numeric
         shown.add_column(
-            Text(name), justify="right" if right else "left", overflow="fold", no_wrap=right
+            Text(visible(name)),
+            justify="right" if right else "left",
+            overflow="fold",
+            no_wrap=right,
         )
     for row in table.rows:
-        shown.add_row(*(Text(cell) for cell in row))  # Text: `[rad]` is no markup
-    console.print(shown)
+        shown.add_row(*(Text(visible(cell)) for cell in row))  # Text: `[rad]` is no markup
+    with console.capture() as captured:
+        console.print(shown)
+    _echo(captured.get(), nl=False)
 
 
 def print_json(data: object) -> None:
     """Print data as JSON to stdout; what is not finite becomes null."""
-    typer.echo(json.dumps(plain(data), indent=2, ensure_ascii=False, allow_nan=False))
+    text = json.dumps(plain(data), indent=2, ensure_ascii=False, allow_nan=False)
+    _echo(text.translate({number: f"\\u{number:04x}" for number in CONTROLS}))
 
 
 def plain(data: object) -> Any:
@@ -83,7 +118,7 @@ def plain(data: object) -> Any:
 def print_problems(problems: Sequence[Problem], as_json: bool = False) -> None:
     """Print problems one a line to stderr, and with `as_json` as one object to stdout."""
     for problem in problems:
-        typer.echo(" ".join(str(problem).split("\n")), err=True)
+        note(" ".join(str(problem).split("\n")))
     if as_json:
         print_json({"error": [_record(problem) for problem in problems]})
 
@@ -96,7 +131,16 @@ def _record(problem: Problem) -> dict[str, object]:
 
 def note(text: str) -> None:
     """Print a line to stderr: progress or a warning, no result."""
-    typer.echo(text, err=True)
+    _echo(visible(text), err=True)
+
+
+def _echo(text: str, nl: bool = True, err: bool = False) -> None:
+    """Print; a stream that takes no more does not end the work: the files come first."""
+    try:
+        typer.echo(text, nl=nl, err=err)
+    except OSError as error:
+        if not err:
+            LOST.append(error)
 
 
 @contextmanager
@@ -111,8 +155,8 @@ def working(text: str) -> Iterator[Callable[[str], None]]:
     from rich.console import Console
     from rich.text import Text
 
-    with Console(stderr=True).status(Text(text)) as status:
-        yield lambda changed: status.update(Text(changed))
+    with Console(stderr=True).status(Text(visible(text))) as status:
+        yield lambda changed: status.update(Text(visible(changed)))
 
 
 def telling(text: str, show: Callable[[str], None]) -> Callable[[float, float], None]:
@@ -151,14 +195,3 @@ def check_target(path: str | None, endings: Sequence[str], what: str) -> None:
     if not file.parent.is_dir():
         hint = "Make the folder first, or name another."
         raise OptionError([Problem(f"there is no folder '{file.parent}'", hint=hint)])
-
-
-@contextmanager
-def writing(path: str) -> Iterator[None]:
-    """Tell in words that a file cannot be written. Raises OptionError."""
-    try:
-        yield
-    except OSError as error:
-        hint = "Check its name and rights, and the space on the disk."
-        reason = error.strerror or str(error)
-        raise OptionError([Problem(f"'{path}' cannot be written: {reason}", hint=hint)]) from error

@@ -12,8 +12,8 @@ from tracewire.cli.output import (
     print_text,
     telling,
     working,
-    writing,
 )
+from tracewire.files import writing
 
 if TYPE_CHECKING:
     from tracewire.paper import PaperFigure

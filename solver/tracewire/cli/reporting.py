@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tracewire.cli.output import check_target, note, working, writing
-from tracewire.errors import OptionError
+from tracewire.cli.output import check_target, note, print_problems, working
+from tracewire.errors import FitError, OptionError, Problem, TracewireError
+from tracewire.files import write_file, writing
 
 if TYPE_CHECKING:
     from tracewire.compile import Model
@@ -48,6 +49,47 @@ Output = Annotated[
         metavar="FILE", help="Write the edited diagram to this .yaml, or the change to this .patch."
     ),
 ]
+
+
+class Attempts:
+    """Writes the files of a result one by one: one that fails does not keep the others from it."""
+
+    def __init__(self) -> None:
+        self.written: list[str] = []
+        self.failed: list[TracewireError] = []
+
+    def __call__(self, step: Callable[[], list[str]]) -> None:
+        """Take a step, which gives the paths that it wrote; what goes wrong is kept for the end."""
+        try:
+            self.written += step()
+        except TracewireError as error:
+            self.failed.append(error)
+        except Exception as error:  # the result is there: what comes after cannot undo it
+            what = f"internal error ({error!r})"
+            hint = "Please report it; --debug shows the traceback."
+            problem = FitError.one(what, hint=hint)
+            problem.__cause__ = error
+            self.failed.append(problem)
+
+    @property
+    def problems(self) -> list[Problem]:
+        """What went wrong so far."""
+        return [problem for error in self.failed for problem in error.problems]
+
+    @property
+    def not_written(self) -> dict[str, list[str]]:
+        """What went wrong so far, for JSON."""
+        wrong = [problem.what for problem in self.problems]
+        return {"not_written": wrong} if wrong else {}
+
+    def finish(self, as_json: bool) -> None:
+        """Raise what went wrong as one error; after JSON tell it on stderr alone."""
+        if not self.failed:
+            return
+        if not as_json:
+            raise type(self.failed[0])(self.problems) from self.failed[0].__cause__
+        print_problems(self.problems)
+        raise typer.Exit(self.failed[0].exit_code)
 
 
 def check_targets(
@@ -99,7 +141,7 @@ def write_table(found: Found, path: str | None) -> list[str]:
         note(f"'{path}' was not written: {error.problems[0]}")
         return []
     with writing(path):
-        Path(path).write_text(text, encoding="utf-8")
+        write_file(path, text)
     return [path]
 
 
@@ -159,7 +201,7 @@ def store(
     for path in patches:
         if path is not None:
             with writing(path):
-                Path(path).write_text(patch_of(diagram, new), encoding="utf-8")
+                write_file(path, patch_of(diagram, new))
             written.append(path)
     if apply:
         written.append(str(new.write(diagram.file, overwrite=True)))

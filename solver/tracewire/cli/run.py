@@ -17,10 +17,10 @@ from tracewire.cli.output import (
     print_text,
     telling,
     working,
-    writing,
 )
 from tracewire.cli.values import parameter_values_of, start_values_of
 from tracewire.errors import OptionError, Problem, unknown
+from tracewire.files import writing
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import csv
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -19,10 +17,10 @@ from tracewire.cli.output import (
     print_table,
     print_text,
     working,
-    writing,
 )
 from tracewire.cli.values import parameter_values_of, start_values_of
 from tracewire.errors import OptionError, Problem
+from tracewire.files import replacing, write_rows, writing
 
 if TYPE_CHECKING:
     from tracewire.compile import Model
@@ -199,14 +197,11 @@ def write_numbers(path: str, columns: Mapping[str, Any]) -> None:
 
     arrays = {name: np.asarray(values) for name, values in columns.items()}
     if path.endswith(".npz"):
-        with Path(path).open("wb") as file:
+        with replacing(path) as file:
             np.savez(file, allow_pickle=False, **arrays)
         return
-    with Path(path).open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(arrays)
-        rows = zip(*(values.ravel().tolist() for values in arrays.values()), strict=True)
-        writer.writerows([repr(v) if isinstance(v, float) else v for v in row] for row in rows)
+    rows = zip(*(values.ravel().tolist() for values in arrays.values()), strict=True)
+    write_rows(path, list(arrays), rows)
 
 
 def shown(value: float) -> str:

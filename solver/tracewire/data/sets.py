@@ -12,6 +12,7 @@ from pathlib import Path
 
 from tracewire.data.index import RAW, SETS, DataSet, Upstream
 from tracewire.errors import DownloadError, OptionError, Place, Problem, unknown
+from tracewire.files import write_file
 from tracewire.shipped import shipped
 
 DIAGRAMS = (".yaml", ".md")
@@ -44,11 +45,11 @@ def get_set(
         for file in chosen.files:
             fetch(chosen, file, home / "data", tell, base)
         for made, text_of in chosen.made.items():
-            (home / "data" / made).write_text(text_of(home / "data"), encoding="utf-8")
+            write_file(home / "data" / made, text_of(home / "data"))
             tell(f"made     {home / 'data' / made}")
         for source in sorted((shipped("diagrams") / "real" / name).glob("*")):
             if source.suffix in DIAGRAMS and not (home / source.name).exists():
-                (home / source.name).write_bytes(source.read_bytes())
+                write_file(home / source.name, source.read_bytes())
                 tell(f"copied   {home / source.name}")
     except OSError as error:
         hint = "Check its name and rights, and the space on the disk."

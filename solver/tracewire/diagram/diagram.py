@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from tracewire.errors import OptionError, Place
+from tracewire.files import write_file
 from tracewire.formula import Expression
 from tracewire.library import Effect, Library
 
@@ -259,7 +260,7 @@ class Diagram:
                 raise OptionError.one("there is a file of this name", Place(str(target)), hint=hint)
             if target.resolve().parent != self.file.resolve().parent:
                 read_text(self.text, target, library=self.library)
-            target.write_bytes(self.text.encode())
+            write_file(target, self.text)
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or str(error)
             what = f"the file cannot be written: {reason}"

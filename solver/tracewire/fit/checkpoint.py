@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import time
 from collections.abc import Mapping
 from dataclasses import asdict
@@ -15,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.errors import OptionError, Place, Problem
+from tracewire.files import write_file, writing
 from tracewire.fit.result import Improvement
 from tracewire.fit.search import Search
 from tracewire.residual import Criterion
@@ -50,14 +50,8 @@ class Store:
             "history": [asdict(step) for step in search.history],
             "state": dict(search.state),
         }
-        beside = self.path.with_name(self.path.name + ".part")
-        try:
-            beside.write_text(json.dumps(content, indent=1), encoding="utf-8")
-            os.replace(beside, self.path)
-        except OSError as error:
-            what = f"the file cannot be written: {error.strerror or error}"
-            hint = "Name a file in a folder that exists and may be written to."
-            raise OptionError.one(what, Place(str(self.path)), hint=hint) from None
+        with writing(self.path):
+            write_file(self.path, json.dumps(content, indent=1))
 
 
 def resume_from(path: str | Path, method: str, criterion: Criterion) -> Mapping[str, Any]:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from tracewire.errors import OptionError, Problem
+from tracewire.files import replacing, write_file
 from tracewire.paper.draw import caption, draw
 from tracewire.paper.figure import PAPERS, PaperFigure
 from tracewire.paper.figures import FIGURES, figures_of
@@ -49,7 +50,7 @@ def write_page(path: str | Path | None = None, tell: Callable[[str], None] | Non
         file = folder / f"{figure.stem}.png"
         draw(figure, [file], dpi=DPI)
         _shrink(file)
-    page.write_text(text, encoding="utf-8")
+    write_file(page, text)
     return page
 
 
@@ -151,4 +152,5 @@ def _shrink(file: Path) -> None:
         small = picture.convert("RGB").quantize(
             COLOURS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE
         )
-    small.save(file, optimize=True)
+    with replacing(file) as smaller:
+        small.save(smaller, format="PNG", optimize=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import html
-import os
 import re
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
@@ -12,6 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from tracewire.errors import OptionError, Problem, TracewireError, unknown
+from tracewire.files import check_writable, write_file, writing
 from tracewire.show.summary import Table
 
 STYLE = """body{font-family:sans-serif;max-width:56rem;margin:2rem auto;padding:0 1rem;color:#222;
@@ -81,21 +81,18 @@ class Report:
         if path.suffix not in (".md", ".html"):
             what = f"'{path}': {unknown('file ending', path.suffix, ('.md', '.html')).what}"
             raise OptionError([Problem(what, hint="End it in .md or .html.")])
-        try:
-            _part_of(path).touch()  # told before the figures are drawn
-            _part_of(path).unlink()
+        with writing(path):
+            check_writable(path)  # told before the figures are drawn
             with tempfile.TemporaryDirectory() as folder:
                 drawn = _draw(self.figures, Path(folder), note or (lambda text: None))
                 if path.suffix == ".html":
-                    _replace(path, self.html(drawn).encode())
+                    write_file(path, self.html(drawn))
                 else:
                     for name, file in drawn.items():
                         if isinstance(file, Path):
-                            _replace(path.with_name(_beside(path.stem, name)), file.read_bytes())
-                    _replace(path, self.markdown(drawn, path.stem).encode())
-        except OSError as error:
-            what = f"the report '{path}' cannot be written: {error.strerror or error}"
-            raise OptionError([Problem(what, hint="Name a folder that exists.")]) from error
+                            content = file.read_bytes()
+                            write_file(path.with_name(_beside(path.stem, name)), content)
+                    write_file(path, self.markdown(drawn, path.stem))
         return path
 
     @property
@@ -227,18 +224,3 @@ def _beside(stem: str, name: str) -> str:
     """The name of a figure beside the report of that stem."""
     own = not stem or Path(name).stem == stem or name.startswith(f"{stem}_")
     return name if own else f"{stem}_{name}"
-
-
-def _part_of(path: Path) -> Path:
-    return path.with_name(f"{path.name}.part")
-
-
-def _replace(path: Path, content: bytes) -> None:
-    """Write a file under another name first, so that an older one stays until this is complete."""
-    part = _part_of(path)
-    try:
-        part.write_bytes(content)
-        os.replace(part, path)
-    except OSError:
-        part.unlink(missing_ok=True)
-        raise

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from abc import ABC, abstractmethod
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 from tracewire.fit import Comparison
 from tracewire.fit.optimset import OptimValues
 from tracewire.show.comparison_figures import draw_comparison
-from tracewire.show.style import AFTER, QUIET, STYLE, WIDTH, align_ylabels
+from tracewire.show.style import AFTER, QUIET, STYLE, WIDTH, align_ylabels, save
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -149,7 +150,7 @@ class LivePlot(ABC):
         if not last:
             self._frames += 1
         end = "" if last else f"_{self._frames:04d}"
-        figure.savefig(self.folder / f"{self.name}{end}.png")
+        save(figure, self.folder / f"{self.name}{end}.png")
         if not self._told:
             self._told = True
             _tell(
@@ -275,7 +276,8 @@ def _interactive() -> bool:
 
 
 def _tell(text: str) -> None:
-    sys.stderr.write(f"{text}\n")
+    with suppress(OSError):  # a full stderr must not end a search, either
+        sys.stderr.write(f"{text}\n")
 
 
 _RUNNING: set[LivePlot] = set()

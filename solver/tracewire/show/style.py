@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.errors import OptionError, unknown
+from tracewire.files import replacing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -87,7 +88,8 @@ def save(figure: Figure, path: str | Path) -> Path:
     if path.suffix not in ENDINGS:
         raise OptionError([unknown("ending of a figure", path.suffix, ENDINGS)])
     dated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
-    figure.savefig(path, metadata=dated.get(path.suffix))
+    with replacing(path) as file:
+        figure.savefig(file, format=path.suffix[1:], metadata=dated.get(path.suffix))
     return path
 
 

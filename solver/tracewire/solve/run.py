@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -13,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.errors import OptionError, Problem, unknown
+from tracewire.files import replacing, write_rows
 
 Vector = NDArray[np.float64]
 Cube = NDArray[np.float64]
@@ -131,18 +131,15 @@ class Run:
         """Write the samples to a .csv file, or samples and events to an .npz file."""
         path = Path(path)
         if path.suffix == ".csv":
-            with path.open("w", newline="") as file:
-                writer = csv.writer(file)
-                writer.writerow(["t", *self.signals])
-                rows = zip(self.t, *self.signals.values(), strict=True)
-                writer.writerows([repr(float(value)) for value in row] for row in rows)
+            columns = (self.t.tolist(), *(values.tolist() for values in self.signals.values()))
+            write_rows(path, ["t", *self.signals], zip(*columns, strict=True))
         elif path.suffix == ".npz":
             events = {
                 "event_time": np.array([event.time for event in self.events]),
                 "event_kind": np.array([event.kind for event in self.events], dtype=str),
                 "event_block": np.array([event.block for event in self.events], dtype=str),
             }
-            with path.open("wb") as file:
+            with replacing(path) as file:
                 np.savez(file, allow_pickle=False, t=self.t, **self.signals, **events)
         else:
             what = f"a run cannot be saved as '{path.name}'"

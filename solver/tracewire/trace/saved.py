@@ -8,7 +8,6 @@ from __future__ import annotations
 import copyreg
 import json
 import math
-import os
 import types
 from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, fields, is_dataclass
@@ -20,6 +19,7 @@ import numpy as np
 
 from tracewire.diagram import Diagram, read_text
 from tracewire.errors import OptionError, Place, Problem, TracewireError
+from tracewire.files import write_file, writing
 from tracewire.library import load_library
 from tracewire.trace.found import Force, Found, plain
 from tracewire.trace.units import known_units, users_unit
@@ -43,15 +43,8 @@ def save(found: Found, path: str | Path) -> Path:
     """
     path = Path(path)
     text = json.dumps(to_data(found), allow_nan=False, ensure_ascii=False)
-    part = path.with_name(f"{path.name}.part")
-    try:
-        part.write_text(text, encoding="utf-8")
-        os.replace(part, path)
-    except OSError as error:
-        what = f"the file cannot be written: {error.strerror or error}"
-        hint = "Name a file in a folder that exists and may be written to."
-        raise OptionError.one(what, Place(str(path)), hint=hint) from None
-    return path
+    with writing(path):
+        return write_file(path, text)
 
 
 def load(path: str | Path, libraries: Iterable[str | Path] = ()) -> Found:

@@ -3,19 +3,15 @@
 The functions of the core are ordinary Python as far as a reader is concerned. `unit` makes machine
 code of one, on its own, which others call by its symbol: linked into each of its callers, as numba
 does it, the core would take ten times as long to compile. `helper` is for small functions that are
-built into their callers. The machine code is kept in the user's cache folder, under a name that
-changes with any of the core's files: numba itself looks only at the file of a function, not at
-what the function calls.
+built into their callers. The machine code is kept in a folder of the user, under a name that
+changes with any of the core's files.
 """
 
 from __future__ import annotations
 
 import hashlib
-import os
 import sys
-import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from threading import RLock
 from types import FunctionType, ModuleType
@@ -28,32 +24,27 @@ import platformdirs
 from llvmlite import binding, ir
 from numba import types
 from numba.core import cgutils
+from numba.core.ccallback import CFunc
 from numba.extending import intrinsic
 from numpy.typing import NDArray
+
+from tracewire.solve.code_store import COMPLETE, CodeStore, FunctionCode, tell
 
 Vector = NDArray[np.float64]
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-def _cache() -> Path:
+def _folder() -> Path:
     """The folder for the machine code of these sources."""
     here = Path(__file__).parent
-    digest = hashlib.sha256(numba.__version__.encode())
+    digest = hashlib.sha256(f"{numba.__version__} {sys.implementation.cache_tag}".encode())
     for file in sorted(here.rglob("*.py")):
         digest.update(file.read_bytes())
-    name = f"core-{digest.hexdigest()[:16]}"
-    for root in (platformdirs.user_cache_path("tracewire"), Path(tempfile.gettempdir())):
-        folder = root / name
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError:
-            continue
-        if os.access(folder, os.W_OK):
-            return folder
-    return here / "__pycache__"
+    root = numba.config.CACHE_DIR or platformdirs.user_cache_path("tracewire")
+    return Path(root) / f"core-{digest.hexdigest()[:16]}"
 
 
-CACHE = _cache()
+STORE = CodeStore(_folder())
 
 
 TYPES = {
@@ -69,27 +60,14 @@ UNITS: dict[str, Unit] = {}
 STUBS: dict[int, Unit] = {}
 KEPT: list[Any] = []
 LOCK = RLock()  # of all that makes machine code
-FIRST = "tracewire: compiling the integrators, once for this installation (one to two minutes) ..."
-
-
-@contextmanager
-def _cached_here() -> Iterator[None]:
-    """Let numba keep machine code in our folder: its setting is one of the process, so that one
-    thread at a time may change it. Another would else find it reset half way, and make its folder
-    where the process works."""
-    with LOCK:
-        given = numba.config.CACHE_DIR
-        numba.config.CACHE_DIR = given or str(CACHE)
-        try:
-            yield
-        finally:
-            numba.config.CACHE_DIR = given
+FIRST = "compiling the integrators, once for this installation (one to two minutes) ..."
 
 
 def helper(function: Function) -> Function:
     """The function as part of its callers: no Python objects, division by zero is infinity."""
-    with _cached_here():
-        return cast(Function, numba.njit(cache=True, nogil=True, error_model="numpy")(function))
+    built = numba.njit(nogil=True, error_model="numpy")(function)
+    built._cache = FunctionCode(function, STORE)
+    return cast(Function, built)
 
 
 def inlined(function: Function) -> Function:
@@ -117,9 +95,12 @@ class Unit:
 
     def compile(self) -> None:
         """Make the machine code, or get it from the cache, and let the symbol be known."""
-        signature = self.result(*self._plain())
-        with _cached_here():
-            self.code = numba.cfunc(signature, cache=True, error_model="numpy")(self._entry())
+        entry = self._entry()
+        kinds = (tuple(self._plain()), self.result)
+        code: Any = CFunc(entry, kinds, {}, {"error_model": "numpy"})
+        code._cache = FunctionCode(self.function, STORE)
+        code.compile()
+        self.code = code
         binding.add_symbol(self.symbol, self.code.address)
 
     def _plain(self) -> list[Any]:
@@ -151,9 +132,7 @@ class Unit:
         text = f"def {name}({', '.join(plain)}):\n    return body({', '.join(full)})\n"
         names = {"body": inlined(self.function), "carray": numba.carray}
         entry = _written(name, text, names, code.co_filename)
-        # the cache finds it by file and line: those of the function
-        entry.__code__ = entry.__code__.replace(co_firstlineno=code.co_firstlineno)
-        entry.__module__ = self.function.__module__
+        entry.__module__ = self.function.__module__  # a part of its symbol
         return entry
 
     def call(self, context: Any, builder: Any, _: Any, values: Any) -> Any:
@@ -225,10 +204,16 @@ def _make_all() -> None:
         found = _called(caller.function) - {caller}
         graph.add_edges_from((callee, caller) for callee in found)
     waiting = [made for made in nx.topological_sort(graph) if made.code is None]
-    if not any(CACHE.rglob("*.nbi")):
-        print(FIRST, file=sys.stderr, flush=True)  # noqa: T201
-    for made in waiting:
-        made.compile()
+    if STORE.read(COMPLETE) is not None:
+        for made in waiting:
+            made.compile()
+        return
+    with STORE.alone():
+        if STORE.works and STORE.read(COMPLETE) is None:
+            tell(FIRST)
+        for made in waiting:
+            made.compile()
+        STORE.write(COMPLETE, b"")
 
 
 def _invoke(
