@@ -130,3 +130,23 @@ def test_a_pipe_is_not_read(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.yaml")
     with pytest.raises(DiagramError, match="is not a regular file"):
         read(tmp_path / "pipe.yaml")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"start: [{'1,' * 200_000}]",
+        f"matrix: [{('[' + '1,' * 500 + '],') * 500}]",
+        f"matrix: [{('[[' + '1,' * 500 + ']],') * 500}]",
+    ],
+    ids=["vector", "matrix", "nested"],
+)
+def test_a_list_that_no_run_could_take_is_refused_at_its_start(text: str) -> None:
+    with pytest.raises(DiagramError, match="this list has more than 10000 values") as caught:
+        compose(text, Path("a.yaml"), Problems())
+    assert str(caught.value).startswith("a.yaml:1:")
+
+
+def test_a_long_list_of_mappings_is_read() -> None:
+    text = "events:\n" + "  - {a: 1, b: 2, c: 3}\n" * 5000
+    assert compose(text, Path("a.yaml"), Problems())

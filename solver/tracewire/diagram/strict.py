@@ -22,6 +22,7 @@ from tracewire.errors import DiagramError, Place
 
 MOST_DEPTH = 60
 MOST_KEY = 100
+MOST_VALUES = 10_000  # of a vector or matrix: 100 x 100 compiles in seconds, 500 x 500 in hours
 NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?")
 STRANGE_BREAK = re.compile("\r(?!\n)|[\x85\u2028\u2029]")
 PARSER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # only its events are used
@@ -116,10 +117,14 @@ def _check_characters(text: str, file: str, mark: int) -> None:
 
 @dataclass
 class _Open:
-    """A list or mapping whose end has not come yet; None stands for a node that was refused."""
+    """A list or mapping whose end has not come yet; None stands for a node that was refused.
+
+    `values` counts the entries of a list, those of lists in it instead of the lists.
+    """
 
     event: yaml.CollectionStartEvent
     nodes: list[Node | None] = field(default_factory=list)
+    values: int = 0
 
 
 class _Composer:
@@ -203,13 +208,18 @@ class _Composer:
                 if _is_empty(node):
                     self.problems.add("an entry of this list is empty", node.place)
             kept = tuple(node for node in items if not _is_empty(node))
-            self.put(Items(kept, place, start, end, flow))
+            self.put(Items(kept, place, start, end, flow), frame.values)
 
-    def put(self, node: Node | None) -> None:
-        if self.open:
-            self.open[-1].nodes.append(node)
-        else:
+    def put(self, node: Node | None, values: int = 1) -> None:
+        if not self.open:
             self.root = node
+            return
+        frame = self.open[-1]
+        frame.nodes.append(node)
+        frame.values += values
+        if isinstance(frame.event, yaml.SequenceStartEvent) and frame.values > MOST_VALUES:
+            hint = "Put data into a file, with `measured:` or a `table` block; shorten a vector."
+            raise self.stopped(f"this list has more than {MOST_VALUES} values", frame.event, hint)
 
     def pairs(self, nodes: list[Node | None]) -> tuple[dict[str, Scalar], dict[str, Node]]:
         keys: dict[str, Scalar] = {}
