@@ -51,7 +51,7 @@ VALUES = [
     ("{a: 1e999}", "too large for double precision"),
     ("{a: b, b: c, c: a}", "parameters depend on each other: a -> b -> c -> a. Give one of them"),
     ("{a: a + 1}", "parameters depend on each other: a -> a"),
-    ("{if: 1}", "1:14: 'if' cannot be the name of a parameter. Use letters"),
+    ("{if: 1}", "1:14: 'if' cannot be the name of a parameter. 'if' is a word"),
     ("[1]", "'parameters' must be a mapping"),
 ]
 BLOCKS = [
@@ -132,7 +132,7 @@ SUBSYSTEMS = [
     ("events: [{set: {i: 0}}]", "an event needs 'when'"),
     ("events: [{when: k}]", "an event needs 'set'"),
     ("events: [{when: k, set: {}}]", "an event must set a state"),
-    ("events: [{when: k > 0, set: {i: 0}}]", "a comparison is not a number"),
+    ("events: [{when: not k > 0, set: {i: 0}}]", "an event happens where one comparison becomes"),
     ("events: [{when: kk, set: {i: 0}}]", "unknown signal or parameter 'kk'"),
     ("events: [{when: k, set: {j: 0}}]", "unknown state 'j'; there are: i, o.v, o.x."),
     ("events: [{when: k, set: {k: 0}}]", "block 'k' has no states, and an event sets one; there"),

@@ -10,10 +10,9 @@ from typing import Literal
 from tracewire.diagram.problems import Problems, clip
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.errors import FormulaError, Place
-from tracewire.formula import Unit, is_name, read_unit
+from tracewire.formula import Unit, is_name, name_hint, read_unit
 
 Sees = Literal["parameter", "signal", "either"]
-NAMES = "Use letters, digits and _, no digit in front, and no word of the formula language."
 OF_A_BLOCK = ("type", "unit", "place", "guess")
 
 
@@ -52,7 +51,8 @@ class Body:
         """Note a name of this diagram, and whether it is a name and stands alone."""
         name, place = key.text, self.place(key)
         if not is_name(name):
-            self.problems.add(f"'{clip(name)}' cannot be the name of {kind}", place, (), NAMES)
+            what = f"'{clip(name)}' cannot be the name of {kind}"
+            self.problems.add(what, place, (), name_hint(name))
         elif self.path and name in OF_A_BLOCK and kind in ("an input", "a parameter"):
             what = f"'{name}' cannot be the name of {kind} of a subsystem"
             self.problems.add(what, place, (), f"'{name}:' means something else on every block.")

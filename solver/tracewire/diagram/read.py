@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from tracewire.diagram.body import NAMES, Body
+from tracewire.diagram.body import Body
 from tracewire.diagram.check import check_names
 from tracewire.diagram.diagram import Diagram
 from tracewire.diagram.files import load
@@ -32,7 +32,7 @@ from tracewire.diagram.settings import (
 from tracewire.diagram.strict import Entries, Node, Scalar, compose
 from tracewire.diagram.uses import read_blocks
 from tracewire.errors import DiagramError, Place
-from tracewire.formula import is_name
+from tracewire.formula import is_name, name_hint
 from tracewire.library import Block, Library, load_library
 
 MOST_LEVELS = 30
@@ -267,7 +267,7 @@ class _Reader:
             place = body.place(key)
             if not is_name(name):
                 what = f"'{clip(name)}' cannot be the name of a subsystem"
-                self.problems.add(what, place, (), NAMES)
+                self.problems.add(what, place, (), name_hint(name))
             elif name in self.library:
                 what = f"two definitions of '{name}': a subsystem here, and a block of the library"
                 self.problems.add(what, place, (), "Rename the subsystem.")

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from typing import get_args
 
-from tracewire.diagram.body import NAMES, Body
+from tracewire.diagram.body import Body
 from tracewire.diagram.diagram import Crosses, Event, InputPort, Value, Wire
 from tracewire.diagram.problems import clip
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.diagram.values import NO_UNIT, read_formula, read_value
 from tracewire.diagram.wires import read_wire
-from tracewire.formula import Expression, Name, Number, is_name
+from tracewire.errors import FormulaError
+from tracewire.formula import Call, Expression, Name, Number, is_name, name_hint, parse_condition
 
 CROSSES: dict[str, Crosses] = {word: word for word in get_args(Crosses)}
+RISING = {">": True, ">=": True, "<": False, "<=": False}
+"""Whether left less right rises where a comparison becomes true."""
 
 
 def read_inputs(node: Node, body: Body) -> dict[str, InputPort]:
@@ -50,7 +53,7 @@ def read_outputs(node: Node, body: Body) -> dict[str, Wire]:
             what = f"two definitions of the output '{clip(name)}'"
             body.problems.add(what, body.place(key), (), "Remove or rename one.")
         elif not is_name(name):
-            hint = f"{NAMES} A port gets a name by 'outputs: {{name: signal}}'."
+            hint = f"{name_hint(name)} A port gets a name by 'outputs: {{name: signal}}'."
             what = f"'{clip(name)}' cannot be the name of an output"
             body.problems.add(what, body.place(key), (), hint)
         else:
@@ -96,6 +99,8 @@ def _read_event(node: Node, body: Body) -> Event | None:
             body.problems.unknown("direction", word, CROSSES, body.place(given))
     is_clock = "every" in entries.values
     when = None if is_clock else _read_when(entries, body)
+    if not is_clock and _comparison(entries.values.get("when", node)) is not None:
+        crosses = "up"
     every = _read_clock(entries, body) if is_clock else None
     offset = None
     if "offset" in entries.values:
@@ -123,12 +128,43 @@ def _read_event(node: Node, body: Body) -> Event | None:
 def _read_when(entries: Entries, body: Body) -> Expression | None:
     """`when` of an event: a formula, or the name of an event of a block."""
     node = body.required(entries, "when", "an event")
+    comparison = None if node is None else _comparison(node)
+    if comparison is not None and node is not None:
+        return _read_comparison(node, comparison, entries, body)
     when = None if node is None else read_formula(node, body, "either")
     if isinstance(when, Name) and "." in when.name:
         crosses = entries.values.get("crosses")
         place = None if crosses is None else body.place(crosses)
         body.happenings.append((body.references.pop(), place))
     return when
+
+
+def _comparison(node: Node) -> Call | None:
+    """The condition that `when` is, where it is one."""
+    try:
+        condition = parse_condition(node.text) if isinstance(node, Scalar) else None
+    except FormulaError:
+        return None
+    return condition if isinstance(condition, Call) else None
+
+
+def _read_comparison(
+    node: Node, condition: Call, entries: Entries, body: Body
+) -> Expression | None:
+    """`a > b` as the formula a - b: it crosses zero upwards where the comparison becomes true."""
+    if condition.function not in RISING:
+        what = "an event happens where one comparison becomes true, and this joins several"
+        hint = "Write an event for each, or a number that crosses zero, such as max(a, b)."
+        body.problems.add(what, body.place(node), (), hint)
+        return None
+    if "crosses" in entries.values:
+        what = "a comparison happens where it becomes true, and has no 'crosses'"
+        hint = "Leave 'crosses' out, or write when: a - b."
+        body.problems.add(what, body.place(entries.values["crosses"]), (), hint)
+    if read_formula(node, body, "either", condition=True) is None:
+        return None
+    left, right = condition.arguments
+    return Call("-", (left, right) if RISING[condition.function] else (right, left))
 
 
 def _read_clock(entries: Entries, body: Body) -> Value | None:

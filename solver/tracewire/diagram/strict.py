@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -225,6 +225,8 @@ class _Composer:
         keys: dict[str, Scalar] = {}
         values: dict[str, Node] = {}
         for key, value in zip(nodes[::2], nodes[1::2], strict=True):
+            if isinstance(key, Scalar) and value is not None and _is_empty(value):
+                self.refuse_comma(key, keys, values)
             if key is None or not self.is_key(key, keys) or not isinstance(key, Scalar):
                 continue
             if value is None:
@@ -235,6 +237,25 @@ class _Composer:
                 continue
             keys[key.text], values[key.text] = key, value
         return keys, values
+
+    def refuse_comma(
+        self, key: Scalar, keys: Mapping[str, Scalar], values: Mapping[str, Node]
+    ) -> None:
+        """Raise where an entry without a value is the rest of a formula, cut at its comma."""
+        name = next(reversed(keys), "")
+        before = values.get(name)
+        if not isinstance(before, Scalar) or before.style or key.style:
+            return
+        whole = f"{before.text}, {key.text}"
+        if before.text.count("(") > before.text.count(")") and ")" in key.text:
+            hint = f'Write {name}: "{whole}".'
+        elif before.number is not None and key.number is not None:
+            hint = f"Write {name}: {before.text}.{key.text}: a point stands before the decimals."
+        else:
+            return
+        what = f"between braces a comma ends the value of '{name}'"
+        self.problems.add(what, before.place, (), hint)
+        raise DiagramError(self.problems.found)
 
     def is_key(self, key: Node, keys: dict[str, Scalar]) -> bool:
         what, hint = "", ""

@@ -10,7 +10,8 @@ from tracewire.diagram.names import split_index
 from tracewire.diagram.problems import clip
 from tracewire.diagram.strict import Items, Node, Scalar
 
-SIGNAL = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*", re.ASCII)
+SIGNAL = re.compile(r"[^\W\d]\w*(?: \w+)*(?:\.[^\W\d]\w*)*")
+"""What is meant as a name, though none may be called so: the definition of it is refused."""
 
 
 def read_wire(node: Node, body: Body, what: str, block: str = "") -> Wire | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import contextlib
 import keyword
 import math
 import re
@@ -12,6 +13,7 @@ from functools import lru_cache
 from tracewire.errors import FormulaError, Place, Problem, unknown
 from tracewire.formula.expression import Call, Expression, Name, Number
 from tracewire.formula.functions import CONSTANTS, FUNCTIONS
+from tracewire.formula.units import read_unit
 
 MOST_CHARACTERS = 4000
 MOST_NODES = 1000
@@ -31,6 +33,8 @@ INSTEAD: dict[type[ast.operator], str] = {
     ast.FloorDiv: "Write floor(a/b).",
 }
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+WITH_UNIT = re.compile(r"(?<![\w.])(\d+(?:\.\d*)?(?:[eE][+-]?\d+)?)\s*([A-Za-z%]+)(?![\w.(])")
+ZEROS = re.compile(r"(?<![\w.])0+([1-9]\d*)(?![\w.])")
 BY_NAME = {"sum": "a port", "product": "a port", "join": "a port", "interp": "a table of points"}
 LANGUAGE = (
     "A formula knows + - * / **, < <= > >=, and/or/not, 'a if c else b' and: "
@@ -46,6 +50,13 @@ def is_name(text: str) -> bool:
     """
     reserved = keyword.iskeyword(text) or text in CONSTANTS or text in FUNCTIONS or text == "t"
     return bool(NAME.fullmatch(text)) and not reserved and not text.startswith("__")
+
+
+def name_hint(text: str) -> str:
+    """What to do about a name for which `is_name` is false."""
+    if NAME.fullmatch(text) and not text.startswith("__"):
+        return f"'{text}' is a word of formulas: choose another one, such as {text}_1."
+    return "Use the letters a to z, digits and _, no digit in front, and no __."
 
 
 class _Refused(Exception):
@@ -101,13 +112,28 @@ def _parse(text: str, condition: bool) -> Expression:
             warnings.simplefilter("ignore")  # Python's advice on its own grammar is not ours
             tree = ast.parse(text.strip(), mode="eval")
     except SyntaxError as error:
-        raise _Refused(
-            f"it does not parse ({error.msg})", lead + max((error.offset or 1) - 1, 0), LANGUAGE
+        column = lead + max((error.offset or 1) - 1, 0)
+        raise _what_was_meant(text) or _Refused(
+            f"it does not parse ({error.msg})", column, LANGUAGE
         ) from None
     except (ValueError, RecursionError, MemoryError):
         raise _Refused("it does not parse (nested too deeply, or no text)") from None
     converter = _Converter(lead)
     return converter.condition(tree.body, 0) if condition else converter.value(tree.body, 0)
+
+
+def _what_was_meant(text: str) -> _Refused | None:
+    """What to say of a number with a unit or with zeros in front; None where that is not it."""
+    for found in WITH_UNIT.finditer(text):
+        number, unit = found.groups()
+        with contextlib.suppress(FormulaError):
+            read_unit(unit)
+            hint = f"Numbers are in SI: make a parameter of it, {{value: {number}, unit: {unit}}}."
+            return _Refused("a number in a formula has no unit", found.start(), hint)
+    zeros = ZEROS.search(text)
+    if zeros is None:
+        return None
+    return _Refused("a number has zeros in front", zeros.start(), f"Write {zeros.group(1)}.")
 
 
 class _Converter:
@@ -152,6 +178,9 @@ class _Converter:
                     hint = "Write q[0], or M[0, 1] for an element of a matrix."
                     raise self.refuse(node, "an index stands behind a name", hint)
                 return Call("[]", (Name(self.path(vector)), *self.indices(index)))
+            case ast.Tuple(elts=[ast.Constant(value=int(whole)), ast.Constant(value=int(part))]):
+                hint = f"Write {whole}.{part}: a point stands before the decimals."
+                raise self.refuse(node, "a comma is no decimal point", hint)
             case _:
                 what = type(node).__name__.lower()
                 raise self.refuse(node, f"a {what} is not part of the formula language")

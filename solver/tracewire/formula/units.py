@@ -13,6 +13,9 @@ from tracewire.errors import FormulaError, Place, Problem
 if TYPE_CHECKING:
     from pint import UnitRegistry
 
+OFFSET = re.compile(
+    r"(?<![A-Za-z])(deg(ree)?_?|°)(C|F|celsius|fahrenheit)(?![A-Za-z])", re.IGNORECASE
+)
 MOST_CHARACTERS = 60
 
 SYMBOL = r"(?:kg|mol|cd|rad|sr|Hz|Pa|Wb|Ohm|m|s|A|K|N|J|W|C|V|F|S|T|H)"
@@ -79,6 +82,8 @@ def read_unit(text: str, place: Place = Place()) -> Unit:
         return _convert(text.strip())
     except ValueError:
         hint = "Write it like 'kg m^2', 'N m s/rad', 'deg' or '1/s'."
+        if OFFSET.search(text):
+            hint = "A temperature is in K: 20 degC are 293.15 K. A difference of 1 degC is 1 K."
         raise FormulaError([Problem(f"'{text[:60]}' is not a unit", place, (), hint)]) from None
 
 

@@ -1,0 +1,100 @@
+"""What a newcomer writes first is taken as it is meant, or answered with what to write instead."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from tracewire.compile import compile
+from tracewire.diagram import read_text
+from tracewire.errors import TracewireError
+from tracewire.formula import to_text
+from tracewire.solve import simulate
+
+BALL = """\
+span: [0, 10]
+parameters: {limit: 1}
+blocks:
+  phi: {type: integrator, of: w, start: 2}
+  w: {type: integrator, of: a}
+  a: {type: gain, of: phi, k: -1}
+"""
+
+
+def refused(text: str) -> list[str]:
+    with pytest.raises(TracewireError) as caught:
+        compile(read_text(text, Path("a.yaml")))
+    return str(caught.value).splitlines()
+
+
+@pytest.mark.parametrize(
+    ("when", "formula", "times"),
+    [
+        ("phi > limit", "phi - limit", [5.2360]),
+        ("phi >= limit", "phi - limit", [5.2360]),
+        ("phi < limit", "limit - phi", [1.0472, 7.3304]),
+        ("limit > phi", "limit - phi", [1.0472, 7.3304]),
+    ],
+)
+def test_a_comparison_happens_where_it_becomes_true(
+    when: str, formula: str, times: list[float]
+) -> None:
+    """phi = 2 cos(t) passes 1 at pi/3, 5 pi/3 and 7 pi/3: down, up, down."""
+    text = f"{BALL}  n: {{type: integrator, of: zero}}\n  zero: {{type: constant, value: 0}}\n"
+    diagram = read_text(f"{text}events:\n  - {{when: {when}, set: {{n: n + 1}}}}\n", Path("a.yaml"))
+    (event,) = diagram.events
+    assert event.when is not None
+    assert (to_text(event.when), event.crosses) == (formula, "up")
+    run = simulate(compile(diagram))
+    assert run.final["n"] == len(times)
+    for number, time in enumerate(times):
+        assert list(run["n"][abs(run.t - time) < 0.05][[0, -1]]) == [number, number + 1]
+
+
+@pytest.mark.parametrize(
+    ("when", "said"),
+    [
+        ("{when: phi > 1 and w > 0, set: {w: 0}}", "an event happens where one comparison"),
+        ("{when: 0 < phi < 1, set: {w: 0}}", "an event happens where one comparison"),
+        ("{when: phi > 1, crosses: down, set: {w: 0}}", "has no 'crosses'. Leave 'crosses' out"),
+        ("{when: phi > psi, set: {w: 0}}", "unknown"),
+    ],
+)
+def test_other_conditions_of_an_event_are_refused(when: str, said: str) -> None:
+    (line,) = refused(f"{BALL}events:\n  - {when}\n")
+    assert said in line
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("k: -1", "k: 30 deg", "a number in a formula has no unit. Numbers are in SI: make a "
+         "parameter of it, {value: 30, unit: deg}."),
+        ("k: -1", "k: 2*1.5mm", "{value: 1.5, unit: mm}"),
+        ("k: -1", "k: max(limit, 2)", "between braces a comma ends the value of 'k'. "
+         'Write k: "max(limit, 2)".'),
+        ("start: 2", "start: 1,5", "of 'start'. Write start: 1.5: a point stands before"),
+        ("limit: 1", "limit: '1,5'", "a comma is no decimal point. Write 1.5"),
+        ("limit: 1", "limit: 010", "a number has zeros in front. Write 10."),
+        ("limit: 1", "limit: {value: 20, unit: degC}", "A temperature is in K: 20 degC are"),
+        ("limit: 1", "limit: {value: 20, unit: °C}", "A temperature is in K: 20 degC are"),
+        ("{limit: 1}", "{limit: 1, def: 2}", "'def' is a word of formulas: choose another one, "
+         "such as def_1."),
+        ("{limit: 1}", "{limit: 1, __a: 2}", "Use the letters a to z, digits and _"),
+    ],
+)  # fmt: skip
+def test_what_is_meant_is_said_in_one_line(old: str, new: str, said: str) -> None:
+    (line,) = refused(BALL.replace(old, new))
+    assert said in line
+
+
+@pytest.mark.parametrize("name", ["φ", "Größe", "my angle"])
+def test_a_name_that_cannot_be_is_told_once(name: str) -> None:
+    text = BALL.replace("phi:", f"{name}:").replace("of: phi", f"of: {name}")
+    (line,) = refused(text)
+    assert f"'{name}' cannot be the name of a block. Use the letters a to z" in line
+
+
+def test_a_number_that_is_no_unit_s_is_no_unit() -> None:
+    (line,) = refused(BALL.replace("k: -1", "k: 2 limit"))
+    assert "it does not parse" in line
