@@ -75,7 +75,7 @@ def test_wheel_holds_the_package_the_blocks_and_the_diagrams(installed: Path) ->
 
 
 def test_sdist_holds_what_a_clone_holds(sdist: Path) -> None:
-    for room in ("solver", "blocks", "diagrams", "tests", "benchmarks"):
+    for room in ("solver", "blocks", "diagrams", "docs", "tests", "benchmarks"):
         assert files(sdist / room) == files(ROOT / room)
     names = ["README.md", "LICENSE", "CHANGELOG.md", "CONTRIBUTING.md", "Makefile"]
     assert [name for name in names if not (sdist / name).is_file()] == []

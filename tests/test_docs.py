@@ -1,0 +1,77 @@
+"""The pages in docs: tests that a promise names exist, and every section of a diagram is there."""
+
+from __future__ import annotations
+
+import ast
+import re
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+from tracewire.compile import compile
+from tracewire.diagram import measured, read_effect, read_text
+
+ROOT = Path(__file__).parents[1]
+DOCS = ROOT / "docs"
+PAGES = sorted(DOCS.glob("*.md"))
+PROMISES = (DOCS / "promises.md").read_text(encoding="utf-8")
+DIAGRAMS = (DOCS / "diagrams.md").read_text(encoding="utf-8")
+ITEM = re.compile(r"^- \[(.+?)\]\(\.\./(.+?)\):((?:[^\n]|\n  )+)", re.MULTILINE)
+
+
+def kept() -> list[tuple[str, str]]:
+    """(file, test) of every test that the page names."""
+    return [
+        (file, name)
+        for shown, file, names in ITEM.findall(PROMISES)
+        for name in re.findall(r"`(test_\w+)`", names)
+        if shown == file
+    ]
+
+
+def test_every_promise_names_its_tests() -> None:
+    parts = PROMISES.split("\n## ")[1:]
+    assert len(parts) >= 6
+    assert [part.splitlines()[0] for part in parts if not ITEM.search(part)] == []
+    assert len(kept()) == PROMISES.count("`test_")
+
+
+@pytest.mark.parametrize(("file", "name"), kept())
+def test_a_test_that_is_named_exists(file: str, name: str) -> None:
+    tree = ast.parse((ROOT / file).read_text(encoding="utf-8"))
+    assert name in {node.name for node in tree.body if isinstance(node, ast.FunctionDef)}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_of_the_pages_lead_to_files(page: Path) -> None:
+    links = [link.split("#")[0] for link in re.findall(r"\]\(([^)\s]+)\)", page.read_text("utf-8"))]
+    local = [link for link in links if link and "://" not in link]
+    assert local
+    assert [link for link in local if not (page.parent / link).exists()] == []
+
+
+def test_every_section_and_key_is_on_the_page() -> None:
+    reader = import_module("tracewire.diagram.read")  # the function `read` hides its file
+    keys = {*reader.TOP, *reader.INSIDE, *measured.KEYS, *read_effect.KEYS}
+    keys |= {"when", "crosses", "every", "offset", "set"}
+    assert {key for key in keys if f"`{key}`" not in DIAGRAMS} == set()
+
+
+def rows() -> list[tuple[str, str]]:
+    """(section, example) of the first table."""
+    table = DIAGRAMS.split("\n## ")[0]
+    return re.findall(r"^\| `(\w+)` \|.*\| `(.+)` \|$", table, re.MULTILINE)
+
+
+def test_the_examples_are_a_diagram(tmp_path: Path) -> None:
+    """All examples at once, with what they name beside them."""
+    examples = dict(rows())
+    del examples["include"], examples["measured"], examples["blocks"]
+    assert len(examples) == 10
+    text = "\n".join(examples.values()).replace("{k:", "{m: 1, c: 1, limit: 1, k:")
+    blocks = re.findall(r"blocks: \{(.+)\}", dict(rows())["blocks"])[0]
+    text += f"\nblocks:\n  {blocks}\n  v: {{type: integrator, of: force}}\n"
+    text += "  force: {type: expression, formula: F - k*x - c*v}\n"
+    table = re.findall(r"```yaml\n(.*?)```", DIAGRAMS, re.DOTALL)[0]
+    (tmp_path / "lift.csv").write_text("speed,force\n0,0\n1,2\n", encoding="utf-8")
+    assert compile(read_text(text + table, tmp_path / "a.yaml")).flat.states
