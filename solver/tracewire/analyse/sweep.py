@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
 import itertools
 import math
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -93,7 +95,7 @@ def sweep(
         "kind": "sweep",
         "grid": [[name, values.tolist()] for name, values in axes.items()],
         "outputs": [name for name, _, _ in measures],
-        "options": [since, sorted((name, repr(value)) for name, value in options.items())],
+        "options": [since, sorted((name, _identity(value)) for name, value in options.items())],
     }
     store = Partial(partial, identity, len(points), len(measures))
 
@@ -160,3 +162,10 @@ def _number(run: Run, kind: str, signal: str, since: float | None) -> float:
         what = f"there are fewer than two samples from {since} s on"
         raise OptionError([Problem(what, hint="Give an earlier `since`, or a longer span.")])
     return MEASURES[kind](run.t[chosen], run[signal][chosen])
+
+
+def _identity(option: object) -> str:
+    """What tells one value of an option from another: all numbers of an array, too."""
+    with np.printoptions(threshold=sys.maxsize, floatmode="unique"):
+        text = repr(option)
+    return text if len(text) < 200 else hashlib.sha256(text.encode()).hexdigest()

@@ -24,6 +24,10 @@ if TYPE_CHECKING:
     from tracewire.solve import Run
 
 
+CURVE = 10_000
+"""Steps of a curve in a plane: with the 1000 of a run its turns are polygons."""
+
+
 def portrait(
     diagram: DiagramPath,
     x: Signal,
@@ -52,7 +56,7 @@ def portrait(
     setting = read_setting(
         diagram, library, preset, values, start, names, figure=figure, output=output
     )
-    run = run_of(setting, span, every, rtol)
+    run = run_of(setting, span, every, rtol, steps=CURVE)
     from tracewire.show import plot_portrait
 
     _tell_plane(run, names, since, plot_portrait, figure, output, as_json=as_json)
@@ -90,7 +94,7 @@ def polar(
     setting = read_setting(
         diagram, library, preset, values, start, names, figure=figure, output=output
     )
-    run = run_of(setting, span, every, rtol)
+    run = run_of(setting, span, every, rtol, steps=CURVE)
     from tracewire.show import plot_polar
 
     _tell_plane(run, names, since, plot_polar, figure, output, as_json=as_json)

@@ -31,7 +31,12 @@ STOPPED = Problem("interrupted; nothing was finished")
 USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
 """The base of every usage error; typer has its own copy of click or uses the installed one."""
 
-app = typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode="rich")
+app = typer.Typer(
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode="rich",
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
 
 
 @app.callback(invoke_without_command=True)

@@ -1,30 +1,68 @@
-"""`tracewire check`: is everything in order with a diagram and its data?"""
+"""`tracewire check`: is everything in order with diagrams and their data?"""
 
 from __future__ import annotations
 
-from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries, load_model
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from tracewire.cli.options import AsJson, Debug, Libraries, load_model
 from tracewire.cli.output import print_json, print_text, working
+from tracewire.errors import OptionError, Problem, TracewireError
+
+ENDINGS = (".yaml", ".yml")
 
 
 def check(
-    diagram: DiagramPath,
+    diagrams: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="DIAGRAM...", help="Diagram files (YAML), or folders.", show_default=False
+        ),
+    ],
     library: Libraries = None,
     as_json: AsJson = False,
     debug: Debug = False,
 ) -> None:
-    """Check a diagram, its formulas and its measured files, and say what is in it.
+    """Check diagrams, their formulas and their measured files, and say what is in them.
 
-    Everything that is wrong in the diagram is told at once, with file, line and column. Of each
-    measured series it tells what is done to the data (-), and what is odd about them (!).
+    Everything that is wrong is told at once, with file, line and column. Of each measured series
+    it tells what is done to the data (-), and what is odd about them (!). In a folder all files
+    with `blocks:` are checked.
 
     \b
-    Example:
+    Examples:
       tracewire check pendulum.yaml
+      tracewire check diagrams/
     """
+    problems: list[Problem] = []
+    found: list[dict[str, Any]] = []
+    code: type[TracewireError] = OptionError
+    files = _files(diagrams)
+    for file in files:
+        try:
+            found.append(_contents(file, library, as_json))
+        except TracewireError as error:
+            problems += error.problems
+            code = type(error)
+    if problems:
+        raise code(problems)
+    if as_json:
+        one = len(files) == 1
+        told = found[0] if one else {"diagrams": found}
+        print_json({"problems": [], **told})
+    else:
+        print_text("no problems")
+
+
+def _contents(file: str, library: Sequence[str] | None, quiet: bool) -> dict[str, Any]:
+    """What is in a diagram, printed unless `quiet`. Raises TracewireError."""
     from tracewire.show.summary import contents, contents_text, series_contents
     from tracewire.solve import parameter_values
 
-    model = load_model(diagram, library)
+    model = load_model(file, library)
     for preset in ("", *model.flat.presets):  # they must be what the diagram requires
         parameter_values(model, {}, preset)
     measured = []
@@ -34,8 +72,31 @@ def check(
 
             measured = [series_contents(series) for series in load_measured(model)]
     found = contents(model)
-    if as_json:
-        print_json({"problems": [], **found, "measured": measured})
-        return
-    print_text(contents_text(found, measured))
-    print_text("no problems")
+    if not quiet:
+        print_text(contents_text(found, measured))
+    return {**found, "measured": measured}
+
+
+def _files(paths: Sequence[str]) -> list[str]:
+    """The files, and those of folders that have blocks. Raises OptionError."""
+    found: list[str] = []
+    for path in paths:
+        if not Path(path).is_dir():
+            found.append(path)
+            continue
+        inside = [
+            str(file)
+            for file in sorted(Path(path).rglob("*"))
+            if file.suffix in ENDINGS and _has_blocks(file)
+        ]
+        if not inside:
+            what = f"there is no diagram in '{path}'"
+            hint = "A diagram is a file that ends in .yaml and has 'blocks:'."
+            raise OptionError([Problem(what, hint=hint)])
+        found += inside
+    return found
+
+
+def _has_blocks(file: Path) -> bool:
+    text = file.read_text(encoding="utf-8", errors="replace")
+    return any(line.startswith("blocks:") for line in text.splitlines())

@@ -39,7 +39,7 @@ def demo(
         (folder / "trace").mkdir(parents=True, exist_ok=True)
     pendulum = str(shipped("diagrams") / "demo" / "pendulum.yaml")
     print_text("--- 1. check the double torsion pendulum as it was first declared")
-    check(pendulum)
+    check([pendulum])
     print_text("\n--- 2. run it")
     run(pendulum, preset="as_in_the_paper", figure=str(folder / "torsion.png"))
     print_text("\n--- 3. trace what it lacks to explain five records")

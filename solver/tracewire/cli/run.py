@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tracewire.cli.one_run import evenly
 from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries, load_model
 from tracewire.cli.output import (
     check_target,
@@ -18,21 +19,19 @@ from tracewire.cli.output import (
     telling,
     working,
 )
+from tracewire.cli.series import SeriesName, read_series
 from tracewire.cli.values import parameter_values_of, start_values_of
-from tracewire.errors import OptionError, Problem, unknown
+from tracewire.errors import OptionError, Problem
 from tracewire.files import writing
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from tracewire.compile import Model
-    from tracewire.solve import Interrupted
+    from tracewire.solve import Interrupted, Run
 
 OUTPUTS = (".csv", ".npz")
 FIGURES = (".png", ".svg", ".pdf")
 
-_Inputs = dict[str, tuple["ArrayLike", "ArrayLike"]]
-_Series = tuple[_Inputs, dict[str, float], str, tuple[float, float] | None, dict[str, float]]
+FINER = 10
+"""Times as many samples are drawn as are written."""
 
 
 def run(
@@ -66,12 +65,7 @@ def run(
         list[str] | None,
         typer.Option(metavar="SIGNAL", help="A further signal to record. Repeatable."),
     ] = None,
-    series: Annotated[
-        str,
-        typer.Option(
-            metavar="NAME", help="Run as this measured series: its inputs, start, values and time."
-        ),
-    ] = "",
+    series: SeriesName = "",
     method: Annotated[
         str, typer.Option(help="auto, dormand_prince, dop853, rosenbrock or rk4.")
     ] = "auto",
@@ -117,26 +111,38 @@ def run(
 
         model = replace(model, flat=replace(model.flat, every=Number(every)))
     with working(f"simulating {diagram}") as show:
-        from tracewire.solve import Interrupted, simulate
+        from tracewire.solve import Interrupted, parameter_values, simulate
+        from tracewire.solve.simulate import DEFAULT_SAMPLES
 
-        inputs, series_start, series_preset, series_span, own = _series(model, series)
+        given = read_series(model, series)
+        known = parameter_values(model, {**given.parameters, **parameters}, preset or given.preset)
+        within = span or given.span
+        # a figure of a quick swing needs more points than a table of it
+        finer = figure is not None and model.flat.every is None
+        times = evenly(model, known, within, FINER * (DEFAULT_SAMPLES - 1)) if finer else None
         try:
             result = simulate(
                 model,
-                parameters=own | parameters,
-                start=series_start | starts,
-                span=span or series_span,
+                parameters={**given.parameters, **parameters},
+                start={**given.start, **starts},
+                span=within,
+                times=times,
                 method=method,
                 rtol=rtol,
                 atol=atol,
-                preset=preset or series_preset,
-                inputs=inputs,
+                preset=preset or given.preset,
+                inputs=given.inputs,
                 progress=telling(f"simulating {diagram}", show),
             )
         except Interrupted as error:
             raise _kept(error, output or f"{Path(diagram).stem}.interrupted.npz") from error
     for warning in result.warnings:
         note(f"warning: {warning}")
+    from tracewire.show import summary
+
+    for remark in summary.runaway_remarks(result):
+        note(f"warning: {remark}")
+    drawn, result = result, _thinned(result) if finer else result
     if output is not None:
         with writing(output):
             result.save(output)
@@ -144,9 +150,8 @@ def run(
         with working(f"drawing {figure}"), writing(figure):
             from tracewire.show import plot_run
 
-            plot_run(result, figure)
+            plot_run(drawn, figure, given.measured)
     written = [path for path in (output, figure) if path is not None]
-    from tracewire.show import summary
 
     if as_json:
         print_json(summary.run_data(result, samples) | {"written": written})
@@ -172,17 +177,8 @@ def _kept(error: Interrupted, path: str) -> Interrupted:
     return type(error)([Problem(what, hint=hint)], error.run)
 
 
-def _series(model: Model, name: str) -> _Series:
-    """What a run takes from a measured series; nothing where no series is named."""
-    if not name:
-        return {}, {}, "", None, {}
-    if name not in model.diagram.measured:
-        raise OptionError([unknown("measured series", name, model.diagram.measured)])
-    from tracewire.residual import load_measured
-
-    # of a series with several windows the first
-    measured = next(found for found in load_measured(model) if found.series == name)
-    start = {state: value for state, value in measured.start.items() if value is not None}
-    # a series with start values begins at its first sample, one without at the diagram's start
-    span = (float(measured.t[0]), float(measured.t[-1])) if measured.start else None
-    return dict(measured.inputs), start, measured.preset, span, dict(measured.parameters)
+def _thinned(result: Run) -> Run:
+    """The run with the samples that it has without a figure: every tenth, and the last one."""
+    kept = [*range(0, len(result.t) - 1, FINER), len(result.t) - 1]
+    signals = {name: values[kept] for name, values in result.signals.items()}
+    return replace(result, t=result.t[kept], signals=signals)

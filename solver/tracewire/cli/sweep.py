@@ -9,6 +9,7 @@ import typer
 from tracewire.cli.one_run import Since, Span
 from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries
 from tracewire.cli.output import telling, working
+from tracewire.cli.series import SeriesName, read_series
 from tracewire.cli.setting import (
     FigureFile,
     OutputFile,
@@ -50,6 +51,7 @@ def sweep(
     preset: Preset = "",
     values: Values = None,
     start: Start = None,
+    series: SeriesName = "",
     rtol: Rtol = 1e-6,
     workers: Workers = None,
     partial: PartialFile = None,
@@ -70,6 +72,7 @@ def sweep(
     """
     setting = read_setting(diagram, library, preset, values, start, figure=figure, output=output)
     grid = values_of(setting.model, over)
+    given = read_series(setting.model, series)
     with working("sweeping") as show:
         from tracewire.analyse import sweep as sweep_of
 
@@ -81,10 +84,11 @@ def sweep(
             workers=workers,
             progress=telling("sweeping", show),
             partial=partial,
-            parameters=setting.parameters,
-            start=setting.start,
-            preset=setting.preset,
-            span=span,
+            parameters={**given.parameters, **setting.parameters},
+            start={**given.start, **setting.start},
+            preset=setting.preset or given.preset,
+            span=span or given.span,
+            inputs=given.inputs or None,
             rtol=rtol,
         )
     import numpy as np

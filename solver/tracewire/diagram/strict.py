@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -238,9 +238,7 @@ class _Composer:
             keys[key.text], values[key.text] = key, value
         return keys, values
 
-    def refuse_comma(
-        self, key: Scalar, keys: Mapping[str, Scalar], values: Mapping[str, Node]
-    ) -> None:
+    def refuse_comma(self, key: Scalar, keys: dict[str, Scalar], values: dict[str, Node]) -> None:
         """Raise where an entry without a value is the rest of a formula, cut at its comma."""
         name = next(reversed(keys), "")
         before = values.get(name)

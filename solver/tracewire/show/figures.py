@@ -14,6 +14,7 @@ from tracewire.show.style import (
     MARK,
     QUIET,
     STICK,
+    dots,
     fit_time,
     panels,
     save,
@@ -26,6 +27,8 @@ from tracewire.solve import Event, Run
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from tracewire.residual import Measured
+
 MOST_LINES = 4
 MOST_PANELS = 16
 MOST_ROWS = 8
@@ -35,8 +38,8 @@ SCALE_APART = 20.0
 Interval = tuple[float, float]
 
 
-def plot_run(run: Run, path: str | Path) -> Path:
-    """Draw a run to a .png, .svg or .pdf file.
+def plot_run(run: Run, path: str | Path, measured: Measured | None = None) -> Path:
+    """Draw a run to a .png, .svg or .pdf file, with the samples of a measured series as dots.
 
     Recorded signals over t in s, one panel for each, or for several of one unit and like range.
     Under them one row for each block that had events: a bar while it sticks, a tick at each reset,
@@ -57,7 +60,7 @@ def plot_run(run: Run, path: str | Path) -> Path:
         figure, axes = panels(heights, title)
         sticks = stick_intervals(run)
         for panel, names in zip(axes, shown, strict=False):
-            _draw_signals(panel, run, names)
+            _draw_signals(panel, run, names, measured)
             for interval in _union([i for intervals in sticks.values() for i in intervals]):
                 panel.axvspan(*interval, color=STICK, alpha=0.35, linewidth=0, zorder=0)
         if rows:
@@ -89,16 +92,20 @@ def group_signals(run: Run) -> list[list[str]]:
     return groups
 
 
-def _draw_signals(panel: Axes, run: Run, names: Sequence[str]) -> None:
+def _draw_signals(panel: Axes, run: Run, names: Sequence[str], measured: Measured | None) -> None:
+    dotted = [name for name in names if measured is not None and name in measured.values]
+    for number, name in enumerate(dotted):
+        assert measured is not None
+        label = "_" if number else "measured"
+        look = dots(len(measured.t)) | {"zorder": 1}
+        panel.plot(measured.t, measured.values[name], label=label, **look)
     for name, color in zip(names, LINES, strict=False):
         panel.plot(run.t, run[name], color=color, label=name)
     unit = run.units.get(names[0], "")
-    if len(names) == 1:
-        panel.set_ylabel(with_unit(names[0], unit))
-    else:
-        panel.set_ylabel(f"[{unit}]")
+    panel.set_ylabel(with_unit(names[0], unit) if len(names) == 1 else f"[{unit}]")
+    if len(names) > 1 or dotted:
         # above the panel, where it covers no line
-        panel.legend(loc="lower right", bbox_to_anchor=(1, 0.98), ncols=len(names), borderpad=0)
+        panel.legend(loc="lower right", bbox_to_anchor=(1, 0.98), ncols=5, borderpad=0)
 
 
 def _event_rows(run: Run) -> list[str]:

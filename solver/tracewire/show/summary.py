@@ -7,12 +7,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from tracewire.compile import Model
 from tracewire.diagram import Diagram
 
 if TYPE_CHECKING:
     from tracewire.residual import Measured
     from tracewire.solve import Run
+
+
+RUNAWAY = 1e9
+"""What grows this many times within a run has most likely a force with the wrong sign."""
 
 
 @dataclass(frozen=True)
@@ -102,6 +108,22 @@ def overview(model: Model) -> dict[str, object]:
         "presets": list(flat.presets),
         "measured": list(model.diagram.measured),
     }
+
+
+def runaway_remarks(run: Run) -> list[str]:
+    """The recorded signals that grow without end: from the first tenth to the last by `RUNAWAY`."""
+    tenth = max(len(run.t) // 10, 1)
+    found = []
+    for name, values in run.signals.items():
+        size = np.abs(values)
+        early, late = float(size[:tenth].max()), float(size[-tenth:].max())
+        if late > RUNAWAY * early > 0:
+            found.append(
+                f"'{name}' grows from {early:.3g} to {late:.3g} and does not stop. "
+                "Is a sign wrong? "
+                "The force of a spring or a damper block pulls back by itself: add it with a plus."
+            )
+    return found
 
 
 def contents(model: Model) -> dict[str, object]:

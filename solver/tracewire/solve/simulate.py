@@ -306,8 +306,9 @@ def tables_of(
             default = flat.inputs[name]
             if default is None:
                 hint = (
-                    "Give it as `inputs=`, run a measured series that has it (`--series`), "
-                    f"or write a default: inputs: {{{name}: {{default: 0}}}}."
+                    "Name a measured series that has it (`--series` of `run` and `sweep`), "
+                    f"write a default, inputs: {{{name}: {{default: 0}}}}, "
+                    "or in Python give it as `inputs=`."
                 )
                 problems.append(Problem(f"the input '{name}' has no source", hint=hint))
             else:

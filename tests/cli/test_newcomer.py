@@ -1,0 +1,145 @@
+"""What a new user tries on the command line works, or says what to do."""
+
+from __future__ import annotations
+
+import re
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+CART = """\
+title: A cart that is pushed
+span: [0, 2]
+inputs: {F: {unit: N}}
+parameters: {c: 0.5}
+blocks:
+  x: {type: integrator, of: v, unit: m}
+  v: {type: integrator, of: a}
+  a: {type: expression, formula: F - c*v}
+measured:
+  push: {file: push.csv, time: t, signals: {x: x}, inputs: {F: F}}
+  pull: {file: pull.csv, time: t, signals: {x: x}, inputs: {F: F}}
+"""
+
+
+@pytest.fixture
+def cart(tmp_path: Path) -> Path:
+    t = np.linspace(0, 2, 21)
+    for name, sign in (("push", 1), ("pull", -1)):
+        rows = "".join(f"{s},{sign * s * s / 2},{sign}\n" for s in t)
+        (tmp_path / f"{name}.csv").write_text(f"t,x,F\n{rows}", encoding="utf-8")
+    file = tmp_path / "cart.yaml"
+    file.write_text(CART, encoding="utf-8")
+    return file
+
+
+@pytest.mark.parametrize("arguments", [["-h"], ["run", "-h"], ["analyse", "steady", "-h"]])
+def test_h_is_help(call: Any, arguments: list[str]) -> None:
+    told = call(*arguments)
+    assert told.code == 0
+    assert told.out == call(*arguments[:-1], "--help").out
+
+
+def test_several_files_and_folders_are_checked(call: Any, cart: Path, swing: Path) -> None:
+    told = call("check", cart, swing)
+    assert told.code == 0
+    assert "A cart that is pushed" in told.out
+    assert "Pendulum with a dry bearing" in told.out
+    (cart.parent / "notes.yaml").write_text("no: diagram\n", encoding="utf-8")
+    inside = call("check", cart.parent, "--json").data
+    titles = {part["title"] for part in inside["diagrams"]}
+    assert titles == {"A cart that is pushed", "Pendulum with a dry bearing"}
+
+
+def test_what_is_wrong_in_one_of_several_files_is_told(call: Any, cart: Path, swing: Path) -> None:
+    swing.write_text("blocks: {x: {type: nothing}}\n", encoding="utf-8")
+    cart.write_text(CART.replace("of: v", "of: w"), encoding="utf-8")
+    told = call("check", cart, swing)
+    assert told.code == 2
+    assert re.search(r"cart\.yaml:6:.*\n.*swing\.yaml:1:", told.err)
+    assert "no problems" not in told.out
+
+
+def test_a_folder_without_diagrams_is_told(call: Any, tmp_path: Path) -> None:
+    assert "there is no diagram in" in call("check", tmp_path).err
+
+
+def test_a_diagram_with_an_input_is_swept_as_a_series(
+    call: Any, cart: Path, tmp_path: Path
+) -> None:
+    grid = ["--over", "c=0:1:3", "--keep", "end(x)"]
+    refused = call("sweep", cart, *grid)
+    assert refused.code == 2
+    assert "Name a measured series that has it (`--series` of `run` and `sweep`)" in refused.err
+    ends = {}
+    for series in ("push", "pull"):
+        told = call("sweep", cart, *grid, "--series", series, "--json")
+        assert told.code == 0
+        ends[series] = told.data["values"]["end(x)"]
+    assert ends["push"][0] == pytest.approx(2)  # F t^2/2 without friction
+    assert ends["push"] == pytest.approx([-x for x in ends["pull"]])
+    partial = tmp_path / "sweep.npz"
+    assert call("sweep", cart, *grid, "--series", "push", "--partial", partial).code == 0
+    other = call("sweep", cart, *grid, "--series", "pull", "--partial", partial)
+    assert "this is the partial file of another sweep" in other.err
+
+
+def test_measured_samples_are_drawn_over_a_run_as_its_series(
+    call: Any, cart: Path, tmp_path: Path
+) -> None:
+    told = call("run", cart, "--series", "push", "--figure", tmp_path / "a.svg")
+    assert told.code == 0
+    assert "<!-- measured -->" in (tmp_path / "a.svg").read_text(encoding="utf-8")
+
+
+QUICK = """\
+span: [0, 60]
+blocks:
+  x: {type: integrator, of: v, start: 1}
+  v: {type: integrator, of: a}
+  a: {type: gain, of: x, k: -400}
+"""
+
+
+def test_figures_are_drawn_finer_than_files(
+    call: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """190 swings: with five samples for each the line is a polygon."""
+    drawn = []
+    show = import_module("tracewire.show")
+    for name in ("plot_run", "plot_portrait"):
+        monkeypatch.setattr(show, name, lambda run, *_, **__: drawn.append(run), raising=False)
+    file = tmp_path / "quick.yaml"
+    file.write_text(QUICK, encoding="utf-8")
+    figure, output = tmp_path / "a.svg", tmp_path / "a.npz"
+    assert call("run", file, "--output", output).code == 0
+    plain = dict(np.load(output))
+    assert call("run", file, "--figure", figure, "--output", output).code == 0
+    both = dict(np.load(output))
+    assert len(plain["t"]) == len(both["t"]) == 1001
+    assert both["t"] == pytest.approx(plain["t"])
+    assert both["x"] == pytest.approx(plain["x"], abs=1e-9)
+    assert call("analyse", "portrait", file, "x", "v", "--figure", figure).code == 0
+    assert [len(run.t) for run in drawn] == [10_001, 10_001]
+    assert call("run", file, "--figure", figure, "--every", "0.1").code == 0
+    assert len(drawn[-1].t) == 601
+
+
+@pytest.mark.parametrize(("sign", "said"), [("-", True), ("", False)])
+def test_a_force_with_the_wrong_sign_is_told(
+    call: Any, tmp_path: Path, sign: str, said: bool
+) -> None:
+    file = tmp_path / "a.yaml"
+    file.write_text(
+        "span: [0, 60]\nrecord: [x]\nblocks:\n"
+        "  x: {type: integrator, of: v, start: 1}\n  v: {type: integrator, of: a}\n"
+        f"  pull: {{type: viscous, rate: v, c: 1}}\n  a: {{type: sum, of: [{sign}pull, x_]}}\n"
+        "  x_: {type: gain, of: x, k: -1}\n",
+        encoding="utf-8",
+    )
+    told = call("run", file)
+    assert told.code == 0
+    assert ("'x' grows from" in told.err and "Is a sign wrong?" in told.err) is said
