@@ -143,3 +143,27 @@ def test_a_force_with_the_wrong_sign_is_told(
     told = call("run", file)
     assert told.code == 0
     assert ("'x' grows from" in told.err and "Is a sign wrong?" in told.err) is said
+
+
+def test_a_series_may_only_drive_a_run(call: Any, cart: Path) -> None:
+    """It has inputs and no signals: `run` and `check` take it, a fit passes it over."""
+    text = cart.read_text(encoding="utf-8").replace("time: t, signals: {x: x}, ", "time: t, ", 1)
+    cart.write_text(text, encoding="utf-8")
+    told = call("run", cart, "--series", "push", "--json")
+    assert told.code == 0
+    told = call("check", cart, "--json")
+    assert {part["name"]: part["signals"] for part in told.data["measured"]} == {
+        "push": [],
+        "pull": ["x"],
+    }
+    lines = [line for line in text.splitlines() if not line.startswith("  pull")]
+    cart.write_text("\n".join(lines).replace("c: 0.5", "c: {value: 0.5, fit: [0, 1]}"), "utf-8")
+    told = call("fit", cart)
+    assert told.code == 2
+    assert "the diagram names no measured series" in told.err
+
+
+def test_a_series_of_nothing_is_told(call: Any, cart: Path) -> None:
+    text = cart.read_text(encoding="utf-8").replace("signals: {x: x}, inputs: {F: F}", "use: gate")
+    cart.write_text(text, encoding="utf-8")
+    assert "series 'push' needs 'signals'" in call("check", cart).err

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from residual.models import OSCILLATOR, T, made, oscillation, series
 from tracewire.errors import OptionError
-from tracewire.fit import Fit, fit, optimset
+from tracewire.fit import Fit, checkpoint, fit, optimset
 from tracewire.fit.methods import METHODS
 
 MODEL = made(OSCILLATOR)
@@ -86,3 +86,26 @@ def test_other_unknowns_are_told(tmp_path: Path) -> None:
 def test_a_file_that_cannot_be_written_is_told(tmp_path: Path) -> None:
     told = refused(save=tmp_path / "no" / "fit.json")
     assert "fit.json' cannot be written: No such file or directory" in told
+
+
+def test_a_disk_that_becomes_full_does_not_cost_the_fit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All writings but the first fail: the fit is done and says so, and the first file is there."""
+    usual, count = checkpoint.write_file, 0
+
+    def full(path: Any, content: Any) -> Any:
+        nonlocal count
+        count += 1
+        if count > 1:
+            raise OSError(28, "No space left on device")
+        return usual(path, content)
+
+    monkeypatch.setattr(checkpoint, "EVERY", 0.0)
+    monkeypatch.setattr(checkpoint, "write_file", full)
+    found = fitted("least_squares", save=tmp_path / "fit.json")
+    assert count > 1
+    assert found.values == fitted("least_squares").values
+    (said,) = [text for text in found.remarks if "was not saved to its end" in text]
+    assert "No space left on device" in said
+    assert fitted("least_squares", resume=tmp_path / "fit.json").values

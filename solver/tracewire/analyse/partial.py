@@ -7,6 +7,7 @@ import json
 import time
 import zipfile
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -51,7 +52,8 @@ class Partial:
             self.errors[number] = error
         self.done[number] = True
         if time.monotonic() - self._written > EVERY:
-            self.write()
+            with suppress(OptionError):  # a full disk may have space again; the last writing tells
+                self.write()
 
     def write(self) -> None:
         """Write the file, if there is to be one. Raises OptionError."""

@@ -70,7 +70,7 @@ def _contents(file: str, library: Sequence[str] | None, quiet: bool) -> dict[str
         with working("reading the measured series"):
             from tracewire.residual import load_measured
 
-            measured = [series_contents(series) for series in load_measured(model)]
+            measured = [series_contents(series) for series in load_measured(model, driving=True)]
     found = contents(model)
     if not quiet:
         print_text(contents_text(found, measured))

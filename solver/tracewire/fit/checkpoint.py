@@ -31,9 +31,15 @@ class Store:
     def __init__(self, path: str | Path, method: str) -> None:
         self.path, self.method = Path(path), method
         self.written = -math.inf
+        self.works = False
+        self.remarks: tuple[str, ...] = ()
 
     def __call__(self, search: Search, last: bool) -> None:
-        """Write, unless it was done just before. Raises OptionError where that is not possible."""
+        """Write, unless it was done just before.
+
+        Raises OptionError where the first writing fails. Where a later one does, as on a disk that
+        became full, the search goes on, and `remarks` says so.
+        """
         now = time.perf_counter()
         if not last and now - self.written < EVERY:
             return
@@ -50,8 +56,15 @@ class Store:
             "history": [asdict(step) for step in search.history],
             "state": dict(search.state),
         }
-        with writing(self.path):
-            write_file(self.path, json.dumps(content, indent=1))
+        try:
+            with writing(self.path):
+                write_file(self.path, json.dumps(content, indent=1))
+        except OptionError as error:
+            if not self.works:
+                raise
+            self.remarks = (f"the fit was not saved to its end: {error.problems[0]}",)
+            return
+        self.works, self.remarks = True, ()
 
 
 def resume_from(path: str | Path, method: str, criterion: Criterion) -> Mapping[str, Any]:

@@ -126,13 +126,14 @@ def fit(
     if options is None:
         limits = {} if method == "fminsearch" else {"MaxIter": AMPLE, "MaxFunEvals": AMPLE}
         options = optimset(Display="off", **limits)
+    kept = None if save is None else Store(save, method)
     search = Search(
         criterion,
         options,
         seed=seed,
         units=units,
         progress=progress,
-        kept=None if save is None else Store(save, method),
+        kept=kept,
         comparisons=comparisons,
     )
     if resume is not None:
@@ -175,7 +176,12 @@ def fit(
         parameters=dict(parameters or {}),
         rtol=rtol,
         interrupted=ended.interrupted,
-        remarks=(*short, *starts_elsewhere(model, series, shown), *caveats(series, failures, last)),
+        remarks=(
+            *(kept.remarks if kept else ()),
+            *short,
+            *starts_elsewhere(model, series, shown),
+            *caveats(series, failures, last),
+        ),
     )
 
 

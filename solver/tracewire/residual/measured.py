@@ -91,12 +91,14 @@ def measured_signals(diagram: Diagram) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names))
 
 
-def load_measured(model: Model, uses: Iterable[str] = ()) -> tuple[Measured, ...]:
+def load_measured(
+    model: Model, uses: Iterable[str] = (), *, driving: bool = False
+) -> tuple[Measured, ...]:
     """The measured series of a model's diagram, read from their files; all, or those of some uses.
 
     A series with several windows gives one for each, as `swing (train)`. What `clean` says is done
     in its order; then the windows cut the record, in the file's own time, and that time is put to
-    the diagram's.
+    the diagram's. A series of inputs alone has nothing to compare: it is read if `driving`.
 
     Raises DataError: no series, a file or column that is missing or cannot be used, a column of
     another quantity than its signal, a step that cannot be done, a window without samples.
@@ -105,7 +107,7 @@ def load_measured(model: Model, uses: Iterable[str] = ()) -> tuple[Measured, ...
     chosen = [
         series
         for series in model.diagram.measured.values()
-        if not wanted or wanted & {series.use, *series.windows}
+        if (not wanted or wanted & {series.use, *series.windows}) and (series.channels or driving)
     ]
     if not chosen:
         what = "the diagram names no measured series" + (f" for {sorted(wanted)}" if wanted else "")
