@@ -189,9 +189,16 @@ def test_a_pipe_does_not_hold_it_up(store: CodeStore, said: list[str]) -> None:
     assert len(said) == 1
 
 
-def test_the_folder_is_the_user_s_own() -> None:
-    shared = Path(os.path.realpath("/tmp"))
-    assert shared not in Path(os.path.realpath(jit.STORE.folder)).parents
+def test_no_folder_takes_the_place_of_the_user_s_own(
+    tmp_path: Path, said: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "home").touch()
+    monkeypatch.setattr(numba.config, "CACHE_DIR", "")
+    monkeypatch.setattr(jit.platformdirs, "user_cache_path", lambda name: tmp_path / "home" / name)
+    folder = jit._folder()
+    assert folder.parent == tmp_path / "home" / "tracewire"
+    assert not CodeStore(folder, said.append).works
+    assert "compiled code cannot be kept" in said[0]
 
 
 def test_without_a_folder_it_compiles_and_says_why(tmp_path: Path, said: list[str]) -> None:
