@@ -78,8 +78,20 @@ def test_an_interrupt_at_any_moment_is_told(verb: str, tmp_path: Path) -> None:
                 assert len(file.files) > 0
 
 
-def test_an_interrupt_while_the_program_loads_is_told(tmp_path: Path) -> None:
-    child = begun(tmp_path, VERBS["blocks"])
-    child.send_signal(signal.SIGINT)
-    _, err = child.communicate(timeout=300)
-    assert (child.returncode, err) == (130, "interrupted; nothing was finished.\n")
+LOADING = """
+import sys
+class Interrupt:
+    def find_spec(self, name, *_):
+        if name == "tracewire.cli.app":
+            raise KeyboardInterrupt
+sys.meta_path.insert(0, Interrupt())
+from tracewire.cli import main
+sys.exit(main())
+"""
+
+
+def test_an_interrupt_while_the_program_loads_is_told() -> None:
+    environment = {**os.environ, "PYTHONPATH": ":".join(p for p in sys.path if p)}
+    command = [sys.executable, "-c", LOADING, "blocks"]
+    done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=300)
+    assert (done.returncode, done.stderr) == (130, "interrupted; nothing was finished.\n")
