@@ -54,6 +54,7 @@ def main(arguments: Sequence[str]) -> int:
         return 0
     if options.score:
         rows = [json.loads(line) for line in options.score.read_text().splitlines()]
+        failed = 0
     elif not cases:
         parser.error(f"no case matches '{options.only}'; --list shows them")
     else:
@@ -61,7 +62,7 @@ def main(arguments: Sequence[str]) -> int:
             folder = options.folder or Path(temporary)
             if options.generate and not options.folder:
                 parser.error("--generate needs a --folder")
-            rows = _all(cases, folder, options)
+            rows, failed = _all(cases, folder, options)
     if rows:
         with_floor = [row for row in rows if "units" in row]
         results = (
@@ -71,14 +72,16 @@ def main(arguments: Sequence[str]) -> int:
         for result in results:
             show(result, screen)
         show_promises(results, screen)
-    return 0
+    return 1 if failed else 0
 
 
-def _all(cases: Sequence[Case], folder: Path, options: Any) -> list[dict[str, Any]]:
+def _all(cases: Sequence[Case], folder: Path, options: Any) -> tuple[list[dict[str, Any]], int]:
+    """The rows of the cases, and how many could not be made."""
     from benchmarks.tracing.refit import sanity
     from benchmarks.tracing.work import generate, work
 
     rows: list[dict[str, Any]] = []
+    failed = 0
     for name in ONE_CORE:  # the processes inherit it
         os.environ[name] = "1"
     spawn = multiprocessing.get_context("spawn")
@@ -87,7 +90,7 @@ def _all(cases: Sequence[Case], folder: Path, options: Any) -> list[dict[str, An
             left = {pool.submit(sanity, case): case for case in cases if not case.bad}
             for ready in as_completed(left):
                 print(f"{left[ready].name:48} {ready.result()}", flush=True)
-            return []
+            return [], 0
         task: Any = generate if options.generate else work
         waiting = {
             pool.submit(task, case, folder, other): case
@@ -95,6 +98,10 @@ def _all(cases: Sequence[Case], folder: Path, options: Any) -> list[dict[str, An
         }
         for number, done in enumerate(as_completed(waiting), 1):
             case = waiting[done]
+            if (error := done.exception()) is not None:  # the others go on
+                print(f"{number}/{len(waiting)} {case.name}: {error}", file=sys.stderr, flush=True)
+                failed += 1
+                continue
             if options.generate:
                 print(f"{number}/{len(waiting)} {done.result()}", flush=True)
                 continue
@@ -111,4 +118,4 @@ def _all(cases: Sequence[Case], folder: Path, options: Any) -> list[dict[str, An
             if options.json:
                 with options.json.open("a") as file:
                     file.write(json.dumps(row, default=str) + "\n")
-    return rows
+    return rows, failed

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from benchmarks.tracing.cases import Spec
+from benchmarks.tracing.floor.choosing import Unfit
 from benchmarks.tracing.floor.drives import multisine, sine, steps
 from benchmarks.tracing.floor.fields import MASSES, MEMORIES, Now, force_of
 from benchmarks.tracing.floor.rig import Rig
@@ -85,7 +86,10 @@ def sized(rig: Rig, spec: Spec, declared: Trajectory, rng: np.random.Generator) 
     if spec.name in MEMORIES:
         now = now._replace(z=_remembered(spec.name, now, shapes, declared.half))
     law = force_of(spec.name, now, {k: np.asarray(x) for k, x in shapes.items()})
-    size = spec.share * force_of_rig(rig, declared, n) / float(np.sqrt(np.mean(law**2)))
+    usual = float(np.sqrt(np.mean(law**2)))
+    if not usual > 0:
+        raise Unfit(f"this motion never meets {spec.name}")
+    size = spec.share * force_of_rig(rig, declared, n) / usual
     return Hidden(spec.name, 0, factor * size, shapes, width)
 
 

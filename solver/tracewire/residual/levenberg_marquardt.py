@@ -16,6 +16,7 @@ from tracewire.residual.settling import (
     consistent,
     ends_before,
     far_off,
+    from_data,
     from_ends,
     settled,
     settled_some,
@@ -48,15 +49,29 @@ def descended(
     that do worse than the step promised are settled for themselves before it is judged. It ends
     early where the sum of squares would not fall to `target` at its pace in the steps that are
     left: it has lost against what reached that. A step that gains less than the part `creeps` of
-    the sum is the last one; before the first the starts are fitted alone in `settling` steps.
+    the sum is the last one; before the first the starts are fitted alone in `settling` steps, and
+    after the last those that went astray, from the data; if that does better it goes on.
     """
+    windows = settled(windows, settling)
+    if not len(windows.criterion.unknowns):
+        return windows, True
+    while True:
+        windows, converged, steps = _descended(windows, steps, target, creeps)
+        found = from_data(windows, settling)
+        if found is windows or not steps:
+            return found, converged
+        windows = found
+
+
+def _descended(
+    windows: Windows, steps: int, target: float, creeps: float
+) -> tuple[Windows, bool, int]:
+    """The steps from where the starts are settled; whether they converged, and how many are
+    left."""
     unknowns = windows.criterion.unknowns
     low, high = np.array([u.low for u in unknowns]), np.array([u.high for u in unknowns])
     scales = np.array([u.scale for u in unknowns])
     damping, failures = FIRST_DAMPING, 0
-    windows = settled(windows, settling)
-    if not len(unknowns):
-        return windows, True
     gained, too_slow = np.inf, 0
     for left_over in reversed(range(steps)):
         views = windows.views
@@ -71,7 +86,7 @@ def descended(
             promised = float(residual @ residual - left @ left)
             start_gain = windows.rss - float(residual @ residual)
             if promised + start_gain < max(SETTLED, 0.2 * creeps * windows.rss):
-                return windows, True
+                return windows, True, left_over
             there = _moved(windows, views, step * scales)
             failures += there is None
             if there is not None and there.rss < windows.rss:
@@ -81,19 +96,19 @@ def descended(
                 damping = damping if refused else max(damping / 10, LEAST_DAMPING)
                 break
             if there is not None and there.rss < (1 + creeps) * windows.rss:
-                return windows, True  # as flat as the solver is exact
+                return windows, True, left_over  # as flat as the solver is exact
             damping = max(damping * (100 if refused else 10), FIRST_DAMPING)
             refused = True
             if damping > MOST_DAMPING or failures > MOST_FAILURES:
-                return windows, False
+                return windows, False, left_over
         if gained < max(SETTLED, creeps * windows.rss):
-            return windows, True
+            return windows, True, left_over
         pace = min(gained / before, 1 - 1e-9)
         coming = HOPE * gained * min(left_over, pace / (1 - pace))
         too_slow = too_slow + 1 if windows.rss - coming > target else 0
         if too_slow >= PATIENCE:
-            return windows, False
-    return windows, False
+            return windows, False, 0
+    return windows, False, 0
 
 
 def bounded_step(

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.residual.starts import start_from_data
 from tracewire.residual.windows import Windows, begun_at, better
 
 Vector = NDArray[np.float64]
@@ -15,6 +16,9 @@ SETTLING = 8
 FAR_OFF = 100.0
 """A start this many scales of its state away from the one that the data show."""
 CONVERGED = 1e-4
+STRAYED = 10.0
+"""The mean squared residual of a window, in units of the median of all, from which on its start may
+be astray."""
 SETTLED = 0.05
 """What is still to gain, in units of the noise's variance, where a fit has converged."""
 
@@ -27,7 +31,31 @@ def settled(windows: Windows, steps: int = SETTLING) -> Windows:
     """
     windows = settled_some(windows, range(len(windows.near)), steps)
     off = [n for n in range(len(windows.near)) if not _is_good(windows, n)]
-    return consistent(from_ends(windows, off, steps))
+    return from_data(consistent(from_ends(windows, off, steps)), steps)
+
+
+def from_data(windows: Windows, steps: int) -> Windows:
+    """Windows that are much worse than most from the starts that the data tell, where that does
+    better: a body that friction holds at its start does not feel where it should begin. The same
+    windows where nothing is better.
+    """
+    sizes = np.array([near.residual.size for near in windows.near])
+    means = windows.squares / np.maximum(sizes, 1)
+    strayed = np.flatnonzero(means > STRAYED * float(np.median(means))).tolist()
+    criterion, told = windows.criterion, {}
+    for n in strayed:
+        segment = criterion.segments[n]
+        row = int(np.searchsorted(segment.measured.t, segment.begin))
+        if windows.starts[n] and not _is_good(windows, n):
+            known = start_from_data(criterion.model, segment.measured, row)
+            start = {name: known.get(name, value) for name, value in windows.starts[n].items()}
+            if not far_off(windows, n, start):
+                told[n] = start
+    if not told:
+        return windows
+    found = better(windows, settled_some(begun_at(windows, told), list(told), steps), list(told))
+    changed = any(found.starts[n] is not windows.starts[n] for n in told)
+    return consistent(found) if changed else windows
 
 
 def from_ends(windows: Windows, rows: Sequence[int], steps: int) -> Windows:

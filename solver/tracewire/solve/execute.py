@@ -30,7 +30,7 @@ from tracewire.solve.core.codes import (
     WARNINGS,
     T,
 )
-from tracewire.solve.core.flow import EVALUATIONS
+from tracewire.solve.core.flow import EVALUATIONS, FUNCTIONS
 from tracewire.solve.core.integrate import advance
 from tracewire.solve.core.jit import ready
 from tracewire.solve.failures import failure, too_long, too_many_events
@@ -135,6 +135,8 @@ class Execution:
             if status not in (LOG_FULL, PAUSED):
                 raise failure(self.model, self.arrays, status)
             self.check_limits()
+            # what was compiled meanwhile is called without a detour
+            self.arrays.flow.address[:] = self.model.addresses(FUNCTIONS)
             budget = next_budget(budget, int(ints[STEPS]) - done, self.seconds - before)
             status = None
             if self.tell is not None and self.seconds - last >= PAUSE:

@@ -147,6 +147,9 @@ class TraceOptions:
     tried there."""
     parents: tuple[int, int] = (2, 1)
     """Single effects, and pairs, beside which a further effect is looked for."""
+    parent_behind: float = 10.0
+    """The squared error, in units of that of the best model, from which on a model is not
+    extended."""
     finalists: int = 2
     """Models at each number of fitted numbers whose predictions are compared."""
     first_steps: int = 5

@@ -223,6 +223,15 @@ class ScreenOptions:
     seed: int = 20
     """Of the random numbers of the draws."""
 
+    torque_nodes: int = 120
+    """Nodes, at most, of the torques that let a window of a model far from the data follow them."""
+    torque_bend: float = 0.3
+    """The size of second differences of such a torque from node to node, of the root mean square
+    of the sum at its place."""
+    torque_level: float = 1e-3
+    """How much less than its bends the size of such a torque is held."""
+    followed: float = 0.1
+    """The part of the squared residual, at most, that such torques may leave."""
     trust: float = 0.7
     """The part of an expected coefficient at which a refit begins, as in the study."""
     wrong_sign: float = 0.1
@@ -317,6 +326,9 @@ class SearchOptions:
     residual does not depend linearly any more on what is missing."""
     near: float = 3.0
     """The same from which on a single effect comes near the noise, and pairs are for later."""
+    nearer: float = 3.0
+    """How many times less a step has to leave, while it is far from the noise, for another one to
+    follow it."""
     kept: int = 3
     """Proposals of a kind that are refitted on all windows."""
     kept_far: int = 5

@@ -10,13 +10,15 @@ of time as the independent observations.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.errors import FitError
 from tracewire.solve import release
 from tracewire.trace.choose.choice import log_scores
 from tracewire.trace.choose.heldout import Finalist, errors_by_block, errors_in_sample
@@ -24,6 +26,7 @@ from tracewire.trace.choose.horizons import Horizons
 from tracewire.trace.choose.promising import promising, unmasked
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal, Screen
+from tracewire.trace.screen.shortlist import merged
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.trial import Added, Trial
 
@@ -60,19 +63,20 @@ class Pool:
         for number in numbers:
             singles, pairs = self.worth(options.singles) // len(numbers), options.pairs
             proposals = self.promising(number, self.first[number], singles, pairs)
-            self.extend(declared, number, proposals)
-        for effects in self._tried_before():
-            if frozenset(map(str, effects)) not in {model.names for model in self.models.values()}:
-                fitted = self.fitted(declared, effects)
-                if fitted is not None:
-                    self._kept(fitted)
+            along = self._along_data(declared, number, singles, pairs)
+            self.extend(declared, number, merged(along, proposals))
+        for trial in self._tried_before():
+            climbed = self._climbed(trial)
+            if climbed is not None:
+                self._keep_better(climbed)
         for smaller in self.without_terms(declared):
             self._extend_without(smaller)
         for size, parents in zip(range(1, options.effects), options.parents, strict=False):
             if not self._improves(size):
                 break
             for parent in self.best(size, parents):
-                self._extend_beside(parent)
+                if self._is_near(parent):
+                    self._extend_beside(parent)
             if self._improves(size + 1):
                 self._exchange(size + 1)
         for size in range(1, options.effects + 1):
@@ -84,22 +88,53 @@ class Pool:
         samples = sum(len(of) for of in self.horizons.each[-1].blocks)
         return max(count, self.options.cheap_samples // samples)
 
-    def _tried_before(self) -> list[tuple[Added, ...]]:
-        """The effects that came through the refits on the shortest windows, the best first: there
+    def _tried_before(self) -> list[Trial]:
+        """The models that came through the refits on the shortest windows, the best first: there
         a screen promises what a refit keeps, where whole runs are far from what was measured."""
         first = [step for step in self.search.steps if not step.before.effects]
         tried = [one.trial for step in first[:1] for one in step.tried]
         best = self.search.best
-        found = [trial.effects for trial in tried[: self.options.tried_before]]
-        found += [best.effects] if best else []
-        return [effects for effects in found if 0 < len(effects) <= self.options.effects]
+        found = [*tried[: self.options.tried_before], *([best] if best else [])]
+        return [trial for trial in found if 0 < len(trial.effects) <= self.options.effects]
+
+    def _climbed(self, trial: Trial) -> Finalist | None:
+        """A model that was fitted to shorter windows, refitted at each horizon, the shorter one
+        first, from the values that it has: a fit to long windows from afar ends in the next
+        minimum. None where it does not run."""
+        trials: list[Trial] = []
+        for horizon in self.horizons.each:
+            try:
+                trial = self.search.bench.again(trial, horizon.segments, horizon.length)
+            except FitError:
+                return None
+            self.spent += trial.windows.criterion.steps
+            trials.append(trial)
+        return Finalist(tuple(trials))
+
+    def _keep_better(self, finalist: Finalist) -> None:
+        """Keep a model, at each horizon the better fit of it and of what is known."""
+        known = self.models.get(finalist.key, finalist)
+        pairs = zip(known.trials, finalist.trials, strict=True)
+        best = tuple(min(pair, key=lambda trial: trial.rss) for pair in pairs)
+        self.models[finalist.key] = replace(finalist, trials=best)
 
     def _extend_beside(self, parent: Finalist) -> None:
         """A model with the most promising effects and pairs: what shows in short windows is looked
         for in those of the declared model."""
         options, pairs = self.options, max(self.options.beside - 2, 0)
         for number, screen in enumerate([*self.first[:-1], self.screened(parent, -1)]):
-            self.extend(parent, number, self.promising(number, screen, options.beside, pairs))
+            proposals = self.promising(number, screen, options.beside, pairs)
+            along = self._along_data(parent, number, options.beside, pairs)
+            self.extend(parent, number, merged(along, proposals))
+
+    def _along_data(
+        self, parent: Finalist, number: int, singles: int, pairs: int
+    ) -> list[Proposal]:
+        """What a model far from the data lacks at a horizon, judged along the data."""
+        screen = self.search.along_data(self.at(parent, number))
+        if screen is None:
+            return []
+        return [screen.begun(p) for p in self.promising(number, screen, singles, pairs)]
 
     def _extend_without(self, smaller: Finalist) -> None:
         """A model without a declared term with what imitates that term: it shows only where the
@@ -160,11 +195,13 @@ class Pool:
             self.search.tell(f"refitting with {' and '.join(sorted(names))}")
             target = options.hopeful * min((trial.rss for trial in begun), default=np.inf)
             first = [row.added for row in proposal.rows]
-            trial = self._refitted(now, first, (), options.first_steps, target)
+            trial = self._refitted(now, first, (), options.first_steps, target, proposal.values)
             if trial is not None:
                 begun.append(trial)
         for trial in self._hopeful(begun, number):
-            fitted = self.fitted(parent, trial.effects[len(parent.names) :])
+            new = trial.effects[len(parent.names) :]
+            order = sorted(range(len(parent.trials)), key=lambda n: n != number)
+            fitted = self.fitted(parent, new, order=order, values=trial.values)
             if fitted is not None:
                 self._kept(fitted)
 
@@ -189,20 +226,31 @@ class Pool:
         return [begun[n] for n in best.tolist() if scores[n] <= scores[best[0]] + near]
 
     def fitted(
-        self, parent: Finalist, added: Sequence[Added], dropped: Sequence[str] = ()
+        self,
+        parent: Finalist,
+        added: Sequence[Added],
+        dropped: Sequence[str] = (),
+        order: Sequence[int] | None = None,
+        values: Mapping[str, float] | None = None,
     ) -> Finalist | None:
-        """A model with more effects, or without declared terms, refitted at each horizon, the
-        longer one first, which determines more; None where it does not run."""
-        trials: list[Trial] = []
+        """A model with more effects, or without declared terms, refitted at each horizon; None
+        where it does not run.
+
+        order: of the horizons; the longer one first where none is given, as it determines more.
+        values: where the first of these fits begins, if not where the parent stands.
+        """
+        trials: dict[int, Trial] = {}
         begun = list(added)
-        for now in reversed(parent.trials):
+        for number in range(len(parent.trials))[::-1] if order is None else order:
+            now = parent.trials[number]
             target = self._target(now.length, len(parent.names) + len(begun))
-            trial = self._refitted(now, begun, dropped, self.options.steps, target)
+            trial = self._refitted(now, begun, dropped, self.options.steps, target, values)
             if trial is None:
                 return None
-            trials.append(trial)
+            trials[number] = trial
             begun = list(trial.effects[len(parent.names) :])
-        return Finalist(tuple(reversed(trials)), (*parent.dropped, *dropped))
+            values = trial.values if values else None
+        return Finalist(tuple(trials[n] for n in sorted(trials)), (*parent.dropped, *dropped))
 
     def settled(self, model: Finalist) -> Finalist:
         """The model refitted until it converges."""
@@ -246,6 +294,12 @@ class Pool:
             for key in sorted(mine, key=lambda key: ranks[key])[:count]
         ]
 
+    def _is_near(self, model: Finalist) -> bool:
+        """Whether a model leaves so little more than the best one that it is worth extending."""
+        scores = self.scores()
+        behind = 2 * (scores[model.key] - min(scores.values()))
+        return behind < math.log(self.options.parent_behind)
+
     def without(self, model: Finalist, name: str) -> Finalist | None:
         """The model without one of its effects."""
         key = model.names - {name}, model.dropped
@@ -283,9 +337,10 @@ class Pool:
         dropped: Sequence[str],
         steps: int,
         target: float,
+        values: Mapping[str, float] | None = None,
     ) -> Trial | None:
         fixed = {**now.windows.criterion.parameters, **dict.fromkeys(dropped, 0.0)}
-        trial = self._fit(now, (*now.effects, *added), fixed, steps, target)
+        trial = self._fit(now, (*now.effects, *added), fixed, steps, target, values)
         if added and (trial is None or trial.rss > now.rss):  # the promised size led it astray
             part = self.options.restart
             small = [one.having(one.candidate.parameter, part * one.coefficient) for one in added]
@@ -300,6 +355,7 @@ class Pool:
         fixed: dict[str, float],
         steps: int,
         target: float,
+        values: Mapping[str, float] | None = None,
     ) -> Trial | None:
         windows = now.windows
         level = float(np.median(windows.squares / [r.size for r in windows.residuals]))
@@ -313,6 +369,7 @@ class Pool:
             good=max(2 * level, windows.good),
             creeps=self.options.coarse,
             settling=1,
+            values=values,
         )
         self.spent += (fitted or now).windows.criterion.steps
         if fitted is not None:

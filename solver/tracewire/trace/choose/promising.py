@@ -71,8 +71,7 @@ def _by_blocks(screen: Screen, blocks: Ints, proposals: Sequence[Proposal]) -> l
     _, place, sizes = np.unique(blocks[counted], return_inverse=True, return_counts=True)
 
     def left(indices: Sequence[int]) -> Vector:
-        _, values = columns.score(indices)
-        residual = columns.residual + columns.matrix[:, list(indices)] @ values
+        residual = columns.left(indices)
         return np.bincount(place, weights=residual[counted] ** 2) / sizes
 
     if not proposals:

@@ -10,7 +10,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.residual import Unknown, eliminated
+from tracewire.residual import Unknown, Windows, eliminated
 from tracewire.trace.candidates.candidates import Candidate, is_default
 from tracewire.trace.candidates.histories import Variant, histories
 from tracewire.trace.candidates.levels import Trajectory
@@ -18,7 +18,7 @@ from tracewire.trace.candidates.waves import as_measured, scanned
 from tracewire.trace.screen.answers import without, without_starts
 from tracewire.trace.screen.tangent import Tangent
 from tracewire.trace.thresholds import ScreenOptions
-from tracewire.trace.trials.statistics import HIDDEN, Columns, orthonormal
+from tracewire.trace.trials.statistics import HIDDEN, BoundedColumns, Columns, orthonormal
 from tracewire.trace.trials.trial import Added, Trial
 
 Vector = NDArray[np.float64]
@@ -75,6 +75,8 @@ class Proposal:
 
     rows: tuple[Row, ...]
     gain: float
+    values: Mapping[str, float] = field(default_factory=dict)
+    """Where the refit begins with other values of what is declared."""
 
     @property
     def count(self) -> int:
@@ -90,6 +92,17 @@ class Screen:
     columns: Columns
     rows: tuple[Row, ...]
     kept: Ints
+    unknowns: Mapping[str, float] = field(default_factory=dict)
+    """The values of what is fitted beside the candidates."""
+
+    def begun(self, proposal: Proposal) -> Proposal:
+        """A proposal with the values that what is declared has beside it."""
+        columns = [number for row in proposal.rows for number in row.columns]
+        moved = self.columns.moved(columns)
+        if moved is None:
+            return proposal
+        values = np.array(list(self.unknowns.values())) + moved
+        return replace(proposal, values=dict(zip(self.unknowns, values.tolist(), strict=True)))
 
     def best(self) -> list[Row]:
         """The best possible variant of each candidate, the most promising first."""
@@ -169,11 +182,11 @@ def screened(
     every = -(-tangent.size // most)
     kept = _kept([near.residual.size for near in windows.near], every)
     unknowns, residual = (part[kept] * every**0.5 for part in eliminated(windows))
-    # a value that sits on its bound cannot give way to an effect
-    unknowns = unknowns[
-        :, [not _on_bound(u, windows.values[u.name]) for u in windows.criterion.unknowns]
-    ]
-    basis = orthonormal(unknowns)
+    if not tangent.along_data:  # a value that sits on its bound cannot give way to an effect
+        unknowns = unknowns[
+            :, [not _on_bound(u, windows.values[u.name]) for u in windows.criterion.unknowns]
+        ]
+    basis, rest = orthonormal(unknowns), residual
     residual = residual - basis @ (basis.T @ residual)
 
     def answer(place: str, torques: Sequence[Matrix]) -> Matrix:
@@ -189,15 +202,42 @@ def screened(
     reduced[_squares(reduced) < SEEN * whole] = 0.0
     reduced, variants = _by_series(tangent, reduced, variants, kept)
     seen = _squares(reduced)
+    both = reduced.T.copy() if tangent.along_data else None
     left = without(reduced, basis)
     masked = 1 - _squares(left) / np.maximum(seen, 1e-300)
     masked = np.where(seen > 0, np.clip(masked, 0.0, 1.0), 1.0)
     part = min(trial.part * every, 1.0)
     freedom = max(trial.freedom // every, 1)
     columns = Columns(residual, left.T, masked, part, freedom, options.screen)
+    if both is not None:
+        columns = _bounded(columns, both, unknowns, rest, windows)
     names = tuple(run.series for run in tangent.trajectories)
     rows = [_row(columns, group, names) for group in _groups(variants)]
-    return Screen(columns, tuple(rows), kept)
+    return Screen(columns, tuple(rows), kept, windows.values)
+
+
+def _bounded(
+    columns: Columns, both: Matrix, unknowns: Matrix, rest: Vector, windows: Windows
+) -> Columns:
+    """Columns beside unknowns that move as far as their bounds; promises are kept whole, as both
+    move together."""
+    values = np.array([windows.values[u.name] for u in windows.criterion.unknowns])
+    low = np.array([u.low for u in windows.criterion.unknowns]) - values
+    high = np.array([u.high for u in windows.criterion.unknowns]) - values
+    least = NEAR * np.array([u.scale for u in windows.criterion.unknowns])
+    found = BoundedColumns(
+        columns.residual,
+        columns.matrix,
+        columns.masked,
+        columns.part,
+        columns.freedom,
+        replace(columns.options, trust=1.0),
+        both,
+        unknowns,
+        rest,
+        (np.minimum(low, -least), np.maximum(high, least)),
+    )
+    return replace(found, residual=found.left(()))
 
 
 def _kept(sizes: Sequence[int], every: int) -> Ints:

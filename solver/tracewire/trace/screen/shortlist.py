@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from tracewire.trace.screen.screening import Proposal, Row, Screen
 
 COPY = 1 - 1e-6
@@ -35,3 +37,11 @@ def shortlist(screen: Screen, room: int, count: int) -> list[Proposal]:
     simple = [best_of[count] for count in sorted(best_of)[: options.simple_pairs]]
     others = [pair for pair in pairs if pair not in simple]
     return found + simple + others[: options.pairs - len(simple)]
+
+
+def merged(first: Sequence[Proposal], others: Sequence[Proposal]) -> list[Proposal]:
+    """Proposals, and those of others that have other effects."""
+    found: dict[frozenset[str], Proposal] = {}
+    for proposal in (*first, *others):
+        found.setdefault(frozenset(str(row.candidate) for row in proposal.rows), proposal)
+    return list(found.values())

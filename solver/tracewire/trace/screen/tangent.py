@@ -78,6 +78,8 @@ class Tangent:
     ) -> None:
         self.windows = windows
         self.options = options
+        self.along_data = False
+        """Whether the windows follow the data, by torques that are to be explained."""
         self.places = [place for place in places if place.kind != "sensor"]
         criterion = windows.criterion
         self.outputs = criterion.segments[0].signals

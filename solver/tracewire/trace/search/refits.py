@@ -38,6 +38,13 @@ class Begun:
         """Whether two effects are proposed together."""
         return len(self.proposal.rows) > 1
 
+    @property
+    def by_windows(self) -> float:
+        """The mean over windows of the logarithm of what they leave, ln(E/n + 1): a few windows
+        that were led astray, as by a friction that sticks, do not rule it."""
+        left = self.trial.windows.squares / [r.size for r in self.trial.windows.residuals]
+        return float(np.mean(np.log(left + 1.0)))
+
 
 @dataclass(frozen=True)
 class Refits:
@@ -83,7 +90,8 @@ class Refits:
             names = " and ".join(str(row.candidate) for row in proposal.rows)
             self.tell(f"refitting with {names} ({number} of {len(proposals)})")
             added = [row.added for row in proposal.rows]
-            trial = self.extended(now, added, few, self.options.first_steps)
+            first = self.options.first_steps
+            trial = self.extended(now, added, few, first, values=proposal.values)
             if trial is not None and trial.rss > least:  # the promised size led it astray
                 small = [
                     one.having(one.candidate.parameter, self.options.small * one.coefficient)
@@ -102,10 +110,15 @@ class Refits:
         """
         most = self.options.kept if now.s2 < self.options.far else self.options.kept_far
         kept: list[Begun] = []
-        for one in sorted(begun, key=lambda one: one.trial.rss):
-            near = not kept or one.trial.rss < self.options.within * kept[0].trial.rss
-            if near and sum(other.is_pair == one.is_pair for other in kept) < most:
-                kept.append(one)
+        by_sum = sorted(begun, key=lambda one: one.trial.rss)
+        by_windows = sorted(begun, key=lambda one: one.by_windows)
+        for one, other in zip(by_sum, by_windows, strict=True):
+            near = one.trial.rss < self.options.within * by_sum[0].trial.rss
+            near_too = other.by_windows - by_windows[0].by_windows < np.log(self.options.within)
+            for chosen, is_near in ((one, near), (other, near_too)):
+                alike = sum(known.is_pair == chosen.is_pair for known in kept)
+                if is_near and chosen not in kept and alike < most:
+                    kept.append(chosen)
         tried = []
         for number, one in enumerate(kept, start=1):
             names = named(one.trial, now)
@@ -137,10 +150,12 @@ class Refits:
         segments: Sequence[Segment],
         steps: int | None = None,
         target: float = np.inf,
+        values: Mapping[str, float] | None = None,
     ) -> Trial | None:
-        """The model with more effects, refitted from where it stood; None if it does not run."""
+        """The model with more effects, refitted from where it stood, or from other values of what
+        is declared; None if it does not run."""
         effects = (*now.effects, *added)
-        return self.fitted(now, effects, segments, steps=steps, target=target)
+        return self.fitted(now, effects, segments, steps=steps, target=target, values=values)
 
     def fitted(
         self,
@@ -154,6 +169,7 @@ class Refits:
         good: float | None = None,
         creeps: float = CREEPS,
         settling: int = SETTLING,
+        values: Mapping[str, float] | None = None,
     ) -> Trial | None:
         """The model with other effects, refitted from where it stood; None if it does not run."""
         known = now.windows.criterion.parameters
@@ -163,7 +179,7 @@ class Refits:
                 effects,
                 segments,
                 now.length,
-                now.values,
+                {**now.values, **(values or {})},
                 fixed=known if fixed is None else fixed,
                 steps=steps,
                 budget=self.options.slower * steps * len(segments) * now.cost,

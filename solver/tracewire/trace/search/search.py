@@ -13,8 +13,9 @@ from tracewire.trace.candidates.places import Place
 from tracewire.trace.check.repeated import comes_back, visible
 from tracewire.trace.check.strays import without_strays
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.screen.screening import Screen, screened
-from tracewire.trace.screen.shortlist import shortlist
+from tracewire.trace.screen.assimilated import assimilated, seen_along
+from tracewire.trace.screen.screening import Proposal, Screen, screened
+from tracewire.trace.screen.shortlist import merged, shortlist
 from tracewire.trace.screen.tangent import Tangent
 from tracewire.trace.search.refits import Refits, Tried, named
 from tracewire.trace.trials.judge import Verdict, gate
@@ -160,11 +161,10 @@ class Search:
             found = self.step(self.best)
             if found is None:
                 break
-            self.best = self.climbed(self.completed(found))
-            if (
-                self.best.s2 > self.options.search.far
-            ):  # the noise is out of reach: models are compared otherwise
-                break
+            before, self.best = self.best.s2, self.climbed(self.completed(found))
+            options = self.options.search
+            if self.best.s2 > max(options.far, before / options.nearer):
+                break  # the noise is out of reach: models are compared otherwise
 
     def step(self, now: Trial) -> Trial | None:
         """One more effect, or a pair: screened, refitted, ranked, and passed by the gate."""
@@ -175,10 +175,8 @@ class Search:
             seen = self.bench.some(now, _spread(now, most, together))
         screen = self.screen(seen)
         chance = screen.chance()
-        options = self.options.screen
-        count = options.singles if now.s2 < self.options.search.far else options.many
-        proposals = shortlist(screen, self.options.effects - len(now.effects), count)
-        if chance > options.chance or not proposals:
+        proposals = self._proposals(seen, screen) if chance <= self.options.screen.chance else []
+        if not proposals:
             words = f"nothing stands out (p = {chance:.2g})"
             self.steps.append(Step(now, screen, chance, (), None, words))
             return None
@@ -186,7 +184,7 @@ class Search:
         pairs = [p for p in proposals if len(p.rows) > 1]
         tried = self.refits.tried(now, singles, pairs)
         winner = None
-        queue = _worth_judging(tried, now, options.least_gain)
+        queue = _worth_judging(tried, now, self.options.screen.least_gain)
         judged: set[int] = set()
         while queue and winner is None:
             number = queue.pop(0)
@@ -201,6 +199,18 @@ class Search:
         after = None if winner is None else winner.trial
         self.steps.append(Step(now, screen, chance, tuple(tried), after, words))
         return after
+
+    def _proposals(self, now: Trial, screen: Screen) -> list[Proposal]:
+        """What is worth a refit beside a model: far from the noise first what is judged along the
+        data."""
+        options = self.options.screen
+        room = self.options.effects - len(now.effects)
+        along = self.along_data(now)
+        if along is None:
+            near = now.s2 < self.options.search.far
+            return shortlist(screen, room, options.singles if near else options.many)
+        first = [along.begun(p) for p in shortlist(along, room, options.singles)]
+        return merged(first, shortlist(screen, room, options.singles))
 
     def screen(self, trial: Trial) -> Screen:
         """The screen beside a model. Lengths of waves are scanned where there are few samples; else
@@ -219,6 +229,19 @@ class Search:
                 shapes = {name: candidate.shapes[name] for name in candidate.waves}
                 self.waves[str(candidate)] = shapes
         return screen
+
+    def along_data(self, trial: Trial) -> Screen | None:
+        """The screen beside a model far from the data, along these; None where none can be."""
+        options = self.options
+        if trial.s2 < options.search.far or not self.free:
+            return None
+        tangent = Tangent(trial.diagram, trial.windows, self.places, self.bench.rtol, options)
+        along = assimilated(self.bench, trial, tangent)
+        if along is None:
+            return None
+        taken = [effect.candidate for effect in trial.effects]
+        candidates = seen_along(self.candidates(along, taken))
+        return screened(along, trial, candidates, True, options.most_residuals)
 
     def candidates(self, tangent: Tangent, taken: Sequence[Candidate]) -> list[Candidate]:
         """The effects at places that may be tried beside those that are there."""

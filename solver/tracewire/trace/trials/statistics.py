@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import lsq_linear
 from scipy.special import chdtrc
 
 from tracewire.trace.thresholds import ScreenOptions
@@ -95,6 +96,15 @@ class Columns:
         left = self.residual + chosen @ values
         return max(self.rss - float(left @ left), 0.0), values
 
+    def left(self, indices: Sequence[int]) -> Vector:
+        """The residual (M,) that columns taken together leave."""
+        _, values = self.score(indices)
+        return np.asarray(self.residual + self.matrix[:, list(indices)] @ values)
+
+    def moved(self, indices: Sequence[int]) -> Vector | None:
+        """How the unknowns move beside columns, in SI; None where only the effects are known."""
+        return None
+
     def gain(self, fall: float, count: int) -> float:
         """What a fall of the sum of squares is worth: half the fall of BIC, for `count` numbers."""
         rows = len(self.residual)
@@ -150,3 +160,73 @@ class Columns:
         scale = float(np.std(largest, ddof=1)) * 6**0.5 / np.pi
         place = float(np.mean(largest)) - np.euler_gamma * scale
         return float(-np.expm1(-np.exp(-(fall - place) / max(scale, 1e-300))))
+
+
+@dataclass(frozen=True, eq=False)
+class BoundedColumns(Columns):
+    """Candidate columns far from the noise: unknowns move far beside them, up to their bounds.
+
+    residual (M,) is what the unknowns leave where they move alone, `whole` (M, K) the columns with
+    what unknowns imitate, `unknowns` (M, n) their own columns in SI, `rest` (M,) the residual where
+    they do not move, and `room` the lowest and the highest shift (n,) of each.
+    """
+
+    whole: Matrix = field(default_factory=lambda: np.zeros((0, 0)))
+    unknowns: Matrix = field(default_factory=lambda: np.zeros((0, 0)))
+    rest: Vector = field(default_factory=lambda: np.zeros(0))
+    room: tuple[Vector, Vector] = field(default_factory=lambda: (np.zeros(0), np.zeros(0)))
+
+    @cached_property
+    def _sizes(self) -> Vector:
+        """The sizes of the unknowns' columns and of the candidates' (n + K,), 1 for those of
+        zeros."""
+        both = (np.linalg.norm(part, axis=0) for part in (self.unknowns, self.whole))
+        sizes = np.concatenate(list(both))
+        return np.asarray(np.where(sizes > 0, sizes, 1.0))
+
+    @cached_property
+    def _products(self) -> tuple[Matrix, Vector]:
+        """The products of all columns of size 1 with each other and with the residual."""
+        columns = np.hstack((self.unknowns, self.whole)) / self._sizes
+        return columns.T @ columns, columns.T @ self.rest
+
+    @cached_property
+    def _falls(self) -> float:
+        """The fall of the sum of squares where the unknowns move alone."""
+        return self._solved(())[0]
+
+    def score(self, indices: Sequence[int]) -> tuple[float, Vector]:
+        """As of columns without bounds; the unknowns move with them."""
+        if min(1 - self.masked[list(indices)]) < HIDDEN:
+            return 0.0, np.zeros(len(indices))
+        fall, values = self._solved(indices)
+        return max(fall - self._falls, 0.0), values[self.unknowns.shape[1] :]
+
+    def left(self, indices: Sequence[int]) -> Vector:
+        """As of columns without bounds; the unknowns move with them."""
+        _, values = self._solved(indices)
+        count = self.unknowns.shape[1]
+        with_unknowns = self.rest + self.unknowns @ values[:count]
+        return np.asarray(with_unknowns + self.whole[:, list(indices)] @ values[count:])
+
+    def moved(self, indices: Sequence[int]) -> Vector:
+        """How the unknowns move beside columns, in SI (n,)."""
+        return self._solved(indices)[1][: self.unknowns.shape[1]]
+
+    def _solved(self, indices: Sequence[int]) -> tuple[float, Vector]:
+        """The fall from `rest`, and the values of the unknowns' columns and of some others."""
+        count = self.unknowns.shape[1]
+        chosen = [*range(count), *(count + n for n in indices)]
+        sizes = self._sizes[chosen]
+        products, along = self._products
+        matrix, right = products[np.ix_(chosen, chosen)], along[chosen]
+        free = np.full(len(indices), np.inf)
+        low = np.concatenate((self.room[0] * sizes[:count], -free))
+        high = np.concatenate((self.room[1] * sizes[:count], free))
+        size, turned = np.linalg.eigh(matrix)
+        kept = size > 1e-12 * max(float(size[-1]), 1e-300)
+        root = (np.sqrt(size[kept]) * turned[:, kept]).T
+        target = (turned[:, kept] / np.sqrt(size[kept])).T @ -right
+        found = lsq_linear(root, target, (low, high), method="bvls").x
+        fall = -float(found @ (matrix @ found) + 2 * right @ found)
+        return fall, np.asarray(found / sizes)
