@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.errors import FitError
+from tracewire.residual import Segment
 from tracewire.solve import release
 from tracewire.trace.choose.choice import log_scores
 from tracewire.trace.choose.heldout import Finalist, errors_by_block, errors_in_sample
@@ -27,6 +28,7 @@ from tracewire.trace.choose.promising import promising, unmasked
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal, Screen
 from tracewire.trace.screen.shortlist import merged
+from tracewire.trace.search.refits import begun_there
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.trial import Added, Trial
 
@@ -200,8 +202,7 @@ class Pool:
                 begun.append(trial)
         for trial in self._hopeful(begun, number):
             new = trial.effects[len(parent.names) :]
-            order = sorted(range(len(parent.trials)), key=lambda n: n != number)
-            fitted = self.fitted(parent, new, order=order, values=trial.values)
+            fitted = self.fitted(parent, new, begun=(number, trial))
             if fitted is not None:
                 self._kept(fitted)
 
@@ -230,26 +231,30 @@ class Pool:
         parent: Finalist,
         added: Sequence[Added],
         dropped: Sequence[str] = (),
-        order: Sequence[int] | None = None,
-        values: Mapping[str, float] | None = None,
+        begun: tuple[int, Trial] | None = None,
     ) -> Finalist | None:
         """A model with more effects, or without declared terms, refitted at each horizon; None
         where it does not run.
 
-        order: of the horizons; the longer one first where none is given, as it determines more.
-        values: where the first of these fits begins, if not where the parent stands.
+        begun: a horizon, and a fit on some of its windows, from which the refits begin. Else they
+        begin where the parent stands, and with the longer horizon, which determines more.
         """
         trials: dict[int, Trial] = {}
-        begun = list(added)
-        for number in range(len(parent.trials))[::-1] if order is None else order:
+        effects, values = list(added), begun[1].values if begun else None
+        numbers = range(len(parent.trials))[::-1]
+        for number in sorted(numbers, key=lambda n: begun is not None and n != begun[0]):
             now = parent.trials[number]
-            target = self._target(now.length, len(parent.names) + len(begun))
-            trial = self._refitted(now, begun, dropped, self.options.steps, target, values)
+            segments = now.windows.segments
+            if begun and number == begun[0]:
+                segments = begun_there(segments, begun[1], self.sparse[number])
+            target = self._target(now.length, len(parent.names) + len(effects))
+            steps = self.options.steps
+            trial = self._refitted(now, effects, dropped, steps, target, values, segments)
             if trial is None:
                 return None
             trials[number] = trial
-            begun = list(trial.effects[len(parent.names) :])
-            values = trial.values if values else None
+            effects = list(trial.effects[len(parent.names) :])
+            values = trial.values if begun else None
         return Finalist(tuple(trials[n] for n in sorted(trials)), (*parent.dropped, *dropped))
 
     def settled(self, model: Finalist) -> Finalist:
@@ -338,9 +343,11 @@ class Pool:
         steps: int,
         target: float,
         values: Mapping[str, float] | None = None,
+        segments: Sequence[Segment] | None = None,
     ) -> Trial | None:
         fixed = {**now.windows.criterion.parameters, **dict.fromkeys(dropped, 0.0)}
-        trial = self._fit(now, (*now.effects, *added), fixed, steps, target, values)
+        effects = (*now.effects, *added)
+        trial = self._fit(now, effects, fixed, steps, target, values, segments)
         if added and (trial is None or trial.rss > now.rss):  # the promised size led it astray
             part = self.options.restart
             small = [one.having(one.candidate.parameter, part * one.coefficient) for one in added]
@@ -356,13 +363,14 @@ class Pool:
         steps: int,
         target: float,
         values: Mapping[str, float] | None = None,
+        segments: Sequence[Segment] | None = None,
     ) -> Trial | None:
         windows = now.windows
         level = float(np.median(windows.squares / [r.size for r in windows.residuals]))
         fitted = self.search.refits.fitted(
             now,
             effects,
-            windows.segments,
+            windows.segments if segments is None else segments,
             fixed=fixed,
             steps=steps,
             target=target,

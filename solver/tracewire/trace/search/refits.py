@@ -119,11 +119,14 @@ class Refits:
                 alike = sum(known.is_pair == chosen.is_pair for known in kept)
                 if is_near and chosen not in kept and alike < most:
                     kept.append(chosen)
-        tried = []
+        segments, tried = now.windows.segments, []
+        rows = few_of(segments, self.options.few)
         for number, one in enumerate(kept, start=1):
             names = named(one.trial, now)
             self.tell(f"refitting {names} on all windows ({number} of {len(kept)})")
-            trial = self.extended(one.trial, (), now.windows.segments, target=target)
+            trial = self.extended(
+                one.trial, (), begun_there(segments, one.trial, rows), target=target
+            )
             if trial is not None:
                 tried.append(Tried(trial, one.proposal, 0.0, 0.0))
                 target = min(target, target_of(trial, self.bench.options))
@@ -203,6 +206,14 @@ def few_of(segments: Sequence[Segment], count: int) -> list[int]:
     names = [segment.measured.name for segment in segments]
     most = -(-count // len(set(names)))
     return [n for n, name in enumerate(names) if names[:n].count(name) < most]
+
+
+def begun_there(segments: Sequence[Segment], trial: Trial, rows: Sequence[int]) -> list[Segment]:
+    """Windows of which some, by number, begin where a trial on those begins."""
+    found = list(segments)
+    for n, segment in zip(rows, trial.windows.segments, strict=True):
+        found[n] = segment
+    return found
 
 
 def target_of(trial: Trial, options: TraceOptions) -> float:

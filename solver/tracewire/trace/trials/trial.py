@@ -143,10 +143,11 @@ class Trial:
         """The standard error of each fitted value, with the residual's autocorrelation counted."""
         windows = self.windows
         reduced, _ = eliminated(windows)
-        scales = np.array([u.scale for u in windows.criterion.unknowns])
-        information = (reduced * scales).T @ (reduced * scales)
-        covariance = np.linalg.pinv(information, rcond=1e-12) * max(self.s2, 1e-300) / self.part
-        spread = np.sqrt(np.maximum(np.diag(covariance), 0.0)) * scales
+        sizes = np.linalg.norm(reduced, axis=0)
+        scaled = reduced / np.where(sizes > 0, sizes, 1.0)
+        covariance = np.linalg.pinv(scaled.T @ scaled, rcond=1e-12) * max(self.s2, 1e-300)
+        spread = np.sqrt(np.maximum(np.diag(covariance) / self.part, 0.0))
+        spread = np.divide(spread, sizes, out=np.full(len(sizes), np.inf), where=sizes > 0)
         return dict(zip(windows.values, spread.tolist(), strict=True))
 
     def quality(self, part: float) -> float:
