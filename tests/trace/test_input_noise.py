@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from tracewire.compile import compile
 from tracewire.diagram import read
+from tracewire.show.trace_summary import paragraph_of
+from tracewire.show.trace_text import answer_lines
 from tracewire.solve import simulate
 from tracewire.trace import trace
 
@@ -76,6 +78,8 @@ def test_what_the_noise_of_an_input_would_explain_is_told_with_its_size(tmp_path
     file.write_text(whole, encoding="utf-8")
     found = trace(compile(read(file)))
     assert found.verdict == "unexplained"
-    (told,) = [words for words in found.words if "noise of the input 'F'" in words]
-    size = float(told.split(" of ")[2].split()[0])
-    assert size == pytest.approx(0.02, rel=0.15) and " N would explain" in told
+    (noisy,) = found.noisy_inputs
+    assert noisy.name == "F" and noisy.left < 1.5
+    assert noisy.sigma == pytest.approx(0.02, rel=0.15)
+    told = f"noise of the input 'F' of {noisy.sigma:.2g} N would explain the residual"
+    assert told in answer_lines(found)[0] and told in paragraph_of(found)

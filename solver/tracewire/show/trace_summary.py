@@ -149,6 +149,8 @@ def _open(found: Found) -> str:
         if found.interrupted
         else "no effect of the library explains it"
     )
+    if noisy_words(found):
+        return f"No effect of the library explains the residual; {noisy_words(found)}."
     if missing is None:
         where = "Something is missing, and its place is not known"
         return f"{where}; {none}{_wrong_by(found)}."
@@ -158,6 +160,17 @@ def _open(found: Found) -> str:
         f"Something is missing {where} that depends on {variables} ({share} of the excess error); "
         f"{none}{_wrong_by(found)}."
     )
+
+
+def noisy_words(found: Found) -> str:
+    """The noise of inputs that would explain the residual; '' where none would."""
+    if found.effects or not found.noisy_inputs:
+        return ""
+    parts = [
+        f"noise of the input '{one.name}' of {one.sigma:.2g} {found.units.get(one.name, '')}"
+        for one in found.noisy_inputs
+    ]
+    return f"{' or '.join(parts)} would explain the residual"
 
 
 def _wrong_by(found: Found) -> str:
@@ -247,7 +260,10 @@ def _remains(found: Found) -> list[str]:
 
 def _unexplained(found: Found) -> list[str]:
     parts = []
-    if found.missing is None:
+    if noisy_words(found):
+        names = both_of([f"'{one.name}'" for one in found.noisy_inputs])
+        parts.append(f"If {names} is measured with such noise, say its `sigma:` and trace again.")
+    elif found.missing is None:
         parts.append(f"The residual depends on nothing that was tried: {RANDOM}.")
     elif found.missing.share < LITTLE:
         parts.append(f"The rest depends on no variable that was tried: {RANDOM}.")

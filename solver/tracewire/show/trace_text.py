@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from tracewire.show.trace_experiments import experiment_words
-from tracewire.show.trace_summary import ties_words
+from tracewire.show.trace_summary import noisy_words, ties_words
 from tracewire.show.trace_words import (
     chance_words,
     common_powers,
@@ -84,6 +84,8 @@ def _verdict(found: Found) -> str:
     if found.verdict == "effect":
         return f"{' and '.join(map(str, found.effects))} {_is(len(found.effects))} missing"
     none = "no effect was accepted by then" if found.interrupted else NONE
+    if noisy_words(found):
+        return f"{noisy_words(found)}, and {none}"
     if found.missing is None:
         return f"something is missing, and {none}"
     others = sorted(

@@ -19,7 +19,7 @@ Verdict = Literal["null", "effect", "unexplained"]
 IN_JSON = (
     "verdict interrupted effects dropped depends_on missing rmse_before rmse_after sigma s2_before "
     "s2_after declared moved errors steps power experiments explained remainder remainder_depends "
-    "held_out options words"
+    "held_out noisy_inputs options words"
 )
 """What a result has in JSON by its own name."""
 
@@ -37,6 +37,16 @@ class Tie:
 
     def __str__(self) -> str:
         return f"{self.name} @ {self.place}"
+
+
+@dataclass(frozen=True)
+class LikelyInput:
+    """An input whose noise alone would explain the residual: the standard deviation of white noise
+    in SI, and the reduced chi-square that it would leave."""
+
+    name: str
+    sigma: float
+    left: float
 
 
 @dataclass(frozen=True)
@@ -312,6 +322,7 @@ class Found:
     remainder: tuple[Remainder, ...] = ()
     remainder_depends: tuple[Dependence, ...] = ()
     held_out: tuple[HeldOut, ...] = ()
+    noisy_inputs: tuple[LikelyInput, ...] = ()
     options: TraceOptions = field(default_factory=TraceOptions)
     users_units: Mapping[str, tuple[str, float]] = field(default_factory=dict)
 

@@ -223,6 +223,9 @@ class ScreenOptions:
     seed: int = 20
     """Of the random numbers of the draws."""
 
+    far_from_data: float = 0.05
+    """The root mean square of a residual, in units of the standard deviation of the signal, from
+    which on a model moves so far from the data that effects are judged along these."""
     torque_nodes: int = 120
     """Nodes, at most, of the torques that let a window of a model far from the data follow them."""
     torque_bend: float = 0.3
@@ -326,7 +329,7 @@ class SearchOptions:
     residual does not depend linearly any more on what is missing."""
     near: float = 3.0
     """The same from which on a single effect comes near the noise, and pairs are for later."""
-    nearer: float = 3.0
+    nearer: float = 8.0
     """How many times less a step has to leave, while it is far from the noise, for another one to
     follow it."""
     kept: int = 3

@@ -114,19 +114,22 @@ class Pool:
         return Finalist(tuple(trials))
 
     def _keep_better(self, finalist: Finalist) -> None:
-        """Keep a model, at each horizon the better fit of it and of what is known."""
+        """Keep a model, or the fit of it that is known where that is better over the horizons."""
         known = self.models.get(finalist.key, finalist)
-        pairs = zip(known.trials, finalist.trials, strict=True)
-        best = tuple(min(pair, key=lambda trial: trial.rss) for pair in pairs)
-        self.models[finalist.key] = replace(finalist, trials=best)
+        self.models[finalist.key] = min(
+            finalist, known, key=lambda one: math.prod(trial.rss for trial in one.trials)
+        )
 
     def _extend_beside(self, parent: Finalist) -> None:
         """A model with the most promising effects and pairs: what shows in short windows is looked
         for in those of the declared model."""
         options, pairs = self.options, max(self.options.beside - 2, 0)
         for number, screen in enumerate([*self.first[:-1], self.screened(parent, -1)]):
-            proposals = self.promising(number, screen, options.beside, pairs)
             along = self._along_data(parent, number, options.beside, pairs)
+            if along and number < len(self.first) - 1:  # that screen is of the declared model
+                self.extend(parent, number, along)
+                continue
+            proposals = self.promising(number, screen, options.beside, pairs)
             self.extend(parent, number, merged(along, proposals))
 
     def _along_data(

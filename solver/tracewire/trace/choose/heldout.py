@@ -49,12 +49,13 @@ class Finalist:
     @property
     def vanished(self) -> tuple[str, ...]:
         """The fitted values that are zero, the bound below which they may not fall: such terms are
-        not there."""
-        return tuple(
-            u.name
-            for u in self.trials[0].windows.criterion.unknowns
-            if u.low == 0.0 and all(t.values[u.name] <= NEAR * u.scale for t in self.trials)
-        )
+        not there. A shape that a fit has left at its default is not among its values."""
+        unknowns = self.trials[0].windows.criterion.unknowns
+
+        def is_zero(name: str, scale: float) -> bool:
+            return all(trial.values.get(name, 0.0) <= NEAR * scale for trial in self.trials)
+
+        return tuple(u.name for u in unknowns if u.low == 0.0 and is_zero(u.name, u.scale))
 
     @property
     def numbers(self) -> int:

@@ -8,13 +8,14 @@ import numpy as np
 
 from tracewire.errors import SimulationError
 from tracewire.residual import Measured, likely_input_noise, response_in_windows
+from tracewire.trace.found import LikelyInput
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.trial import Trial
 
 
-def describe_noisy_inputs(search: Search, trial: Trial) -> list[str]:
-    """In words, the noise of each measured input with no declared `sigma` that would explain the
-    residual of a model on its windows; nothing of an input that cannot."""
+def noisy_inputs(search: Search, trial: Trial) -> tuple[LikelyInput, ...]:
+    """The measured inputs with no declared `sigma` whose noise would explain the residual of a
+    model on its windows, each with the size of that noise."""
     options, windows = search.options, trial.windows
     series: dict[str, list[int]] = {}
     for number, segment in enumerate(windows.criterion.segments):
@@ -27,14 +28,15 @@ def describe_noisy_inputs(search: Search, trial: Trial) -> list[str]:
         chosen = numbers[: options.input_windows]
         for name, noise in _noises(search, trial, measured, chosen).items():
             found.setdefault(name, []).append(noise)
-    units = trial.model.flat.units
-    return [
-        f"noise of the input '{name}' of {np.median([size for size, _ in noises]):.2g} "
-        f"{units.get(name, '')} would explain this residual: say `sigma:` of that input if it is "
-        "as noisy"
+    return tuple(
+        LikelyInput(
+            name,
+            float(np.median([size for size, _ in noises])),
+            max(left for _, left in noises),
+        )
         for name, noises in found.items()
         if len(noises) == len(series) and max(left for _, left in noises) < options.input_left
-    ]
+    )
 
 
 def _noises(

@@ -8,10 +8,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tracewire.errors import FitError
-from tracewire.trace.choose.noisy_inputs import describe_noisy_inputs
+from tracewire.trace.choose.noisy_inputs import noisy_inputs
 from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.choose.remainder import error_left, explained, held_out, remainders
-from tracewire.trace.found import Dependence, Explained, HeldOut, Missing, Remainder, Verdict
+from tracewire.trace.found import (
+    Dependence,
+    Explained,
+    HeldOut,
+    LikelyInput,
+    Missing,
+    Remainder,
+    Verdict,
+)
 from tracewire.trace.missing.dependence import where_what
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.tangent import Tangent
@@ -32,6 +40,7 @@ class Judgement:
     remainder: tuple[Remainder, ...] = ()
     remainder_depends: tuple[Dependence, ...] = ()
     held_out: tuple[HeldOut, ...] = ()
+    noisy_inputs: tuple[LikelyInput, ...] = ()
 
 
 def noise_limit(search: Search, trial: Trial) -> float:
@@ -108,8 +117,9 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
             else ((), None)
         )
     depends = max((d.share for d in dependences), default=0.0)
+    noisy: tuple[LikelyInput, ...] = ()
     if verdict == "unexplained" and depends < options.input_depends:
-        search.words += describe_noisy_inputs(search, prediction.models[0].trials[0])
+        noisy = noisy_inputs(search, prediction.models[0].trials[0])
     return Judgement(
         verdict,
         final,
@@ -119,6 +129,7 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
         remainders(prediction, floors, search.bench.sigma, final.best.model.flat.units),
         maps[0][0],
         held_out(prediction, floors),
+        noisy,
     )
 
 

@@ -72,6 +72,7 @@ def result_of(
         remainder=judgement.remainder,
         remainder_depends=judgement.remainder_depends,
         held_out=judgement.held_out,
+        noisy_inputs=judgement.noisy_inputs,
     )
 
 

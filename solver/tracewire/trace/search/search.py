@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from tracewire.errors import FitError
 from tracewire.residual import Section, Segment
 from tracewire.trace.candidates.candidates import Candidate, find_candidates
@@ -231,9 +233,11 @@ class Search:
         return screen
 
     def along_data(self, trial: Trial) -> Screen | None:
-        """The screen beside a model far from the data, along these; None where none can be."""
+        """The screen beside a model far from the data, along these; None where it is near them, or
+        where none can be."""
         options = self.options
-        if trial.s2 < options.search.far or not self.free:
+        near = trial.s2 < options.search.far or misfit(trial) < options.screen.far_from_data
+        if near or not self.free:
             return None
         tangent = Tangent(trial.diagram, trial.windows, self.places, self.bench.rtol, options)
         along = assimilated(self.bench, trial, tangent)
@@ -274,6 +278,17 @@ class Search:
                 if not verdict.passed:
                     return verdict, number
         return verdict, None
+
+
+def misfit(trial: Trial) -> float:
+    """The root mean square of what a model leaves in its windows, in units of the standard
+    deviation of the signal there, the largest of any signal."""
+    windows = trial.windows
+    series = {s.measured.name: s.measured for s in windows.segments}
+    sigma = np.sqrt(np.mean([windows.criterion.sigma[name] ** 2 for name in series], axis=0))
+    left = np.sqrt(np.mean(np.concatenate(windows.residuals) ** 2, axis=0)) * sigma
+    samples = np.concatenate([segment.samples() for segment in windows.segments])
+    return float(np.max(left / np.maximum(np.std(samples, axis=0), 1e-300)))
 
 
 def _is_simpler(other: Tried, one: Tried) -> bool:

@@ -217,6 +217,8 @@ class BoundedColumns(Columns):
         """The fall from `rest`, and the values of the unknowns' columns and of some others."""
         count = self.unknowns.shape[1]
         chosen = [*range(count), *(count + n for n in indices)]
+        if not chosen:
+            return 0.0, np.zeros(0)
         sizes = self._sizes[chosen]
         products, along = self._products
         matrix, right = products[np.ix_(chosen, chosen)], along[chosen]
