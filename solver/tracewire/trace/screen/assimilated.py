@@ -21,11 +21,13 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import block_diag
 
 from tracewire.diagram import Diagram, Value
-from tracewire.errors import FitError
+from tracewire.errors import FitError, SimulationError
 from tracewire.formula import Number
 from tracewire.residual import opened, settled
+from tracewire.solve import Interrupted
 from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.screen.probe import probed
@@ -69,7 +71,9 @@ def assimilated(bench: Bench, trial: Trial, tangent: Tangent) -> Tangent | None:
         if windows.rss > tangent.options.screen.followed * trial.rss:
             return None
         found = Tangent(diagram, windows, tangent.places, bench.rtol, tangent.options)
-    except FitError:
+    except Interrupted:
+        raise
+    except (FitError, SimulationError):
         return None
     histories = {place.name: [w[:, None] for w in torques[place.name]] for place in places}
     near = []
@@ -121,13 +125,8 @@ def _needed(tangent: Tangent, places: Sequence[Place]) -> Torques:
             usual = float(np.sqrt(np.mean(runs[number].signals[place.name] ** 2)))
             size = options.torque_bend * max(usual, 1e-300)
             level = options.torque_level * np.eye(count)
-            held = np.vstack((np.diff(np.eye(count), 2, axis=0), level)) / size
-            rows.append(held)
-        held = np.zeros((sum(len(row) for row in rows), count * len(places)))
-        first = 0
-        for n, row in enumerate(rows):
-            held[first : first + len(row), n * count : (n + 1) * count] = row
-            first += len(row)
+            rows.append(np.vstack((np.diff(np.eye(count), 2, axis=0), level)) / size)
+        held = block_diag(*rows)
         residual = view.off(near.residual.ravel())
         matrix = np.vstack((np.hstack(answers), held))
         target = np.concatenate((-residual, np.zeros(len(held))))
