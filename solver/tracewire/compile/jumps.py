@@ -24,6 +24,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 from tracewire.compile.differentiate import differentiate
+from tracewire.compile.holding import reads
 from tracewire.compile.memory import Transition
 from tracewire.formula import to_text
 
@@ -67,13 +68,14 @@ MOVES = (
 def only_jumps(lowering: Lowering, guard: int) -> bool:
     """Whether a guard is constant between events, and not only a formula of parameters.
 
-    Its rate along the flow with frozen modes is identically zero.
+    Its rate along the flow with frozen modes is identically zero, and no slide may hold what it
+    reads.
     """
-    out, tape = lowering.out, lowering.tape
+    tape = lowering.tape
     if tape.leaves([guard]) <= {"param", "const"}:
         return False
-    flow = dict(zip(out.states, out.rates, strict=True)) | {lowering.t: tape.constant(1.0)}
-    return tape.value(differentiate(tape, [guard], flow)[0]) == 0.0
+    rate = differentiate(tape, [guard], lowering.flow())[0]
+    return tape.value(rate) == 0.0 and not reads(tape, [guard], lowering.holding())
 
 
 def lower_jumps(lowering: Lowering, event: FlatEvent, guard: int, reset: int) -> None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 from typing import Literal
 
-from tracewire.compile.differentiate import linear_in_t
+from tracewire.compile.differentiate import differentiate, linear_in_t
 from tracewire.compile.events import lower_events
 from tracewire.compile.flat import Flat
+from tracewire.compile.holding import holding, modes_read
 from tracewire.compile.linear import solve_linear
 from tracewire.compile.memory import (
     Reset,
@@ -73,14 +74,31 @@ class Lowered:
 
 
 def lower(flat: Flat) -> Lowered:
-    """The tape of flat equations."""
-    return Lowering(flat).lowered()
+    """The tape of flat equations.
+
+    What reads only modes is compared on the spot, and needs no guard; not so where a slide may hold
+    one of these modes, which is known when all rates are: then it is lowered again.
+    """
+    first = Lowering(flat)
+    found = first.lowered()
+    if not first.on_the_spot:
+        return found
+    held = first.holding() & modes_read(first.tape, first.on_the_spot)
+    if not held:
+        return found
+    return Lowering(flat, {(found.modes[i].signal, found.modes[i].text) for i in held}).lowered()
 
 
 class Lowering:
-    """A tape while it is written; what is lowered next belongs to `signal`."""
+    """A tape while it is written; what is lowered next belongs to `signal`.
 
-    def __init__(self, flat: Flat) -> None:
+    `held` are the modes that a slide may hold, by signal and text, as far as they are known.
+    `on_the_spot` are the entries that were compared as if their modes changed at events alone.
+    """
+
+    def __init__(self, flat: Flat, held: Collection[tuple[str, str]] = ()) -> None:
+        self.held = frozenset(held)
+        self.on_the_spot: list[int] = []
         self.flat = flat
         self.out = Lowered()
         self.tape = self.out.tape
@@ -131,7 +149,27 @@ class Lowering:
 
     def static(self, entry: int) -> bool:
         """Whether an entry changes only where parameters or modes do, and so needs no guard."""
-        return self.tape.leaves([entry]) <= {"param", "const", "mode", "hold"}
+        leaves = self.tape.leaves([entry])
+        return leaves <= {"param", "const", "mode", "hold"} and self.stands_still(entry)
+
+    def stands_still(self, entry: int) -> bool:
+        """Whether no mode that an entry reads is one that a slide may hold, as far as is known."""
+        read = modes_read(self.tape, [entry])
+        if any((self.out.modes[i].signal, self.out.modes[i].text) in self.held for i in read):
+            return False
+        if read:
+            self.on_the_spot.append(entry)
+        return True
+
+    def flow(self) -> dict[int, int]:
+        """The rates of the states and of t."""
+        rates = dict(zip(self.out.states, self.out.rates, strict=True))
+        return rates | {self.t: self.tape.constant(1.0)}
+
+    def holding(self) -> frozenset[int]:
+        """The modes that a slide may hold; all rates are known."""
+        rates = differentiate(self.tape, [mode.guard for mode in self.out.modes], self.flow())
+        return holding(self.tape, self.out.modes, rates)
 
     def lower(self, node: Expression) -> int:
         if isinstance(node, Number):
@@ -251,6 +289,8 @@ class Lowering:
         leaf = self.tape.push("mode", payload=index)
         reads_t = "t" in self.tape.leaves([guard])
         timed = linear_in_t(self.tape, guard, self.t) if reads_t else None
+        if timed and not self.stands_still(guard):
+            timed = None
         modes.append(Mode(kind, guard, leaf, self.signal, text, timed, holds, at_zero, table))
         return index
 

@@ -129,6 +129,11 @@ class Model:
         """Whether guards may turn faster than the states say: what `pace` tells is not always 0."""
         return self._routines.has_pace
 
+    @property
+    def reads_held(self) -> bool:
+        """Whether a guard reads what a slide may hold: a friction that sticks has any force."""
+        return self._routines.reads_held
+
     def address(self, name: str) -> int:
         """The address of one of the model's C functions, good as long as the model lives.
 
@@ -139,7 +144,8 @@ class Model:
         held at zero. c: what `prepare` makes of the parameters, which it takes as x. k: the tables,
         k[j] is the offset of table j; there: count N, x[N], y[N], slope[N-1]. `out` is zeroed by
         the caller. Functions, with the length of out: prepare (C), rhs (n), outputs (R),
-        guards (M), guard_rates (M), timed (2T), starts (n), resets, pace (1), and guard_sizes (M),
+        guards (M), guard_rates (M), timed (2T), starts (n), resets, pace (2: of the guards,
+        and while something is held), and guard_sizes (M),
         as all `sizes` a function of x[2n]: states, and behind them their sizes; compiled when they
         are first called: jacobian (n*(n+1): d rate/d x, d rate/d t), guard_gradients (M*n),
         guard_curves (M*(n+1): gradient of the guard's rate, its change with t), guard_second,

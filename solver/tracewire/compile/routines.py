@@ -10,8 +10,10 @@ from typing import Any, Literal
 
 from tracewire.compile.constants import Constants
 from tracewire.compile.differentiate import differentiate, gradients
+from tracewire.compile.holding import holding, reads
 from tracewire.compile.lower import Lowered
 from tracewire.compile.machine import MachineWriter, machine_text
+from tracewire.compile.memory import Reset
 from tracewire.compile.pace import pace
 from tracewire.compile.pointers import address_of, as_c, when_called
 from tracewire.compile.sizes import sizes
@@ -80,18 +82,20 @@ class Routines:
         self.flow = dict(zip(low.states, low.rates, strict=True))
         self.flow[low.entries["t"]] = low.tape.constant(1.0)
         guards = [mode.guard for mode in low.modes]
+        self.guard_rates = self.along_the_flow(guards, 1)
+        self.holding = holding(low.tape, low.modes, self.guard_rates)
         self.eager: dict[str, Routine] = {
             "rhs": _dense("Rates of the states.", low.rates),
             "outputs": _dense("Recorded signals.", outputs),
             "guards": _dense("Guards of the modes.", guards),
             "guard_sizes": _dense("Sizes of the guards.", sizes(low.tape, guards, self.states)),
-            "guard_rates": _dense("Rates of the guards.", self.along_the_flow(guards, 1)),
+            "guard_rates": _dense("Rates of the guards.", self.guard_rates),
             "timed": _dense(
                 "Slope and value at t = 0 of each guard that reads only t.",
                 [entry for mode in low.modes for entry in mode.timed or ()],
             ),
             "starts": _dense("Start values of the states.", low.starts),
-            "pace": _dense("Largest pace of the guards that are no known times.", [self._pace()]),
+            "pace": _dense("Largest pace of the guards, and of what is held.", self._paces()),
             "resets": _dense(
                 "New values of all resets, one after the other.",
                 [entry for reset in low.resets for entry in reset.values.values()],
@@ -152,14 +156,34 @@ class Routines:
         entries = sizes(self.tape, list(roots.values()), self.states)
         return dict(zip(roots, entries, strict=True))
 
-    def _pace(self) -> int:
-        searched = [m.guard for m in self.lowered.modes if not m.timed and m.kind != "memory"]
-        return pace(self.tape, searched, self.flow)
+    def _paces(self) -> list[int]:
+        """The largest pace of what is searched for zeros: of the guards, and of the fractions of
+        slides and the forces of contacts while these hold."""
+        low = self.lowered
+        searched = [m.guard for m in low.modes if not m.timed and m.kind != "memory"]
+        hit = sorted({reset.trigger for reset in low.resets if self._may_hit(reset)})
+        forces = self.along_the_flow([self.guard_rates[i] for i in hit], 1)
+        forces += [self.guard_rates[i] for i in sorted(self.holding)]
+        return [pace(self.tape, roots, self.flow) for roots in (searched, forces)]
+
+    def _may_hit(self, reset: Reset) -> bool:
+        """Whether a reset may be that of a contact: it writes a rate of its guard, and no place."""
+        low, trigger = self.lowered, reset.trigger
+        if trigger < 0 or low.modes[trigger].kind != "sign":
+            return False
+        written = {low.states[state] for state in reset.values}
+        turns = not written.isdisjoint(self.tape.needed([self.guard_rates[trigger]]))
+        return turns and written.isdisjoint(self.tape.needed([low.modes[trigger].guard]))
 
     @property
     def has_pace(self) -> bool:
-        """Whether guards may turn faster than the states say."""
-        return self.tape.value(self.eager["pace"].roots[0]) != 0.0
+        """Whether guards, or what is held, may turn faster than the states say."""
+        return any(self.tape.value(entry) != 0.0 for entry in self.eager["pace"].roots.values())
+
+    @property
+    def reads_held(self) -> bool:
+        """Whether a guard reads what a slide may hold."""
+        return reads(self.tape, [mode.guard for mode in self.lowered.modes], self.holding)
 
     def rows(self, of: str, leaves: Sequence[int]) -> dict[int, int]:
         """The entries of d out / d leaf of an eager function, row by row; zeros are left out."""

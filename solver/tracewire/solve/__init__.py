@@ -57,7 +57,11 @@ fraction leaves [0, 1]; the new mode is stored. Up to six surfaces are decided b
 combinations, more by pivoting. Fields in which two sliding modes multiply each other are refused.
 `dry(u, slip, stick)` holds u = 0 while the required level is within +-stick, even if only one of
 the fields points in; not where its sign is wrong, so that it drives. A jump that carries the run
-off the surface ends the slide. Recorded signals on a slide are blends, too. What rounding moves
+off the surface ends the slide. Recorded signals on a slide are blends, too, and so are the guards
+and what resets write: a counter that reads a friction which sticks counts the rises of the force
+that holds it. What such a friction may balance bounds the steps by its pace, as a guard does. The
+blend is exact where the friction enters as a factor or a term: its square is that of the sides.
+What rounding moves
 off the surface is put back after each step: a body at rest stays where it is for ever. A floor does
 not slide: fields that point to its jump from both sides end as chatter. Where the fields of the
 sides agree at an instant (friction whose level passes through zero) the fraction is 0/0, and its

@@ -121,7 +121,7 @@ def new_flow(model: Model, parameters: Vector, tables: Vector) -> Flow:
         k=tables,
         bound=np.full(count, FREE, dtype=np.int64),
         push=np.zeros((count, sizes.states)),
-        counts=np.zeros(4, dtype=np.int64),
+        counts=np.array([int(model.reads_held), 0, 0, 0], dtype=np.int64),
     )
     prepare(model, flow, parameters)
     return flow

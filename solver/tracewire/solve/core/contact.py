@@ -17,20 +17,19 @@ from tracewire.solve.core.codes import LENGTH, SIGN, UP
 from tracewire.solve.core.flow import (
     CURVES,
     FREE,
-    GUARDS,
     RESETS,
     RESTING,
     RHS,
     SECOND_SIZES,
     bind,
     evaluate,
-    guard_rates,
-    pin,
     rates,
     sizes,
 )
 from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.modes import NOTHING, levels
+from tracewire.solve.core.readings import guard_rates, guard_values
+from tracewire.solve.core.surface import pin
 
 RESOLVED = 32.0  # a flight is resolved if it rises over so many times the noise of a guard
 SHORTEST = 1e-11  # of the span
@@ -73,8 +72,8 @@ def turns(
     if not side * np.dot(slope, after - before) > 0:
         return False
     level = np.empty(modes)
-    evaluate(core, GUARDS, t, before, here)
-    evaluate(core, GUARDS, t, after, there)
+    guard_values(core, t, before, here)
+    guard_values(core, t, after, there)
     levels(core, t, before, level)
     return bool(abs(there[i] - here[i]) <= level[i])
 

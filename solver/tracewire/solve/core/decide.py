@@ -21,7 +21,6 @@ from tracewire.solve.core.flow import (
     SECOND_SIZES,
     SLIDING,
     bind,
-    guard_rates,
     held,
     is_affine,
     is_independent,
@@ -31,6 +30,7 @@ from tracewire.solve.core.flow import (
 )
 from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.modes import NOTHING, rate_levels
+from tracewire.solve.core.readings import guard_rates
 
 MOST_TOGETHER = 6
 SLACK = 1e-9

@@ -44,7 +44,9 @@ JACOBIAN, GRADIENTS, CURVES, SECOND = 6, 7, 8, 9
 PACE = 12
 GUARD_SIZES, GUARD_RATE_SIZES, SECOND_SIZES, RATE_SIZES = 13, 14, 15, 18
 FREE, SLIDING, RESTING = 0, 1, 2
-EVALUATIONS = 3  # counts[SLIDING] and counts[RESTING] hold how many guards are so
+# counts[SLIDING] and counts[RESTING] hold how many guards are so; counts[READING] is 1 where guards
+# read what a slide may hold
+READING, EVALUATIONS = 0, 3
 DIFFERENCE = 1e-7
 TIME_PART = 1e-3  # of the span: in it a state may move as far as it is large
 ROUNDING = 1e-10  # of t, for a difference
@@ -227,22 +229,6 @@ def rates(core: int, t: float, x: Vector, out: Vector) -> None:
 
 
 @unit
-def guard_rates(core: int, t: float, x: Vector, out: Vector) -> None:
-    """d(guard)/dt along the flow, for all modes."""
-    flow = flow_of(core)
-    if flow.counts[SLIDING] + flow.counts[RESTING] == 0:
-        evaluate(core, GUARD_RATES, t, x, out)
-        return
-    both = held(core, t, x)
-    blended(core, GUARD_RATES, t, x, both, out)
-    if flow.counts[RESTING]:
-        gradients, more = np.empty((len(out), len(x))), np.zeros(len(x))
-        evaluate(core, GRADIENTS, t, x, gradients)
-        push(core, both[flow.counts[SLIDING] :], more)
-        out += np.dot(gradients, more)
-
-
-@unit
 def outputs(core: int, t: float, x: Vector, out: Vector) -> None:
     """The recorded signals."""
     flow = flow_of(core)
@@ -325,55 +311,3 @@ def bind(core: int, i: int, how: int) -> None:
         if how != FREE:
             flow.counts[how] += 1
         flow.bound[i] = how
-
-
-@unit
-def pin(core: int, t: float, x: Vector) -> None:
-    """Put the states back onto the surfaces on which they are held: what rounding has moved.
-
-    The guards of contacts along their gradients; then those of slides along theirs, and the rates
-    of contacts along their push, all together: each may change the others.
-    """
-    flow = flow_of(core)
-    n, modes = len(x), len(flow.bound)
-    values, gradients = np.empty(modes), np.empty((modes, n))
-    slides = np.flatnonzero(flow.bound == SLIDING)
-    rests = np.flatnonzero(flow.bound == RESTING)
-    some, count = len(slides), len(slides) + len(rests)
-    evaluate(core, GUARDS, t, x, values)
-    evaluate(core, GRADIENTS, t, x, gradients)
-    rows, ways, off = np.empty((count, n)), np.empty((count, n)), np.empty(count)
-    if len(rests):
-        for row, i in enumerate(rests):
-            rows[row], ways[row], off[row] = gradients[i], gradients[i], values[i]
-        _move_back(rows[: len(rests)], ways[: len(rests)], off[: len(rests)], x)
-        along, curves = np.empty(modes), np.empty((modes, n + 1))
-        guard_rates(core, t, x, along)
-        evaluate(core, CURVES, t, x, curves)
-        if some:
-            evaluate(core, GUARDS, t, x, values)
-        for row, i in enumerate(rests):
-            rows[some + row], ways[some + row] = curves[i, :n], flow.push[i]
-            off[some + row] = along[i]
-    for row, i in enumerate(slides):
-        rows[row], ways[row], off[row] = gradients[i], gradients[i], values[i]
-    _move_back(rows, ways, off, x)
-
-
-@unit
-def _move_back(rows: Matrix, ways: Matrix, off: Vector, x: Vector) -> None:
-    """Move x along `ways` until what changes with the gradients `rows` and is `off` is zero.
-
-    One after the other where they depend on each other.
-    """
-    count = len(off)
-    if not np.any(off != 0.0):
-        return
-    matrix = np.dot(rows, ways.T)
-    parts = solved(matrix.copy(), off)
-    for k in range(count):
-        part = parts[k]
-        if not np.all(np.isfinite(parts)):
-            part = off[k] / matrix[k, k] if matrix[k, k] != 0.0 else 0.0
-        for j in range(len(x)):
-            x[j] -= ways[k, j] * part

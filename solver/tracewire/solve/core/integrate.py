@@ -55,7 +55,6 @@ from tracewire.solve.core.flow import (
     RESTING,
     SLIDING,
     evaluate,
-    pin,
     rates,
     sizes,
 )
@@ -65,6 +64,7 @@ from tracewire.solve.core.methods import DOP853, DORMAND_PRINCE, RK4, ROSENBROCK
 from tracewire.solve.core.record import sample_end, sample_inside
 from tracewire.solve.core.saltation import begin_sensitivities
 from tracewire.solve.core.start import begin
+from tracewire.solve.core.surface import pin
 from tracewire.solve.core.transition import happen, no_crossings
 
 STIFF, STIFF_HIGH = 3.0, 6.1  # h*eigenvalue at the edge of stability, of order 5 and 8 (Hairer)
@@ -233,15 +233,18 @@ def _remember(core: int, x: Vector) -> None:
 
 @helper
 def _longest_step(core: int, t: float, x: Vector) -> float:
-    """The longest step in which guards that the states do not feel are seen to turn."""
+    """The longest step in which guards and forces that the states do not feel are seen to turn."""
     now = progress_of(core).now
     if now[PACED] == 0.0:
         return now[LONGEST]
-    pace = np.empty(1)
-    evaluate(core, PACE, t, x, pace)
-    if not pace[0] > 0.0:
+    paces, counts = np.empty(2), flow_of(core).counts
+    evaluate(core, PACE, t, x, paces)
+    pace = paces[0]
+    if counts[SLIDING] + counts[RESTING]:  # until what is held breaks loose
+        pace = max(pace, paces[1])
+    if not pace > 0.0:
         return min(now[LONGEST], LARGEST_PART * now[LENGTH])
-    return min(now[LONGEST], max(TURN / pace[0], SMALLEST_PART * now[LENGTH]))
+    return min(now[LONGEST], max(TURN / pace, SMALLEST_PART * now[LENGTH]))
 
 
 @helper

@@ -36,15 +36,13 @@ from tracewire.solve.core.codes import (
 )
 from tracewire.solve.core.flow import (
     FREE,
-    GUARDS,
     RESTING,
     SLIDING,
-    evaluate,
-    guard_rates,
     held,
 )
 from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.modes import levels, piece
+from tracewire.solve.core.readings import guard_rates, guard_values
 
 SAMPLES = 5  # of the margins over a step, both ends included
 SLACK = 0.25  # a parabola that stays above zero by less than bend/32 may be wrong about it
@@ -134,7 +132,7 @@ def margins(core: int, t: float, x: Vector, out: Vector) -> None:
     flow = flow_of(core)
     watched = watch_of(core)
     guards = trial_of(core).guards
-    evaluate(core, GUARDS, t, x, guards)
+    guard_values(core, t, x, guards)
     some, total = flow.counts[SLIDING], watched_count(core)
     count = total - 2 * some - flow.counts[RESTING]
     for row in range(count):
@@ -372,7 +370,7 @@ def polish(core: int, theta: float, row: int) -> None:
         return
     guards, along = np.empty(len(flow.bound)), np.empty(len(flow.bound))
     for _ in range(POLISH):
-        evaluate(core, GUARDS, t + h, trial.x_end, guards)
+        guard_values(core, t + h, trial.x_end, guards)
         guard_rates(core, t + h, trial.x_end, along)
         change = -(guards[i] - watched.level[row]) / along[i] if along[i] != 0.0 else 0.0
         if not 0 < h + change <= whole:

@@ -32,9 +32,10 @@ from tracewire.solve.core.codes import (
     TWO_WRITES,
     UP,
 )
-from tracewire.solve.core.flow import FREE, GUARDS, RESETS, evaluate
+from tracewire.solve.core.flow import FREE
 from tracewire.solve.core.jit import unit
 from tracewire.solve.core.modes import JUMP, levels
+from tracewire.solve.core.readings import guard_values, guard_values_then, reset_values
 from tracewire.solve.core.record import log
 from tracewire.solve.core.saltation import reset_sensitivities
 
@@ -46,7 +47,7 @@ def write(core: int, t: float, before: Vector, x: Vector, due: Ints) -> int:
     plan = plan_of(core)
     progress = progress_of(core)
     values, by = np.empty(len(plan.writes)), np.full(len(x), -1)
-    evaluate(core, RESETS, t, before, values)
+    reset_values(core, t, before, values)
     for reset in np.flatnonzero(due):
         first = plan.resets[reset, 2]
         for row in range(first, first + plan.resets[reset, 3]):
@@ -121,12 +122,9 @@ def carried(
     if not some:
         return FINISHED
     here, there, level = np.empty(modes), np.empty(modes), np.empty(modes)
-    now = flow.m.copy()
     levels(core, t, x, level)
-    evaluate(core, GUARDS, t, x, there)
-    copy(old, flow.m)
-    evaluate(core, GUARDS, t, before, here)
-    copy(now, flow.m)
+    guard_values(core, t, x, there)
+    guard_values_then(core, t, before, old, bound, here)
     for reset in range(len(plan.resets)):
         i = plan.resets[reset, 0]
         if due[reset] == 0:

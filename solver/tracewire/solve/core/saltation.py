@@ -32,19 +32,21 @@ from tracewire.solve.core.contact import reset_jump, side_of
 from tracewire.solve.core.flow import (
     CURVES,
     GUARD_RATES,
+    GUARDS,
+    RESETS,
     RESTING,
     RHS,
     SECOND,
     SLIDING,
     TIMED,
     evaluate,
-    guard_rates,
     patterns,
     rates,
 )
 from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.linear import factor, substitute
 from tracewire.solve.core.modes import levels
+from tracewire.solve.core.readings import guard_rates
 from tracewire.solve.core.sensitivity import flag, total_of
 from tracewire.solve.core.variation import (
     OF_GUARD_RATES,
@@ -52,6 +54,7 @@ from tracewire.solve.core.variation import (
     OF_RESETS,
     OF_TIMED,
     derive,
+    derive_read,
     held_parts,
 )
 
@@ -187,7 +190,7 @@ def _instant(core: int, t: float, x: Vector, rate: Vector, i: int, out: Vector) 
         rows, along, bends = np.empty((modes, w)), np.empty(modes), np.empty(modes)
         level = np.empty(modes)
         levels(core, t, x, level)
-        derive(core, OF_GUARDS, t, x, rows)
+        derive_read(core, OF_GUARDS, GUARDS, t, x, rows)
         guard_rates(core, t, x, along)
         row[:] = rows[i]
         speed = along[i]
@@ -224,7 +227,7 @@ def reset_sensitivities(core: int, t: float, before: Vector, due: Ints, modes: V
     n, w = len(before), sensitivity.nodes.shape[1]
     rows, old, now = np.empty((len(plan.writes), w)), sensitivity.s.copy(), flow.m.copy()
     flow.m[:] = modes
-    derive(core, OF_RESETS, t, before, rows)
+    derive_read(core, OF_RESETS, RESETS, t, before, rows)
     flow.m[:] = now
     for reset in np.flatnonzero(due):
         first = plan.resets[reset, 2]

@@ -28,16 +28,14 @@ from tracewire.solve.core.decide import (
 )
 from tracewire.solve.core.flow import (
     FREE,
-    GUARDS,
     RESTING,
     SLIDING,
     bind,
-    evaluate,
-    guard_rates,
     held,
 )
 from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.modes import JUMP, NOTHING, levels, margin, mode_value, rate_levels
+from tracewire.solve.core.readings import guard_rates, guard_values
 from tracewire.solve.core.resets import fire_transitions
 
 MOST_ROUNDS = 200
@@ -66,7 +64,7 @@ def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
     _floor_edges(core, t, x, marks)
     while True:
         levels(core, t, x, level)
-        evaluate(core, GUARDS, t, x, guards)
+        guard_values(core, t, x, guards)
         flags[:] = 0
         for i in range(modes):
             if plan.is_timed[i] or plan.kind[i] == MEMORY or flow.bound[i] == RESTING:
@@ -78,7 +76,7 @@ def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
                 continue
             if marks[i] == KNOWN or flow.bound[i] == SLIDING:
                 zero[i] = 1
-            elif marks[i] == LEFT:
+            elif marks[i] == LEFT and margin(core, i, guards[i]) >= -JUMP * level[i]:
                 continue
             elif plan.kind[i] == SIGN and abs(guards[i]) <= level[i]:
                 zero[i] = 1
@@ -99,13 +97,13 @@ def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
             if how != UNIQUE and fresh:
                 progress.ints[WARNINGS] |= NOT_UNIQUE
             note_undetermined(core, t, x, undecided)
-            evaluate(core, GUARDS, t, x, after)
+            guard_values(core, t, x, after)
             for i in undecided:
                 if abs(after[i] - guards[i]) > JUMP * level[i]:
                     marks[i] = zero[i] = 0
         if _open_contacts(core, t, x, marks):
             continue
-        evaluate(core, GUARDS, t, x, guards)
+        guard_values(core, t, x, guards)
         wrong = flags[2]
         for i in range(modes):
             fixed = zero[i] == 1 or marks[i] == LEFT
@@ -115,10 +113,11 @@ def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
             if rounds < MOST_EDGES and _floor_edges(core, t, x, marks):
                 rounds += 1
                 continue
+            left_rates(core, t, x, marks, after)
             status = fire_transitions(core, t, x, wrong)
             if status != FINISHED or not np.any(wrong):
                 return status
-            marks[:] = 0
+            forget(core, t, x, after, marks)
         if len(seen) == 0:
             seen = np.full((MOST_ROUNDS, 3 * modes), np.nan)
         key = seen[min(rounds, MOST_ROUNDS - 1)]
@@ -133,6 +132,35 @@ def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
 
 
 @unit
+def left_rates(core: int, t: float, x: Vector, marks: Ints, out: Vector) -> None:
+    """The rates of the guards before resets, where `forget` will ask for them."""
+    if np.any(marks == LEFT):
+        guard_rates(core, t, x, out)
+
+
+@unit
+def forget(core: int, t: float, x: Vector, before: Vector, marks: Ints) -> None:
+    """Take the marks away after resets, but for those of guards whose slide has just ended and that
+    the resets do not concern: decided anew they might be held again, with a fraction of 1."""
+    some = bool(np.any(marks == LEFT))
+    for i in range(len(marks)):
+        if marks[i] != LEFT:
+            marks[i] = 0
+    if not some:
+        return
+    modes = len(marks)
+    guards, along, level, small = np.empty(modes), np.empty(modes), np.empty(modes), np.empty(modes)
+    guard_values(core, t, x, guards)
+    guard_rates(core, t, x, along)
+    levels(core, t, x, level)
+    rate_levels(core, t, x, small)
+    for i in range(modes):
+        same = abs(along[i] - before[i]) <= small[i]
+        if not (same and margin(core, i, guards[i]) >= -JUMP * level[i]):
+            marks[i] = 0
+
+
+@unit
 def _floor_edges(core: int, t: float, x: Vector, marks: Ints) -> bool:
     """Move the floors that stand on a whole number to the side that their guards go to."""
     flow, plan, changed, some = flow_of(core), plan_of(core), False, False
@@ -143,7 +171,7 @@ def _floor_edges(core: int, t: float, x: Vector, marks: Ints) -> bool:
     modes = len(plan.kind)
     guards, along = np.empty(modes), np.empty(modes)
     level, small = np.empty(modes), np.empty(modes)
-    evaluate(core, GUARDS, t, x, guards)
+    guard_values(core, t, x, guards)
     guard_rates(core, t, x, along)
     levels(core, t, x, level)
     rate_levels(core, t, x, small)
@@ -219,7 +247,7 @@ def _only_one(core: int, t: float, x: Vector, wrong: Ints, level: Vector) -> boo
             if plan.kind[i] != SIGN:
                 return False
             flow.m[i] = float((number >> bit) & 1)
-        evaluate(core, GUARDS, t, x, guards)
+        guard_values(core, t, x, guards)
         good = True
         for i in some:
             good = good and margin(core, i, guards[i]) >= -level[i]

@@ -7,9 +7,10 @@ import numpy as np
 from tracewire.solve.core import schedule
 from tracewire.solve.core.arrays import Vector, crossings_of, flow_of, plan_of, progress_of
 from tracewire.solve.core.codes import DOWN, FINISHED, FLOOR, MEMORY, SIGN, TIME, UP, T
-from tracewire.solve.core.flow import FREE, GUARDS, TIMED, evaluate
+from tracewire.solve.core.flow import FREE, TIMED, evaluate
 from tracewire.solve.core.jit import unit
 from tracewire.solve.core.modes import NOISE, levels, mode_value
+from tracewire.solve.core.readings import guard_values
 from tracewire.solve.core.settle import settle
 from tracewire.solve.core.transition import happen, no_crossings
 
@@ -24,7 +25,7 @@ def begin(core: int) -> int:
     schedule.begin(core, t, x)
     guards = np.empty(modes)
     for _ in range(2):  # a guard may read what another mode changes
-        evaluate(core, GUARDS, t, x, guards)
+        guard_values(core, t, x, guards)
         for i in range(modes):
             if not plan.is_timed[i] and plan.kind[i] != MEMORY:
                 flow.m[i] = mode_value(core, i, guards[i])
@@ -59,7 +60,7 @@ def _overlooked(core: int, t: float, x: Vector) -> None:
     plan = plan_of(core)
     progress = progress_of(core)
     guards, level = np.empty(len(plan.kind)), np.empty(len(plan.kind))
-    evaluate(core, GUARDS, t, x, guards)
+    guard_values(core, t, x, guards)
     levels(core, t, x, level)
     for reset in range(len(plan.resets)):
         i = plan.resets[reset, 0]

@@ -42,19 +42,17 @@ from tracewire.solve.core.codes import (
 )
 from tracewire.solve.core.flow import (
     FREE,
-    GUARDS,
     RESTING,
     SLIDING,
     bind,
-    evaluate,
-    guard_rates,
 )
 from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.modes import JUMP, levels, margin, mode_value, rate_levels
+from tracewire.solve.core.readings import guard_rates, guard_values
 from tracewire.solve.core.record import log
 from tracewire.solve.core.resets import carried, fire_carried, write
 from tracewire.solve.core.saltation import enter, leave, reset_sensitivities
-from tracewire.solve.core.settle import KNOWN, LEFT, settle
+from tracewire.solve.core.settle import KNOWN, LEFT, forget, left_rates, settle
 
 CHATTER_PART = 1e-6
 MOST_RESETS = 100
@@ -222,17 +220,20 @@ def _carry_on(
             due[reset] = -1
     no_crossings(core)
     states, modes, held, waits = before, old, bound, np.full(len(plan.kind), contact.FLIES)
+    along = np.empty(len(plan.kind))
     for _ in range(MOST_RESETS):
         status = carried(core, t, states, x, modes, held, due)
         if status != FINISHED or not np.any(due):
             return status
-        fired[:], marks[:] = -1, 0
+        fired[:] = -1
         for reset in np.flatnonzero(due):
             i = plan.resets[reset, 0]
             fired[i], progress.which[0], progress.which[1] = reset, 1, i
         states, modes, held = x.copy(), flow.m.copy(), flow.bound.copy()
+        left_rates(core, t, x, marks, along)
         status = fire_carried(core, t, x, due)
         if status == FINISHED:
+            forget(core, t, x, along, marks)
             status = settle(core, t, x, marks, False)
         if status != FINISHED:
             return status
@@ -251,7 +252,7 @@ def _follow(core: int, t: float, x: Vector) -> None:
     guards, level = np.empty(len(plan.kind)), np.empty(len(plan.kind))
     levels(core, t, x, level)
     for _ in range(MOST_FOLLOWED):
-        evaluate(core, GUARDS, t, x, guards)
+        guard_values(core, t, x, guards)
         changed = False
         for i in range(len(plan.kind)):
             later = crossings.how[i] >= 0 or plan.loop[i] >= 0
@@ -279,7 +280,7 @@ def _driven_together(
         return
     values = np.empty((4, modes))
     guards, level, along, small = values[0], values[1], values[2], values[3]
-    evaluate(core, GUARDS, t, x, guards)
+    guard_values(core, t, x, guards)
     levels(core, t, x, level)
     for reset in np.flatnonzero(due):
         i = plan.resets[reset, 0]
@@ -306,8 +307,8 @@ def _cross(core: int, t: float, before: Vector, after: Vector, turned: Ints, mar
         return
     guards = np.empty((3, modes))
     here, there, level = guards[0], guards[1], guards[2]
-    evaluate(core, GUARDS, t, before, here)
-    evaluate(core, GUARDS, t, after, there)
+    guard_values(core, t, before, here)
+    guard_values(core, t, after, there)
     levels(core, t, before, level)
     for i in range(modes):
         how = crossings.how[i]
@@ -329,7 +330,7 @@ def _cross(core: int, t: float, before: Vector, after: Vector, turned: Ints, mar
         elif abs(there[i] - here[i]) <= level[i]:
             # it was seen beyond: this counts where the derivatives do not tell
             flow.m[i], marks[i] = crossings.to[i], KNOWN
-    evaluate(core, GUARDS, t, after, here)
+    guard_values(core, t, after, here)
     for i in range(modes):
         jumps = abs(here[i] - there[i]) > JUMP * level[i]
         if marks[i] == KNOWN and jumps:  # a guard that its own mode moves is decided by trial

@@ -58,6 +58,24 @@ def derive_blended(
 
 
 @unit
+def derive_read(core: int, which: int, values: int, t: float, x: Vector, out: Matrix) -> None:
+    """The derivatives of a function that may read what a slide holds; `values` is the function."""
+    flow = flow_of(core)
+    some = flow.counts[SLIDING]
+    if some == 0:
+        derive(core, which, t, x, out)
+        return
+    both = held(core, t, x)
+    derive_blended(core, which, t, x, both, out)
+    rows, parts = patterns(core, values, t, x, len(out)), np.empty((len(both), out.shape[1]))
+    held_parts(core, t, x, parts)
+    for row in range(some):
+        for i in range(len(out)):
+            if rows[1 + row, i] != 0.0:
+                out[i] += rows[1 + row, i] * parts[row]
+
+
+@unit
 def field(core: int, t: float, x: Vector, out: Matrix) -> None:
     """d rates / d z (n, w)."""
     flow = flow_of(core)
