@@ -230,6 +230,25 @@ class Reset(Element):
 
 
 @dataclass
+class Reader(Reset):
+    """A reset whose guard reads a switch, too, in any mode: row @ z + weight times its output."""
+
+    weight: float = 0.0
+    of: Switch | None = None
+
+    def guards(self) -> list[Guard]:
+        row = self.whole()
+        return [Guard(row if self.above else -row, self.cross)]
+
+    def whole(self) -> Vector:
+        """The row of the guard in the mode of the switch."""
+        return self.row if self.of is None else self.row + self.weight * self.of.output()
+
+    def begin(self, z: Vector) -> None:
+        self.above = float(self.whole() @ z) >= 0
+
+
+@dataclass
 class Wave(Element):
     """A square wave: its value changes its sign at known times."""
 

@@ -19,6 +19,7 @@ from fuzz.elements import (
     Element,
     Guard,
     Play,
+    Reader,
     Reset,
     Stop,
     Switch,
@@ -33,7 +34,8 @@ Matrix = NDArray[np.float64]
 ORDER = 16
 CELL = 0.5  # of 1/|A|: there a term of the series is below 1e-17 of the first one
 POINTS = np.linspace(0.0, 1.0, 9)
-POWERS = POINTS[None, :] ** np.arange(ORDER + 1)[:, None]
+EXPONENTS = np.arange(ORDER + 1)
+POWERS = POINTS[None, :] ** EXPONENTS[:, None]
 MOST_EVENTS = 400
 LOWEST = 2 * CLOSE  # a flight that rises no higher counts as lying
 
@@ -50,6 +52,8 @@ class Solution:
         for element in system.elements:
             element.begin(self.z)
         self.hold()
+        for reader in self.readers():
+            reader.begin(self.z)
         while self.t < end:
             self.advance(min(end, self.known()))
             self.events += 1
@@ -63,7 +67,7 @@ class Solution:
             while number + 1 < len(self.pieces) and self.pieces[number + 1][0] <= t:
                 number += 1
             begin, length, series = self.pieces[number]
-            found.append(series @ ((t - begin) / length) ** np.arange(ORDER + 1))
+            found.append(series @ ((t - begin) / length) ** EXPONENTS)
         return np.array(found)
 
     def known(self) -> float:
@@ -76,6 +80,9 @@ class Solution:
 
     def waves(self) -> list[Wave]:
         return [element for element in self.system.elements if isinstance(element, Wave)]
+
+    def readers(self) -> list[Reader]:
+        return [element for element in self.system.elements if isinstance(element, Reader)]
 
     def field(self, without: Sequence[Element] = ()) -> Matrix:
         """A with the modes as they stand."""
@@ -164,10 +171,11 @@ class Solution:
         if np.any(values < -CLOSE):
             raise Unclear("a guard is passed where a piece begins")
         size = float(np.abs(matrix).sum(axis=1).max()) or 1.0
+        powers = powers_of(matrix * (CELL / size))
         while self.t < limit:
             length = min(CELL / size, limit - self.t, self.cell)
             self.cell *= 2
-            series = self.series(matrix, length)
+            series = (powers @ self.z).T * (length * size / CELL) ** EXPONENTS
             samples = (rows @ series) @ POWERS  # (guards, points)
             hits = self.hits(samples, armed)
             if hits:
@@ -180,14 +188,6 @@ class Solution:
             self.z = series.sum(axis=1)
             self.t = limit if length == limit - self.t else self.t + length
         self.scheduled()
-
-    def series(self, matrix: Matrix, length: float) -> Matrix:
-        """The coefficients (len z, ORDER + 1) of z over a cell, in parts of its length."""
-        found = np.empty((len(self.z), ORDER + 1))
-        found[:, 0] = self.z
-        for k in range(1, ORDER + 1):
-            found[:, k] = matrix @ found[:, k - 1] * (length / k)
-        return found
 
     def hits(self, samples: Matrix, armed: NDArray[np.bool_]) -> list[int]:
         """The guards that are passed in a cell."""
@@ -230,7 +230,7 @@ class Solution:
         roots = sorted((self.root(rows[i] @ series, least[i]), i) for i in hits)
         part, first = roots[0]
         self.pieces.append((self.t, length, series))
-        powers = part ** np.arange(ORDER + 1)
+        powers = part**EXPONENTS
         self.t += part * length
         self.z = series @ powers
         values = np.abs(rows @ self.z)
@@ -298,20 +298,23 @@ class Solution:
                 reset.due = False
                 writes |= reset.rows
             self.write(writes)
-            if any(-CLOSE < float(r.row @ (self.z - before)) < 0 for r in fired):
+            moves = self.z - before
+            if any(-CLOSE < float(r.guards()[0].row @ moves) < 0 for r in fired):
                 raise Unclear("a reset that hardly moves its own guard back")
             self.carry()
             if not self.due():
                 self.hold()
-                return
+                self.carry(self.readers())  # what holds now has a force of its own
+                if not self.due():
+                    return
         raise Unclear("resets without end")
 
     def due(self) -> list[Reset]:
         return [e for e in self.system.elements if isinstance(e, Reset) and e.due]
 
-    def carry(self) -> None:
+    def carry(self, elements: Sequence[Element] | None = None) -> None:
         """Let the guards act that a jump has carried over zero."""
-        for element in self.system.elements:
+        for element in self.system.elements if elements is None else elements:
             if isinstance(element, Switch) and element.held is not None:
                 if abs(float(element.row @ self.z)) > CLOSE:
                     element.held = None
@@ -343,3 +346,12 @@ class Solution:
             self.clear(pressed)
             if pressed > 0:
                 self.z[stop.v], stop.side = 0.0, side
+
+
+def powers_of(matrix: Matrix) -> NDArray[np.float64]:
+    """The terms of the series of exp(matrix), (ORDER + 1, n, n)."""
+    found = np.empty((ORDER + 1, *matrix.shape))
+    found[0] = np.eye(len(matrix))
+    for k in range(1, ORDER + 1):
+        found[k] = matrix @ found[k - 1] / k
+    return found

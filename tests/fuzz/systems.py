@@ -17,6 +17,7 @@ from fuzz.elements import (
     Element,
     Piecewise,
     Play,
+    Reader,
     Relay,
     Reset,
     Stop,
@@ -53,6 +54,7 @@ class Draft:
     slopes: list[tuple[int, int, float]] = field(default_factory=list)  # row, column, value
     makes: list[tuple[str, dict[str, object]]] = field(default_factory=list)
     said: set[str] = field(default_factory=set)
+    switches: list[tuple[str, int, float]] = field(default_factory=list)  # block, make, scale
 
     def number(self, low: float = 0.2, high: float = 2.0) -> float:
         """A number of either sign."""
@@ -125,6 +127,7 @@ def draw(seed: int) -> Draft:
         _clock,
         _wave,
         _counter,
+        _reader,
     ]
     for n in range(rng.randint(1, 4)):
         rng.choice(kinds)(draft, n, draft.unit() if wide else 1.0)
@@ -267,6 +270,7 @@ def _friction(draft: Draft, n: int, unit: float) -> None:
         f"stick: {stick * force!r}}}"
     )
     draft.act(v, f"{draft.units[v] / draft.second / force!r}*e{n}")
+    draft.switches.append((f"e{n}", len(draft.makes), force))
     draft.makes.append(
         ("switch", {"row": {v: 1.0}, "level": -slip, "stick": stick / slip, "into": {v: 1.0}})
     )
@@ -289,6 +293,7 @@ def _between(draft: Draft, n: int, unit: float) -> None:
     draft.act(v, f"{draft.units[v] / draft.second!r}*e{n}")
     draft.act(w, f"{-draft.units[w] / draft.second / heavy!r}*e{n}")
     parts = {"row": {v: 1.0, w: -1.0}, "level": -slip, "stick": stick / slip}
+    draft.switches.append((f"e{n}", len(draft.makes), 1.0))
     draft.makes.append(("switch", parts | {"into": {v: 1.0, w: -1.0 / heavy}}))
     draft.said.add("friction between")
 
@@ -298,6 +303,7 @@ def _switch(draft: Draft, n: int, unit: float) -> None:
     draft.signal(f"i{n}", row, unit)
     draft.lines.append(f"e{n}: {{type: sign, of: i{n}}}")
     level = draft.number()
+    draft.switches.append((f"e{n}", len(draft.makes), 1.0 / level))
     draft.act(target, f"{level * draft.units[target] / draft.second!r}*e{n}")
     draft.makes.append(
         ("switch", {"row": row, "level": level, "stick": 1.0, "into": {target: 1.0}})
@@ -361,6 +367,29 @@ def _counter(draft: Draft, n: int, unit: float) -> None:
     draft.said.add("counter")
 
 
+def _reader(draft: Draft, n: int, unit: float) -> None:
+    """An event or a counter that reads a friction, which may hold, and at times a state."""
+    if not draft.switches:
+        return
+    block, make, scale = draft.rng.choice(draft.switches)
+    row = draft.reading() if draft.rng.random() < 0.4 else {}
+    row[0] = -draft.number(0.05, 0.8)
+    weight = draft.number(0.5, 1.5)
+    draft.signal(f"j{n}", row, unit)
+    formula = f"{weight * unit / scale!r}*{block} + j{n}"
+    draft.lines.append(f'i{n}: {{type: expression, formula: "{formula}"}}')
+    if draft.rng.random() < 0.5:
+        draft.lines.append(f"c{n}: {{type: counter, of: i{n}, threshold: 0}}")
+        at = draft.add(f"c{n}", 1.0, 0.0)
+        rows = {at: {at: 1.0, 0: 1.0}}
+    else:
+        rows, text = _written(draft)
+        draft.events.append(f"- {{when: i{n}, crosses: up, set: {text}}}")
+    parts = {"row": row, "weight": weight, "of": make, "rows": rows}
+    draft.makes.append(("reader", parts))
+    draft.said.add("reader")
+
+
 def text_of(draft: Draft) -> str:
     """The diagram."""
     lines = [f"span: [0, {draft.end * draft.second!r}]", "blocks:"]
@@ -398,8 +427,9 @@ def system_of(draft: Draft) -> System:
     for place, column, value in draft.slopes:
         matrix[place, column] += value
     elements: list[Element] = []
+    made_of: dict[int, Element] = {}
     clocks: list[Clock] = []
-    for kind, given in draft.makes:
+    for number, (kind, given) in enumerate(draft.makes):
         parts = dict(given)
         into = row(parts.pop("into")) if "into" in parts else np.zeros(size)
         for name in ("row", "rate"):
@@ -413,8 +443,11 @@ def system_of(draft: Draft) -> System:
         if kind == "relay":
             parts["values"] = (-1.0, 1.0)
         made = {"piecewise": Piecewise, "relay": Relay, "switch": Switch, "play": Play,
-                "stop": Stop, "reset": Reset, "wave": Wave}[kind]  # fmt: skip
-        if kind != "reset":
+                "stop": Stop, "reset": Reset, "reader": Reader, "wave": Wave}[kind]  # fmt: skip
+        if kind == "reader":
+            parts["of"] = made_of[parts["of"]]  # type: ignore[index]
+        elif kind != "reset":
             parts["one"] = one
-        elements.append(made(into=into, **parts))
+        made_of[number] = made(into=into, **parts)
+        elements.append(made_of[number])
     return System(matrix, np.array(draft.starts), elements, clocks)
