@@ -37,6 +37,7 @@ POINTS = np.linspace(0.0, 1.0, 9)
 EXPONENTS = np.arange(ORDER + 1)
 POWERS = POINTS[None, :] ** EXPONENTS[:, None]
 MOST_EVENTS = 400
+SOON = 1e-5  # after a reset: it may be one of a sequence without end
 LOWEST = 2 * CLOSE  # a flight that rises no higher counts as lying
 
 
@@ -48,6 +49,7 @@ class Solution:
         self.t, self.z = 0.0, system.start.copy()
         self.pieces: list[tuple[float, float, Matrix]] = []  # begin, length, coefficients
         self.events = 0
+        self.fired: dict[int, float] = {}  # when each reset has fired the last time
         self.cell = math.inf  # how long the next cell may be
         for element in system.elements:
             element.begin(self.z)
@@ -295,6 +297,9 @@ class Solution:
             for reset in fired:
                 if set(reset.rows) & set(writes):
                     raise Unclear("two resets of one state")
+                if 0 < self.t - self.fired.get(id(reset), -math.inf) < SOON:
+                    raise Unclear("resets that come ever closer")
+                self.fired[id(reset)] = self.t
                 reset.due = False
                 writes |= reset.rows
             self.write(writes)

@@ -250,3 +250,24 @@ blocks:
     large, plain = pushed(5e5, 3e-7), pushed(1.0, 1.0)
     assert large.statistics.steps < 2 * plain.statistics.steps
     assert large.final["x"] / 5e5 == pytest.approx(plain.final["x"], abs=1e-7)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_states_in_far_units_do_not_lose_each_other_on_a_slide(method: str) -> None:
+    """z decays, whatever the others do: beside numbers of 1e14 its row was rounded to theirs."""
+    text = """
+span: [0, 7]
+blocks:
+  z: {type: integrator, of: dz, start: -1.05e-9}
+  dz: {type: expression, formula: -0.134*z}
+  u: {type: integrator, of: du, start: -2.6e-5}
+  du: {type: expression, formula: -0.34*u}
+  w: {type: integrator, of: dw, start: -1140}
+  dw: {type: expression, formula: -0.236*w - 1.08e8*u + 3.86e11*z + 4657*s}
+  level: {type: expression, formula: -0.00437*u - 2.78e-11*w}
+  s: {type: sign, of: level}
+"""
+    result = run(text, method=method, rtol=1e-8)
+    assert [event.kind for event in result.events] == ["stick"]
+    assert result["z"] == pytest.approx(-1.05e-9 * np.exp(-0.134 * result.t), rel=1e-7)
+    assert result.statistics.rejected < 20

@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.solve.core.jit import inlined, unit
+from tracewire.solve.core.jit import helper, inlined, unit
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 Ints = NDArray[np.int64]
+MOST = 1000  # of the exponent of a scale
+
+
+@helper
+def towards_one(size: float) -> float:
+    """The power of two that brings a size to about 1; no digit changes."""
+    if not 0.0 < size < np.inf:
+        return 1.0
+    return math.ldexp(1.0, -min(max(math.frexp(size)[1], -MOST), MOST))
 
 
 @unit
@@ -81,9 +92,20 @@ def _substitute(factors: Matrix, pivots: Ints, right: Vector, n: int) -> None:
 
 @unit
 def solved(matrix: Matrix, right: Vector) -> Vector:
-    """The solution of a system; NaN where it is singular. The matrix is lost."""
+    """The solution of a system; NaN where it is singular. The matrix is lost.
+
+    Each row may be in a unit of its own: it is brought to the size 1.
+    """
     pivots = np.empty(len(matrix), dtype=np.int64)
     answer = right.copy()
+    for i in range(len(matrix)):
+        largest = 0.0
+        for j in range(len(matrix)):
+            largest = max(largest, abs(matrix[i, j]))
+        scale = towards_one(largest)
+        answer[i] *= scale
+        for j in range(len(matrix)):
+            matrix[i, j] *= scale
     if factor(matrix, pivots) > 0.0:
         substitute(matrix, pivots, answer)
     else:

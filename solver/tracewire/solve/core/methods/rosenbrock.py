@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracewire.solve.core.arrays import Vector, copy, trial_of
+from tracewire.solve.core.arrays import Vector, copy, progress_of, trial_of
 from tracewire.solve.core.flow import jacobian, rates
 from tracewire.solve.core.jit import inlined, unit
-from tracewire.solve.core.linear import factor, substitute
+from tracewire.solve.core.linear import factor, substitute, towards_one
 
 GAMMA = 0.21193756319429014
 C = (
@@ -165,10 +165,12 @@ def step(core: int, t: float, x: Vector, rate: Vector, h: float) -> None:
     n = len(x)
     stages, at, matrix, factors = into.stages, into.x_end, into.matrix, into.factors
     jacobian(core, t, x, matrix)
-    for i in range(n):
+    sizes, scales = progress_of(core).sizes, into.error
+    for i in range(n):  # each row in the unit of its state: a pivot is large beside its neighbours
+        scales[i] = towards_one(max(abs(x[i]), sizes[n + i]))
         for j in range(n):
-            factors[i, j] = -matrix[i, j]
-        factors[i, i] += 1.0 / (GAMMA * h)
+            factors[i, j] = -matrix[i, j] * scales[i]
+        factors[i, i] += scales[i] / (GAMMA * h)
     into.ends[2] = 0.0
     if factor(factors, into.pivots) == 0.0:
         into.error[:] = np.nan
@@ -212,7 +214,8 @@ def _stage(core: int, stage: int, t: float, x: Vector, h: float) -> None:
         total = 0.0
         for k in range(stage):
             total += COUPLING[stage, k] * stages[k, i]
-        stages[stage, i] = slope[i] + total / h + h * D[stage] * into.matrix[i, n]
+        total = slope[i] + total / h + h * D[stage] * into.matrix[i, n]
+        stages[stage, i] = total * into.error[i]  # the scale of the row
     substitute(into.factors, into.pivots, stages[stage])
 
 
