@@ -205,3 +205,21 @@ def test_a_formula_may_be_undefined_beyond_its_guard() -> None:
     [event] = result.events
     assert event.time == pytest.approx(2 - 2 * math.log(2), abs=1e-8)
     assert result.final["x"] == pytest.approx(event.time - 1, abs=1e-8)
+
+
+@pytest.mark.parametrize(("crosses", "count"), [("up", 3), ("down", 3), ("both", 6)])
+def test_the_log_has_the_direction_that_an_event_waits_for(crosses: str, count: int) -> None:
+    """sin(2*pi*t + 1) passes through 0.2 three times each way."""
+    text = f"""
+span: [0, 3]
+blocks:
+  s: {{type: sine, amplitude: 1, omega: 2*pi, phase: 1}}
+  n: {{type: integrator, of: none}}
+  none: {{type: constant, value: 0}}
+events:
+  - {{when: s - 0.2, crosses: {crosses}, set: {{n: n + 1}}}}
+"""
+    result = run(text)
+    assert [event.kind for event in result.events] == ["reset"] * count
+    assert {event.direction for event in result.events} <= {"up", "down"}
+    assert result.final["n"] == count

@@ -12,6 +12,7 @@ import networkx as nx
 
 from tracewire.compile.flat import Flat
 from tracewire.compile.flatten import flatten
+from tracewire.compile.holding import modes_read
 from tracewire.compile.lower import Lowered, Mode, lower
 from tracewire.compile.memory import told
 from tracewire.compile.routines import BACKENDS, PREPARE, Backend, Routines, Sizes
@@ -71,6 +72,15 @@ class Model:
     def kept(self) -> dict[Any, Any]:
         """What those who run the model make of it once and keep: by a key that is theirs."""
         return {}
+
+    @cached_property
+    def only_triggers(self) -> frozenset[int]:
+        """The numbers of the modes that do nothing but trigger events."""
+        low = self.lowered
+        roots = [*low.rates, *low.entries.values(), *(mode.guard for mode in low.modes)]
+        roots += [entry for reset in low.resets for entry in reset.values.values()]
+        read = modes_read(low.tape, roots) | {move.trigger for move in low.transitions}
+        return frozenset({reset.trigger for reset in low.resets if reset.trigger >= 0} - read)
 
     @cached_property
     def read_parameters(self) -> frozenset[str]:

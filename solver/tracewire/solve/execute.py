@@ -47,6 +47,7 @@ Tell = Callable[[float, float], object]
 PAUSE = 0.1  # s between two pauses, about
 FIRST_WORK = 20_000  # signals times steps before the first pause
 GROWTH = 8
+UNASKED = [EVENTS.index("crossing"), EVENTS.index("scheduled")]  # a reset is logged as such
 
 
 def first_budget(model: Model) -> int:
@@ -221,7 +222,11 @@ class Execution:
 
 
 def _shown(model: Model, rows: Matrix) -> Matrix:
-    """The rows of a log without what is made for events: an event whose guard jumps is a reset."""
+    """The rows of a log without what is made for events: an event whose guard jumps is a reset, and
+    one that waits for the other direction is none."""
+    silent = np.isin(rows[:, 2], list(model.only_triggers))
+    if np.any(silent):
+        rows = rows[~(silent & np.isin(rows[:, 1], UNASKED))]
     jumps = np.array([mode.jumps for mode in model.modes])
     if not np.any(jumps != ""):
         return rows
