@@ -200,3 +200,32 @@ def test_shapes_that_do_not_go_together_are_refused(matrix: str, right: str, tol
     assert told in str(caught.value)
     assert "<text>:2:" in str(caught.value)
     assert "block 'a'" in str(caught.value)
+
+
+def test_a_large_full_system_is_refused_at_once() -> None:
+    with pytest.raises(DiagramError, match=r"100 unknowns.*Full ones may have 60") as caught:
+        made(banded(100, 100))
+    assert caught.value.problems[0].place.line > 0
+
+
+def test_a_large_system_with_few_entries_is_solved() -> None:
+    """4*a[i] + c*(a[i - 1] + a[i + 1]) = 1."""
+    matrix = 4 * np.eye(70) + 0.1 * (np.eye(70, k=1) + np.eye(70, k=-1))
+    result = run(banded(70, 1), times=[1.0])
+    assert result.final["x"] == pytest.approx(np.linalg.solve(matrix, np.ones(70))[0], rel=1e-9)
+
+
+def banded(size: int, width: int) -> str:
+    """A system with a parameter beside its diagonal."""
+    rows = [
+        ["4" if i == j else "c" if abs(i - j) <= width else "0" for j in range(size)]
+        for i in range(size)
+    ]
+    matrix = ", ".join(f"[{', '.join(row)}]" for row in rows)
+    return f"""
+span: [0, 1]
+parameters: {{c: 0.1}}
+blocks:
+  x: {{type: integrator, of: "a[0]"}}
+  a: {{type: solve, matrix: [{matrix}], right: [{", ".join(["1"] * size)}]}}
+"""

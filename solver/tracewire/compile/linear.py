@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from tracewire.compile.tape import System, Tape
 
 
@@ -42,6 +44,19 @@ def solve_linear(tape: Tape, matrix: Sequence[int], right: Sequence[int]) -> lis
             system = System(tuple(matrix), tuple(right), found, position)
             tape.systems.setdefault(entry, system)
     return solution
+
+
+def work(tape: Tape, matrix: Sequence[int], size: int) -> int:
+    """About how many entries the elimination of a matrix takes: what is zero takes none, and rows
+    that may change places have the union of what they hold."""
+    filled = np.reshape([tape.value(entry) != 0 for entry in matrix], (size, size))
+    total = 0
+    for column in range(size):
+        rows = column + np.flatnonzero(filled[column:, column])
+        both = np.any(filled[rows], axis=0)
+        total += 4 * max(0, len(rows) - 1) * int(np.sum(both[column:]))
+        filled[rows] = both
+    return total
 
 
 def _exchange(tape: Tape, rows: list[list[int]], column: int, below: int) -> None:

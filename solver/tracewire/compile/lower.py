@@ -10,7 +10,7 @@ from tracewire.compile.differentiate import differentiate, linear_in_t
 from tracewire.compile.events import lower_events
 from tracewire.compile.flat import Flat
 from tracewire.compile.holding import holding, modes_read
-from tracewire.compile.linear import solve_linear
+from tracewire.compile.linear import solve_linear, work
 from tracewire.compile.memory import (
     Reset,
     Transition,
@@ -21,6 +21,9 @@ from tracewire.compile.solve_loops import lower_loop
 from tracewire.compile.tape import BINARY, UNARY, Entry, Tape
 from tracewire.errors import DiagramError, Place, Problem
 from tracewire.formula import CONSTANTS, Call, Expression, Name, Number, to_text
+
+MOST_FULL = 60  # unknowns of a linear system without zeros
+MOST_WORK = 300_000  # entries of its elimination
 
 ModeKind = Literal["sign", "floor", "segment", "memory"]
 
@@ -207,7 +210,19 @@ class Lowering:
         rows, right = (part.arguments for part in system.arguments if isinstance(part, Call))
         cells = [cell for row in rows if isinstance(row, Call) for cell in row.arguments]
         matrix = [self.lower(cell) for cell in cells]
+        if index.value == 0:
+            self.refuse_large(matrix, len(rows))
         return solve_linear(self.tape, matrix, [self.lower(f) for f in right])[int(index.value)]
+
+    def refuse_large(self, matrix: list[int], size: int) -> None:
+        """Raise where the equations of a linear system would take minutes to compile."""
+        if work(self.tape, matrix, size) > MOST_WORK:
+            block = self.flat.blocks.get(self.signal)
+            what = f"the matrix of {size} unknowns has too few zeros to be solved"
+            hint = (
+                f"Full ones may have {MOST_FULL} unknowns. Split the system, or write zeros as 0."
+            )
+            raise DiagramError([Problem(what, block.place if block else Place(), (), hint)])
 
     def boolean(self, node: Call) -> int:
         push = self.tape.push
