@@ -294,6 +294,10 @@ def _cleaned(series: Series, record: Record) -> Record:
 
 def _check_size(series: Series, record: Record) -> None:
     problems = []
+    longest = float(np.abs(record.t).max())
+    if longest > LARGEST:
+        what = f"the time of the series '{series.name}' reaches {longest:.3g} s, too large to fit"
+        problems.append(Problem(what, series.place, (), "Correct its column, or its unit."))
     for name, channel in series.channels.items():
         largest = float(np.abs(record.columns[name]).max())
         if largest > LARGEST:
