@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import re
 from importlib import import_module
 from pathlib import Path
@@ -167,3 +168,25 @@ def test_a_series_of_nothing_is_told(call: Any, cart: Path) -> None:
     text = cart.read_text(encoding="utf-8").replace("signals: {x: x}, inputs: {F: F}", "use: gate")
     cart.write_text(text, encoding="utf-8")
     assert "series 'push' needs 'signals'" in call("check", cart).err
+
+
+def test_a_diagram_from_stdin_is_checked(
+    call: Any, swing: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Files that it names are looked for in the folder where one stands."""
+    monkeypatch.chdir(swing.parent)
+    text = swing.read_bytes()
+    for content, code in ((text, 0), (text.replace(b"gain", b"gian"), 2), (b"\xff", 2)):
+        monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(content)))
+        result = call("check", "-")
+        assert result.code == code
+        assert ("<stdin>:" in result.err) == (code == 2)
+
+
+def test_units_are_listed_and_explained(call: Any) -> None:
+    listed = call("units")
+    assert "deg = 0.0174533 rad" in listed.out
+    assert call("units", "mN m s/deg").out == "1 mN m s/deg = 0.0572957795131 kg*m**2/rad/s\n"
+    assert call("units", "furlong", "--json").data["factor"] == pytest.approx(201.168, rel=1e-5)
+    wrong = call("units", "degC")
+    assert (wrong.code, "is in K" in wrong.err) == (2, True)

@@ -25,6 +25,7 @@ from tracewire.cli.show import show
 from tracewire.cli.streams import close_streams, open_streams
 from tracewire.cli.sweep import sweep
 from tracewire.cli.trace import trace
+from tracewire.cli.units import units
 from tracewire.errors import Problem, TracewireError
 
 STOPPED = Problem("interrupted; nothing was finished")
@@ -55,6 +56,7 @@ def tracewire_(
       tracewire trace pendulum.yaml --apply
       tracewire analyse steady pendulum.yaml
       tracewire blocks dry_friction
+      tracewire units "N m s/deg"
     """
     if version:
         typer.echo(f"tracewire {_version()}")
@@ -71,6 +73,7 @@ app.command()(report)
 app.command()(sweep)
 app.command()(paper)
 app.command()(blocks)
+app.command()(units)
 app.command()(demo)
 app.add_typer(analyse, name="analyse")
 app.add_typer(data, name="data")

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from tracewire.cli.options import AsJson, Debug, Libraries, load_model
 from tracewire.cli.output import print_json, print_text, working
 from tracewire.errors import OptionError, Problem, TracewireError
+
+if TYPE_CHECKING:
+    from tracewire.compile import Model
 
 ENDINGS = (".yaml", ".yml")
 
@@ -19,7 +22,9 @@ def check(
     diagrams: Annotated[
         list[str],
         typer.Argument(
-            metavar="DIAGRAM...", help="Diagram files (YAML), or folders.", show_default=False
+            metavar="DIAGRAM...",
+            help="Diagram files (YAML), or folders; - is stdin.",
+            show_default=False,
         ),
     ],
     library: Libraries = None,
@@ -36,6 +41,7 @@ def check(
     Examples:
       tracewire check pendulum.yaml
       tracewire check diagrams/
+      tracewire check - < pendulum.yaml
     """
     problems: list[Problem] = []
     found: list[dict[str, Any]] = []
@@ -62,7 +68,7 @@ def _contents(file: str, library: Sequence[str] | None, quiet: bool) -> dict[str
     from tracewire.show.summary import contents, contents_text, series_contents
     from tracewire.solve import parameter_values
 
-    model = load_model(file, library)
+    model = load_model(file, library) if file != "-" else _from_stdin(library)
     for preset in ("", *model.flat.presets):  # they must be what the diagram requires
         parameter_values(model, {}, preset)
     measured = []
@@ -75,6 +81,16 @@ def _contents(file: str, library: Sequence[str] | None, quiet: bool) -> dict[str
     if not quiet:
         print_text(contents_text(found, measured))
     return {**found, "measured": measured}
+
+
+def _from_stdin(library: Sequence[str] | None) -> Model:
+    """The compiled model of the diagram that stdin has; its files are looked for from here."""
+    with working("compiling stdin"):
+        from tracewire.compile import compile
+        from tracewire.diagram import read_text
+        from tracewire.diagram.files import STDIN, load_stdin
+
+        return compile(read_text(load_stdin(), STDIN, library or ()))
 
 
 def _files(paths: Sequence[str]) -> list[str]:

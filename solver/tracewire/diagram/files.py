@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 from tracewire.errors import DiagramError, Place, Problem, unknown
 
 MOST_BYTES = 1_000_000
 MOST_LENGTH = 4096
+STDIN = Path("<stdin>")
 
 
 def problem_of(path: Path, place: Place) -> Problem | None:
@@ -47,6 +49,16 @@ def load(path: Path, place: Place = Place()) -> str:
             content = file.read(MOST_BYTES + 1)
     except OSError as error:
         raise DiagramError([_unreadable(path, error, place)]) from None
+    return _decoded(content, path, place)
+
+
+def load_stdin() -> str:
+    """The text of a diagram from stdin. Raises DiagramError, as `load` does."""
+    content = b"" if sys.stdin is None else sys.stdin.buffer.read(MOST_BYTES + 1)
+    return _decoded(content, STDIN, Place())
+
+
+def _decoded(content: bytes, path: Path, place: Place) -> str:
     if len(content) > MOST_BYTES:
         hint = "Put subsystems into files of their own and include them; data belongs into CSV."
         what = f"'{path}' is larger than {MOST_BYTES // 1_000_000} MB, too large for a diagram"
