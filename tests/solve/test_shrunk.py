@@ -271,3 +271,23 @@ blocks:
     assert [event.kind for event in result.events] == ["stick"]
     assert result["z"] == pytest.approx(-1.05e-9 * np.exp(-0.134 * result.t), rel=1e-7)
     assert result.statistics.rejected < 20
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("rtol", [1e-8, 1e-10])
+def test_friction_does_not_hold_a_body_that_a_stop_holds(method: str, rtol: float) -> None:
+    """As it came: both were to hold it, and what rounding left of 0/0 was taken for a force."""
+    text = """
+span: [0, 2.484852041652523]
+blocks:
+  a: {type: expression, formula: "-0.5982413443174957*s.x - 0.6654722181769388*s.v
+      + 0.0002666434304536563*z - 7.531716005260034e-06 + 2.0975850606525415e-11*e"}
+  z: {type: integrator, of: b, start: -0.007825786548181873}
+  b: {type: expression, formula: -0.4671103069895821*z}
+  s: {type: hard_stop, force: a, high: 2.379659036159396e-06, low: -3.620526817749215e-06,
+      restitution: 0.05, start: -9.37828091998475e-07, start_rate: 7.1643965125737806e-06}
+  e: {type: dry_friction, rate: s.v, slip: 136292.89704198792, stick: 214055.9509887871}
+"""
+    result = run(text, method=method, rtol=rtol)
+    assert result.final["s.x"] == pytest.approx(-3.620526817749215e-06, rel=1e-9)
+    assert result.final["s.v"] == 0.0

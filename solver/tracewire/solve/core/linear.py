@@ -13,6 +13,7 @@ Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 Ints = NDArray[np.int64]
 MOST = 1000  # of the exponent of a scale
+SINGULAR = 1e-12  # of the largest pivot: a smaller one may be rounding alone
 
 
 @helper
@@ -92,22 +93,32 @@ def _substitute(factors: Matrix, pivots: Ints, right: Vector, n: int) -> None:
 
 @unit
 def solved(matrix: Matrix, right: Vector) -> Vector:
-    """The solution of a system; NaN where it is singular. The matrix is lost.
+    """The solution of a system; NaN where it is singular, but for rounding. The matrix is lost.
 
-    Each row may be in a unit of its own: it is brought to the size 1.
+    Each row and each unknown may have a unit of its own: they are brought to the size 1.
     """
-    pivots = np.empty(len(matrix), dtype=np.int64)
+    n = len(matrix)
+    pivots, scales = np.empty(n, dtype=np.int64), np.empty(n)
     answer = right.copy()
-    for i in range(len(matrix)):
+    for i in range(n):
         largest = 0.0
-        for j in range(len(matrix)):
+        for j in range(n):
             largest = max(largest, abs(matrix[i, j]))
         scale = towards_one(largest)
         answer[i] *= scale
-        for j in range(len(matrix)):
+        for j in range(n):
             matrix[i, j] *= scale
-    if factor(matrix, pivots) > 0.0:
+    for j in range(n):
+        largest = 0.0
+        for i in range(n):
+            largest = max(largest, abs(matrix[i, j]))
+        scales[j] = towards_one(largest)
+        for i in range(n):
+            matrix[i, j] *= scales[j]
+    if factor(matrix, pivots) > SINGULAR:
         substitute(matrix, pivots, answer)
+        for j in range(n):
+            answer[j] *= scales[j]
     else:
         answer[:] = np.nan
     return answer
