@@ -158,13 +158,15 @@ class Routines:
 
     def _paces(self) -> list[int]:
         """The largest pace of what is searched for zeros: of the guards, and of the fractions of
-        slides and the forces of contacts while these hold."""
+        slides and the forces of contacts while these hold, as far as these read t: else they
+        follow the states, as steps do."""
         low = self.lowered
         searched = [m.guard for m in low.modes if not m.timed and m.kind != "memory"]
         hit = sorted({reset.trigger for reset in low.resets if self._may_hit(reset)})
         forces = self.along_the_flow([self.guard_rates[i] for i in hit], 1)
         forces += [self.guard_rates[i] for i in sorted(self.holding)]
-        return [pace(self.tape, roots, self.flow) for roots in (searched, forces)]
+        time = {low.entries["t"]: self.tape.constant(1.0)}
+        return [pace(self.tape, searched, self.flow), pace(self.tape, forces, time)]
 
     def _may_hit(self, reset: Reset) -> bool:
         """Whether a reset may be that of a contact: it writes a rate of its guard, and no place."""

@@ -59,7 +59,7 @@ combinations, more by pivoting. Fields in which two sliding modes multiply each 
 the fields points in; not where its sign is wrong, so that it drives. A jump that carries the run
 off the surface ends the slide. Recorded signals on a slide are blends, too, and so are the guards
 and what resets write: a counter that reads a friction which sticks counts the rises of the force
-that holds it. What such a friction may balance bounds the steps by its pace, as a guard does. The
+that holds it. What such a friction balances bounds the steps by its pace in time. The
 blend is exact where the friction enters as a factor or a term: its square is that of the sides.
 What rounding moves
 off the surface is put back after each step: a body at rest stays where it is for ever. A floor does
