@@ -174,6 +174,12 @@ class TrialOptions:
     not_astray: float = 2.0
     """The mean squared residual of a window, in the noise's variance, up to which its start has not
     been led astray."""
+    ruling: float = 4.0
+    """A window with this many times the squared residual of the middle one may rule a fit. Seen in
+    the demonstration: two of 21 windows, at 11 and 5 times, held all values at twice the squared
+    error."""
+    few_ruling: float = 0.25
+    """The part of the windows, at most, that is left out to see whether it rules a fit."""
     near_bound: float = 1e-3
     """Of the range between two bounds, or of the size of a number: how near to one is on it."""
     phase_steps: int = 8

@@ -231,7 +231,32 @@ class Bench:
         fixed = trial.windows.criterion.parameters
         effects = self.met(trial, segments)
         good = trial.windows.good
-        return self.fitted(effects, segments, length, trial.values, fixed=fixed, good=good)
+        found = self.fitted(effects, segments, length, trial.values, fixed=fixed, good=good)
+        return self._freed(found)
+
+    def _freed(self, trial: Trial) -> Trial:
+        """A trial that a few windows rule, fitted without them first and then to all, where that
+        does better: values and a start may hold each other where neither is right."""
+        options, segments = self.options.trial, trial.windows.segments
+        means = trial.windows.squares / [max(r.size, 1) for r in trial.windows.residuals]
+        others = np.flatnonzero(means <= options.ruling * np.median(means)).tolist()
+        few = len(others) >= (1 - options.few_ruling) * len(segments)
+        if trial.s2 < options.not_astray or len(others) == len(segments) or not few:
+            return trial
+        fixed, good = trial.windows.criterion.parameters, trial.windows.good
+        try:
+            there = self.fitted(
+                trial.effects, [segments[n] for n in others], trial.length, trial.values,
+                fixed=fixed, good=good,
+            )  # fmt: skip
+            begun = dict(zip(others, there.windows.segments, strict=True))
+            whole = self.fitted(
+                there.effects, [begun.get(n, s) for n, s in enumerate(segments)], trial.length,
+                there.values, fixed=fixed, good=good,
+            )  # fmt: skip
+        except FitError:
+            return trial
+        return whole if whole.rss < trial.rss else trial
 
     def some(self, trial: Trial, numbers: Sequence[int]) -> Trial:
         """A trial on some of its windows, by number, as they are."""
