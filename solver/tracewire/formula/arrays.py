@@ -1,4 +1,4 @@
-"""The values of a formula along samples: names stand for arrays of the same length."""
+"""The values of a formula along samples: names stand for arrays that broadcast together."""
 
 from __future__ import annotations
 
@@ -54,16 +54,17 @@ OPERATIONS: dict[str, Callable[..., Any]] = {
 
 
 def evaluate_along(
-    expression: Expression, values: Mapping[str, float | Vector], count: int
+    expression: Expression, values: Mapping[str, float | Vector], shape: int | tuple[int, ...]
 ) -> Vector:
-    """The values (count,) of a formula at samples, given those of its names, (count,) or a number.
+    """The values of a formula in an array of this shape, as (N,) of samples or (N, k) of samples
+    and choices; those of its names are numbers or arrays that broadcast to it.
 
     A sign, or a friction, of exactly 0 is 0. Raises FormulaError where a value is not finite, a
     name has no value, or a function has no meaning for samples alone.
     """
     try:
         with np.errstate(all="ignore"):  # the branch of a choice that is not taken
-            found = np.broadcast_to(_value(expression, values), (count,)).astype(float)
+            found = np.broadcast_to(_value(expression, values), shape).astype(float)
     except KeyError as error:
         what = f"'{to_text(expression)}' cannot be evaluated along samples: no '{error.args[0]}'"
         raise FormulaError.one(what) from error

@@ -111,23 +111,15 @@ def _outputs(
     block = model.diagram.library[candidate.effect]
     (formula,) = block.formulas.values()
     defaults = {p.name: p.default for p in block.parameters if isinstance(p.default, float | int)}
-    signals = {port: run.signals[name] for port, name in candidate.signals.items()}
-    known: dict[str, float | Vector] = {
-        **defaults,
-        candidate.parameter: candidate.at,
-        **signals,
-        "t": run.t,
-    }
+    known: dict[str, float | Vector] = {**defaults, candidate.parameter: candidate.at}
+    known |= {port: run.signals[name][:, None] for port, name in candidate.signals.items()}
+    known["t"] = run.t[:, None]
     rest = {n: g for n, g in candidate.shapes.items() if n != shape}
     # all phases, which may be negative, but of a width only the first
     grids = [grid if candidate.limits[n][0] < 0 else grid[:1] for n, grid in rest.items()]
-    columns = [
-        evaluate_along(
-            formula, {**known, shape: length, **dict(zip(rest, chosen, strict=True))}, len(run.t)
-        )
-        for length, chosen in product(lengths.tolist(), list(product(*grids)))
-    ]
-    return np.stack(columns, axis=1) / candidate.at
+    choices = np.array(list(product(lengths.tolist(), *grids)))
+    known |= dict(zip((shape, *rest), choices.T, strict=True))
+    return evaluate_along(formula, known, (len(run.t), len(choices))) / candidate.at
 
 
 def _fall(columns: Matrix, residual: Vector) -> float:

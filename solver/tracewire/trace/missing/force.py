@@ -15,6 +15,7 @@ from tracewire.trace.candidates.places import Place
 from tracewire.trace.found import Force, Means
 from tracewire.trace.screen.observed import trajectories
 from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.screen.torques import missing_torques
 from tracewire.trace.thresholds import MapOptions
 from tracewire.trace.trials.trial import Trial
 
@@ -31,13 +32,18 @@ def forces(
     for a torque of free values at its samples. `fitted` is the tangent of the windows of the fit,
     which are long enough to tell a small torque from noise: the means are estimated there.
     """
+    options = tangent.options
+
+    def bend(signal: Vector) -> float:
+        return options.map.force_smooth * float(np.std(signal))
+
     found = []
     names = {place.name: place for place in tangent.places if place.kind == "sum" and place.v}
     for name in dict.fromkeys(effect.candidate.place.name for effect in best.effects):
         if name not in names:
             continue
         place = names[name]
-        needed = _needed(tangent, place)
+        needed = missing_torques(tangent, [place], bend, options.screen.torque_level)[place.name]
         given_by_effects = _fitted(best, tangent.windows, place, rtol)
         means = () if fitted is None else _means(fitted, best, place, rtol)
         for number, (run, torque) in enumerate(zip(tangent.trajectories, needed, strict=True)):
@@ -128,30 +134,6 @@ def _least_squares(
     ridge = 1e-12 * max(float(np.trace(matrix)) / count, 1e-300)
     inverse = np.linalg.inv(matrix + ridge * np.eye(count))
     return inverse @ right, np.sqrt(np.diag(inverse) * max(s2, 1.0))
-
-
-def _needed(tangent: Tangent, place: Place) -> list[Vector]:
-    """The missing torque at the samples of each series, nan where no window is."""
-    found = [np.full(len(run.t), np.nan) for run in tangent.trajectories]
-    for joined, number in zip(tangent.joined, tangent.series, strict=True):
-        samples = np.unique(joined.samples)
-        run = tangent.trajectories[number]
-        unit = np.zeros((len(run.t), len(samples)))
-        unit[samples, np.arange(len(samples))] = 1.0
-        given = [np.zeros((len(other.t), len(samples))) for other in tangent.trajectories]
-        given[number] = unit
-        view = tangent.windows.near[joined.window].projection
-        answer = view.off(tangent.window_answer(joined, {place.name: given}))
-        residual = view.off(tangent.windows.near[joined.window].residual.ravel())
-        size = tangent.options.map.force_smooth * max(
-            float(np.std(run.signals[place.name])), 1e-300
-        )
-        bent = np.diff(np.eye(len(samples)), 2, axis=0) / size
-        level = 1e-3 * np.eye(len(samples)) / size
-        matrix = np.vstack((answer, bent, level))
-        target = np.concatenate((-residual, np.zeros(len(bent) + len(level))))
-        found[number][samples] = np.linalg.lstsq(matrix, target, rcond=None)[0]
-    return found
 
 
 def _fitted(best: Trial, windows: Windows, place: Place, rtol: float) -> list[Vector]:

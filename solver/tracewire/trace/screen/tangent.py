@@ -9,7 +9,8 @@ number of them, is a product of small matrices, without another run.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from copy import copy
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -109,6 +110,18 @@ class Tangent:
         columns stand in the order of the places given.
         """
         return np.concatenate([self.window_answer(joined, histories) for joined in self.joined])
+
+    def explaining(self, histories: Mapping[str, Sequence[Matrix]]) -> Tangent:
+        """The same windows along the data: the residual is what the torques given, (N, 1) for each
+        series by place, did to bring them there."""
+        near = []
+        for joined, one in zip(self.joined, self.windows.near, strict=True):
+            done = self.window_answer(joined, histories).sum(axis=1)
+            near.append(replace(one, residual=one.residual - np.reshape(done, one.residual.shape)))
+        found = copy(self)
+        found.windows = replace(self.windows, near=tuple(near))
+        found.along_data = True
+        return found
 
     @property
     def size(self) -> int:

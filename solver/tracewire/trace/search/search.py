@@ -55,6 +55,7 @@ class Search:
     """The lengths of waves that were scanned last, by candidate and shape."""
     returns: bool = True
     """Whether a body comes back to where it was: else much looks the same."""
+    _last: tuple[Trial, Tangent] | None = None
 
     @property
     def options(self) -> TraceOptions:
@@ -218,7 +219,7 @@ class Search:
         """The screen beside a model. Lengths of waves are scanned where there are few samples; else
         they are those that were found there last."""
         options = self.options
-        tangent = Tangent(trial.diagram, trial.windows, self.places, self.bench.rtol, options)
+        tangent = self.tangent(trial)
         candidates = self.candidates(tangent, [effect.candidate for effect in trial.effects])
         scan = not self.waves or trial.count <= options.most_scanned
         if not scan:
@@ -239,13 +240,20 @@ class Search:
         near = trial.s2 < options.search.far or misfit(trial) < options.screen.far_from_data
         if near or not self.free:
             return None
-        tangent = Tangent(trial.diagram, trial.windows, self.places, self.bench.rtol, options)
-        along = assimilated(self.bench, trial, tangent)
+        along = assimilated(self.bench, trial, self.tangent(trial))
         if along is None:
             return None
         taken = [effect.candidate for effect in trial.effects]
         candidates = seen_along(self.candidates(along, taken))
         return screened(along, trial, candidates, True, options.most_residuals)
+
+    def tangent(self, trial: Trial) -> Tangent:
+        """The windows of a model linearised in torques at the places; that of the last one is
+        kept, as a screen and one along the data ask for the same."""
+        if self._last is None or self._last[0] is not trial:
+            args = trial.diagram, trial.windows, self.places, self.bench.rtol, self.options
+            self._last = trial, Tangent(*args)
+        return self._last[1]
 
     def candidates(self, tangent: Tangent, taken: Sequence[Candidate]) -> list[Candidate]:
         """The effects at places that may be tried beside those that are there."""

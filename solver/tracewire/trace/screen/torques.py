@@ -1,0 +1,60 @@
+"""The torques at places that take the residual of windows away.
+
+In each window, with w_p the torque at place p, straight between a few nodes or free at each sample:
+
+    w = argmin |r + A w|^2 + sum over p of |D2 w_p|^2/s_p^2 + |l w_p|^2/s_p^2,
+
+r the residual in sigma and A the linearised answer, both without what the start of the window
+explains, D2 the second differences, s_p a bend that is usual there, l the level.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import block_diag
+
+from tracewire.trace.candidates.places import Place
+from tracewire.trace.screen.tangent import Tangent
+
+Vector = NDArray[np.float64]
+
+
+def missing_torques(
+    tangent: Tangent,
+    places: Sequence[Place],
+    bend: Callable[[Vector], float],
+    level: float,
+    nodes: int | None = None,
+) -> dict[str, list[Vector]]:
+    """By place the torque at the samples of each series, (N,), nan where no window is.
+
+    `bend` gives s_p, in the unit of the place, from the signal of the place along a series; `nodes`
+    are those of a window, one at each sample where none are given.
+    """
+    runs = tangent.trajectories
+    found = {place.name: [np.full(len(run.t), np.nan) for run in runs] for place in places}
+    for joined, number in zip(tangent.joined, tangent.series, strict=True):
+        samples = np.unique(joined.samples)
+        count = len(samples) if nodes is None else min(nodes, len(samples))
+        edges = np.linspace(samples[0], samples[-1], count) if nodes is not None else samples
+        hats = np.stack([np.interp(samples, edges, one) for one in np.eye(count)], axis=1)
+        given = [np.zeros((len(run.t), count)) for run in runs]
+        given[number][samples] = hats
+        near = tangent.windows.near[joined.window]
+        view, answers, rows = near.projection, [], []
+        for place in places:
+            answers.append(view.off(tangent.window_answer(joined, {place.name: given})))
+            size = max(bend(runs[number].signals[place.name]), 1e-300)
+            rows.append(
+                np.vstack((np.diff(np.eye(count), 2, axis=0), level * np.eye(count))) / size
+            )
+        held = block_diag(*rows)
+        matrix = np.vstack((np.hstack(answers), held))
+        target = np.concatenate((-view.off(near.residual.ravel()), np.zeros(len(held))))
+        torque = np.linalg.lstsq(matrix, target, rcond=None)[0]
+        for place, part in zip(places, np.split(torque, len(places)), strict=True):
+            found[place.name][number][samples] = hats @ part
+    return found
