@@ -115,10 +115,9 @@ class Pool:
 
     def _keep_better(self, finalist: Finalist) -> None:
         """Keep a model, or the fit of it that is known where that is better over the horizons."""
-        known = self.models.get(finalist.key, finalist)
-        self.models[finalist.key] = min(
-            finalist, known, key=lambda one: math.prod(trial.rss for trial in one.trials)
-        )
+        known = self.models.get(finalist.key)
+        if known is None or finalist.rss < (1 - self.options.coarse) * known.rss:
+            self.models[finalist.key] = finalist
 
     def _extend_beside(self, parent: Finalist) -> None:
         """A model with the most promising effects and pairs: what shows in short windows is looked
@@ -309,18 +308,19 @@ class Pool:
         return behind < math.log(self.options.parent_behind)
 
     def without(self, model: Finalist, name: str) -> Finalist | None:
-        """The model without one of its effects."""
+        """The model without one of its effects: from its values, or the fit that is known, where
+        that is better. A smaller model that stands in the next minimum makes an effect look
+        needed that only led out of it."""
         key = model.names - {name}, model.dropped
-        if key not in self.models:
-            trials = []
-            for trial in model.trials:
-                effects = [e for e in trial.effects if str(e) != name]
-                fixed = dict(trial.windows.criterion.parameters)
-                fewer = self._fit(trial, effects, fixed, self.options.steps, np.inf)
-                if fewer is None:
-                    return None
-                trials.append(fewer)
-            self.models[key] = Finalist(tuple(trials), model.dropped)
+        trials = []
+        for trial in model.trials:
+            effects = [e for e in trial.effects if str(e) != name]
+            fixed = dict(trial.windows.criterion.parameters)
+            fewer = self._fit(trial, effects, fixed, self.options.steps, np.inf)
+            if fewer is None:
+                return self.settled(self.models[key]) if key in self.models else None
+            trials.append(fewer)
+        self._keep_better(Finalist(tuple(trials), model.dropped))
         return self.settled(self.models[key])
 
     def without_terms(self, model: Finalist) -> list[Finalist]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -40,6 +41,11 @@ class Finalist:
     def names(self) -> frozenset[str]:
         """The effects that it has, as `name @ place`."""
         return frozenset(str(effect) for effect in self.trials[0].effects)
+
+    @property
+    def rss(self) -> float:
+        """The product of the sums of squares at each horizon."""
+        return math.prod(trial.rss for trial in self.trials)
 
     @property
     def title(self) -> str:

@@ -99,15 +99,17 @@ def predict(search: Search, begun: Trial) -> Prediction:
     pool.fill(declared)
     errors: dict[Key, Array] = {}
     _compare(pool, declared, errors)
+    pruned: set[Key] = set()
     while True:
         prediction = _chosen(pool, errors)
         taken = prediction.taken
-        fewer = [pool.without(taken, name) for name in sorted(taken.names)]
-        new = [m for m in fewer if m is not None and m.key not in errors]
-        if not new:
+        if taken.key in pruned:
             return prediction
-        for model in new:
-            errors[model.key] = _errors(pool, model)
+        pruned.add(taken.key)
+        known = dict(pool.models)
+        for fewer in [pool.without(taken, name) for name in sorted(taken.names)]:
+            if fewer and (fewer.key not in errors or fewer is not known[fewer.key]):
+                errors[fewer.key] = _errors(pool, fewer)
 
 
 def _compare(pool: Pool, declared: Finalist, errors: dict[Key, Array]) -> None:
