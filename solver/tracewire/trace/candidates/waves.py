@@ -20,6 +20,7 @@ from tracewire.trace.thresholds import CandidateOptions
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
+Samples = NDArray[np.intp]
 Answer = Callable[[str, Sequence[Matrix]], Matrix]
 """What torques (N, k) by series at a place, by its name, do to the residuals, (M, k), without what
 the starts of windows and the unknowns imitate."""
@@ -31,11 +32,14 @@ def scanned(
     model: Model,
     candidates: Sequence[Candidate],
     runs: Sequence[Trajectory],
+    used: Sequence[Samples],
     residual: Vector,
     answer: Answer,
     options: CandidateOptions,
 ) -> list[Candidate]:
     """The candidates, those with a wave with the lengths that promise most in place of their grid.
+
+    `used` are the samples of each run in the windows that are looked at.
 
     All lengths between the bounds are scored, some of them for each wave more on the way, and
     where the coordinate is an angle also 2 pi/n; the peaks of the score are kept. A candidate that
@@ -45,7 +49,7 @@ def scanned(
     for candidate in candidates:
         for shape in candidate.waves:
             try:
-                grid = _peaks(model, candidate, shape, runs, residual, answer, options)
+                grid = _peaks(model, candidate, shape, runs, used, residual, answer, options)
             except TracewireError:
                 continue
             candidate = replace(candidate, shapes={**candidate.shapes, shape: grid})
@@ -73,6 +77,7 @@ def _peaks(
     candidate: Candidate,
     shape: str,
     runs: Sequence[Trajectory],
+    used: Sequence[Samples],
     residual: Vector,
     answer: Answer,
     options: CandidateOptions,
@@ -83,7 +88,10 @@ def _peaks(
     falls = []
     for first in range(0, len(lengths), TOGETHER):
         some = lengths[first : first + TOGETHER]
-        torques = [_outputs(model, candidate, shape, some, run) for run in runs]
+        torques = [
+            _outputs(model, candidate, shape, some, run, samples)
+            for run, samples in zip(runs, used, strict=True)
+        ]
         columns = answer(candidate.place.name, torques)
         falls += [_fall(part, residual) for part in np.split(columns, len(some), axis=1)]
     scores = np.array(falls)
@@ -105,21 +113,29 @@ def _lengths(low: float, high: float, angle: bool, options: CandidateOptions) ->
 
 
 def _outputs(
-    model: Model, candidate: Candidate, shape: str, lengths: Vector, run: Trajectory
+    model: Model,
+    candidate: Candidate,
+    shape: str,
+    lengths: Vector,
+    run: Trajectory,
+    samples: Samples,
 ) -> Matrix:
-    """The outputs (N, lengths * phases) of the effect, with each length and each other shape."""
+    """The outputs (N, lengths * phases) of the effect, with each length and each other shape; zero
+    but at the samples asked for."""
     block = model.diagram.library[candidate.effect]
     (formula,) = block.formulas.values()
     defaults = {p.name: p.default for p in block.parameters if isinstance(p.default, float | int)}
     known: dict[str, float | Vector] = {**defaults, candidate.parameter: candidate.at}
-    known |= {port: run.signals[name][:, None] for port, name in candidate.signals.items()}
-    known["t"] = run.t[:, None]
+    known |= {port: run.signals[name][samples, None] for port, name in candidate.signals.items()}
+    known["t"] = run.t[samples, None]
     rest = {n: g for n, g in candidate.shapes.items() if n != shape}
     # all phases, which may be negative, but of a width only the first
     grids = [grid if candidate.limits[n][0] < 0 else grid[:1] for n, grid in rest.items()]
     choices = np.array(list(product(lengths.tolist(), *grids)))
     known |= dict(zip((shape, *rest), choices.T, strict=True))
-    return evaluate_along(formula, known, (len(run.t), len(choices))) / candidate.at
+    found = np.zeros((len(run.t), len(choices)))
+    found[samples] = evaluate_along(formula, known, (len(samples), len(choices))) / candidate.at
+    return found
 
 
 def _fall(columns: Matrix, residual: Vector) -> float:

@@ -197,7 +197,9 @@ def screened(
     measured = as_measured(windows, tangent.trajectories)
     options = tangent.options
     if scan:
-        candidates = scanned(model, candidates, measured, residual, answer, options.candidate)
+        candidates = scanned(
+            model, candidates, measured, tangent.used, residual, answer, options.candidate
+        )
     reduced, whole, variants = _rows(tangent, candidates, measured, every)
     reduced[_squares(reduced) < SEEN * whole] = 0.0
     reduced, variants = _by_series(tangent, reduced, variants, kept)

@@ -124,6 +124,14 @@ class Tangent:
         return found
 
     @property
+    def used(self) -> list[NDArray[np.intp]]:
+        """The samples of each series in its windows."""
+        found: list[list[NDArray[np.intp]]] = [[] for _ in self.trajectories]
+        for joined, number in zip(self.joined, self.series, strict=True):
+            found[number].append(joined.samples)
+        return [np.unique(np.concatenate(samples)) for samples in found]
+
+    @property
     def size(self) -> int:
         """The number of residuals."""
         return sum(near.residual.size for near in self.windows.near)

@@ -218,9 +218,12 @@ class Search:
     def screen(self, trial: Trial) -> Screen:
         """The screen beside a model. Lengths of waves are scanned where there are few samples; else
         they are those that were found there last."""
-        options = self.options
+        taken = [effect.candidate for effect in trial.effects]
         tangent = self.tangent(trial)
-        candidates = self.candidates(tangent, [effect.candidate for effect in trial.effects])
+        return self._screened(tangent, trial, self.candidates(tangent, taken))
+
+    def _screened(self, tangent: Tangent, trial: Trial, candidates: Sequence[Candidate]) -> Screen:
+        options = self.options
         scan = not self.waves or trial.count <= options.most_scanned
         if not scan:
             candidates = [
@@ -244,8 +247,7 @@ class Search:
         if along is None:
             return None
         taken = [effect.candidate for effect in trial.effects]
-        candidates = seen_along(self.candidates(along, taken))
-        return screened(along, trial, candidates, True, options.most_residuals)
+        return self._screened(along, trial, seen_along(self.candidates(along, taken)))
 
     def tangent(self, trial: Trial) -> Tangent:
         """The windows of a model linearised in torques at the places; that of the last one is
