@@ -74,8 +74,9 @@ def _contents(file: str, library: Sequence[str] | None, quiet: bool) -> dict[str
     measured = []
     if model.diagram.measured:
         with working("reading the measured series"):
-            from tracewire.residual import load_measured
+            from tracewire.residual import load_measured, refuse_readers_of_free
 
+            refuse_readers_of_free(model)
             measured = [series_contents(series) for series in load_measured(model, driving=True)]
     found = contents(model)
     if not quiet:

@@ -91,7 +91,9 @@ def fit(
     if method not in METHODS:
         raise OptionError([unknown("method", method, METHODS)])
     began = time.perf_counter()
-    series = tuple(load_measured(model) if measured is None else measured)
+    if measured is None:
+        measured = load_measured(model, parameters=parameters)
+    series = tuple(measured)
     if not series:
         raise DataError([Problem("there is no measured series to fit to")])
     model = with_measured_signals(model, series)

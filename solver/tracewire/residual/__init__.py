@@ -45,6 +45,7 @@ from tracewire.residual.unknowns import (
     chosen_unknowns,
     free_unknowns,
     own_unknowns,
+    refuse_readers_of_free,
     sensor_unknowns,
 )
 from tracewire.residual.windows import (
@@ -101,6 +102,7 @@ __all__ = [
     "opened",
     "own_unknowns",
     "parameter_in",
+    "refuse_readers_of_free",
     "response_in_windows",
     "run_noise",
     "sensor_unknowns",

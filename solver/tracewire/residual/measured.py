@@ -92,10 +92,16 @@ def measured_signals(diagram: Diagram) -> tuple[str, ...]:
 
 
 def load_measured(
-    model: Model, uses: Iterable[str] = (), *, driving: bool = False
+    model: Model,
+    uses: Iterable[str] = (),
+    *,
+    driving: bool = False,
+    parameters: Mapping[str, float] | None = None,
 ) -> tuple[Measured, ...]:
     """The measured series of a model's diagram, read from their files; all, or those of some uses.
 
+    `parameters` are values in SI in place of those of the diagram, for starts and sensors that are
+    formulas of them.
     A series with several windows gives one for each, as `swing (train)`. What `clean` says is done
     in its order; then the windows cut the record, in the file's own time, and that time is put to
     the diagram's. A series of inputs alone has nothing to compare: it is read if `driving`.
@@ -117,7 +123,7 @@ def load_measured(
     loaded: list[Measured] = []
     for series in chosen:
         try:
-            loaded += _load(model, series, wanted)
+            loaded += _load(model, series, wanted, parameters or {})
         except TracewireError as error:
             problems += error.problems
     if problems:
@@ -125,16 +131,18 @@ def load_measured(
     return tuple(loaded)
 
 
-def _load(model: Model, series: Series, uses: Collection[str]) -> list[Measured]:
+def _load(
+    model: Model, series: Series, uses: Collection[str], parameters: Mapping[str, float]
+) -> list[Measured]:
     read = _read(series)
     record = _cleaned(series, read)
     check_quantities(model, series, record)
     _check_size(series, record)
     if not series.windows:
         ends = (_or(series.begin, -math.inf), _or(series.end, math.inf))
-        return [_measured(model, series, read, record, series.use, ends)]
+        return [_measured(model, series, read, record, series.use, ends, parameters)]
     return [
-        _measured(model, series, read, record, use, ends)
+        _measured(model, series, read, record, use, ends, parameters)
         for use, ends in series.windows.items()
         if not uses or use in uses
     ]
@@ -147,11 +155,12 @@ def _measured(
     record: Record,
     use: str,
     ends: tuple[float, float],
+    parameters: Mapping[str, float],
 ) -> Measured:
     """The part of a record in a window, in the time of the diagram."""
     channels = series.channels
     own = series_parameters(model, series)
-    values = parameter_values(model, own, series.preset)
+    values = parameter_values(model, {**parameters, **own}, series.preset)
     rows = _window(series, record, ends)
     zero = series.time.zero * record.time_unit.factor
     if len(rows) < len(record.t):

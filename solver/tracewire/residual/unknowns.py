@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
 from tracewire.compile import Model
+from tracewire.diagram import SENSOR
 from tracewire.errors import OptionError, Place, Problem, unknown
+from tracewire.formula import names_of
 from tracewire.residual.measured import Measured
 from tracewire.residual.segment import Unknown, own_name
 
@@ -96,6 +98,41 @@ def own_unknowns(measured: Sequence[Measured]) -> list[Unknown]:
     return list(found.values())
 
 
+def refuse_readers_of_free(model: Model, free: Collection[str] | None = None) -> None:
+    """Refuse starts and sensors of measured series that read what a fit changes, all parameters
+    with bounds or those that `free` names: they are computed once, when a series is read, and would
+    keep their values.
+
+    Raises OptionError with all of them.
+    """
+    flat = model.flat.parameters
+    moving = {n for n, p in flat.items() if p.fit is not None} if free is None else set(free)
+    parameters = model.flat.parameters.values()
+    while more := {
+        p.name for p in parameters if p.name not in moving and moving & {*names_of(p.formula)}
+    }:
+        moving |= more
+    problems = []
+    for series in model.diagram.measured.values():
+        read = {f"start of '{name}'": (value, "free") for name, value in series.start.items()}
+        for signal, channel in series.channels.items():
+            bounds = "{value: ..., fit: [low, high]}"
+            read |= {f"{kind} of '{signal}'": (getattr(channel, kind), bounds) for kind in SENSOR}
+        for what, (value, instead) in read.items():
+            if value is None:
+                continue
+            names = sorted(moving & {*names_of(value.formula)})
+            if names:
+                told = f"the {what} in the series '{series.name}' reads '{names[0]}', which is free"
+                hint = (
+                    "It would keep its value in a fit. Write " + instead + ", or fix the parameter."
+                )
+                place = value.place if value.place.file else series.place
+                problems.append(Problem(told, place, hint=hint))
+    if problems:
+        raise OptionError(problems)
+
+
 def chosen_unknowns(
     model: Model,
     measured: Sequence[Measured],
@@ -126,6 +163,7 @@ def chosen_unknowns(
         for name, sensor in sensors.items()
         if name not in fixed and (free is None or name in free)
     ]
+    refuse_readers_of_free(model, [unknown.name for unknown in found])
     if not found:
         hint = "Give a parameter bounds, as in k: {value: 1, fit: [0, 10]}, or name it as free."
         raise OptionError([Problem("no parameter of the diagram is free", hint=hint)])

@@ -11,6 +11,7 @@ from tracewire.residual import (
     Measured,
     channel_noise,
     load_measured,
+    refuse_readers_of_free,
     with_measured_signals,
 )
 from tracewire.trace.candidates.places import find_places, untried
@@ -39,6 +40,7 @@ def begun(
     model = with_measured_signals(subject, measured)
     series = tuple(load_measured(model) if measured is None else measured)
     check_series(model, series, options.check)
+    refuse_readers_of_free(model)
     check_options(options, model)
     sigma = channel_noise([m for m in series if m.use != "validate"])
     series = tuple(without_spikes(m, sigma, options.check) for m in series)
