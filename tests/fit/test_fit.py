@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from residual.models import LINE, OSCILLATOR, PENDULUM, C, K, T, made, oscillation, series, swing
 from tracewire.errors import DataError, FitError, OptionError
 from tracewire.fit import Fit, Progress, fit, optimset
+from tracewire.fit.caveats import unfinished
 from tracewire.residual import Measured, Sensor
 
 METHODS = ("fminsearch", "least_squares")
@@ -402,3 +404,16 @@ def test_outliers_do_not_lead_a_robust_loss_astray() -> None:
     plain, robust = (fitted(OSCILLATOR, measured, loss=loss) for loss in ("linear", "huber"))
     assert abs(plain.values["k"] - K) > 5 * abs(robust.values["k"] - K)
     assert robust.values == pytest.approx({"k": K, "c": C}, rel=0.02)
+
+
+def test_a_search_whose_last_slope_promises_much_says_so_though_errors_are_large() -> None:
+    """r = a*p + b where p is 1 off: the residual that is there makes the errors as wide as the
+    step."""
+    criterion = SimpleNamespace(scales=np.array([1.0]))
+    slope, vector = np.ones((50, 1)), np.ones(50)
+    told = SimpleNamespace(names=("p",), at_bounds=(), errors={"p": 2.0})
+    (remark,) = unfinished(told, criterion, slope, vector)  # type: ignore[arg-type]
+    assert remark.startswith("the search ended before a minimum: the slope there promises to ")
+    assert remark.endswith("go on with --method least_squares")
+    settled = np.tile([1.0, -1.0], 25)
+    assert unfinished(told, criterion, slope, settled) == []  # type: ignore[arg-type]

@@ -16,12 +16,16 @@ Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 ELSEWHERE = 0.2
 """Of the range of a measured state: a first sample so far from the run's is another start."""
+PROMISED = 0.9
+"""The part of the residual that a Gauss-Newton step promises to leave, below which a search has
+ended before a minimum."""
 
 
 def unfinished(
     uncertainty: Uncertainty, criterion: Criterion, matrix: Matrix, vector: Vector
 ) -> list[str]:
-    """That the search ended before a minimum: a Gauss-Newton step goes beyond the errors."""
+    """That the search ended before a minimum: a Gauss-Newton step goes beyond the errors, or
+    promises to take away much of the sum of squares."""
     names = uncertainty.names
     held = {names.index(name) for name in uncertainty.at_bounds}
     moved = [j for j in range(matrix.shape[1]) if j not in held]
@@ -33,6 +37,12 @@ def unfinished(
         for name, move in zip(names, step * criterion.scales, strict=False)
         if (error := uncertainty.errors[name]) > 0 and abs(move) > error
     }
+    promised = np.linalg.norm(vector + matrix @ step) / max(float(np.linalg.norm(vector)), 1e-300)
+    if not far and promised < PROMISED:
+        return [
+            "the search ended before a minimum: the slope there promises to lower the residual to "
+            f"{promised:.2g} of it; go on with --method least_squares"
+        ]
     if not far:
         return []
     most = max(far, key=lambda name: far[name])

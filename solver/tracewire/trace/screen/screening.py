@@ -201,7 +201,9 @@ def screened(
             model, candidates, measured, tangent.used, residual, answer, options.candidate
         )
     reduced, whole, variants = _rows(tangent, candidates, measured, every)
-    reduced[_squares(reduced) < SEEN * whole] = 0.0
+    with np.errstate(over="ignore", invalid="ignore"):  # answers that grow without bounds
+        judged = _squares(reduced) >= SEEN * whole
+    reduced[~(judged & np.isfinite(whole))] = 0.0
     reduced, variants = _by_series(tangent, reduced, variants, kept)
     seen = _squares(reduced)
     both = reduced.T.copy() if tangent.along_data else None
