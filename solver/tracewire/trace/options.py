@@ -150,6 +150,8 @@ class TraceOptions:
     parent_behind: float = 10.0
     """The squared error, in units of that of the best model, from which on a model is not
     extended."""
+    parent_beside: float = 3.0
+    """The same in units of that of the best model of its size."""
     finalists: int = 2
     """Models at each number of fitted numbers whose predictions are compared."""
     first_steps: int = 5

@@ -77,7 +77,7 @@ class Pool:
             if not self._improves(size):
                 break
             for parent in self.best(size, parents):
-                if self._is_near(parent):
+                if self._is_near(parent, size):
                     self._extend_beside(parent)
             if self._improves(size + 1):
                 self._exchange(size + 1)
@@ -106,7 +106,8 @@ class Pool:
         trials: list[Trial] = []
         for horizon in self.horizons.each:
             try:
-                trial = self.search.bench.again(trial, horizon.segments, horizon.length)
+                target = self._target(horizon.length, len(trial.effects))
+                trial = self.search.bench.again(trial, horizon.segments, horizon.length, target)
             except FitError:
                 return None
             self.spent += trial.windows.criterion.steps
@@ -301,11 +302,15 @@ class Pool:
             for key in sorted(mine, key=lambda key: ranks[key])[:count]
         ]
 
-    def _is_near(self, model: Finalist) -> bool:
-        """Whether a model leaves so little more than the best one that it is worth extending."""
+    def _is_near(self, model: Finalist, size: int) -> bool:
+        """Whether a model leaves so little more than the best one, and than the best one of its
+        size, that it is worth extending."""
         scores = self.scores()
-        behind = 2 * (scores[model.key] - min(scores.values()))
-        return behind < math.log(self.options.parent_behind)
+        mine = (score for key, score in scores.items() if len(key[0]) == size)
+        behind, beside = 2 * (scores[model.key] - min(scores.values())), min(mine)
+        return behind < math.log(self.options.parent_behind) and 2 * (
+            scores[model.key] - beside
+        ) < math.log(self.options.parent_beside)
 
     def without(self, model: Finalist, name: str) -> Finalist | None:
         """The model without one of its effects: from its values, or the fit that is known, where

@@ -226,12 +226,16 @@ class Bench:
         now = tuple(effect.at(windows.values) for effect in effects)
         return Trial(diagram, model, now, windows, length, converged, self.options.trial)
 
-    def again(self, trial: Trial, segments: Sequence[Segment], length: int) -> Trial:
-        """A trial fitted to other windows, from where it stands."""
+    def again(
+        self, trial: Trial, segments: Sequence[Segment], length: int, target: float = np.inf
+    ) -> Trial:
+        """A trial fitted to other windows, from where it stands; `target` as in `fitted`."""
         fixed = trial.windows.criterion.parameters
         effects = self.met(trial, segments)
         good = trial.windows.good
-        found = self.fitted(effects, segments, length, trial.values, fixed=fixed, good=good)
+        found = self.fitted(
+            effects, segments, length, trial.values, fixed=fixed, target=target, good=good
+        )
         return self._freed(found)
 
     def _freed(self, trial: Trial) -> Trial:
@@ -252,7 +256,7 @@ class Bench:
             begun = dict(zip(others, there.windows.segments, strict=True))
             whole = self.fitted(
                 there.effects, [begun.get(n, s) for n, s in enumerate(segments)], trial.length,
-                there.values, fixed=fixed, good=good,
+                there.values, fixed=fixed, target=trial.rss, good=good,
             )  # fmt: skip
         except FitError:
             return trial
