@@ -13,7 +13,7 @@ from scipy.signal import chirp, sawtooth, square
 from tracewire.compile import compile
 from tracewire.diagram import read
 from tracewire.residual import Measured, load_measured
-from tracewire.residual.inputs import looks_held, smoothed
+from tracewire.residual.inputs import looks_held, lost_by_lines, smoothed
 from tracewire.solve import Held, simulate, values_at, with_points
 
 Vector = NDArray[np.float64]
@@ -232,3 +232,26 @@ def test_a_held_input_at_other_times_and_points() -> None:
     assert values_at((AT, U), t)[2] == pytest.approx(1 - 0.29 * 10)
     assert isinstance(with_points(held, AT + 1, U), Held)
     assert not isinstance(with_points((AT, U), AT + 1, U), Held)
+
+
+@pytest.mark.parametrize("hold", ["", ", hold: smooth"])
+def test_few_samples_a_period_get_a_remark_unless_declared(tmp_path: Path, hold: str) -> None:
+    """Three samples a period: a spline through every second sample knows nothing of it."""
+    rows = np.stack([T, np.sin(T), np.sin(2 * np.pi * T / (3 * 0.02))], axis=1)
+    np.savetxt(tmp_path / "run.csv", rows, delimiter=",", header="t,theta,u", comments="")
+    text = TEXT.replace("{u: u}", f"{{u: {{column: u{hold}}}}}")
+    (tmp_path / "run.yaml").write_text(text, encoding="utf-8")
+    (run,) = load_measured(compile(read(tmp_path / "run.yaml")))
+    told = [remark for remark in run.remarks if "few samples a period" in remark]
+    assert len(told) == (0 if hold else 1)
+    assert hold or "lose 37 % of its amplitude; say hold: smooth" in told[0]
+
+
+def test_lines_lose_what_a_sine_says_and_nothing_of_a_slow_or_a_rough_one() -> None:
+    dt = T[1]
+    for omega in (5.0, 20.0, 60.0):
+        lost = lost_by_lines(T, np.sin(omega * T))
+        assert lost == pytest.approx((omega * dt) ** 2 / 12, rel=0.02)
+    noisy = np.sin(5.0 * T) + 0.03 * RNG.standard_normal(len(T))
+    assert lost_by_lines(T, noisy) < 2e-3
+    assert lost_by_lines(T**1.5, wave(T)) == 0.0

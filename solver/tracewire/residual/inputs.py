@@ -19,6 +19,8 @@ VISIBLE = 1e-6
 FINE = 1e-3
 """The same for what may be left between the points."""
 FINEST = 8
+UNEVEN = 0.01
+"""The spread of time steps, in units of their mean, up to which samples are evenly spaced."""
 REPEATED, JUMP = 0.5, 0.02
 """Samples that repeat the one before, and the least of the changes beside the range, from which on
 an input looks held."""
@@ -50,6 +52,19 @@ def looks_held(u: Vector) -> bool:
     if not len(jumps) or np.mean(changes == 0) < REPEATED:
         return False
     return bool(np.median(jumps) > JUMP * np.ptp(u))
+
+
+def lost_by_lines(t: Vector, u: Vector) -> float:
+    """The part of the amplitude of an input that straight lines between its samples lose.
+
+    A sine of angular frequency omega, sampled each dt, loses (omega*dt)^2/12; that is averaged over
+    the power of the input. 0 where the samples are few or not evenly spaced.
+    """
+    if len(t) < LEAST_SAMPLES or np.ptp(np.diff(t)) > UNEVEN * (t[-1] - t[0]) / (len(t) - 1):
+        return 0.0
+    power = np.abs(np.fft.rfft((u - np.mean(u)) * np.hanning(len(u)))) ** 2
+    angle = 2 * np.pi * np.fft.rfftfreq(len(u))
+    return float(np.sum(power * angle**2 / 12) / max(float(np.sum(power)), 1e-300))
 
 
 def smoothed(t: Vector, u: Vector) -> tuple[Vector, Vector] | None:

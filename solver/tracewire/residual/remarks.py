@@ -12,7 +12,7 @@ from tracewire.data import Record, signal_remarks, time_remarks
 from tracewire.diagram import Series
 from tracewire.errors import DataError, FormulaError, Problem
 from tracewire.formula import evaluate, same_quantity
-from tracewire.residual.inputs import looks_held
+from tracewire.residual.inputs import looks_held, lost_by_lines, smoothed
 
 LARGEST_ANGLE = 20.0
 MUCH_LONGER = 100.0
@@ -20,6 +20,8 @@ FAR = 10.0
 NEAR_PI = 0.3
 RESTING = 5
 """Samples of exactly zero that are no passage through zero."""
+LOST = 5e-3
+"""The part of an input's amplitude that straight lines lose, from which on it is told."""
 
 
 def check_quantities(model: Model, series: Series, record: Record) -> None:
@@ -77,15 +79,25 @@ def remarks_on(
 
 
 def _on_hold(series: Series, read: Record) -> list[str]:
-    """Inputs that look held, of which nothing is said."""
-    return [
-        f"the input {name} looks held: most of its samples repeat the one before; if it acts so, "
-        "say hold: previous, if not, hold: linear"
-        for name, channel in series.inputs.items()
-        if channel.hold is None
-        and (column := read.columns.get(f"input {name}")) is not None
-        and looks_held(column)
-    ]
+    """Inputs of which nothing is said, that look held or have few samples a period."""
+    found = []
+    for name, channel in series.inputs.items():
+        column = read.columns.get(f"input {name}")
+        if channel.hold is not None or column is None:
+            continue
+        lost = lost_by_lines(read.t, column)
+        if looks_held(column):
+            found.append(
+                f"the input {name} looks held: most of its samples repeat the one before; if it "
+                "acts so, say hold: previous, if not, hold: linear"
+            )
+        elif lost > LOST and smoothed(read.t, column) is None:
+            found.append(
+                f"the input {name} has few samples a period: straight lines between them lose "
+                f"{100 * lost:.2g} % of its amplitude; say hold: smooth where it is smooth between "
+                "samples, hold: previous where each value acts until the next"
+            )
+    return found
 
 
 def _on_rest(model: Model, series: Series, read: Record) -> list[str]:
