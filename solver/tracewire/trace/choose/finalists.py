@@ -374,7 +374,6 @@ class Pool:
         segments: Sequence[Segment] | None = None,
     ) -> Trial | None:
         windows = now.windows
-        level = float(np.median(windows.squares / [r.size for r in windows.residuals]))
         fitted = self.search.refits.fitted(
             now,
             effects,
@@ -382,7 +381,6 @@ class Pool:
             fixed=fixed,
             steps=steps,
             target=target,
-            good=max(2 * level, windows.good),
             creeps=self.options.coarse,
             settling=1,
             values=values,

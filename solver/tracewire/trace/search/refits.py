@@ -169,7 +169,6 @@ class Refits:
         fixed: Mapping[str, float] | None = None,
         steps: int | None = None,
         target: float = np.inf,
-        good: float | None = None,
         creeps: float = CREEPS,
         settling: int = SETTLING,
         values: Mapping[str, float] | None = None,
@@ -187,7 +186,7 @@ class Refits:
                 steps=steps,
                 budget=self.options.slower * steps * len(segments) * now.cost,
                 target=target,
-                good=good,
+                good=now.good,
                 creeps=creeps,
                 settling=settling,
             )

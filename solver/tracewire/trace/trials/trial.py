@@ -128,6 +128,13 @@ class Trial:
         return self.rss / self.freedom
 
     @property
+    def good(self) -> float:
+        """The mean squared residual of a window up to which its start is not taken for astray:
+        twice that of the middle one, and what the noise alone may give."""
+        means = self.windows.squares / [max(r.size, 1) for r in self.windows.residuals]
+        return max(2 * float(np.median(means)), self.options.not_astray)
+
+    @property
     def cost(self) -> float:
         """The steps that a run takes on average."""
         criterion = self.windows.criterion
@@ -232,9 +239,8 @@ class Bench:
         """A trial fitted to other windows, from where it stands; `target` as in `fitted`."""
         fixed = trial.windows.criterion.parameters
         effects = self.met(trial, segments)
-        good = trial.windows.good
         found = self.fitted(
-            effects, segments, length, trial.values, fixed=fixed, target=target, good=good
+            effects, segments, length, trial.values, fixed=fixed, target=target, good=trial.good
         )
         return self._freed(found)
 
@@ -247,7 +253,7 @@ class Bench:
         few = len(others) >= (1 - options.few_ruling) * len(segments)
         if trial.s2 < options.not_astray or len(others) == len(segments) or not few:
             return trial
-        fixed, good = trial.windows.criterion.parameters, trial.windows.good
+        fixed, good = trial.windows.criterion.parameters, trial.good
         try:
             there = self.fitted(
                 trial.effects, [segments[n] for n in others], trial.length, trial.values,
