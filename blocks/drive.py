@@ -114,7 +114,7 @@ drive_dead_zone = Block(
         "share",
         {"of": "u"},
         sign=1,
-        shapes={"zone": Shape((0.05, 0.15, 0.3, 0.5), of="U", least=0.005, most=1.0)},
+        shapes={"zone": Shape((0.3, 0.55, 0.7, 0.85), of="drives")},
         place="drive",
         alias=("drive_3rd_harm", "drive_gain"),
     ),

@@ -168,7 +168,7 @@ COMPLAINTS: dict[str, tuple[dict[str, Any], str]] = {
     ),
     "shape of an unknown size": (
         shaped(Shape((1.0,), of="W")),  # type: ignore[arg-type]
-        "unknown scale 'W'; there are: Q, T, U, V, dt, rates, stroke, top. It is of",
+        "unknown scale 'W'; there are: Q, T, U, V, drives, dt, rates, stroke, top. It is of",
     ),
     "shape without values": (
         shaped(Shape(())),

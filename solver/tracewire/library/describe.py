@@ -145,6 +145,8 @@ def _tried(shape: Shape) -> str:
     """The values of a shape; of a long grid its ends."""
     if shape.of == "rates":
         return f"at {len(shape.at)} rates from the slowest to the fastest"
+    if shape.of == "drives":
+        return f"at {len(shape.at)} sizes of the drive from the least to the largest"
     values = [f"{value:.3g}" for value in shape.at]
     if len(values) > MOST_VALUES:
         values = [*values[:2], "...", f"{values[-1]} ({len(values)} values)"]

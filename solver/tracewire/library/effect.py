@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 Symbol = Literal["q", "v", "a", "u", "other_q", "other_v"]
-Scale = Literal["", "Q", "V", "U", "T", "dt", "stroke", "rates", "top"]
+Scale = Literal["", "Q", "V", "U", "T", "dt", "stroke", "rates", "drives", "top"]
 Where = Literal["sum", "drive"]
 Tone = Literal["amplitude", "period", "phase"]
 
@@ -29,6 +29,7 @@ SCALES: dict[Scale, str] = {
     "top": "the largest rate of the place",
     "stroke": "the longest way of the place in one direction",
     "rates": "the rates of the place, by factors: 0 the slowest that is resolved, 1 the fastest",
+    "drives": "the sizes of the drive, by factors: 0 the least that it has, 1 the largest",
 }
 
 
@@ -36,12 +37,12 @@ SCALES: dict[Scale, str] = {
 class Shape:
     """Where a trace first tries a parameter that sets the shape of an effect.
 
-    at: multiples of `of`; with an empty `of` the values themselves, in SI. Of the `rates` they are
-    the place in the range of rates, on a logarithmic scale. low: the least value that the parameter
-    may take in a refit, in SI. least, most: between which multiples of `of` the record can tell a
-    value. A `wave` is a length along the coordinate that comes back: it is at least a few samples
-    long, and those lengths are tried first that a scan of all finds best. A `fixed` shape has the
-    first of its values, and no fit changes it.
+    at: multiples of `of`; with an empty `of` the values themselves, in SI. Of the `rates` and
+    `drives` they are the place in that range, on a logarithmic scale. low: the least value that the
+    parameter may take in a refit, in SI. least, most: between which multiples of `of` the record
+    can tell a value. A `wave` is a length along the coordinate that comes back: it is at least a
+    few samples long, and those lengths are tried first that a scan of all finds best. A `fixed`
+    shape has the first of its values, and no fit changes it.
     """
 
     at: tuple[float, ...]

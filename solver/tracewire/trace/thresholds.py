@@ -364,6 +364,9 @@ class SearchOptions:
     """The part by which a declared term far above the noise must lower the squared error."""
     certain: float = 10.0
     """The standard errors from which on no model without a term is tried: it is there."""
+    trifle: float = 5e-4
+    """The part of what was missing, as a sum of squares, that an uncommon effect beside others must
+    explain. Seen on two rigs: 5e-5 of a drift, 1.6e-4 of a wave, where other names were right."""
     related: float = 0.9
     """The likeness from which on an effect is a rival of another one."""
     related_together: float = 0.5

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from importlib import import_module
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +13,7 @@ from tracewire.trace.candidates.places import find_places
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal, screened
 from tracewire.trace.screen.tangent import Tangent
-from tracewire.trace.search.finish import Final, finished
+from tracewire.trace.search.finish import Final, _without_trifles, finished
 from tracewire.trace.search.refits import Tried
 from tracewire.trace.search.search import Search, Step
 from tracewire.trace.trials.trial import Added, Trial
@@ -108,3 +110,41 @@ def test_without_effects_the_declared_model_is_the_end() -> None:
     assert final.best is final.declared and final.best.effects == ()
     assert final.rivals == {} and final.dropped == ()
     assert final.best.length == search.stretches.longest
+
+
+def test_effects_are_told_the_surest_first() -> None:
+    def both(x: float, v: float) -> float:
+        return rubbed(x, v) + 1.5 * dragged(x, v)
+
+    _, final = ended(both, [DRAG, COULOMB], [DRAG, COULOMB, CUBIC])
+    sure = [
+        e.coefficient / final.best.standard_errors[e.candidate.coefficient]
+        for e in final.best.effects
+    ]
+    assert {*names_of(final.best)} == {COULOMB, DRAG}
+    assert sure == sorted(sure, reverse=True)
+
+
+@pytest.mark.parametrize(("errors", "kept"), [(10.0, 1), (300.0, 2)])
+def test_a_drift_that_explains_next_to_nothing_is_left_out(
+    errors: float, kept: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of 1e6 variances 10 standard errors explain 1e-4, 300 errors 9 %."""
+    effects = [
+        SimpleNamespace(
+            candidate=SimpleNamespace(effect=name, coefficient=name, neutral=0.0),
+            coefficient=errors,
+        )
+        for name in ("coulomb", "viscous_drift")
+    ]
+    best = SimpleNamespace(
+        effects=effects, s2=1.0, count=1000, standard_errors={"coulomb": 1.0, "viscous_drift": 1.0}
+    )
+    search = SimpleNamespace(options=OPTIONS, tell=lambda _: None)
+    finish = import_module("tracewire.trace.search.finish")
+    monkeypatch.setattr(
+        finish, "_refitted", lambda search, best, kept: SimpleNamespace(effects=kept)
+    )
+    declared = SimpleNamespace(s2=1001.0)
+    found = _without_trifles(search, best, declared)  # type: ignore[arg-type]
+    assert [e.candidate.effect for e in found.effects] == ["coulomb", "viscous_drift"][:kept]

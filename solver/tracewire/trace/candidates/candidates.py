@@ -30,6 +30,9 @@ __all__ = [
     "without_defaults",
 ]
 
+RANGES = {"rates": "slowest", "drives": "least"}
+"""The scales that are ranges: by the name of their largest size that of their least one."""
+
 
 def find_candidates(
     model: Model,
@@ -137,7 +140,7 @@ def _candidate(
         if shape.of == "V" and 0.0 in grid:
             resolved[parameter] = sizes["slowest"]
             grid = tuple(value for value in grid if not 0.0 < value <= sizes["slowest"])
-        if shape.of in ("stroke", "rates"):
+        if shape.of in ("stroke", *RANGES):
             grid = tuple(dict.fromkeys(min(max(value, low), high) for value in grid))
         shapes[parameter] = grid
         limits[parameter] = low, high
@@ -185,6 +188,7 @@ def _sizes(
     read = {symbol: signals[port] for port, symbol in effect.inputs.items()}
     q = levels.of(read.get("q") or read.get("other_q") or place.q)
     v = levels.of(read.get("v") or read.get("other_v") or place.v)
+    u = levels.of(read.get("u") or "".join(place.drive[:1]))
     return {
         "": 1.0,
         "Q": q.max,
@@ -194,7 +198,9 @@ def _sizes(
         "rates": v.max,
         "top": v.max,
         "slowest": max(v.slowest, options.slowest_rate * v.max),
-        "U": levels.of(read.get("u") or "".join(place.drive[:1])).max,
+        "U": u.max,
+        "drives": u.max,
+        "least": u.slowest,
         "T": levels.duration,
         "dt": levels.interval,
     }
@@ -205,8 +211,9 @@ def _grid(shape: Shape, sizes: Mapping[str, float]) -> tuple[float, ...] | None:
     size = sizes[shape.of]
     if not size > 0:
         return None
-    if shape.of == "rates":
-        return tuple(sizes["slowest"] * (size / sizes["slowest"]) ** at for at in shape.at)
+    if shape.of in RANGES:
+        least = sizes[RANGES[shape.of]]
+        return tuple(least * (size / least) ** at for at in shape.at) if least > 0 else None
     return tuple(at * size for at in shape.at)
 
 
@@ -218,8 +225,8 @@ def _limits(
     options: CandidateOptions,
 ) -> tuple[float, float]:
     """Finite bounds of a shape: what the record can tell where that is known, else wide ones."""
-    if shape.of == "rates":
-        return max(sizes["slowest"], bounds[0]), min(sizes["rates"], bounds[1])
+    if shape.of in RANGES:
+        return max(sizes[RANGES[shape.of]], bounds[0]), min(sizes[shape.of], bounds[1])
     wide, size = options.wide * max(map(abs, grid)), sizes[shape.of]
     low, high = max(shape.low, bounds[0], -wide), min(bounds[1], wide)
     if shape.most is not None:

@@ -28,7 +28,7 @@ def extend(diagram: Diagram, chosen: Sequence[tuple[Candidate, Mapping[str, floa
             diagram = add_sensor(diagram, signal, kind, value, (low, high))
             continue
         parts = [f"type: {candidate.effect}"]
-        parts += [f"{port}: {signal}" for port, signal in candidate.signals.items()]
+        parts += [f"{port}: {_signal(name)}" for port, name in candidate.signals.items()]
         factor = _factors(diagram, candidate)
         parts.append(f"{kind}: {_setting(value, low, high, factor.get(kind, 1.0))}")
         for name, grid in candidate.shapes.items():
@@ -52,6 +52,11 @@ def extend(diagram: Diagram, chosen: Sequence[tuple[Candidate, Mapping[str, floa
             fit = {f"{candidate.block}.{name}": candidate.limits[name] for name in candidate.each}
             diagram = add_own(diagram, known, fit)
     return diagram
+
+
+def _signal(name: str) -> str:
+    """The name of a signal as a value inside braces: that of an element is quoted, as YAML asks."""
+    return f'"{name}"' if "[" in name else name
 
 
 def _own(candidate: Candidate, values: Mapping[str, float]) -> dict[str, dict[str, float]]:

@@ -52,9 +52,9 @@ def finished(search: Search, declared: Trial, best: Trial) -> Final:
         rivals[str(best.effects[number])] = found
     best = _opened_shapes(search, best)
     best = _common_phases(search, best)
-    best = _pruned(search, best)
+    best = _without_trifles(search, _pruned(search, best), declared)
     best, dropped = _dropped(search, best)
-    return Final(declared, best, rivals, dropped)
+    return Final(declared, _ordered(best), rivals, dropped)
 
 
 def _over(search: Search, trial: Trial) -> Trial:
@@ -245,9 +245,34 @@ def _pruned(search: Search, best: Trial) -> Trial:
 
 def _is_certain(best: Trial, effect: Added, errors: float) -> bool:
     """Whether a coefficient is many standard errors from that of no effect."""
-    candidate = effect.candidate
-    error = best.standard_errors.get(candidate.coefficient, np.inf)
-    return bool(abs(effect.coefficient - candidate.neutral) > errors * error)
+    return _errors_from_nothing(best, effect) > errors
+
+
+def _errors_from_nothing(best: Trial, effect: Added) -> float:
+    """By how many standard errors a coefficient differs from that of no effect."""
+    error = best.standard_errors.get(effect.candidate.coefficient, np.inf)
+    return float(abs(effect.coefficient - effect.candidate.neutral) / max(error, 1e-300))
+
+
+def _without_trifles(search: Search, best: Trial, declared: Trial) -> Trial:
+    """The best model without waves, drifts and their kin that explain next to nothing of what was
+    missing: what is left of laws that are only nearly right has the shape of some of them. An
+    effect of z standard errors takes about z^2 variances off the sum of squares."""
+    options = search.options
+    excess = (declared.s2 - best.s2) * best.count
+    for effect in best.effects if len(best.effects) > 1 else ():
+        taken = _errors_from_nothing(best, effect) ** 2 * best.s2
+        if effect.candidate.effect in options.uncommon and taken < options.search.trifle * excess:
+            search.tell(f"trying without {effect}")
+            kept = [e for e in best.effects if str(e) != str(effect)]
+            best = _refitted(search, best, kept) or best
+    return best
+
+
+def _ordered(best: Trial) -> Trial:
+    """The best model with the effects that are surest first."""
+    effects = sorted(best.effects, key=lambda effect: -_errors_from_nothing(best, effect))
+    return replace(best, effects=tuple(effects))
 
 
 def _dropped(search: Search, best: Trial) -> tuple[Trial, tuple[str, ...]]:

@@ -118,6 +118,8 @@ def _unit(trial: Trial, name: str, effect: Added | None) -> str:
         place, of = effect.candidate.place, effect.candidate.scales.get(name.rpartition(".")[2], "")
         if of in ("T", "dt"):
             return "s"
+        if of in ("U", "drives"):
+            return flat.units.get("".join(place.drive[:1]) or place.definition, "")
         return flat.units.get(place.v if of in ("V", "rates", "top") else place.q, "") if of else ""
     if name.startswith(SENSED):
         kind, _, signal = name.partition(".")
