@@ -26,12 +26,17 @@ def main() -> int:
         from benchmarks.tracing.real import main as tracing_real
 
         return tracing_real(sys.argv[2:])
+    if sys.argv[1:2] == ["rigs"]:
+        from benchmarks.rigs.run import main as rigs
+
+        return rigs(sys.argv[2:])
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks",
         description="Times of tracewire beside other solvers, at equal accuracy. "
         "A time is the least of several runs, taken in turn; ratios are of the same session. "
         "What a trace finds is another bench: python -m benchmarks tracing --help, "
-        "and on measured records: python -m benchmarks tracing-real --help.",
+        "on measured records: python -m benchmarks tracing-real --help, "
+        "and on ten rigs with hidden effects: python -m benchmarks rigs --help.",
     )
     parser.add_argument("case", nargs="*", help=f"of {', '.join(CASES)}; all if none is named")
     parser.add_argument("--quick", action="store_true", help="fewer runs, slow peers left out")
