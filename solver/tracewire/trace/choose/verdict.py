@@ -22,8 +22,7 @@ from tracewire.trace.found import (
 )
 from tracewire.trace.missing.dependence import where_what
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.screen.tangent import Tangent
-from tracewire.trace.search.finish import Final, Rival
+from tracewire.trace.search.finish import Final, Rival, ordered
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.trial import Trial
 
@@ -175,6 +174,8 @@ def final_of(search: Search, prediction: Prediction, tell: bool = True) -> Final
         rise = 2 * blocks * cost + more * float(np.log(blocks))
         if len(here) == len(there) == 1:
             (name,), (rival,) = here, there
+            if any(str(known.added) == rival for known in rivals[name]):
+                continue  # the same without a declared term
             added = next(e for e in trial.effects if str(e) == rival)
             likeness = prediction.likeness(name, rival)
             rivals[name].append(Rival(added, likeness, trial, rise, tied=True))
@@ -185,15 +186,13 @@ def final_of(search: Search, prediction: Prediction, tell: bool = True) -> Final
             )
     own = search.bench.declared.flat.parameters
     dropped = (*taken.dropped, *(name for name in taken.vanished if name in own))
-    return Final(declared, best, {name: tuple(r) for name, r in rivals.items()}, dropped)
+    known = {name: tuple(found) for name, found in rivals.items()}
+    return Final(declared, ordered(best), known, dropped)
 
 
 def residual_map(search: Search, trial: Trial) -> tuple[tuple[Dependence, ...], Missing | None]:
     """Where and on what the residual of a trial depends, in its windows."""
-    tangent = Tangent(
-        trial.diagram, trial.windows, search.places, search.bench.rtol, search.options
-    )
-    return where_what(tangent, trial, search.places)
+    return where_what(search.tangent(trial), trial, search.places)
 
 
 def raises_unseen(search: Search, final: Final, lengths: Sequence[int]) -> str:

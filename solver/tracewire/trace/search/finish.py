@@ -54,7 +54,7 @@ def finished(search: Search, declared: Trial, best: Trial) -> Final:
     best = _common_phases(search, best)
     best = _without_trifles(search, _pruned(search, best), declared)
     best, dropped = _dropped(search, best)
-    return Final(declared, _ordered(best), rivals, dropped)
+    return Final(declared, ordered(best), rivals, dropped)
 
 
 def _over(search: Search, trial: Trial) -> Trial:
@@ -269,7 +269,7 @@ def _without_trifles(search: Search, best: Trial, declared: Trial) -> Trial:
     return best
 
 
-def _ordered(best: Trial) -> Trial:
+def ordered(best: Trial) -> Trial:
     """The best model with the effects that are surest first."""
     effects = sorted(best.effects, key=lambda effect: -_errors_from_nothing(best, effect))
     return replace(best, effects=tuple(effects))
