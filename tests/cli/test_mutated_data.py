@@ -172,3 +172,4 @@ def finite_or_refused(result: Result) -> None:
         assert re.search(r"\w", result.err)
     else:
         assert not re.search(r"\b(nan|inf)\b", result.out)
+        assert "VERDICT effect:  are" not in result.out  # an effect has a name

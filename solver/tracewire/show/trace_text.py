@@ -154,7 +154,8 @@ def _remainder_lines(found: Found) -> list[str]:
 
 def _step(number: int, step: StepTold) -> list[str]:
     head = f"step {number}"
-    chance = "" if "p = " in step.words else f", {chance_words(step.chance)}"
+    told = "p = " in step.words or math.isnan(step.chance)  # models that are compared have none
+    chance = "" if told else f", {chance_words(step.chance)}"
     lines = [f"{head:<16}windows of {step.window:.3g} s, s2 = {step.s2:.4g}{chance}: {step.words}"]
     for row in step.tried:
         if row.remark:

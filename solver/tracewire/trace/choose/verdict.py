@@ -88,8 +88,8 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
     """
     options = search.options
     prediction, harmed = _harmless(search, prediction)
-    choice = prediction.choice
-    if not choice.sure:
+    named = prediction.choice.sure and bool(prediction.taken.names)  # not by dropped terms alone
+    if not named:
         prediction = prediction.without_effects()
     final = final_of(search, prediction)
     taken = prediction.taken
@@ -97,7 +97,7 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
     maps = [residual_map(search, trial) for trial in taken.trials]
     floors = [_left(trial, shares) for trial, (shares, _) in zip(taken.trials, maps, strict=True)]
     share, error = explained(prediction, floors)
-    if not choice.sure:
+    if not named:
         gain = 0.5 * float(np.mean(-np.log(floors)))
         missed = harmed or gain >= max(np.log1p(options.near), options.map_gain)
         verdict: Verdict = "unexplained" if missed else "null"
@@ -124,7 +124,7 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
         final,
         dependences,
         missing if verdict == "unexplained" else None,
-        share if choice.sure else None,
+        share if named else None,
         remainders(prediction, floors, search.bench.sigma, final.best.model.flat.units),
         maps[0][0],
         held_out(prediction, floors),
