@@ -107,9 +107,8 @@ def refuse_readers_of_free(model: Model, free: Collection[str] | None = None) ->
     """
     flat = model.flat.parameters
     moving = {n for n, p in flat.items() if p.fit is not None} if free is None else set(free)
-    parameters = model.flat.parameters.values()
     while more := {
-        p.name for p in parameters if p.name not in moving and moving & {*names_of(p.formula)}
+        n for n, p in flat.items() if n not in moving and moving & {*names_of(p.formula)}
     }:
         moving |= more
     problems = []

@@ -306,11 +306,11 @@ class Pool:
         """Whether a model leaves so little more than the best one, and than the best one of its
         size, that it is worth extending."""
         scores = self.scores()
-        mine = (score for key, score in scores.items() if len(key[0]) == size)
-        behind, beside = 2 * (scores[model.key] - min(scores.values())), min(mine)
-        return behind < math.log(self.options.parent_behind) and 2 * (
-            scores[model.key] - beside
-        ) < math.log(self.options.parent_beside)
+        best_of_size = min(score for key, score in scores.items() if len(key[0]) == size)
+        behind = 2 * (scores[model.key] - min(scores.values()))
+        beside = 2 * (scores[model.key] - best_of_size)
+        options = self.options
+        return behind < math.log(options.parent_behind) and beside < math.log(options.parent_beside)
 
     def without(self, model: Finalist, name: str) -> Finalist | None:
         """The model without one of its effects: from its values, or the fit that is known, where
