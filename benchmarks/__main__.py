@@ -36,7 +36,7 @@ def main() -> int:
         "A time is the least of several runs, taken in turn; ratios are of the same session. "
         "What a trace finds is another bench: python -m benchmarks tracing --help, "
         "on measured records: python -m benchmarks tracing-real --help, "
-        "and on ten rigs with hidden effects: python -m benchmarks rigs --help.",
+        "and on twenty rigs with hidden effects: python -m benchmarks rigs --help.",
     )
     parser.add_argument("case", nargs="*", help=f"of {', '.join(CASES)}; all if none is named")
     parser.add_argument("--quick", action="store_true", help="fewer runs, slow peers left out")

@@ -13,6 +13,8 @@ Field = Callable[[float, State], Sequence[float]]
 """The rates of the states at a time [s]."""
 Hook = Callable[[int, State], None]
 """What a controller does at a sample, of which it gets the number and the states."""
+Levels = Callable[[float, State], tuple[float, float]]
+"""Of dry friction at a time [s], while the rate is above zero and below it."""
 
 MOST_PIECES = 20
 """Of one step: reversals, sticking and breaking loose."""
@@ -52,28 +54,32 @@ def march(
 
 def march_dry(
     smooth: Field,
-    levels: tuple[float, float],
+    levels: tuple[float, float] | Levels,
     rate: int,
     y: State,
     interval: float,
     samples: int,
     steps: int,
+    hook: Hook | None = None,
 ) -> Array:
     """The states (samples, n) every `interval` seconds, with dry friction on the state `rate`.
 
     The friction takes levels[0] from the acceleration while the rate is above zero, and adds
     levels[1] while it is below zero. The side (1, -1, or 0 where friction holds the rate at zero)
     is the same all through a step; a reversal is found by bisection, and ends the step there.
+    `levels` may depend on the time and the states.
     """
-    up, down = levels
+
+    def level(t: float, y: State) -> tuple[float, float]:
+        return levels(t, y) if callable(levels) else levels
 
     def field_of(side: int) -> Field:
         def field(t: float, y: State) -> list[float]:
             rates = list(smooth(t, y))
             if side > 0:
-                rates[rate] -= up
+                rates[rate] -= level(t, y)[0]
             elif side < 0:
-                rates[rate] += down
+                rates[rate] += level(t, y)[1]
             else:
                 rates[rate] = 0.0
             return rates
@@ -82,10 +88,13 @@ def march_dry(
 
     def side_from_rest(t: float, y: State) -> int:
         a = smooth(t, y)[rate]
+        up, down = level(t, y)
         return 1 if a > up else -1 if a < -down else 0
 
     fields = {side: field_of(side) for side in (1, -1, 0)}
     y = list(y)
+    if hook:
+        hook(0, y)
     side = 1 if y[rate] > 0 else -1 if y[rate] < 0 else side_from_rest(0.0, y)
     out = [list(y)]
     h = interval / steps
@@ -108,6 +117,8 @@ def march_dry(
                 y[rate] = 0.0
                 t, left = t + done, left - done
                 side = side_from_rest(t, y)
+        if hook:
+            hook(k, y)
         out.append(list(y))
     return np.array(out)
 

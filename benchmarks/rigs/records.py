@@ -1,4 +1,4 @@
-"""The ten rigs by name, and a folder with their records and diagrams."""
+"""The rigs by name, and a folder with their records and diagrams."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import shutil
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from benchmarks.rigs import labs, machines
+from benchmarks.rigs import benches, drives, labs, machines, plants
 from benchmarks.rigs.record import Record
 
 DIAGRAMS = Path(__file__).parent / "diagrams"
@@ -21,6 +21,16 @@ RECORDS: Mapping[str, Callable[[], Record]] = {
     "r08_torsion": labs.torsion,
     "r09_coil": machines.coil,
     "r10_stage": labs.stage,
+    "r11_car": drives.car,
+    "r12_resonator": benches.resonator,
+    "r13_cylinder": drives.cylinder,
+    "r14_cart": drives.cart,
+    "r15_gimbal": drives.gimbal,
+    "r16_beam": benches.beam,
+    "r17_plate": plants.plate,
+    "r18_brake": benches.brake,
+    "r19_filter": benches.ladder,
+    "r20_basin": plants.basin,
 }
 
 

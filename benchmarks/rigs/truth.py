@@ -109,4 +109,65 @@ TRUTHS: Mapping[str, Truth] = {
         clean=True,
         bounds={("parametric @ forces", "period"): (42.0, 52.0)},
     ),
+    "r11_car": Truth(
+        "Car that coasts",
+        hidden=("coulomb @ forces",),
+        sizes={"coulomb.level": 151.0},
+        words="the tyres; a tie, because no run goes the other way or ends at rest; wind in gusts "
+        "of 0.25 m/s besides",
+        equal={"coulomb @ forces": ("bias @ forces", "asym_coulomb @ forces")},
+    ),
+    "r12_resonator": Truth(
+        "Resonator of 25 kHz",
+        hidden=("cubic_stiffness @ forces",),
+        sizes={"cubic_stiffness.k": 4.0e11},
+        words="3.2 % of the linear spring at the largest deflection; it warms up besides, and is "
+        "softer by up to 0.3 %",
+    ),
+    "r13_cylinder": Truth(
+        "Pneumatic cylinder",
+        hidden=("load_friction @ forces",),
+        sizes={"load_friction.share": 0.12},
+        words="of the force of the pressure, beside 9 N declared; a part of 0.05 comes 0.4 s late",
+    ),
+    "r14_cart": Truth(
+        "Cart on a rail with a cable",
+        hidden=("stiffness @ forces", "coulomb @ forces"),
+        sizes={"stiffness.k": 1.8, "coulomb.level": 0.42},
+        words="the cable is a spring; the rail brakes by 10 % more at one end besides",
+    ),
+    "r15_gimbal": Truth(
+        "Gimbal motor with magnets",
+        hidden=("cogging @ shaft",),
+        sizes={"cogging.amplitude": 0.0026, "cogging.pitch": 0.5236},
+        words="12 on a turn, larger by up to 10 % on one side of it",
+    ),
+    "r16_beam": Truth(
+        "Beam with a stop on one side",
+        hidden=("barrier_hi @ forces",),
+        sizes={"barrier_hi.k": 9000.0, "barrier_hi.gap": 0.0006},
+        words="its tip draws in by a very little besides",
+    ),
+    "r17_plate": Truth(
+        "Hot plate with a cartridge",
+        hidden=("drive_lag @ drive.power",),
+        sizes={"drive_lag.tau": 34.0},
+        words="the air of the room goes up and down by 0.4 K besides",
+    ),
+    "r18_brake": Truth(
+        "Eddy-current brake, from its release to rest",
+        words="nothing is hidden; a brake that is weaker by 0.3 % at the highest rate besides",
+        clean=True,
+    ),
+    "r19_filter": Truth(
+        "Filter on an oscilloscope of 8 bits",
+        words="nothing is hidden; a skin effect below the noise besides",
+        clean=True,
+    ),
+    "r20_basin": Truth(
+        "Retention basin far below a sewer",
+        hidden=("drive_delay @ drive.inflow", "overflow @ balance"),
+        sizes={"drive_delay.tau": 720.0, "overflow.k": 6.24, "overflow.edge": 1.7},
+        words="the banks lean by 7 % of the area in 2 m besides",
+    ),
 }
