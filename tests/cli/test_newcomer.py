@@ -190,3 +190,144 @@ def test_units_are_listed_and_explained(call: Any) -> None:
     assert call("units", "furlong", "--json").data["factor"] == pytest.approx(201.168, rel=1e-5)
     wrong = call("units", "degC")
     assert (wrong.code, "is in K" in wrong.err) == (2, True)
+
+
+def test_a_unit_that_is_none_is_told_once_with_all_its_lines(call: Any, cart: Path) -> None:
+    text = cart.read_text(encoding="utf-8").replace(
+        "{c: 0.5}", "{c: 0.5, T: {value: 2, unit: degC}}"
+    )
+    cart.write_text(text.replace("unit: m}", "unit: degC}"), encoding="utf-8")
+    (line,) = call("check", cart).err.strip().splitlines()
+    assert "cart.yaml:4:" in line
+    assert "'degC' is not a unit, also in line 6. A temperature is in K" in line
+
+
+def test_gravity_is_told_where_gram_is_written(call: Any, cart: Path) -> None:
+    text = cart.read_text(encoding="utf-8").replace(
+        "type: expression,", "type: expression, unit: m/s^2,"
+    )
+    (cart.parent / "push.csv").write_text("t,x,F,b [g]\n0,0,0,0\n1,1,1,1\n2,2,2,1\n", "utf-8")
+    cart.write_text(text.replace("{x: x}", "{x: x, a: b}", 1), encoding="utf-8")
+    told = call("check", cart)
+    assert told.code == 2
+    assert "'a' is in m/s^2 in the diagram" in told.err
+    assert "has the unit 'gravity'" in told.err
+
+
+def test_check_lists_all_that_is_free_in_a_fit(call: Any, cart: Path) -> None:
+    text = cart.read_text(encoding="utf-8").replace("c: 0.5", "c: {value: 0.5, fit: [0, 1]}")
+    sensor = "{column: x, offset: {fit: [-1, 1]}, delay: {value: 0, fit: [0, 0.1]}}"
+    text = text.replace("signals: {x: x},", f"signals: {{x: {sensor}}}, start: {{v: free}},", 1)
+    cart.write_text(text, encoding="utf-8")
+    told = call("check", cart)
+    assert "free in a fit: c, offset.x, delay.x, start.v\n" in told.out
+
+
+def test_what_a_sensor_does_is_no_block(call: Any) -> None:
+    told = call("blocks", "sensor_delay")
+    assert told.code == 2
+    assert "signals: {x: {column: x, delay: ...}}" in told.err
+    assert "there are" not in told.err
+
+
+PENDULUM = """\
+title: A pendulum
+span: [0, 10]
+record: [phi, omega]
+parameters: {c: {value: 0.1, unit: 1/s}}
+presets: {free: {c: 0}, held: {c: 9}}
+blocks:
+  phi: {type: integrator, of: omega, start: 0.5, unit: deg, label: φ}
+  omega: {type: integrator, of: a, unit: rad/s}
+  a: {type: expression, formula: -9*phi - c*omega}
+"""
+
+
+@pytest.fixture
+def pendulum(tmp_path: Path) -> Path:
+    file = tmp_path / "pendulum.yaml"
+    file.write_text(PENDULUM, encoding="utf-8")
+    return file
+
+
+def test_several_values_are_in_one_figure(call: Any, pendulum: Path, tmp_path: Path) -> None:
+    figure = tmp_path / "a.svg"
+    told = call("run", pendulum, "--over", "c=0.1,1,3", "--figure", figure)
+    assert told.code == 0
+    assert [line.split()[4] for line in told.out.splitlines() if "phi" in line] == ["0.1", "1", "3"]
+    drawn = figure.read_text(encoding="utf-8")
+    for legend in ("c = 0.1 1/s", "c = 1 1/s", "c = 3 1/s", "φ [deg]"):
+        assert f"<!-- {legend} -->" in drawn
+    data = call("run", pendulum, "--over", "c=0:3:4", "--json").data["runs"]
+    assert list(data) == ["c = 0 1/s", "c = 1 1/s", "c = 2 1/s", "c = 3 1/s"]
+    alone = call("run", pendulum, "--set", "c=2", "--json").data
+    assert data["c = 2 1/s"]["final"] == alone["final"]
+
+
+def test_several_presets_and_starts_are_in_one_table(call: Any, pendulum: Path) -> None:
+    presets = ["--preset", "free", "--preset", "held"]
+    told = call("run", pendulum, *presets, "--over", "start.phi=10,20 deg", "--json").data["runs"]
+    assert [run["parameters"]["c"] for run in told.values()] == [0, 0, 9, 9]
+    assert [run["start"]["phi"] for run in told.values()] == pytest.approx(
+        2 * [np.pi / 18, np.pi / 9]
+    )
+    assert next(iter(told)) == "free, start.phi = 0.174533 rad"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--over", "c=0:1:13"], "13 runs do not go into one figure. Take 12 at most; `tracewire"),
+        (["--over", "c=1,2", "--events"], "--events are those of one run, and here are several"),
+        (["--over", "c=1,2", "--output", "a.csv"], "--events are those of one run"),
+        (["--over", "c=1,2", "--over", "c=3"], "--over gives 'c' twice"),
+        (["--over", "c=1;2"], "--over 'c=1;2' is not a name, '=' and FROM:TO:COUNT or values"),
+        (["--over", "d=1,2"], "unknown parameter 'd'"),
+        (["--over", "c=1,2 m"], "'m' is another quantity than 1/s"),
+        (["--set", "c=1", "--set", "c=2"], "Leave one out, or run both: --over c=1,2."),
+        (["--unit", "phi"], "--unit 'phi' is not a signal, '=' and a unit"),
+        (["--unit", "phi=m"], "'m' is another quantity than rad"),
+        (["--unit", "psi=deg"], "unknown recorded signal 'psi'"),
+    ],
+)
+def test_several_runs_that_cannot_be_are_told(
+    call: Any, pendulum: Path, arguments: list[str], said: str
+) -> None:
+    told = call("run", pendulum, *arguments)
+    assert told.code == 2
+    assert said in told.err
+
+
+def test_results_are_in_the_unit_that_is_asked_for(
+    call: Any, pendulum: Path, tmp_path: Path
+) -> None:
+    file, figure = tmp_path / "a.csv", tmp_path / "a.svg"
+    told = call("run", pendulum, "--unit", "omega=rpm", "--figure", figure, "--output", file)
+    rows = {line.split()[0]: line.split()[1:] for line in told.out.splitlines() if line.strip()}
+    assert rows["phi"][:2] == ["deg", "28.6479"]  # 0.5 rad
+    assert rows["omega"][0] == "rpm"
+    assert float(rows["omega"][4]) == pytest.approx(60 / (2 * np.pi) * 1.4, rel=0.05)
+    drawn = figure.read_text(encoding="utf-8")
+    assert "<!-- φ [deg] -->" in drawn
+    assert "<!-- omega [rpm] -->" in drawn
+    assert file.read_text(encoding="utf-8").splitlines()[1].startswith("0.0,0.5,")
+    data = call("run", pendulum, "--json").data["signals"]["phi"]
+    assert (data["unit"], data["start"]) == ("rad", 0.5)
+
+
+def test_a_portrait_has_labels_and_units(call: Any, pendulum: Path, tmp_path: Path) -> None:
+    figure = tmp_path / "a.svg"
+    assert call("analyse", "portrait", pendulum, "phi", "omega", "--figure", figure).code == 0
+    assert "<!-- φ [deg] -->" in figure.read_text(encoding="utf-8")
+
+
+def test_check_tells_a_spring_that_pushes(call: Any, pendulum: Path) -> None:
+    text = PENDULUM.replace(
+        "a: {type: expression, formula: -9*phi - c*omega}", "a: {type: sum, of: [-spring]}"
+    )
+    pendulum.write_text(f"{text}  spring: {{type: stiffness, of: phi, k: 9}}\n", encoding="utf-8")
+    said = "'spring' pushes 'omega' on: a stiffness acts against 'phi' by itself"
+    assert f"!           {said}" in call("check", pendulum).out
+    assert call("check", pendulum, "--json").data["remarks"][0].startswith(said)
+    pendulum.write_text(pendulum.read_text(encoding="utf-8").replace("-spring", "spring"), "utf-8")
+    assert call("check", pendulum, "--json").data["remarks"] == []

@@ -148,7 +148,7 @@ def test_figure(call: Any, swing: Path, tmp_path: Path, ending: str, magic: byte
         (["--set", "k=nan"], "--set 'k=nan' is not a name"),
         (["--start", "theta=1e"], "'e' "),
         (["--set", "k=1e999"], "--set 'k=1e999' is too large for a number."),
-        (["--set", "k=1", "--set", "k=2"], "--set gives 'k' twice. Leave one out."),
+        (["--set", "k=1", "--set", "k=2"], "--set gives 'k' twice. Leave one out, or run"),
         (["--set", "phi=3 kg"], "--set 'phi=3 kg': 'kg' is another quantity than rad. Give it in"),
         (["--start", "omega=3 rad"], "'rad' is another quantity than rad/s."),
         (["--set", "phi=3 parsnips"], "'parsnips' is not a unit."),

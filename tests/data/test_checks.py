@@ -98,3 +98,9 @@ def test_a_coarse_reading() -> None:
         "y is read in steps of 0.0628 rad (32 over its range): the rounding alone has a standard "
         "deviation of 0.0181 rad"
     )
+
+
+def test_a_command_in_steps_is_not_rounded() -> None:
+    command = np.round(np.sin(3 * T), 1)
+    assert "is read in steps of 0.1" in signal_remarks("F", T, command)[0]
+    assert signal_remarks("F", T, command, exact=True) == []

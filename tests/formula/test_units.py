@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tracewire.errors import FormulaError, Place
-from tracewire.formula import Unit, read_unit, same_quantity
+from tracewire.formula import Unit, quantity_hint, read_unit, same_quantity
 from tracewire.formula.units import COHERENT, _convert
 
 
@@ -36,6 +36,9 @@ from tracewire.formula.units import COHERENT, _convert
         ("min", "s", 60.0),
         ("%", "", 0.01),
         ("kHz", "1/s", 1e3),
+        ("kOhm", "kg*m**2/A**2/s**3", 1e3),
+        ("V/kOhm", "A", 1e-3),
+        ("gravity", "m/s**2", 9.80665),
     ],
 )
 def test_a_unit_has_its_factor_to_si(text: str, shown: str, factor: float) -> None:
@@ -131,3 +134,10 @@ def test_si_units_do_not_load_the_unit_library() -> None:
     )
     script = f"import sys; sys.path[:0] = {sys.path!r}; {code}"
     assert run([sys.executable, "-c", script], check=False).returncode == 0
+
+
+@pytest.mark.parametrize(("given", "wanted"), [("g", "m/s^2"), ("mV/g", "V s^2/m")])
+def test_a_gram_that_is_meant_for_gravity_is_told(given: str, wanted: str) -> None:
+    assert "has the unit 'gravity'" in quantity_hint(given, wanted)
+    assert quantity_hint(given, "N", "Give it in N.") == "Give it in N."
+    assert quantity_hint("kg", wanted) == ""

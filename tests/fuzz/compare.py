@@ -70,14 +70,15 @@ class Case:
     solve: Callable[[Vector, Vector], Matrix]
 
 
-def linear(seed: int) -> Case:
-    """A piecewise linear system and its exact solution."""
+def linear(seed: int, shared: bool = False) -> Case:
+    """A piecewise linear system and its exact solution, where no elements are `shared` on one
+    surface, or also there."""
     draft = draw(seed)
 
     def solve(moves: Vector, times: Vector) -> Matrix:
         system = system_of(draft)
         system.start += moves
-        return Solution(system, draft.end).at(times.tolist())
+        return Solution(system, draft.end, shared).at(times.tolist())
 
     text, said = text_of(draft), sorted(draft.said)
     return Case(text, draft.end, draft.second, draft.names, draft.units, said, solve)
@@ -94,7 +95,12 @@ def smooth(seed: int) -> Case:
     return Case(system.text(), system.end, 1.0, names, [1.0] * len(names), system.said, solve)
 
 
-CASES = {"linear": linear, "smooth": smooth}
+def surfaces(seed: int) -> Case:
+    """A linear system, also with several elements on one surface."""
+    return linear(seed, shared=True)
+
+
+CASES = {"linear": linear, "smooth": smooth, "surfaces": surfaces}
 
 
 def check(case: Case, seed: int, tally: Tally, method: str = "any", backend: str = "any") -> None:

@@ -42,15 +42,21 @@ LOWEST = 2 * CLOSE  # a flight that rises no higher counts as lying
 
 
 class Solution:
-    """The solution of a system: `at(times)` are the values of z; `events` counts what happened."""
+    """The solution of a system: `at(times)` are the values of z; `events` counts what happened.
 
-    def __init__(self, system: System, end: float) -> None:
-        self.system, self.end = system, end
+    With `shared`, guards of several elements on one surface are passed together; else that is not
+    clear.
+    """
+
+    def __init__(self, system: System, end: float, shared: bool = True) -> None:
+        self.system, self.end, self.shared = system, end, shared
         self.t, self.z = 0.0, system.start.copy()
         self.pieces: list[tuple[float, float, Matrix]] = []  # begin, length, coefficients
         self.events = 0
         self.fired: dict[int, float] = {}  # when each reset has fired the last time
         self.cell = math.inf  # how long the next cell may be
+        if shared:
+            system.elements = joined(system.elements)
         for element in system.elements:
             element.begin(self.z)
         self.hold()
@@ -166,6 +172,8 @@ class Solution:
     def advance(self, limit: float) -> None:
         """Go on to the next event, at `limit` at the latest, and let it happen."""
         matrix = self.field()
+        if self.taken_up(matrix @ self.z):
+            return
         guards = [guard for element in self.system.elements for guard in element.guards()]
         rows = np.array([guard.row for guard in guards]).reshape(len(guards), len(self.z))
         values = rows @ self.z
@@ -190,6 +198,16 @@ class Solution:
             self.z = series.sum(axis=1)
             self.t = limit if length == limit - self.t else self.t + length
         self.scheduled()
+
+    def taken_up(self, rate: Vector) -> bool:
+        """Whether a play that stands at an end of its gap is taken along from there on."""
+        for element in self.system.elements:
+            if isinstance(element, Play) and element.mode == "free":
+                for guard in element.guards():
+                    if abs(guard.row @ self.z) < CLOSE and guard.row @ rate < -CLOSE:
+                        guard.act()
+                        return True
+        return False
 
     def hits(self, samples: Matrix, armed: NDArray[np.bool_]) -> list[int]:
         """The guards that are passed in a cell."""
@@ -235,12 +253,15 @@ class Solution:
         powers = part**EXPONENTS
         self.t += part * length
         self.z = series @ powers
-        values = np.abs(rows @ self.z)
-        values[first] = np.inf
         before = rows @ series[:, 0]
-        if np.any((values < CLOSE) & (np.abs(before) > CLOSE)):
+        due = (np.abs(rows @ self.z) < CLOSE) & (np.abs(before) > CLOSE)
+        due[first] = True
+        passed = np.flatnonzero(due)
+        one = all(number in hits and same(rows[first], rows[number]) for number in passed)
+        if not one or (len(passed) > 1 and not self.shared):
             raise Unclear("two things at one instant")
-        guards[first].act()
+        for number in passed:  # surfaces that are one
+            guards[number].act()
         self.react()
 
     def root(self, line: Vector, least: float) -> float:
@@ -345,7 +366,7 @@ class Solution:
         self.z[stop.v] *= -stop.restitution
         self.field()
         pressed = side * float(stop.force @ self.z)
-        if pressed != 0:  # a quarter of the flight to come
+        if pressed != 0 and self.z[stop.v] != 0:  # a quarter of the flight to come
             self.cell = abs(self.z[stop.v] / pressed) / 2
         if self.z[stop.v] ** 2 < 2 * LOWEST * abs(pressed) or self.z[stop.v] == 0.0:
             self.clear(pressed)
@@ -359,4 +380,43 @@ def powers_of(matrix: Matrix) -> NDArray[np.float64]:
     found[0] = np.eye(len(matrix))
     for k in range(1, ORDER + 1):
         found[k] = matrix @ found[k - 1] / k
+    return found
+
+
+def same(one: Vector, other: Vector) -> bool:
+    """Whether two rows have one surface."""
+    size = float(np.linalg.norm(one) * np.linalg.norm(other))
+    return bool(abs(abs(float(one @ other)) - size) < 1e-12 * size)
+
+
+def joined(elements: Sequence[Element]) -> list[Element]:
+    """The elements, with the switches on one surface that act alike as one.
+
+    It has one side, and one slide. Of two that do not act alike nobody knows the shares.
+    """
+    found: list[Element] = []
+    switches: list[Switch] = []
+    of: dict[int, tuple[Switch, float]] = {}
+    for element in elements:
+        if isinstance(element, Switch):
+            for known in switches:
+                alike = same(known.row, element.row) and same(known.into, element.into)
+                if alike and known.stick == element.stick:
+                    weight = element.level * math.copysign(1.0, float(known.row @ element.row))
+                    known.into = known.into + weight * element.into
+                    of[id(element)] = known, weight
+                    break
+            else:
+                one = Switch(
+                    element.level * element.into, element.row, 1.0, element.stick, element.one
+                )
+                switches.append(one)
+                found.append(one)
+                of[id(element)] = one, element.level
+        else:
+            found.append(element)
+    for element in found:
+        if isinstance(element, Reader) and element.of is not None:
+            element.of, weight = of[id(element.of)]
+            element.weight *= weight
     return found

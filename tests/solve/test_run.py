@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -36,6 +37,18 @@ def test_another_ending_is_refused(tmp_path: Path) -> None:
 def test_a_signal_that_is_not_recorded_says_what_is() -> None:
     with pytest.raises(OptionError, match=r"unknown recorded signal 'g'; there are: v, x.*record"):
         run(BALL, times=[0.0, 1.0])["g"]
+
+
+def test_a_run_is_shown_in_other_units_and_stays_in_si() -> None:
+    plain = run(OSCILLATOR, times=[0.0, 1.0])
+    shown = plain.in_units({"x": "mm"})
+    assert shown["x"].tolist() == plain["x"].tolist()
+    assert shown.as_shown("x") == pytest.approx(1e3 * plain["x"], rel=1e-15)
+    assert (shown.look("x").unit, shown.look("x").label) == ("mm", "x")
+    with pytest.raises(OptionError, match="unknown recorded signal 'y'"):
+        plain.in_units({"y": "mm"})
+    with pytest.raises(OptionError, match=r"'x' is in mm?, and 'kg' is another quantity"):
+        replace(plain, units={"x": "m"}).in_units({"x": "kg"})
 
 
 def test_a_run_knows_what_it_cost_and_how_it_ended() -> None:

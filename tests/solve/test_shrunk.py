@@ -291,3 +291,47 @@ blocks:
     result = run(text, method=method, rtol=rtol)
     assert result.final["s.x"] == pytest.approx(-3.620526817749215e-06, rel=1e-9)
     assert result.final["s.v"] == 0.0
+
+
+@pytest.mark.parametrize("gear", ["3", "gear"])
+@pytest.mark.parametrize("stick", [0.4, 0.55])
+def test_a_play_behind_a_gear_stays_where_friction_holds_the_body(gear: str, stick: float) -> None:
+    """The rate that the play reads is another guard than that of the friction, zero with it.
+
+    The play is at rest while the body is, and follows it over its turning points.
+    """
+    found = run(
+        f"""
+        span: [0, 10]
+        record: [x, v, e]
+        parameters: {{gear: 3}}
+        blocks:
+          x: {{type: integrator, of: v, start: 0.5}}
+          v: {{type: integrator, of: a, start: -1.74}}
+          a: {{type: expression, formula: -5*x - 0.4*v + f}}
+          f: {{type: dry_friction, rate: v, slip: 0.4, stick: {stick}}}
+          i: {{type: expression, formula: {gear}*x}}
+          r: {{type: expression, formula: {gear}*v}}
+          e: {{type: play_operator, of: i, rate: r, width: 0.156, start: 1.5}}
+        """,
+        rtol=1e-9,
+    )
+    driven = 1.5
+    for x in found["x"]:  # the operator itself, from sample to sample: x turns between few of them
+        driven = float(np.clip(driven, 3 * x - 0.078, 3 * x + 0.078))
+    assert found["v"][-1] == pytest.approx(0.0, abs=1e-12)
+    assert found["e"][-1] == pytest.approx(driven, abs=1e-4)
+
+
+def test_two_frictions_on_one_rate_hold_together_where_none_does_alone() -> None:
+    """The push of 2 is more than 0.9 or 1.5, and less than both; the rates differ by a factor."""
+    found = run("""
+        span: [0, 3]
+        blocks:
+          v: {type: integrator, of: a, start: 1}
+          a: {type: expression, formula: f - 1.5*s - 2}
+          f: {type: dry_friction, rate: v, slip: 0.9, stick: 0.9}
+          i: {type: expression, formula: 1.014*v}
+          s: {type: sign, of: i}
+    """)
+    assert found["v"][-1] == pytest.approx(0.0, abs=1e-9)

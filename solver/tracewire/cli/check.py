@@ -65,20 +65,23 @@ def check(
 
 def _contents(file: str, library: Sequence[str] | None, quiet: bool) -> dict[str, Any]:
     """What is in a diagram, printed unless `quiet`. Raises TracewireError."""
+    from tracewire.compile.remarks import remarks_of
     from tracewire.show.summary import contents, contents_text, series_contents
     from tracewire.solve import parameter_values
 
     model = load_model(file, library) if file != "-" else _from_stdin(library)
     for preset in ("", *model.flat.presets):  # they must be what the diagram requires
         parameter_values(model, {}, preset)
-    measured = []
+    measured: list[dict[str, object]] = []
+    found = {**contents(model), "remarks": remarks_of(model, parameter_values(model, {}))}
     if model.diagram.measured:
         with working("reading the measured series"):
-            from tracewire.residual import load_measured, refuse_readers_of_free
+            from tracewire.residual import free_names, load_measured, refuse_readers_of_free
 
             refuse_readers_of_free(model)
-            measured = [series_contents(series) for series in load_measured(model, driving=True)]
-    found = contents(model)
+            series = load_measured(model, driving=True)
+            measured = [series_contents(one) for one in series]
+            found["free"] = free_names(model, series)
     if not quiet:
         print_text(contents_text(found, measured))
     return {**found, "measured": measured}

@@ -41,7 +41,7 @@ def demo(
     print_text("--- 1. check the double torsion pendulum as it was first declared")
     check([pendulum])
     print_text("\n--- 2. run it")
-    run(pendulum, preset="as_in_the_paper", figure=str(folder / "torsion.png"))
+    run(pendulum, preset=["as_in_the_paper"], figure=str(folder / "torsion.png"))
     print_text("\n--- 3. trace what it lacks to explain five records")
     patch = str(folder / "pendulum.patch")
     trace(pendulum, report=str(folder / "trace" / "report.md"), patch=patch)

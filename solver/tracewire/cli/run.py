@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tracewire.cli.cases import cases_of
 from tracewire.cli.one_run import evenly
 from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries, load_model
 from tracewire.cli.output import (
@@ -20,7 +21,7 @@ from tracewire.cli.output import (
     working,
 )
 from tracewire.cli.series import SeriesName, read_series
-from tracewire.cli.values import parameter_values_of, start_values_of
+from tracewire.cli.values import parameter_values_of, start_values_of, units_of
 from tracewire.errors import OptionError, Problem
 from tracewire.files import writing
 
@@ -36,7 +37,12 @@ FINER = 10
 
 def run(
     diagram: DiagramPath,
-    preset: Annotated[str, typer.Option(help="A preset of the diagram.", metavar="NAME")] = "",
+    preset: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME", help="A preset of the diagram. Repeatable: a run for each of them."
+        ),
+    ] = None,
     values: Annotated[
         list[str] | None,
         typer.Option(
@@ -55,6 +61,15 @@ def run(
             show_default=False,
         ),
     ] = None,
+    over: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=VALUES",
+            help="A run for each of these values of a parameter, or of start.STATE, in one table "
+            "and figure: 'k=1,2,5' or 'k=FROM:TO:COUNT'. Repeatable.",
+            show_default=False,
+        ),
+    ] = None,
     span: Annotated[
         tuple[float, float] | None, typer.Option(metavar="FROM TO", help="From and to, in s.")
     ] = None,
@@ -64,6 +79,14 @@ def run(
     record: Annotated[
         list[str] | None,
         typer.Option(metavar="SIGNAL", help="A further signal to record. Repeatable."),
+    ] = None,
+    unit: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="SIGNAL=UNIT",
+            help="The unit of a signal in table and figure; files are in SI. Repeatable.",
+            show_default=False,
+        ),
     ] = None,
     series: SeriesName = "",
     method: Annotated[
@@ -93,6 +116,7 @@ def run(
     Examples:
       tracewire run pendulum.yaml --preset as_printed --span 0 4
       tracewire run pendulum.yaml --set "phi=13.6 deg" --figure swing.png
+      tracewire run pendulum.yaml --over c=0.1,0.2,0.5 --unit phi=deg --figure damping.png
 
     Ctrl-C keeps the run up to there: in the file of --output, or in DIAGRAM.interrupted.npz in this
     folder.
@@ -106,62 +130,92 @@ def run(
     model = load_model(diagram, library, record)
     parameters = parameter_values_of(model, values or ())
     starts = start_values_of(model, start or ())
+    units = units_of(model, unit or ())
+    cases = cases_of(model, over or (), preset or ())
+    if len(cases) > 1 and (output or samples or events):
+        what = "--output, --samples and --events are those of one run, and here are several"
+        hint = "Leave them out, or run each case by itself."
+        raise OptionError([Problem(what, hint=hint)])
     if every is not None:
         from tracewire.formula import Number
 
         model = replace(model, flat=replace(model.flat, every=Number(every)))
-    with working(f"simulating {diagram}") as show:
-        from tracewire.solve import Interrupted, parameter_values, simulate
-        from tracewire.solve.simulate import DEFAULT_SAMPLES
+    given = read_series(model, series)
+    within = span or given.span
+    # a figure of a quick swing needs more points than a table of it
+    finer = figure is not None and model.flat.every is None
+    runs = {}
+    for case in cases:
+        what = f"simulating {diagram}" + (f" with {case.name}" if case.name else "")
+        with working(what) as show:
+            from tracewire.solve import Interrupted, parameter_values, simulate
+            from tracewire.solve.simulate import DEFAULT_SAMPLES
 
-        given = read_series(model, series)
-        known = parameter_values(model, {**given.parameters, **parameters}, preset or given.preset)
-        within = span or given.span
-        # a figure of a quick swing needs more points than a table of it
-        finer = figure is not None and model.flat.every is None
-        times = evenly(model, known, within, FINER * (DEFAULT_SAMPLES - 1)) if finer else None
-        try:
-            result = simulate(
-                model,
-                parameters={**given.parameters, **parameters},
-                start={**given.start, **starts},
-                span=within,
-                times=times,
-                method=method,
-                rtol=rtol,
-                atol=atol,
-                preset=preset or given.preset,
-                inputs=given.inputs,
-                progress=telling(f"simulating {diagram}", show),
-            )
-        except Interrupted as error:
-            raise _kept(error, output or f"{Path(diagram).stem}.interrupted.npz") from error
-    for warning in result.warnings:
-        note(f"warning: {warning}")
+            own = {**given.parameters, **parameters, **case.parameters}
+            known = parameter_values(model, own, case.preset or given.preset)
+            times = evenly(model, known, within, FINER * (DEFAULT_SAMPLES - 1)) if finer else None
+            try:
+                result = simulate(
+                    model,
+                    parameters=own,
+                    start={**given.start, **starts, **case.start},
+                    span=within,
+                    times=times,
+                    method=method,
+                    rtol=rtol,
+                    atol=atol,
+                    preset=case.preset or given.preset,
+                    inputs=given.inputs,
+                    progress=telling(what, show),
+                )
+            except Interrupted as error:
+                raise _kept(error, output or f"{Path(diagram).stem}.interrupted.npz") from error
+        runs[case.name] = result.in_units(units)
+        _tell_warnings(case.name, result)
     from tracewire.show import summary
 
-    for remark in summary.runaway_remarks(result):
-        note(f"warning: {remark}")
-    drawn, result = result, _thinned(result) if finer else result
+    result = next(iter(runs.values()))
     if output is not None:
         with writing(output):
-            result.save(output)
+            (_thinned(result) if finer else result).save(output)
     if figure is not None:
         with working(f"drawing {figure}"), writing(figure):
-            from tracewire.show import plot_run
+            from tracewire.show import plot_run, plot_runs
 
-            plot_run(drawn, figure, given.measured)
+            if len(runs) > 1:
+                plot_runs(runs, figure, given.measured)
+            else:
+                plot_run(result, figure, given.measured)
     written = [path for path in (output, figure) if path is not None]
 
+    if finer:
+        runs = {name: _thinned(one) for name, one in runs.items()}
+    told = {name: summary.run_data(one, samples) for name, one in runs.items()}
     if as_json:
-        print_json(summary.run_data(result, samples) | {"written": written})
+        print_json(
+            (told[cases[0].name] if len(cases) == 1 else {"runs": told}) | {"written": written}
+        )
         return
-    print_table(summary.run_table(result))
-    if events:
-        print_table(summary.events_table(result))
-    print_text(summary.run_text(result))
+    if len(runs) > 1:
+        from tracewire.show.several_runs import runs_table
+
+        print_table(runs_table(runs))
+    else:
+        result = runs[cases[0].name]
+        print_table(summary.run_table(result))
+        if events:
+            print_table(summary.events_table(result))
+        print_text(summary.run_text(result))
     for path in written:
         print_text(f"written: {path}")
+
+
+def _tell_warnings(case: str, result: Run) -> None:
+    """What is odd about a run, on stderr."""
+    from tracewire.show import summary
+
+    for remark in (*result.warnings, *summary.runaway_remarks(result)):
+        note(f"warning: {case}: {remark}" if case else f"warning: {remark}")
 
 
 def _kept(error: Interrupted, path: str) -> Interrupted:

@@ -30,6 +30,7 @@ OUTPUTS = (".csv", ".npz")
 FIGURES = (".png", ".svg", ".pdf")
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 VALUES = re.compile(rf"\s*([^=\s]+)\s*=\s*({NUMBER})\s*:\s*({NUMBER})\s*:\s*(\d+)\s*(.*)")
+LISTED = re.compile(rf"\s*([^=\s]+)\s*=\s*({NUMBER}(?:\s*,\s*{NUMBER})*)\s*([^\d:,;]?[^:,;]*)")
 
 Preset = Annotated[str, typer.Option(help="A preset of the diagram.", metavar="NAME")]
 Values = Annotated[
@@ -127,32 +128,40 @@ def read_setting(
 
 
 def values_of(model: Model, texts: Sequence[str], option: str = "--over") -> dict[str, Any]:
-    """NAME=FROM:TO:COUNT as evenly spaced values in SI, by name. Raises OptionError."""
+    """NAME=FROM:TO:COUNT as evenly spaced values, NAME=VALUE,VALUE,... as these, in SI by name.
+
+    Raises OptionError.
+    """
     import numpy as np
 
     found: dict[str, Any] = {}
     problems: list[Problem] = []
     for text in texts:
-        match = VALUES.fullmatch(text)
-        if match is None:
-            what = f"{option} '{text}' is not a name, '=' and FROM:TO:COUNT"
-            problems.append(Problem(what, hint=f"Write it like {option} f=0.3:0.9:800."))
-            continue
-        name, first, last, count, unit = match.groups()
-        if name.startswith("start."):
-            state = name.removeprefix("start.")
-            ends = [start_values_of(model, [f"{state}={x} {unit}"], option) for x in (first, last)]
+        even, listed = VALUES.fullmatch(text), LISTED.fullmatch(text)
+        if even is not None:
+            name, first, last, count, unit = even.groups()
+            given = [first, last]
+        elif listed is not None:
+            name, numbers, unit = listed.groups()
+            given, count = numbers.split(","), "1"
         else:
-            ends = [
-                parameter_values_of(model, [f"{name}={x} {unit}"], option) for x in (first, last)
-            ]
-        low, high = (next(iter(end.values())) for end in ends)
+            what = f"{option} '{text}' is not a name, '=' and FROM:TO:COUNT or values"
+            hint = f"Write it like {option} f=0.3:0.9:800 or {option} f=0.3,0.5,1."
+            problems.append(Problem(what, hint=hint))
+            continue
+        read, known = parameter_values_of, name
+        if name.startswith("start."):
+            read, known = start_values_of, name.removeprefix("start.")
+        values = [
+            next(iter(read(model, [f"{known}={number.strip()} {unit}"], option).values()))
+            for number in given
+        ]
         if int(count) < 1:
             problems.append(Problem(f"{option} '{text}' has no values", hint="Give a COUNT."))
             continue
         if name in found:
             problems.append(Problem(f"{option} gives '{name}' twice", hint="Leave one out."))
-        found[name] = np.linspace(low, high, int(count))
+        found[name] = np.linspace(values[0], values[1], int(count)) if even else np.array(values)
     if problems:
         raise OptionError(problems)
     return found

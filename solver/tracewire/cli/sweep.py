@@ -34,7 +34,8 @@ def sweep(
         typer.Option(
             "--over",
             metavar="NAME=FROM:TO:COUNT",
-            help="A parameter, or start.STATE, and its values: 'k=1:5:41'. Repeatable.",
+            help="A parameter, or start.STATE, and its values: 'k=1:5:41' or 'k=1,2,5'. "
+            "Repeatable.",
         ),
     ],
     keep: Annotated[

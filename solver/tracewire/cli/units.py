@@ -15,6 +15,7 @@ COMMON = {  # of each quantity the SI unit first
     "time": "s ms us min h day",
     "frequency": "Hz kHz",
     "rate": "rad/s deg/s rpm",
+    "acceleration": "m/s^2 gravity",
     "mass": "kg g mg t lb",
     "force": "N mN kN kgf lbf",
     "torque": "Nm mNm",
@@ -24,7 +25,7 @@ COMMON = {  # of each quantity the SI unit first
     "temperature": "K",
     "current": "A mA",
     "voltage": "V mV",
-    "resistance": "Ohm kohm",
+    "resistance": "Ohm kOhm",
     "capacity": "F uF nF",
     "inductance": "H mH",
     "number": "1 % ppm",
@@ -41,7 +42,8 @@ def units(
     """List common units, or say what one is in SI.
 
     They stand behind a value, alone, multiplied, divided and in powers; so do all others that the
-    library pint knows. Results and files are in SI.
+    library pint knows. Files and JSON are in SI; a run is printed and drawn in the units of the
+    diagram, or of `run --unit`.
 
     \b
     Examples:

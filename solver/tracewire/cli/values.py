@@ -60,6 +60,31 @@ def start_values_of(
     return _assigned(texts, option, declared)
 
 
+def units_of(model: Model, texts: Iterable[str], option: str = "--unit") -> dict[str, str]:
+    """The units that `signal=unit` texts give, by recorded signal.
+
+    Raises OptionError: a text that cannot be read, an unknown signal, a unit of another quantity.
+    """
+    found: dict[str, str] = {}
+    problems: list[Problem] = []
+    for text in texts:
+        name, equals, unit = (part.strip() for part in text.partition("="))
+        if not (name and equals and unit):
+            what = f"{option} '{text}' is not a signal, '=' and a unit"
+            problems.append(Problem(what, hint=f"Write it like {option} phi=deg."))
+        elif name not in model.recorded:
+            problems.append(unknown("recorded signal", name, model.recorded))
+        else:
+            try:
+                _factor(text, unit, model.flat.units.get(name, ""), option)
+            except (FormulaError, OptionError) as error:
+                problems += error.problems
+        found[name] = unit
+    if problems:
+        raise OptionError(problems)
+    return found
+
+
 def _assigned(
     texts: Iterable[str], option: str, declared: Callable[[str], Declared | Problem]
 ) -> dict[str, float]:
@@ -79,7 +104,8 @@ def _assigned(
         full, unit, factor = found
         if full in values:
             what = f"{option} gives '{full}' twice"
-            problems.append(Problem(what, hint="Leave one out."))
+            several = f", or run both: --over {name}=1,2" if option == "--set" else ""
+            problems.append(Problem(what, hint=f"Leave one out{several}."))
         try:
             if unit_text:
                 factor = _factor(text, unit_text, unit, option)
@@ -95,10 +121,11 @@ def _assigned(
 
 def _factor(text: str, given: str, declared: str, option: str) -> float:
     """The factor from the given unit to SI; a name that declares no unit takes any."""
-    from tracewire.formula import read_unit, same_quantity
+    from tracewire.formula import quantity_hint, read_unit, same_quantity
 
     unit = read_unit(given)
     if declared not in ("", "1", given, unit.text) and not same_quantity(given, declared):
         what = f"{option} '{text}': '{given}' is another quantity than {declared}"
-        raise OptionError([Problem(what, hint=f"Give it in {declared}, or without a unit.")])
+        hint = quantity_hint(given, declared, f"Give it in {declared}, or without a unit.")
+        raise OptionError([Problem(what, hint=hint)])
     return unit.factor

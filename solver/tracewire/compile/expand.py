@@ -75,13 +75,16 @@ class _Expander:
         ]
         if self.problems:
             raise DiagramError(self.problems)
-        blocks, units = dict(flat.blocks), dict(flat.units)
+        blocks, units, shown = dict(flat.blocks), dict(flat.units), dict(flat.shown)
         for name, shape in self.shapes.items():
             block = blocks.pop(name, None)
             for element in element_names(name, shape):
                 if block is not None:
                     blocks[element] = replace(block, name=element)
                 units[element] = units.get(name, "")
+                if look := shown.get(name):
+                    own = look.label and look.label + element.removeprefix(name)
+                    shown[element] = replace(look, label=own)
         return replace(
             flat,
             signals=signals,
@@ -92,6 +95,7 @@ class _Expander:
             record=tuple(dict.fromkeys(record)),
             blocks=blocks,
             units=units,
+            shown=shown,
             shapes=self.shapes,
         )
 

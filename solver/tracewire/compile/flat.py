@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from tracewire.diagram import Condition, Crosses, Points
+from tracewire.diagram import Condition, Crosses, Points, Shown
 from tracewire.errors import Place
 from tracewire.formula import Expression
 
@@ -119,7 +119,7 @@ class Flat:
     stand together, as `loops` tells. `guesses` are values where the search of a loop begins.
     `shapes` holds the vectors, `(n,)`, and matrices, `(n, m)`, by name. `outputs` maps the names of
     subsystem ports and of blocks to the signal or state that they are. `require` holds what the
-    parameters must meet.
+    parameters must meet, `shown` how signals are shown that have a label or a unit that is not SI.
     """
 
     title: str
@@ -141,3 +141,4 @@ class Flat:
     memories: tuple[FlatMemory, ...] = ()
     require: tuple[Condition, ...] = ()
     max_step: Expression | None = None
+    shown: Mapping[str, Shown] = field(default_factory=dict)

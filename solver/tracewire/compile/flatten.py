@@ -22,6 +22,7 @@ from tracewire.diagram import (
     BlockUse,
     Diagram,
     Points,
+    Shown,
     Value,
     Wire,
     element_name,
@@ -81,6 +82,7 @@ class _Flattener:
         self.memories: list[FlatMemory] = []
         self.blocks: dict[str, FlatBlock] = {}
         self.units: dict[str, str] = {}
+        self.shown: dict[str, Shown] = {}
         self.guesses: dict[str, Expression] = {}
         self.places: dict[str, Place] = {}  # of the outputs of subsystems
 
@@ -88,6 +90,8 @@ class _Flattener:
         top = self.top
         inputs = {name: Name(name) for name in top.inputs}
         self.units |= {name: port.unit for name, port in top.inputs.items()}
+        for name, port in top.inputs.items():
+            self.show(name, name, port.shown)
         self.add_parameters(top, "", {})
         self.add_diagram(top, "", "", inputs)
         scope = _Scope(top, "", inputs)
@@ -115,12 +119,19 @@ class _Flattener:
             },
             blocks=self.blocks,
             units=self.units,
+            shown=self.shown,
             memories=tuple(self.memories),
             require=tuple(
                 replace(known, formula=rename(known.formula, scope.resolve))
                 for known in top.require
             ),
         )
+
+    def show(self, name: str, path: str, shown: Shown) -> None:
+        """Note how a signal of the block at `path` is shown, if it is not by its name in SI."""
+        if shown != Shown():
+            own = shown.label and shown.label + name.removeprefix(path)
+            self.shown[name] = replace(shown, label=own)
 
     def value(self, value: Value, scope: _Scope) -> Expression:
         return _scaled(rename(value.formula, scope.resolve), value.factor)
@@ -194,6 +205,7 @@ class _Flattener:
             source = carried.arguments[0] if isinstance(carried, Call) else carried
             own = self.units.get(source.name, "") if isinstance(source, Name) else ""
             self.units[name] = use.unit or own
+            self.show(name, path[:-1], use.shown)
 
     def add_block(self, use: BlockUse, block: Block, scope: _Scope, definition: str) -> None:
         path = scope.path + use.name
@@ -232,6 +244,7 @@ class _Flattener:
             unit = use.unit or state.unit
             self.states[name] = FlatState(name, rate, start, unit, place)
             self.units[name] = unit
+            self.show(name, path, use.shown)
         for output in block.outputs:
             formula = written(block.formulas[output.name])
             name = path if len(block.outputs) == 1 else f"{path}.{output.name}"
@@ -243,6 +256,7 @@ class _Flattener:
             if formula != Name(name):  # an integrator's output is its state
                 self.signals[name] = formula
                 self.units[name] = use.unit or output.unit
+                self.show(name, path, use.shown)
         self.events += block_events(block, path, states, written, place)
         self.memories += block_memory(block, path, states, written, place)
 

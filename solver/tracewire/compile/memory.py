@@ -12,8 +12,8 @@ read once, at the start, when the sign modes are known. From then on only its **
 it: while it has the value `source` and the sign mode `trigger` has the value `level`, it becomes
 `target`, and the reset `reset` (-1: none) fires. They are evaluated in event iteration, after the
 sign modes have been set; of several of one memory that are due, the first one is taken. A trigger
-whose guard is held at zero (by a slide, sticking friction or a closed contact) is true there where
-`at_zero` says so.
+whose guard is held at zero (by a slide, sticking friction or a closed contact), or stays at zero
+because of one that is held, is true there where `at_zero` says so.
 
 Formulas read a memory by its leaf, as a number that is frozen between events, so that a comparison
 with it is no guard.

@@ -53,8 +53,13 @@ def time_remarks(t: Vector) -> list[str]:
     return remarks
 
 
-def signal_remarks(name: str, t: Vector, y: Vector, unit: str = "") -> list[str]:
-    """What is odd about a signal y(t), (N,): constant, clipped, made from a lower rate, coarse."""
+def signal_remarks(
+    name: str, t: Vector, y: Vector, unit: str = "", *, exact: bool = False
+) -> list[str]:
+    """What is odd about a signal y(t), (N,): constant, clipped, made from a lower rate, coarse.
+
+    exact: its values are what they were meant to be, such as those of a command: none is rounded.
+    """
     if len(y) < 3:
         return []
     shown = f" {unit}" if unit else ""
@@ -65,7 +70,7 @@ def signal_remarks(name: str, t: Vector, y: Vector, unit: str = "") -> list[str]
     levels = np.unique(y)
     found = _clipped(name, y, levels, shown)
     made = [] if len(levels) < FEWEST_LEVELS else _from_lower_rate(name, t, y)
-    return [*found, *made, *([] if made else _coarse(name, y, levels, shown))]
+    return [*found, *made, *([] if made or exact else _coarse(name, y, levels, shown))]
 
 
 def _clipped(name: str, y: Vector, levels: Vector, unit: str) -> list[str]:

@@ -7,13 +7,14 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal
 
+from tracewire.diagram.diagram import Shown
 from tracewire.diagram.problems import Problems, clip
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.errors import FormulaError, Place
 from tracewire.formula import Unit, is_name, name_hint, read_unit
 
 Sees = Literal["parameter", "signal", "either"]
-OF_A_BLOCK = ("type", "unit", "place", "guess")
+OF_A_BLOCK = ("type", "unit", "label", "place", "guess")
 
 
 @dataclass(frozen=True)
@@ -111,6 +112,16 @@ class Body:
         except FormulaError as error:
             self.problems.take(error)
             return Unit("", 1.0)
+
+    def shown(self, entries: Entries, block: str = "") -> tuple[str, Shown]:
+        """The SI unit of a signal, and how it is shown: in the given unit, with its label."""
+        given = entries.values
+        unit, text = Unit("", 1.0), ""
+        if "unit" in given:
+            unit = self.unit(given["unit"], block)
+            text = "" if unit.factor == 1.0 else self.text(given["unit"], "a unit", block) or ""
+        label = self.text(given["label"], "a label", block) if "label" in given else ""
+        return unit.text, Shown(clip(label or ""), text, unit.factor)
 
     def scalars(self, node: Node, what: str, block: str = "") -> list[Scalar]:
         """The texts of a list of them; a single text is a list of one."""

@@ -65,6 +65,18 @@ class Wire:
 
 
 @dataclass(frozen=True)
+class Shown:
+    """How a signal is shown: its name in figures, and a unit with its factor to SI.
+
+    An empty label is the name of the signal, an empty unit the one in SI.
+    """
+
+    label: str = ""
+    unit: str = ""
+    factor: float = 1.0
+
+
+@dataclass(frozen=True)
 class BlockUse:
     """One block of a diagram: a library block, or a subsystem of the diagram (`subsystem`).
 
@@ -80,6 +92,7 @@ class BlockUse:
     subsystem: Diagram | None = None
     guess: Value | Array | None = None
     place: Place = Place()
+    shown: Shown = Shown()
 
 
 @dataclass(frozen=True)
@@ -90,6 +103,7 @@ class InputPort:
     unit: str = ""
     default: Value | None = None
     place: Place = Place()
+    shown: Shown = Shown()
 
 
 @dataclass(frozen=True)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 from tracewire.errors import DiagramError, Place, Problem, TracewireError, unknown
 
 MOST_PROBLEMS = 100
 MOST_COMPARED = 20_000
 MOST_SHOWN = 60
+NO_UNIT = " is not a unit"
 
 
 def clip(text: str) -> str:
@@ -62,7 +64,7 @@ class Problems:
             place = problem.place
             return place.file != file, place.file, place.line, place.column
 
-        told = sorted(dict.fromkeys(self.found), key=order)
+        told = _together(sorted(dict.fromkeys(self.found), key=order))
         if self.more:
             told.append(Problem(f"and {self.more} more problems", Place(file)))
         raise DiagramError(told)
@@ -70,3 +72,18 @@ class Problems:
     def _note(self, problem: Problem) -> None:
         if not self.skips():
             self.found.append(problem)
+
+
+def _together(problems: list[Problem]) -> list[Problem]:
+    """Units that are refused in several places of a file are told at the first, with all lines."""
+    alike: dict[object, list[Problem]] = {}
+    for problem in problems:
+        once = problem.what.endswith(NO_UNIT)
+        key = (problem.place.file, problem.what, problem.hint) if once else problem
+        alike.setdefault(key, []).append(problem)
+    found = []
+    for first, *others in alike.values():
+        lines = ", ".join(dict.fromkeys(str(other.place.line) for other in others))
+        also = f", also in line {lines}" if others else ""
+        found.append(replace(first, what=first.what + also))
+    return found

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tracewire.diagram.body import Body
 from tracewire.diagram.strict import Entries, Node
-from tracewire.formula import Unit, same_quantity
+from tracewire.formula import Unit, quantity_hint, same_quantity
 
 SECOND = Unit("s", 1.0)
 
@@ -25,7 +25,8 @@ def read_unit_like(node: Node, body: Body, quantity: str) -> Unit:
     unit = body.unit(node)
     text = body.text(node, "a unit") or ""
     if unit.text and text != quantity and not same_quantity(text, quantity):
-        body.problems.add(f"'{text}' is not a unit like '{quantity or 1}'", body.place(node))
+        what, hint = f"'{text}' is not a unit like '{quantity or 1}'", quantity_hint(text, quantity)
+        body.problems.add(what, body.place(node), (), hint)
         return Unit(quantity, 1.0)
     return unit
 

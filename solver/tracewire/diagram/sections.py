@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import get_args
 
 from tracewire.diagram.body import Body
-from tracewire.diagram.diagram import Crosses, Event, InputPort, Value, Wire
+from tracewire.diagram.diagram import Crosses, Event, InputPort, Shown, Value, Wire
 from tracewire.diagram.problems import clip
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.diagram.values import NO_UNIT, read_formula, read_value
@@ -29,14 +29,15 @@ def read_inputs(node: Node, body: Body) -> dict[str, InputPort]:
     for text, key, value in node:
         body.define("an input", key)
         properties = body.entries(value, f"input '{clip(text)}'", "{unit: N m, default: 0}")
-        unit, default = NO_UNIT, None
+        unit, default, shown = NO_UNIT, None, Shown()
         if properties is not None:
-            body.check_keys(properties, ("unit", "default"), "key of an input")
+            body.check_keys(properties, ("unit", "label", "default"), "key of an input")
+            _, shown = body.shown(properties)
             if "unit" in properties.values:
                 unit = body.unit(properties.values["unit"])
             if "default" in properties.values:
                 default = read_value(properties.values["default"], body, unit=unit, fit=False)
-        found[text] = InputPort(text, unit.text, default, body.place(key))
+        found[text] = InputPort(text, unit.text, default, body.place(key), shown)
     return found
 
 

@@ -41,7 +41,7 @@ def _read_block(name: str, key: Scalar, line: Node, body: Body, find: Find) -> B
     if type_node is None or type_name is None:
         return unread
     kind = find(type_name, body.place(type_node, name))
-    unit = body.unit(entries.values["unit"], name).text if "unit" in entries.values else ""
+    unit, shown = body.shown(entries, name)
     local = {}
     if "place" in entries.values:
         local = _read_local(entries.values["place"], type_name, body, name)
@@ -66,7 +66,7 @@ def _read_block(name: str, key: Scalar, line: Node, body: Body, find: Find) -> B
     guess = None
     if "guess" in entries.values:
         guess = _read_guess(entries.values["guess"], inside, body, name)
-    return BlockUse(name, type_name, inputs, settings, unit, local, inside, guess, place)
+    return BlockUse(name, type_name, inputs, settings, unit, local, inside, guess, place, shown)
 
 
 def _read_guess(node: Node, inside: Diagram | None, body: Body, name: str) -> Value | Array | None:

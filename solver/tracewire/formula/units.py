@@ -24,6 +24,10 @@ COHERENT = re.compile(rf"(?:1|{SYMBOL}{POWER}?)(?:(?:\s*[*/]\s*|\s+){SYMBOL}{POW
 """Products and quotients of coherent SI units: their factor is 1, and they need no unit library."""
 TORQUE = re.compile(r"\b([kmuµμn]?N)m\b")
 """`Nm` and `mNm`, as headers of files have it; the unit library takes it for a number of metres."""
+OHM = re.compile(r"(?<=[A-Za-zµμ])Ohm\b")
+"""`kOhm`: the unit library knows `kohm`, and `Ohm` alone."""
+GRAM = re.compile(r"(?<![A-Za-z])g(?![A-Za-z])")
+GRAVITY = "'g' is a gram. An acceleration in multiples of that of gravity has the unit 'gravity'."
 WELL_FORMED = re.compile(rf"(?:1(?!\d)|[^\W\d]++{POWER}?|[°%]|[()\s]|\){POWER}|[*/](?!\*))+")
 """Units and whole powers only: the unit library works out any number, such as 9**9**9, for ever."""
 
@@ -74,7 +78,7 @@ def read_unit(text: str, place: Place = Place()) -> Unit:
     try:
         if len(text) > MOST_CHARACTERS:
             raise ValueError("length")
-        text = TORQUE.sub(r"\1 m", text)
+        text = OHM.sub("ohm", TORQUE.sub(r"\1 m", text))
         if COHERENT.fullmatch(text.strip()):
             return Unit(text.strip(), 1.0)
         if not WELL_FORMED.fullmatch(text):
@@ -96,6 +100,12 @@ def same_quantity(one: str, other: str) -> bool:
         read_unit(text)
     if one.strip() == other.strip():
         return True
-    both = (TORQUE.sub(r"\1 m", text).strip() or "1" for text in (one, other))
+    both = (OHM.sub("ohm", TORQUE.sub(r"\1 m", text)).strip() or "1" for text in (one, other))
     first, second = (_registry().parse_units(text) for text in both)
     return bool(first.is_compatible_with(second))
+
+
+def quantity_hint(given: str, wanted: str, otherwise: str = "") -> str:
+    """What to do about a unit of another quantity than the one that is wanted."""
+    meant = GRAM.sub("gravity", given)
+    return GRAVITY if meant != given and same_quantity(meant, wanted) else otherwise

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 
-from tracewire.errors import BlockError, unknown
+from tracewire.errors import BlockError, Problem, unknown
 from tracewire.library.declare import (
     Block,
     ByMode,
@@ -20,6 +20,10 @@ from tracewire.library.effect import SCALES, SYMBOLS, Effect, Shape
 from tracewire.library.load import Library
 
 MOST_VALUES = 8
+SENSOR = "It is a number of a measured signal: signals: {{x: {{column: x, {0}: ...}}}}."
+ELSEWHERE = {f"sensor_{name}": SENSOR.format(name) for name in
+             ("delay", "gain", "offset", "quad", "drift")}  # fmt: skip
+"""Where names that are no blocks stand in a diagram."""
 
 
 def palette(library: Library) -> str:
@@ -83,7 +87,10 @@ def describe_json(library: Library, name: str) -> dict[str, object]:
 
 def _find(library: Library, name: str) -> Block:
     if name not in library:
-        raise BlockError([unknown("block", name, library)])
+        problem = unknown("block", name, library)
+        if name in ELSEWHERE:
+            problem = Problem(f"'{name}' is no block", hint=ELSEWHERE[name])
+        raise BlockError([problem])
     return library[name]
 
 

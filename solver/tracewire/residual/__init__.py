@@ -43,6 +43,7 @@ from tracewire.residual.settling import SETTLING, settled
 from tracewire.residual.starts import start_from_data, whole_segment
 from tracewire.residual.unknowns import (
     chosen_unknowns,
+    free_names,
     free_unknowns,
     own_unknowns,
     refuse_readers_of_free,
@@ -90,6 +91,7 @@ __all__ = [
     "difference",
     "eliminated",
     "estimate_noise",
+    "free_names",
     "free_unknowns",
     "half_square",
     "likely_input_noise",

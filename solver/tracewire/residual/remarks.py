@@ -6,12 +6,13 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.data import Record, signal_remarks, time_remarks
-from tracewire.diagram import Series
+from tracewire.diagram import Channel, Series
 from tracewire.errors import DataError, FormulaError, Problem
-from tracewire.formula import evaluate, same_quantity
+from tracewire.formula import evaluate, quantity_hint, read_unit, same_quantity
 from tracewire.residual.inputs import looks_held, lost_by_lines, smoothed
 
 LARGEST_ANGLE = 20.0
@@ -35,7 +36,8 @@ def check_quantities(model: Model, series: Series, record: Record) -> None:
             channel = series.channels.get(name) or series.inputs[name.removeprefix("input ")]
             column = f"its column '{channel.column}'" if channel.column else "its measurement"
             what = f"'{name}' is in {unit} in the diagram, and {column} in {given}"
-            hint = "Name another column, or correct the unit."
+            told = "g" if record.unit(name) == read_unit("g") else channel.declared or given
+            hint = quantity_hint(told, unit, "Name another column, or correct the unit.")
             problems.append(Problem(what, channel.place, hint=hint))
     if problems:
         raise DataError(problems)
@@ -52,7 +54,8 @@ def remarks_on(
     if series.time.every is None:
         found += time_remarks(read.t)
     for name, column in read.columns.items():
-        found += signal_remarks(name, read.t, column, read.unit(name).text)
+        exact = _is_command(series.inputs.get(name.removeprefix("input ")), column)
+        found += signal_remarks(name, read.t, column, read.unit(name).text, exact=exact)
     found += _on_span(model, series, read, values, zero)
     states = {state.name: state for state in model.flat.states}
     for name in series.channels:
@@ -76,6 +79,13 @@ def remarks_on(
     found += _on_rest(model, series, read)
     found += _on_hold(series, read)
     return tuple(found)
+
+
+def _is_command(channel: Channel | None, column: NDArray[np.float64]) -> bool:
+    """Whether a column is an input whose values act as they stand there, steps and all."""
+    return channel is not None and (
+        channel.hold == "previous" or channel.sigma == 0.0 or looks_held(column)
+    )
 
 
 def _on_hold(series: Series, read: Record) -> list[str]:

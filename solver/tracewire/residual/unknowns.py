@@ -98,6 +98,17 @@ def own_unknowns(measured: Sequence[Measured]) -> list[Unknown]:
     return list(found.values())
 
 
+def free_names(model: Model, measured: Sequence[Measured]) -> list[str]:
+    """The names of what a fit changes by itself: `k`, `offset.SIGNAL`, `k@SERIES`, `start.STATE`.
+
+    Raises OptionError: a start outside the bounds.
+    """
+    own = [name for name, parameter in model.flat.parameters.items() if parameter.fit is not None]
+    others = [unknown.name for unknown in (*sensor_unknowns(measured), *own_unknowns(measured))]
+    starts = (f"start.{s}" for one in measured for s, value in one.start.items() if value is None)
+    return [*own, *others, *dict.fromkeys(starts)]
+
+
 def refuse_readers_of_free(model: Model, free: Collection[str] | None = None) -> None:
     """Refuse starts and sensors of measured series that read what a fit changes, all parameters
     with bounds or those that `free` names: they are computed once, when a series is read, and would

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from tracewire.show.live import optimplotfit, optimplotfval, optimplotx
     from tracewire.show.parameter_figures import plot_convergence, plot_correlation, plot_parameters
     from tracewire.show.plane_figures import plot_orbit, plot_polar, plot_portrait
+    from tracewire.show.several_runs import plot_runs
     from tracewire.show.signal_figures import (
         plot_growth,
         plot_invariants,
@@ -52,6 +53,7 @@ __all__ = [
     "plot_profiles",
     "plot_residual",
     "plot_run",
+    "plot_runs",
     "plot_scalogram",
     "plot_section",
     "plot_spectrum",
@@ -70,6 +72,7 @@ FILE_OF = {
     "parameter_figures": "plot_convergence plot_correlation plot_parameters",
     "plane_figures": "plot_orbit plot_polar plot_portrait",
     "any_report": "report",
+    "several_runs": "plot_runs",
     "signal_figures": "plot_growth plot_invariants plot_lyapunov plot_scalogram plot_spectrum",
     "sweep_figures": "plot_chart plot_sweep",
     "trace_summary": "paragraph_of",

@@ -79,9 +79,9 @@ def group_signals(run: Run) -> list[list[str]]:
     ranges: list[float] = []
     for name, values in run.signals.items():
         extent = float(np.ptp(values)) if len(values) else 0.0
-        unit = run.units.get(name, "")
+        unit = run.look(name).unit
         for n, group in enumerate(groups):
-            alike = run.units.get(group[0], "") == unit != ""
+            alike = run.look(group[0]).unit == unit != ""
             near = max(extent, ranges[n]) <= SCALE_APART * min(extent, ranges[n])
             if alike and near and len(group) < MOST_LINES:
                 group.append(name)
@@ -98,11 +98,12 @@ def _draw_signals(panel: Axes, run: Run, names: Sequence[str], measured: Measure
         assert measured is not None
         label = "_" if number else "measured"
         look = dots(len(measured.t)) | {"zorder": 1}
-        panel.plot(measured.t, measured.values[name], label=label, **look)
+        panel.plot(measured.t, measured.values[name] / run.look(name).factor, label=label, **look)
     for name, color in zip(names, LINES, strict=False):
-        panel.plot(run.t, run[name], color=color, label=name)
-    unit = run.units.get(names[0], "")
-    panel.set_ylabel(with_unit(names[0], unit) if len(names) == 1 else f"[{unit}]")
+        panel.plot(run.t, run.as_shown(name), color=color, label=run.look(name).label)
+    unit = run.look(names[0]).unit
+    one = with_unit(run.look(names[0]).label, unit)
+    panel.set_ylabel(one if len(names) == 1 else f"[{unit}]")
     if len(names) > 1 or dotted:
         # above the panel, where it covers no line
         panel.legend(loc="lower right", bbox_to_anchor=(1, 0.98), ncols=5, borderpad=0)

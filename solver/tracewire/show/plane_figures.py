@@ -34,15 +34,15 @@ def plot_portrait(run: Run, x: str, y: str, path: str | Path, since: float = -np
         figure, panel = square(run.title)
         points = len(run.t[chosen])
         panel.plot(
-            run[x][chosen],
-            run[y][chosen],
+            run.as_shown(x)[chosen],
+            run.as_shown(y)[chosen],
             color=LINES[0],
             linewidth=0.9,
             rasterized=points > MANY_POINTS,
         )
-        mark_start(panel, run[x][chosen][0], run[y][chosen][0])
-        panel.set_xlabel(with_unit(x, run.units.get(x, "")))
-        panel.set_ylabel(with_unit(y, run.units.get(y, "")))
+        mark_start(panel, run.as_shown(x)[chosen][0], run.as_shown(y)[chosen][0])
+        panel.set_xlabel(with_unit(run.look(x).label, run.look(x).unit))
+        panel.set_ylabel(with_unit(run.look(y).label, run.look(y).unit))
         return save(figure, path)
 
 
@@ -53,7 +53,7 @@ def plot_polar(run: Run, radius: str, angle: str, path: str | Path, since: float
     Raises OptionError as `plot_portrait`.
     """
     chosen = _since(run, since)
-    r, phi = run[radius][chosen], run[angle][chosen]
+    r, phi = run.as_shown(radius)[chosen], run[angle][chosen]
     with styled():
         figure, panel = square(run.title)
         across, up = r * np.sin(phi), -r * np.cos(phi)
@@ -61,9 +61,9 @@ def plot_polar(run: Run, radius: str, angle: str, path: str | Path, since: float
         mark_start(panel, across[0], up[0])
         panel.plot(0, 0, marker="+", color=MARK, markersize=9)
         panel.set_aspect("equal", adjustable="datalim")
-        unit = run.units.get(radius, "")
-        panel.set_xlabel(with_unit(f"{radius} sin {angle}", unit))
-        panel.set_ylabel(with_unit(f"−{radius} cos {angle}", unit))
+        far, turned = run.look(radius), run.look(angle).label
+        panel.set_xlabel(with_unit(f"{far.label} sin {turned}", far.unit))
+        panel.set_ylabel(with_unit(f"−{far.label} cos {turned}", far.unit))
         return save(figure, path)
 
 

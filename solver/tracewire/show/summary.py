@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.diagram import Diagram
@@ -167,6 +168,9 @@ def contents_text(found: Mapping[str, object], measured: Sequence[Mapping[str, o
     lines.append(f"  parameters  {found['parameters']}; free in a fit: {_listed(found['free'])}")
     if found["events"]:
         lines.append(f"  events      {found['events']}")
+    remarks = found["remarks"]
+    assert isinstance(remarks, Sequence)
+    lines += [f"  !           {remark}" for remark in remarks]
     told: set[tuple[object, str]] = set()  # the windows of a series have most steps in common
     for series in measured:
         use = f" ({series['use']})"
@@ -221,7 +225,8 @@ def tree_text(diagram: Diagram, indent: str = "") -> str:
 def run_table(run: Run) -> Table:
     """Recorded signals of a run: start, end, least and greatest sample."""
     rows = tuple(
-        (name, run.units.get(name, ""), *map(shown, _extremes(run, name))) for name in run.signals
+        (name, run.look(name).unit, *map(shown, extremes(run.as_shown(name))))
+        for name in run.signals
     )
     header = ("signal", "unit", "start", "end", "min", "max")
     return Table(run.title, header, rows, frozenset({2, 3, 4, 5}))
@@ -232,7 +237,8 @@ def events_table(run: Run) -> Table:
     rows = []
     for event in run.events:
         jumps = [
-            f"{name}: {shown(event.before[name])} -> {shown(after)}"
+            f"{name}: {shown(event.before[name] / run.look(name).factor)}"
+            f" -> {shown(after / run.look(name).factor)}"
             for name, after in event.after.items()
             if after != event.before[name]
         ]
@@ -258,7 +264,7 @@ def run_data(run: Run, samples: bool = False) -> dict[str, object]:
     """A run as data; the samples only where they are asked for."""
     signals = {}
     for name in run.signals:
-        start, end, least, greatest = _extremes(run, name)
+        start, end, least, greatest = extremes(run[name])
         unit = run.units.get(name, "")
         signals[name] = {"unit": unit, "start": start, "end": end, "min": least, "max": greatest}
     data: dict[str, object] = {
@@ -303,8 +309,8 @@ def stick_intervals(run: Run) -> dict[str, list[tuple[float, float]]]:
     return found
 
 
-def _extremes(run: Run, name: str) -> tuple[float, float, float, float]:
-    values = run[name]
+def extremes(values: NDArray[np.float64]) -> tuple[float, float, float, float]:
+    """The first, the last, the least and the greatest of samples (N,)."""
     return float(values[0]), float(values[-1]), float(values.min()), float(values.max())
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Literal, overload
@@ -11,8 +11,10 @@ from typing import Literal, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.diagram import Shown
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.files import replacing, write_rows
+from tracewire.formula import quantity_hint, read_unit, same_quantity
 
 Vector = NDArray[np.float64]
 Cube = NDArray[np.float64]
@@ -106,7 +108,8 @@ class Run:
 
     A sample at the time of an event is the right limit. `parameters` and `start` are the values
     that were used; `final` holds the states at the end. `sensitivities` holds, by parameter or
-    `start.state`, by recorded signal, d signal/d that (N,) in SI, at a fixed time.
+    `start.state`, by recorded signal, d signal/d that (N,) in SI, at a fixed time. `shown` has the
+    labels and units of tables and figures.
     """
 
     title: str
@@ -120,6 +123,32 @@ class Run:
     statistics: Statistics
     warnings: tuple[str, ...] = ()
     sensitivities: Sensitivities = field(default_factory=Sensitivities)
+    shown: Mapping[str, Shown] = field(default_factory=dict)
+
+    def as_shown(self, name: str) -> Vector:
+        """A signal (N,) in the unit in which tables and figures show it."""
+        return self[name] / self.look(name).factor
+
+    def look(self, name: str) -> Shown:
+        """The label, unit and factor to SI of a signal in tables and figures."""
+        given = self.shown.get(name, Shown())
+        return Shown(given.label or name, given.unit or self.units.get(name, ""), given.factor)
+
+    def in_units(self, units: Mapping[str, str]) -> Run:
+        """The run as tables and figures show it in other units: `{"x": "mm"}`; it stays in SI.
+
+        Raises OptionError: a signal that is not recorded, a unit of another quantity; FormulaError.
+        """
+        shown = dict(self.shown)
+        for name, text in units.items():
+            self[name]  # it must exist
+            unit, known = read_unit(text), self.units.get(name, "")
+            if known and not same_quantity(text, known):
+                what = f"'{name}' is in {known}, and '{text}' is another quantity"
+                hint = quantity_hint(text, known, f"Give a unit like {known}.")
+                raise OptionError([Problem(what, hint=hint)])
+            shown[name] = Shown(shown.get(name, Shown()).label, text, unit.factor)
+        return replace(self, shown=shown)
 
     def __getitem__(self, name: str) -> Vector:
         if name not in self.signals:

@@ -125,6 +125,7 @@ def run_of(execution: Execution, values: Mapping[str, float], x: Vector, t: Vect
         final=dict(zip(names, state.x.tolist(), strict=True)),
         statistics=execution.statistics,
         warnings=execution.warnings,
+        shown=model.flat.shown,
         sensitivities=recorded(model, execution.arrays.sensitivity, execution.asked, len(t)),
     )
 

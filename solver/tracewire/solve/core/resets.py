@@ -32,10 +32,16 @@ from tracewire.solve.core.codes import (
     TWO_WRITES,
     UP,
 )
-from tracewire.solve.core.flow import FREE
+from tracewire.solve.core.decide import first_higher
+from tracewire.solve.core.flow import FREE, RESTING, SLIDING
 from tracewire.solve.core.jit import unit
-from tracewire.solve.core.modes import JUMP, levels
-from tracewire.solve.core.readings import guard_values, guard_values_then, reset_values
+from tracewire.solve.core.modes import JUMP, levels, rate_levels
+from tracewire.solve.core.readings import (
+    guard_rates,
+    guard_values,
+    guard_values_then,
+    reset_values,
+)
 from tracewire.solve.core.record import log
 from tracewire.solve.core.saltation import reset_sensitivities
 
@@ -73,11 +79,14 @@ def fire_transitions(core: int, t: float, x: Vector, moved: Ints) -> int:
         return FINISHED
     before, old, to = x.copy(), flow.m.copy(), flow.m.copy()
     fired = np.zeros(len(plan.resets), dtype=np.int64)
+    still = np.zeros(len(plan.kind), dtype=np.int64)
+    if flow.counts[SLIDING] or flow.counts[RESTING]:
+        _stand_still(core, t, x, still)
     for row in range(len(plan.transitions)):
         memory, trigger = plan.transitions[row, 0], plan.transitions[row, 2]
         if moved[memory] or old[memory] != plan.transitions[row, 1]:
             continue
-        if flow.bound[trigger] == FREE:
+        if flow.bound[trigger] == FREE and not still[trigger]:
             ready = old[trigger] == plan.transitions[row, 5]
         else:
             ready = plan.transitions[row, 6] == 1
@@ -97,6 +106,26 @@ def fire_transitions(core: int, t: float, x: Vector, moved: Ints) -> int:
     for memory in np.flatnonzero(moved):
         log(core, t, TRANSITION, memory, int(np.sign(flow.m[memory] - old[memory])), before, x)
     return FINISHED
+
+
+@unit
+def _stand_still(core: int, t: float, x: Vector, still: Ints) -> None:
+    """Mark the triggers that are zero and stay so because what they read is held: the rate of a
+    body behind a gear, while friction holds the body."""
+    flow, plan = flow_of(core), plan_of(core)
+    modes = len(plan.kind)
+    guards, level, along, small = np.empty(modes), np.empty(modes), np.empty(modes), np.empty(modes)
+    guard_values(core, t, x, guards)
+    levels(core, t, x, level)
+    guard_rates(core, t, x, along)
+    rate_levels(core, t, x, small)
+    for row in range(len(plan.transitions)):
+        i = plan.transitions[row, 2]
+        if flow.bound[i] != FREE or plan.kind[i] != SIGN or plan.is_timed[i] or still[i]:
+            continue
+        near = abs(guards[i]) <= level[i] and abs(along[i]) <= small[i]
+        if near and first_higher(core, t, x, i) == 0.0:
+            still[i] = 1
 
 
 @unit

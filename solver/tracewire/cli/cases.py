@@ -1,0 +1,56 @@
+"""The cases of `tracewire run`: one for each preset and each value of --over, or a single one."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from tracewire.cli.setting import values_of
+from tracewire.errors import OptionError, Problem
+
+if TYPE_CHECKING:
+    from tracewire.compile import Model
+
+MOST_CASES = 12
+"""Lines of one panel beyond this are not told apart."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A preset, values and start values that one of several runs has beside those of all."""
+
+    name: str
+    preset: str
+    parameters: Mapping[str, float]
+    start: Mapping[str, float]
+
+
+def cases_of(model: Model, over: Sequence[str], presets: Sequence[str]) -> list[Case]:
+    """Each preset with each value of each parameter. Raises OptionError."""
+    grid = values_of(model, over)
+    presets = list(dict.fromkeys(presets)) or [""]
+    found = []
+    for preset, *values in itertools.product(presets, *grid.values()):
+        given = {name: float(value) for name, value in zip(grid, values, strict=True)}
+        told = [_told(model, name, value) for name, value in given.items()]
+        parts = [*([preset] if len(presets) > 1 else []), *told]
+        start = {n.removeprefix("start."): v for n, v in given.items() if n.startswith("start.")}
+        parameters = {n: v for n, v in given.items() if not n.startswith("start.")}
+        found.append(Case(", ".join(parts), preset, parameters, start))
+    if len(found) > MOST_CASES:
+        what = f"{len(found)} runs do not go into one figure"
+        hint = f"Take {MOST_CASES} at most; `tracewire sweep` keeps a few numbers of many runs."
+        raise OptionError([Problem(what, hint=hint)])
+    return found
+
+
+def _told(model: Model, name: str, value: float) -> str:
+    """`k = 2 N/m`, in SI."""
+    from tracewire.show.summary import shown
+
+    units = {state.name: state.unit for state in model.flat.states}
+    parameter = model.flat.parameters.get(name)
+    unit = units.get(name.removeprefix("start."), "") if parameter is None else parameter.unit
+    return f"{name} = {shown(value)} {unit}".rstrip()

@@ -1,0 +1,138 @@
+"""What is odd about a model that can be run: forces that push on, functions of a held friction."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from tracewire.compile.flat import Flat
+from tracewire.compile.model import Model
+from tracewire.diagram import BlockUse
+from tracewire.errors import FormulaError
+from tracewire.formula import Name, evaluate
+
+FORCES = ("barrier", "dry_friction", "friction", "hysteresis", "stiffness")
+"""The families of blocks whose output acts on a body, most of them against its motion."""
+STICKING = ("coulomb", "dry_friction", "stribeck")
+"""Blocks whose output has two values at rest, and any between them while it sticks."""
+MOST_VALUES = 300_000
+"""Signals times evaluations, a second of work; larger models are not looked at."""
+STEP = 1e-2
+PRIME = "'"
+BENT = 1e-6
+"""Of the values of a function: what a straight line is not off by."""
+
+Values = Mapping[str, float]
+
+
+def remarks_of(model: Model, parameters: Values) -> list[str]:
+    """What is odd about a model with these parameters in SI, each in a line.
+
+    A block of a spring or a damper that is wired so that it pushes the body on; a nonlinear
+    function of a dry friction, which has a blend of the values on both sides while that sticks.
+    """
+    probe = _Probe(model.flat, parameters)
+    forces = [use for use in model.diagram.blocks.values() if _is_force(model, use)]
+    runs = 2 * len(model.states) + 8 * len(forces)
+    if not forces or model.flat.loops or len(model.flat.signals) * runs > MOST_VALUES:
+        return []
+    found = [text for use in forces for text in probe.pushes_on(use)]
+    return found + [text for use in forces for text in probe.bends(use)]
+
+
+def _is_force(model: Model, use: BlockUse) -> bool:
+    family = model.diagram.library.families.get(use.type, "")
+    return use.subsystem is None and family in FORCES and use.name in model.flat.signals
+
+
+class _Probe:
+    """The signals and rates of flat equations at states that are moved, one at a time."""
+
+    def __init__(self, flat: Flat, parameters: Values) -> None:
+        self.flat = flat
+        self.known = {**parameters, "t": 0.0, **dict.fromkeys(flat.inputs, 0.0)}
+        self.known |= {memory.name: 0.0 for memory in flat.memories}
+        self.rest = {state.name: 0.0 for state in flat.states}
+        self.kept: dict[tuple[str, float], Values] = {}
+
+    def values(self, states: Values, fixed: Values | None = None) -> dict[str, float]:
+        """All signals, and the rate of each state as `STATE'`; those without a value are left out.
+
+        fixed: signals that have these values instead.
+        """
+        found, fixed = {**self.known, **states}, fixed or {}
+        formulas = [*self.flat.signals.items(), *((f"{s.name}'", s.rate) for s in self.flat.states)]
+        for name, formula in formulas:
+            try:
+                found[name] = fixed[name] if name in fixed else evaluate(formula, found)
+            except FormulaError:
+                continue
+        return found
+
+    def moved(self, state: str, by: float) -> Values:
+        """The values where all states are zero but for one."""
+        if (state, by) not in self.kept:
+            self.kept[state, by] = self.values({**self.rest, state: by})
+        return self.kept[state, by]
+
+    def slope(self, name: str, state: str) -> float:
+        """How much a signal grows while a state goes from below to above zero; 0 if unknown."""
+        low, high = self.moved(state, -STEP), self.moved(state, STEP)
+        return high[name] - low[name] if name in low and name in high else 0.0
+
+    def pushes_on(self, use: BlockUse) -> Iterator[str]:
+        """Where the force of a block, which opposes what it reads, drives a body on."""
+        read = [wire for wires in use.inputs.values() for wire in wires if not wire.index]
+        pushed = self.forced(use.name)
+        for body, pushes in pushed.items():
+            for state in (body, *self.places_of(body)):
+                force = self.slope(use.name, state)
+                opposes = any(
+                    force * self.slope(w.signal, state) * (-1 if w.negative else 1) < 0
+                    for w in read
+                )
+                if opposes and force * pushes > 0:
+                    yield (
+                        f"'{use.name}' pushes '{body}' on: a {use.type} acts against '{state}' by "
+                        "itself, and here it acts with it. Was it added with a minus?"
+                    )
+                    break
+
+    def forced(self, name: str) -> dict[str, float]:
+        """By how much the rate of each state grows with a signal, where it does."""
+        low, high = (self.values(self.rest, {name: value}) for value in (-1.0, 1.0))
+        rates = {s.name: f"{s.name}'" for s in self.flat.states}
+        return {
+            state: high[rate] - low[rate]
+            for state, rate in rates.items()
+            if rate in low and rate in high and high[rate] != low[rate]
+        }
+
+    def places_of(self, body: str) -> list[str]:
+        """The states whose rate a state is."""
+        return [state.name for state in self.flat.states if state.rate == Name(body)]
+
+    def bends(self, use: BlockUse) -> Iterator[str]:
+        """What is a nonlinear function of a friction that may stick."""
+        if use.type not in STICKING:
+            return
+        size = max(abs(self.moved(s, STEP).get(use.name, 0.0)) for s in self.rest) or 1.0
+        curves = [
+            [self.values(self.rest, {use.name: middle + k * 0.05 * size}) for k in (-1, 0, 1)]
+            for middle in (0.37 * size, -0.61 * size)  # two: one of them may be at a kink
+        ]
+        for name in [*self.flat.signals, *(f"{state}'" for state in self.rest)]:
+            if name != use.name and all(_bent(name, *curve) for curve in curves):
+                yield (
+                    f"'{name.removesuffix(PRIME)}' is a nonlinear function of '{use.name}': while "
+                    "this sticks it is a blend of its values on both sides, and not that of the "
+                    "force that holds"
+                )
+                return
+
+
+def _bent(name: str, low: Values, middle: Values, high: Values) -> bool:
+    """Whether three values at equal distances lie on no line."""
+    if not (name in low and name in middle and name in high):
+        return False
+    bend = low[name] - 2 * middle[name] + high[name]
+    return abs(bend) > BENT * max(abs(high[name] - low[name]), abs(middle[name]))
