@@ -63,7 +63,9 @@ def test_a_small_swing_sticks(folder: Path) -> None:
     assert {effect.name for effect in found.effects} <= dry, "dry friction that sticks"
     assert found.dropped == ("c",), "the declared viscous friction stood in for it"
     assert found.explained is not None and found.explained.low > 0.9
-    assert found.rmse_after < 0.5 * found.rmse_before
+    (swing,) = (e for e in found.errors if (e.use, e.kind) == ("train", "free run"))
+    assert swing.after < 0.2 * swing.before
+    assert any("nothing moves in the last sixth" in words for words in found.words)
 
 
 def test_a_motor_has_seven_waves_of_torque_on_a_turn(folder: Path) -> None:

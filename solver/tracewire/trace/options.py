@@ -121,6 +121,9 @@ class TraceOptions:
     most_samples: int = 5000
     """Samples of the windows on which effects are screened and refits begin; longer records show
     the same there at some windows of each block."""
+    most_short: int = 8000
+    """Samples of the shorter horizon, some of each block: there the blocks of a longer record say
+    no more."""
     windows_together: int = 8
     """Windows in a row that are looked at where not all are: memories go on between them."""
     most_residuals: int = 20_000
@@ -169,7 +172,7 @@ class TraceOptions:
     """The squared error, in units of the least one of a model of the same size, that a fit must
     promise to reach at its pace, or be given up."""
     most_steps: int = 10_000_000
-    """Steps of the solver after which no further models are refitted, about a minute."""
+    """Steps of the solver after which no further models are refitted, one or two minutes."""
     exchanged: int = 1
     """Models of each size of which effects are exchanged for those that look alike."""
     alike: int = 3

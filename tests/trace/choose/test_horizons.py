@@ -62,6 +62,18 @@ def test_windows_of_both_horizons_tile_the_same_blocks() -> None:
     assert rows[0] == rows[1]
 
 
+def test_of_a_long_record_the_short_windows_are_some_of_each_block() -> None:
+    m = sine(count=40_000)
+    x = m.values["x"].copy()
+    x[30_000:] = x[30_000] + 1e-3 * np.random.default_rng(0).standard_normal(10_000)
+    found = of(replace(m, values={"x": x}))
+    short, long = found.each
+    size = sum(len(blocks) for blocks in short.blocks)
+    assert 0.9 * OPTIONS.most_short <= size <= 1.1 * OPTIONS.most_short
+    assert sum(len(blocks) for blocks in long.blocks) == 40_000
+    assert set(np.concatenate(short.blocks)) == set(np.concatenate(long.blocks)), "and at rest"
+
+
 def test_each_family_of_folds_leaves_every_block_out_once() -> None:
     found = of(sine())
     for family in found.folds:

@@ -33,6 +33,15 @@ def test_of_a_lone_series_no_sample_is_used_twice() -> None:
     )
 
 
+def test_a_run_that_ends_at_rest_is_told() -> None:
+    """The claim on its last sixth would be one about a body at rest."""
+    swing, still = record(damping=0.2), record(damping=3.0)
+    said = "nothing moves in the last sixth of 'swing', so that the free runs there tell little"
+    assert not [words for words in share_out([swing], OPTIONS.split).words if said in words]
+    (words,) = (words for words in share_out([still], OPTIONS.split).words if said in words)
+    assert words.endswith("name another run under `measured:`, with `use: validate`")
+
+
 def test_series_that_have_a_use_keep_it_whole() -> None:
     series = [record(name=use, use=use, end=6.0) for use in ("train", "gate", "validate")]
     found = share_out(series, OPTIONS.split)

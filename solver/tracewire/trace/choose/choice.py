@@ -90,7 +90,7 @@ def choose(
     """
     tolerance = float(np.log1p(options.near))
     totals = scores.mean(axis=(1, 2))
-    usable = [n for n in range(len(entrants)) if np.isfinite(totals[n]).all()]
+    usable = _usable(totals)
     surer = [n for n in usable if n and is_sure(totals, 0, n, tolerance, options.sure)]
     among = surer or usable
     best = min(among, key=lambda n: totals[n].mean())
@@ -102,10 +102,27 @@ def choose(
 
     taken = min(near, key=simplicity)
     taken = _pruned(entrants, totals, among, taken, tolerance)
+    return choice_of(taken, entrants, scores, folds, options)
+
+
+def choice_of(
+    taken: int,
+    entrants: Sequence[Entrant],
+    scores: Array,
+    folds: Sequence[Sequence[Sequence[int]]],
+    options: TraceOptions,
+) -> Choice:
+    """A model taken, beside the declared one and those that predict as well; else as `choose`."""
+    tolerance = float(np.log1p(options.near))
+    totals = scores.mean(axis=(1, 2))
     gain, z = _cost(totals, 0, taken), _z(totals, 0, taken)
-    sure = taken in surer
-    ties = _ties(entrants, scores, folds, usable, taken, tolerance)
+    sure = taken > 0 and is_sure(totals, 0, taken, tolerance, options.sure)
+    ties = _ties(entrants, scores, folds, _usable(totals), taken, tolerance)
     return Choice(taken, gain, z, sure, ties)
+
+
+def _usable(totals: Array) -> list[int]:
+    return [n for n in range(len(totals)) if np.isfinite(totals[n]).all()]
 
 
 def is_sure(totals: Array, one: int, other: int, tolerance: float, least: float) -> bool:

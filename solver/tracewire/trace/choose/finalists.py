@@ -172,10 +172,7 @@ class Pool:
 
     def at(self, parent: Finalist, number: int) -> Trial:
         """A model on the windows of a horizon on which effects are screened."""
-        trial, chosen = parent.trials[number], self.sparse[number]
-        if len(chosen) == len(trial.windows.near):
-            return trial
-        return self.search.bench.some(trial, chosen)
+        return self.search.bench.some(parent.trials[number], self.sparse[number])
 
     def screened(self, parent: Finalist, number: int) -> Screen:
         """The screen beside a model at a horizon."""

@@ -2,14 +2,15 @@
 
 A record is cut into blocks that are as long as the longer horizon: five periods of the motion, so
 that there are 7 to 20 of them. Windows of the shorter horizon, a third of a period, tile the same
-blocks. Where a body has come to rest for good there are no blocks: nothing can be claimed there,
-and its samples are in every fit. What is missing in a sensor, or as a ripple, shows in the short
-windows; friction and drift show in the long ones. Where no start is free, or the motion has no
-period, there is one horizon, and the blocks are pieces of its runs.
+blocks, of a long record a part of each. Where a body has come to rest for good there are no blocks:
+nothing can be claimed there, and its samples are in every fit. What is missing in a sensor, or as a
+ripple, shows in the short windows; friction and drift show in the long ones. Where no start is
+free, or the motion has no period, there is one horizon, and the blocks are pieces of its runs.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -66,6 +67,24 @@ class Horizon:
         for mine in windows.values():
             found += mine[: max(round(wanted * len(mine)), 1)]
         return sorted(found)
+
+    def thinned(self, most: int) -> Horizon:
+        """The horizon with about `most` samples of all blocks, and that part of those at rest."""
+        size, rests = sum(len(of) for of in self.blocks), self.within([REST])
+        if size <= most:
+            return self
+        some = rests[: math.ceil(len(rests) * most / size)]
+        chosen = sorted({*self.sparse(most, self.count), *(number for number, _ in some)})
+        return Horizon(
+            self.length,
+            tuple(self.segments[n] for n in chosen),
+            tuple(self.blocks[n] for n in chosen),
+        )
+
+    @property
+    def count(self) -> int:
+        """How many blocks its windows have."""
+        return len(set(np.concatenate(self.blocks).tolist()) - {REST})
 
     def _where(self, blocks: Sequence[int], inside: bool) -> list[tuple[int, Ints]]:
         found = []
@@ -140,7 +159,10 @@ def horizons_of(
             for one, moving in zip(whole, sections, strict=True)
             if moving.end < one.end
         ]
-        each = tuple(_cut(model, pieces, rests, length, free) for length in (short, block))
+        each = (
+            _cut(model, pieces, rests, short, free).thinned(options.most_short),
+            _cut(model, pieces, rests, block, free),
+        )
         unseen = (
             tuple(_cut(model, judging, [], length, free) for length in (short, block))
             if judging

@@ -8,7 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.trace.choose.choice import Choice, Entrant, choose, floor_of, log_scores
+from tracewire.trace.choose.choice import (
+    Choice,
+    Entrant,
+    choice_of,
+    choose,
+    floor_of,
+    log_scores,
+)
 from tracewire.trace.choose.finalists import Key, Pool
 from tracewire.trace.choose.heldout import Finalist, errors_held_out, errors_in_sample
 from tracewire.trace.choose.horizons import Horizons, horizons_of
@@ -47,6 +54,22 @@ class Prediction:
                 scores[number] = np.inf
         choice = choose(self.entrants, scores, self.horizons.groups, self.options)
         return replace(self, choice=choice)
+
+    def taking(self, number: int) -> Prediction:
+        """The same with another model taken, by number; none ties with it that has an effect of the
+        one before which this one lacks."""
+        scores, groups = log_scores(self.errors), self.horizons.groups
+        choice = choice_of(number, self.entrants, scores, groups, self.options)
+        left_out = self.taken.names - self.models[number].names
+        ties = tuple(tie for tie in choice.ties if not self.models[tie[0]].names & left_out)
+        return replace(self, choice=replace(choice, ties=ties))
+
+    def smaller(self) -> list[int]:
+        """The numbers of the models that have some of the effects of the one that was chosen, the
+        largest first."""
+        mine = self.entrants[self.choice.taken].effects
+        found = [n for n, one in enumerate(self.entrants) if one.effects and one.effects < mine]
+        return sorted(found, key=lambda n: -self.entrants[n].numbers)
 
     def without_effects(self) -> Prediction:
         """The same with the declared model taken."""
@@ -107,9 +130,22 @@ def predict(search: Search, begun: Trial) -> Prediction:
             return prediction
         pruned.add(taken.key)
         known = dict(pool.models)
-        for fewer in [pool.without(taken, name) for name in sorted(taken.names)]:
-            if fewer and (fewer.key not in errors or fewer is not known[fewer.key]):
+        for fewer in _parts(pool, taken):
+            if fewer.key not in errors or fewer is not known[fewer.key]:
                 errors[fewer.key] = _errors(pool, fewer)
+
+
+def _parts(pool: Pool, model: Finalist) -> list[Finalist]:
+    """The models without one effect of a model, and without two, and so on: each refitted once."""
+    found: dict[Key, Finalist] = {}
+    for name in sorted(model.names):
+        if (model.names - {name}, model.dropped) not in found:
+            fewer = pool.without(model, name)
+            if fewer:
+                found[fewer.key] = fewer
+                for part in _parts(pool, fewer) if len(fewer.names) > 1 else ():
+                    found.setdefault(part.key, part)
+    return list(found.values())
 
 
 def _compare(pool: Pool, declared: Finalist, errors: dict[Key, Array]) -> None:

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 from tracewire.trace.check.mistakes import refuse_mistakes
 from tracewire.trace.check.tolerance import is_loose, tightened
-from tracewire.trace.choose.verdict import Judgement, raises_unseen, residual_map
+from tracewire.trace.choose.unseen import raises_unseen
+from tracewire.trace.choose.verdict import Judgement, residual_map
 from tracewire.trace.search.finish import Final
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.trial import Trial
@@ -45,7 +46,7 @@ def safeguard(search: Search, judgement: Judgement) -> Judgement:
         final = replace(final, declared=declared, best=best)
     if final.best.effects:
         lengths = sorted({min(search.short, final.best.length), final.best.length})
-        harm = raises_unseen(search, final, lengths)
+        harm = raises_unseen(search, final.declared, final.best, lengths)
         if harm:
             names = " and ".join(map(str, final.best.effects))
             search.words.append(f"{names} is not named: it {harm}")

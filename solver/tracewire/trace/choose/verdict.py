@@ -11,6 +11,7 @@ from tracewire.errors import FitError
 from tracewire.trace.choose.noisy_inputs import noisy_inputs
 from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.choose.remainder import error_left, explained, held_out, remainders
+from tracewire.trace.choose.unseen import joined, prune_by_other_runs, raises_unseen
 from tracewire.trace.found import (
     Dependence,
     Explained,
@@ -94,7 +95,14 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
     final = final_of(search, prediction)
     taken = prediction.taken
     search.tell("where and on what the rest depends")
-    maps = [residual_map(search, trial) for trial in taken.trials]
+    spread = [
+        horizon.sparse(options.most_samples, options.least_blocks)
+        for horizon in prediction.horizons.each
+    ]
+    maps = [
+        residual_map(search, search.bench.some(trial, numbers))
+        for trial, numbers in zip(taken.trials, spread, strict=True)
+    ]
     floors = [_left(trial, shares) for trial, (shares, _) in zip(taken.trials, maps, strict=True)]
     share, error = explained(prediction, floors)
     if not named:
@@ -108,10 +116,10 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
         if search.returns:  # else all that is left is a function of the one way
             law = _law_left(taken.trials[0], maps[0][0], share.share, options)
         if law:
-            search.words.append(f"{_joined(taken.names)} cannot be all: {law}")
+            search.words.append(f"{joined(taken.names)} cannot be all: {law}")
         verdict = "effect" if enough and not law else "unexplained"
         dependences, missing = (
-            residual_map(search, prediction.models[0].trials[0])
+            residual_map(search, search.bench.some(prediction.models[0].trials[0], spread[0]))
             if verdict == "unexplained"
             else ((), None)
         )
@@ -145,13 +153,13 @@ def _harmless(search: Search, prediction: Prediction) -> tuple[Prediction, bool]
     """The prediction with the best choice that raises the error on no unseen data, and whether
     another one was refused for that; what was refused goes into the search's words."""
     refused: list[frozenset[str]] = []
+    lengths = [horizon.length for horizon in prediction.horizons.each]
     while prediction.choice.sure and len(refused) < search.options.refused:
-        final = final_of(search, prediction, tell=False)
-        lengths = [horizon.length for horizon in prediction.horizons.each]
-        harm = raises_unseen(search, final, lengths)
+        declared, taken = (model.trials[-1] for model in (prediction.models[0], prediction.taken))
+        harm = raises_unseen(search, declared, taken, lengths)
         if not harm:
-            return prediction, bool(refused)
-        search.words.append(f"{_joined(prediction.taken.names)} is not named: it {harm}")
+            return prune_by_other_runs(search, prediction), bool(refused)
+        search.words.append(f"{joined(prediction.taken.names)} is not named: it {harm}")
         refused.append(prediction.taken.names)
         prediction = prediction.again(refused)
     if refused and len(refused) == search.options.refused:
@@ -159,9 +167,9 @@ def _harmless(search: Search, prediction: Prediction) -> tuple[Prediction, bool]
     return prediction, bool(refused)
 
 
-def final_of(search: Search, prediction: Prediction, tell: bool = True) -> Final:
+def final_of(search: Search, prediction: Prediction) -> Final:
     """The models of a prediction at the longer horizon, and the ties of each effect; other models
-    that predict as well go into the search's words, where it may `tell`."""
+    that predict as well go into the search's words."""
     taken = prediction.taken
     best, declared = taken.trials[-1], prediction.models[0].trials[-1]
     rivals: dict[str, list[Rival]] = {str(effect): [] for effect in best.effects}
@@ -179,9 +187,9 @@ def final_of(search: Search, prediction: Prediction, tell: bool = True) -> Final
             added = next(e for e in trial.effects if str(e) == rival)
             likeness = prediction.likeness(name, rival)
             rivals[name].append(Rival(added, likeness, trial, rise, tied=True))
-        elif tell:
+        else:
             search.words.append(
-                f"{_joined(other.names)} predicts as well: {_change(cost)} error,"
+                f"{joined(other.names)} predicts as well: {_change(cost)} error,"
                 f" {abs(more)} fitted number(s) {'more' if more > 0 else 'less'}"
             )
     own = search.bench.declared.flat.parameters
@@ -195,33 +203,6 @@ def residual_map(search: Search, trial: Trial) -> tuple[tuple[Dependence, ...], 
     return where_what(search.tangent(trial), trial, search.places)
 
 
-def raises_unseen(search: Search, final: Final, lengths: Sequence[int]) -> str:
-    """By how much the effects raise the error on data that played no part, in words; empty where
-    they do not. Windows of each length, of which only the starts are fitted. Of several windows the
-    rise is more than chance where it is two standard errors; of few, where it is a tenth."""
-    stretches = search.stretches
-    unseen = [*stretches.validate, *(s for s in stretches.gate if s.measured.use == "gate")]
-    for length in lengths:
-        windows = [w for section in unseen for w in search.windows([section], length)]
-        before, after = (
-            np.array([float(np.sum(r**2)) for r in search.bench.on(trial, windows)])
-            for trial in (final.declared, final.best)
-        )
-        rise, count = after - before, len(windows)
-        part = (
-            search.options.harm if count >= search.options.few_windows else search.options.harm_few
-        )
-        if after.sum() <= (1 + part) ** 2 * before.sum():
-            continue
-        error = (
-            float(np.std(rise, ddof=1)) * count**0.5 if count >= search.options.few_windows else 0.0
-        )
-        if not rise.sum() <= search.options.harm_errors * error:
-            factor = (after.sum() / before.sum()) ** 0.5 if before.sum() > 0 else float("inf")
-            return f"multiplies the error on unseen windows of {length} samples by {factor:.3g}"
-    return ""
-
-
 def _left(trial: Trial, shares: Sequence[Dependence]) -> float:
     """The part of the squared residual that the best smooth map leaves."""
     best = max((d.share for d in shares), default=0.0)
@@ -233,8 +214,10 @@ def _law_left(
     trial: Trial, shares: Sequence[Dependence], explained: float, options: TraceOptions
 ) -> str:
     """In words, the law that the named effects leave behind: a smooth function at one place that
-    takes the rest down to the noise, or nearly all of it where they explain too little."""
-    best = max(shares, key=lambda d: d.share, default=None)
+    takes the rest down to the noise, or nearly all of it where they explain too little. A function
+    of time alone is no law: gusts, and the air of a room, do not come again."""
+    laws = [d for d in shares if d.variables != ("t",)]
+    best = max(laws, key=lambda d: d.share, default=None)
     if best is None or trial.s2 < options.law_from:
         return ""
     left = 1 + (1 - best.share) * (trial.s2 - 1)
@@ -251,10 +234,6 @@ def _gate(search: Search, best: Trial) -> float:
     residuals = search.bench.on(best, windows)
     count = sum(r.size for r in residuals) - sum(len(w.free) for w in windows)
     return sum(float(np.sum(r**2)) for r in residuals) / max(count, 1)
-
-
-def _joined(names: frozenset[str]) -> str:
-    return " and ".join(sorted(names))
 
 
 def _change(cost: float) -> str:

@@ -117,11 +117,9 @@ def met(search: Search, trial: Trial) -> Trial:
     wave, from the first part of each such series alone."""
     if not any(effect.own_series for effect in trial.effects):
         return trial
-    stretches = search.stretches
-    unseen = [*(s for s in stretches.gate if s.measured.use == "gate"), *stretches.validate]
     firsts = [
         _first_part(whole, search.shortest, search.options.split.first_part)
-        for section in unseen
+        for section in search.stretches.unseen
         for whole in search.windows([section], section.end - section.first)
     ]
     return replace(trial, effects=search.bench.met(trial, firsts))

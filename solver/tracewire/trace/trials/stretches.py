@@ -36,6 +36,16 @@ class Stretches:
         """The samples of the longest train section."""
         return max(section.end - section.first for section in self.train)
 
+    @property
+    def unseen(self) -> list[Section]:
+        """What no fit and no choice of an effect sees: the last part of a run, or other runs."""
+        return [*self.validate, *(s for s in self.gate if s.measured.use == "gate")]
+
+    @property
+    def other_runs(self) -> list[Section]:
+        """The unseen sections of runs of which no part is fitted."""
+        return [section for section in self.unseen if section.measured.use != "train"]
+
     def whole(self) -> list[Section]:
         """Each train series over all that is not held back for the final claim."""
         ends: dict[str, Section] = {}
@@ -71,6 +81,11 @@ def share_out(measured: Sequence[Measured], options: SplitOptions) -> Stretches:
         if not by_use["validate"]:
             last = f"the last {_part(options.validated)} of '{m.name}'"
             words.append(f"{last} is held back for the final claim")
+            if not _moves(m, end, options.moving):
+                words.append(
+                    f"nothing moves in {last}, so that the free runs there tell little: name"
+                    " another run under `measured:`, with `use: validate`"
+                )
             validate.append(Section(m, end, len(m.t)))
         if by_use["gate"]:
             train.append(Section(m, 0, end))
@@ -103,6 +118,11 @@ def shortest_window(stretches: Stretches, options: SplitOptions) -> int:
             )
     longest = max(stretches.longest, options.shortest)
     return int(np.clip(np.median(lengths) / options.in_a_period, options.shortest, longest))
+
+
+def _moves(measured: Measured, end: int, least: float) -> bool:
+    """Whether any signal moves from a sample on, by a part of its range before."""
+    return any(np.ptp(y[end:]) > least * np.ptp(y[:end]) for y in measured.values.values())
 
 
 def _part(part: float) -> str:

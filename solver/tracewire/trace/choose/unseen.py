@@ -1,0 +1,76 @@
+"""What models do on data that no fit saw: which effects raise the error there, and which add
+nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.residual import Section
+from tracewire.trace.choose.prediction import Prediction
+from tracewire.trace.search.search import Search
+from tracewire.trace.trials.trial import Trial
+
+Vector = NDArray[np.float64]
+
+
+def raises_unseen(search: Search, fewer: Trial, more: Trial, lengths: Sequence[int]) -> str:
+    """By how much a model raises the error of one with fewer effects on unseen data, in words;
+    empty where it does not.
+
+    Windows of each length, in samples, of which only the starts are fitted. Of several windows the
+    rise is more than chance where it is two standard errors; of few, where it is a tenth.
+    """
+    options = search.options
+    for length in lengths:
+        unseen = search.stretches.unseen
+        before, after = (squares_on(search, unseen, trial, length) for trial in (fewer, more))
+        rise, count = after - before, len(before)
+        many = count >= options.few_windows
+        part = options.harm if many else options.harm_few
+        if after.sum() <= (1 + part) ** 2 * before.sum():
+            continue
+        error = float(np.std(rise, ddof=1)) * count**0.5 if many else 0.0
+        if not rise.sum() <= options.harm_errors * error:
+            factor = (after.sum() / before.sum()) ** 0.5 if before.sum() > 0 else float("inf")
+            return f"multiplies the error on unseen windows of {length} samples by {factor:.3g}"
+    return ""
+
+
+def prune_by_other_runs(search: Search, prediction: Prediction) -> Prediction:
+    """The prediction without effects beside which others do as well alone on other runs.
+
+    What is left of laws that are only nearly right has the shape of some effect on the run that is
+    fitted, and not on others. Where there is no other run, the blocks that were held out decide.
+    """
+    others = search.stretches.other_runs
+    if not others:
+        return prediction
+    length = prediction.horizons.each[-1].length
+    taken = prediction.taken
+    after = float(squares_on(search, others, taken.trials[-1], length).sum())
+    for number in prediction.smaller():
+        one = prediction.taking(number)
+        before = float(squares_on(search, others, one.taken.trials[-1], length).sum())
+        if one.choice.sure and 0 < before < np.inf and not after < before:
+            more, known = joined(taken.names - one.taken.names), joined(one.taken.names)
+            search.words.append(
+                f"{more} is not named beside {known}: on another run, in windows of {length}"
+                f" samples, that multiplies the error by {(after / before) ** 0.5:.3g}"
+            )
+            return prune_by_other_runs(search, one)
+    return prediction
+
+
+def squares_on(search: Search, sections: Sequence[Section], trial: Trial, length: int) -> Vector:
+    """The sum of squared residuals in sigma of each window of about so many samples, where only
+    starts are fitted."""
+    windows = [w for section in sections for w in search.windows([section], length)]
+    return np.array([float(np.sum(r**2)) for r in search.bench.on(trial, windows)])
+
+
+def joined(names: Iterable[str]) -> str:
+    """Effects in words."""
+    return " and ".join(sorted(names))

@@ -1,0 +1,77 @@
+"""Effects that unseen data do not confirm are left out, beside those that they do."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from tracewire.trace.choose.choice import Entrant, choose, log_scores
+from tracewire.trace.choose.prediction import Prediction
+from tracewire.trace.choose.unseen import prune_by_other_runs
+from tracewire.trace.options import TraceOptions
+
+BLOCKS = 8
+DRY, DRIFT = "coulomb @ forces", "sensor_drift @ sensor.v"
+HELD_OUT = {(): 100.0, (DRY,): 4.0, (DRIFT,): 60.0, (DRY, DRIFT): 2.0}
+"""The mean squared residual on held-out blocks of the fitted record, by the effects of a model."""
+
+
+def prediction() -> Prediction:
+    """Four models, of which the largest is chosen."""
+    options, rng = TraceOptions(), np.random.default_rng(1)
+    ripple = 1 + 0.1 * rng.random((len(HELD_OUT), 1, 1, BLOCKS, 1))
+    errors = ripple * np.reshape(list(HELD_OUT.values()), (-1, 1, 1, 1, 1))
+    entrants = tuple(Entrant(frozenset(names), 2 + len(names)) for names in HELD_OUT)
+    models: Any = tuple(
+        SimpleNamespace(names=frozenset(names), trials=[names], numbers=2 + len(names))
+        for names in HELD_OUT
+    )
+    groups = (tuple((block,) for block in range(BLOCKS)),)
+    horizons: Any = SimpleNamespace(each=[SimpleNamespace(length=100)], groups=groups)
+    screen: Any = None
+    choice = choose(entrants, log_scores(errors), groups, options)
+    return Prediction(horizons, models, errors, choice, screen, entrants, options)
+
+
+def search(left: dict[tuple[str, ...], float], other_runs: tuple[str, ...] = ("cold",)) -> Any:
+    """A search with another run of one window, where each model leaves so much."""
+    series = SimpleNamespace(other_runs=other_runs)
+    bench = SimpleNamespace(on=lambda names, windows: [np.full(5, left[names])])
+    return SimpleNamespace(
+        stretches=series, bench=bench, words=[], windows=lambda sections, length: sections
+    )
+
+
+def test_an_effect_that_lowers_the_unseen_error_stays() -> None:
+    """Both effects lower the error, each beside the other."""
+    before = prediction()
+    assert before.taken.names == {DRY, DRIFT}
+    there = search({(DRY,): 1.5, (DRIFT,): 9.0, (DRY, DRIFT): 1.4})
+    assert prune_by_other_runs(there, before) is before
+    assert not there.words
+
+
+@pytest.mark.parametrize("left", [1.6, 1.8])
+def test_an_effect_that_does_not_is_left_out_and_told(left: float) -> None:
+    """The drift fits the record and not another one; no model with it ties with the rest."""
+    there = search({(DRY,): 1.6, (DRIFT,): 9.0, (DRY, DRIFT): left})
+    found = prune_by_other_runs(there, prediction())
+    assert found.taken.names == {DRY}
+    assert found.choice.sure
+    assert not found.choice.ties
+    (words,) = there.words
+    factor = f"{left / 1.6:.3g}"
+    assert words == (
+        f"{DRIFT} is not named beside {DRY}: on another run, in windows of 100 samples, that"
+        f" multiplies the error by {factor}"
+    )
+
+
+def test_the_end_of_the_same_run_does_not_decide() -> None:
+    """There the blocks that were held out do: a swing that dies away is another motion at last."""
+    before = prediction()
+    there = search({(DRY,): 1.6, (DRIFT,): 9.0, (DRY, DRIFT): 1.8}, other_runs=())
+    assert prune_by_other_runs(there, before) is before
+    assert not there.words
