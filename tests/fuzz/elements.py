@@ -113,11 +113,16 @@ class Switch(Element):
     one: Vector
     mode: int = 1  # 0: held
     held: Vector | None = None  # the row of the mode that holds, over the level
+    lying: bool = False  # with a body on a stop, which its sticking force helps to hold there
 
     def output(self) -> Vector:
+        if self.lying:
+            return self.level * self.stick * self.mode * self.one
         return self.level * (self.held if self.held is not None else self.mode * self.one)
 
     def guards(self) -> list[Guard]:
+        if self.lying:
+            return []
         if self.held is not None:
             return [
                 Guard(self.stick * self.one - way * self.held, lambda way=way: self.leave(way))
@@ -186,6 +191,7 @@ class Stop(Element):
     side: int = 0  # of the stop on which it lies; 0: none
     hit: int = 0
     force: Vector = field(default_factory=lambda: np.zeros(0))
+    lying: list[Switch] = field(default_factory=list)  # on its rate, while the body lies there
 
     def output(self) -> Vector:
         return np.zeros(len(self.one))
@@ -201,6 +207,9 @@ class Stop(Element):
 
     def release(self) -> None:
         self.side = 0
+        for switch in self.lying:
+            switch.lying = False
+        self.lying = []
 
     def strike(self, side: int) -> None:
         self.hit = side

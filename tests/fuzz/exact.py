@@ -109,11 +109,13 @@ class Solution:
         """Let the switches that have met their surface cross it, or hold it."""
         switches = [e for e in self.system.elements if isinstance(e, Switch)]
         met = [s for s in switches if s.met]
+        held = [s for s in switches if s.held is not None]
         if met:
             self.decide([s for s in switches if s.met or s.held is not None])
-        else:
-            if not self.solve_held([s for s in switches if s.held is not None]):
-                raise Unclear("surfaces that their modes do not move any more")
+        elif not self.solve_held(held):
+            raise Unclear("surfaces that their modes do not move any more")
+        elif any(abs(float(np.asarray(s.held) @ self.z)) > s.stick for s in held):
+            self.decide(held)  # a jump asks more of them than they can
         for switch in switches:
             switch.met = False
 
@@ -191,9 +193,10 @@ class Solution:
             if hits:
                 self.happen(guards, rows, series, length, hits, armed)
                 return
-            armed |= samples[:, -1] > CLOSE
-            if np.any(~armed & (samples[:, -1] < -CLOSE)):
+            below, above = samples < -CLOSE, samples > CLOSE
+            if np.any(~armed & below.any(axis=1) & (below.argmax(axis=1) < first(above))):
                 raise Unclear("a guard turns where a piece begins")
+            armed |= samples[:, -1] > CLOSE
             self.pieces.append((self.t, length, series))
             self.z = series.sum(axis=1)
             self.t = limit if length == limit - self.t else self.t + length
@@ -372,6 +375,22 @@ class Solution:
             self.clear(pressed)
             if pressed > 0:
                 self.z[stop.v], stop.side = 0.0, side
+                self.lie(stop)
+
+    def lie(self, stop: Stop) -> None:
+        """A friction on the rate of a body that lies on a stop holds it there, up to sticking."""
+        rate = np.eye(len(self.z))[stop.v]
+        for switch in (e for e in self.system.elements if isinstance(e, Switch)):
+            if not same(switch.row, rate):
+                continue
+            others = np.delete(switch.into, stop.v)
+            if stop.lying or np.any(others != 0.0) or any(r.of is switch for r in self.readers()):
+                raise Unclear("what a friction takes of a body on a stop")
+            way = -stop.side if switch.row[stop.v] > 0 else stop.side  # in which the body leaves
+            if -stop.side * way * switch.level * switch.into[stop.v] > 0:
+                raise Unclear("a relay that drives a body away from a stop")
+            switch.mode, switch.held, switch.lying = way, None, True
+            stop.lying.append(switch)
 
 
 def powers_of(matrix: Matrix) -> NDArray[np.float64]:
@@ -381,6 +400,11 @@ def powers_of(matrix: Matrix) -> NDArray[np.float64]:
     for k in range(1, ORDER + 1):
         found[k] = matrix @ found[k - 1] / k
     return found
+
+
+def first(held: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """The first column of each row that holds; past the last one where none does."""
+    return np.where(held.any(axis=1), held.argmax(axis=1), held.shape[1])
 
 
 def same(one: Vector, other: Vector) -> bool:

@@ -30,12 +30,13 @@ def test_random_systems_agree_with_their_exact_solutions(
 
 
 @pytest.mark.parametrize("seed", [910100555, 910101433, 910110065])
-@pytest.mark.xfail(reason="elements on one surface that are refused", strict=True)
 def test_elements_on_one_surface(seed: int) -> None:
-    """Of 2840 systems with some elements on one surface, as a relay and a dry friction on multiples
-    of one rate, these three were refused, and have a solution."""
+    """A relay and a dry friction on multiples of one rate hold a body together; a play on another
+    multiple does not chatter. Of 2840 systems of this kind these three were refused once."""
     tally = fuzz(1, seed, kind="surfaces")
-    assert tally.unexplained == []
+    assert tally.refusals == []
+    assert tally.wrong == []
+    assert tally.judged == 1
 
 
 def solved(matrix: list[list[float]], start: list[float], *elements: Element) -> Solution:

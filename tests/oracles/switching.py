@@ -118,11 +118,25 @@ class _Run:
             for sides in product((True, False), repeat=len(zero))
         ]
         lasting = [choice for choice in choices if self.lasts(choice, sticking=True)]
-        if len(lasting) != 1 or not self.lasts(lasting[0], sticking=False):
+        if len(lasting) != 1:
+            raise Unclear("none or several ways on")
+        for key in zero:  # beside the way on, a friction may hold, with other sides of the others
+            for choice in choices:
+                ways = [self.speeds(choice | {key: side}, True)[key] for side in (True, False)]
+                if max(ways) < 0:
+                    raise Unclear("a way on, and something that may hold")
+        if not self.lasts(lasting[0], sticking=False):
             raise Unclear("none or several ways on")
 
     def lasts(self, choice: dict[Hashable, bool], sticking: bool) -> bool:
         """Whether every guard that is zero moves to its side; leaves the sides as chosen."""
+        speeds = self.speeds(choice, sticking).values()
+        if min(map(abs, speeds)) < STEEP:
+            raise Unclear("a guard is touched")
+        return min(speeds) > 0
+
+    def speeds(self, choice: dict[Hashable, bool], sticking: bool) -> dict[Hashable, float]:
+        """How fast each guard of a choice moves to its side; leaves the sides as chosen."""
         self.switches.on |= choice
         self.switches.sticking = frozenset(choice if sticking else ())
         h = 1e-7
@@ -131,10 +145,7 @@ class _Run:
         self.switches.sticking = frozenset()
         if min(now.values()) < -ZERO or any(abs(now[key]) > ZERO for key in choice):
             raise Unclear("a guard jumps")
-        speeds = [(later[key] - now[key]) / h for key in choice]
-        if min(map(abs, speeds)) < STEEP:
-            raise Unclear("a guard is touched")
-        return min(speeds) > 0
+        return {key: (later[key] - now[key]) / h for key in choice}
 
     def advance(self, until: float) -> None:
         """Integrate to the next switch, or to the end of the piece."""

@@ -52,16 +52,17 @@ events:
 
 
 def test_where_too_many_surfaces_meet_the_run_is_refused_with_all_of_them() -> None:
-    """Five surfaces through the origin of two states, none of which can be left."""
-    message = said("""
+    """Ten surfaces through the origin of two states, none of which can be left."""
+    terms = "".join(f" - sign({k}*x - y)" for k in range(1, 9))
+    message = said(f"""
 blocks:
-  x: {type: integrator, of: xd}
-  y: {type: integrator, of: yd}
-  xd: {type: expression, formula: -sign(x + y) - sign(x - y) - sign(2*x - y)}
-  yd: {type: expression, formula: -sign(y + 2*x) - 2*sign(x)}
+  x: {{type: integrator, of: xd}}
+  y: {{type: integrator, of: yd}}
+  xd: {{type: expression, formula: 0{terms}}}
+  yd: {{type: expression, formula: -sign(y + 2*x) - 2*sign(x)}}
 """)
-    assert "block 'xd': no consistent mode at t = 0 s for the guards 'x + y' in xd, " in message
-    assert "'x - y' in xd, '2*x - y' in xd, 'y + 2*x' in yd, 'x' in yd." in message
+    assert "block 'xd': no consistent mode at t = 0 s for the guards '1*x - y' in xd, " in message
+    assert "'8*x - y' in xd, 'y + 2*x' in yd, 'x' in yd." in message
     assert "use hysteresis or a block with memory" in message
 
 

@@ -335,3 +335,35 @@ def test_two_frictions_on_one_rate_hold_together_where_none_does_alone() -> None
           s: {type: sign, of: i}
     """)
     assert found["v"][-1] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_five_surfaces_through_the_origin_hold_two_states_there() -> None:
+    """None can be left: two of them hold, the others are zero with these."""
+    found = run("""
+        span: [0, 1]
+        blocks:
+          x: {type: integrator, of: xd}
+          y: {type: integrator, of: yd}
+          xd: {type: expression, formula: -sign(x + y) - sign(x - y) - sign(2*x - y)}
+          yd: {type: expression, formula: -sign(y + 2*x) - 2*sign(x)}
+    """)
+    assert found.final == {"x": 0.0, "y": 0.0}
+
+
+def test_a_friction_that_holds_goes_on_where_a_relay_slides() -> None:
+    """As v comes to zero, the relay r alone asks for 1 of the friction, or for none; between them v
+    stays at zero, and the friction holds w with 0.5 of 0.6. It slips at 0.4, from 1 on."""
+    found = run("""
+        span: [0, 2]
+        record: [v, w, f]
+        blocks:
+          v: {type: integrator, of: vd, start: 1}
+          w: {type: integrator, of: wd}
+          vd: {type: expression, formula: -r + 0*f}
+          wd: {type: expression, formula: f + 0.5 - 0.5*r}
+          f: {type: dry_friction, rate: w, slip: 0.4, stick: 0.6}
+          r: {type: sign, of: v}
+    """)
+    assert found["v"][-1] == pytest.approx(0.0, abs=1e-12)
+    assert found["w"][-1] == pytest.approx(0.0, abs=1e-12)
+    assert found["f"][-1] == pytest.approx(-0.5, abs=1e-9)

@@ -89,6 +89,9 @@ def descend(
             z, message = slopes.best, "converged: what is still to gain is far below the noise"
             break
         except _Renewed:  # a trust region that corrected derivatives have narrowed is of no use
+            # of no use at all where the way to here was lost again: scipy begins off the bounds,
+            # which a chaotic criterion feels more than such a step
+            slopes.frugal = frugal and not np.array_equal(slopes.best, z)
             z, ended = slopes.best, False
         else:
             z, ended = np.asarray(found.x), found.status > 0

@@ -75,3 +75,10 @@ def test_the_end_of_the_same_run_does_not_decide() -> None:
     there = search({(DRY,): 1.6, (DRIFT,): 9.0, (DRY, DRIFT): 1.8}, other_runs=())
     assert prune_by_other_runs(there, before) is before
     assert not there.words
+
+
+def test_the_declared_model_is_never_refused() -> None:
+    """Not with a model of the same effects, that lacks a declared term."""
+    again = prediction().again([frozenset({DRY, DRIFT}), frozenset({DRY}), frozenset()])
+    assert again.taken.names == {DRIFT}
+    assert np.isfinite(again.choice.gain)

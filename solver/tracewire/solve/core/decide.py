@@ -33,6 +33,7 @@ from tracewire.solve.core.modes import NOTHING, rate_levels
 from tracewire.solve.core.readings import guard_rates
 
 MOST_TOGETHER = 6
+MOST_TRIED = 9  # 20 000 assignments, where the pivots end at none
 SLACK = 1e-9
 BLOCK_ROUNDS = 6
 MOST_ROUNDS = 500
@@ -53,9 +54,10 @@ def decide(core: int, t: float, x: Vector, zero: Ints, fresh: bool) -> int:
     for n, i in enumerate(zero):
         stored[n] = HELD if flow.bound[i] == SLIDING else int(flow.m[i] > 0.5)
     small = _nothing(core, t, x, zero)
+    count, chosen = 0, stored
     if len(zero) > MOST_TOGETHER:
         count, chosen = _pivots(core, t, x, zero, stored, small)
-    else:
+    if count == 0 and len(zero) <= MOST_TRIED:
         count, chosen = _combinations(core, t, x, zero, stored, fresh, small)
     if count == 0:
         return NONE
@@ -89,15 +91,15 @@ def _combinations(
 ) -> tuple[int, Ints]:
     """How many assignments fit, and the one to take.
 
-    Every assignment is tried: friction that can hold first, then signs, then slides of few
-    surfaces, each group from those that change little.
+    Every assignment is tried: friction that holds goes on holding, then friction that can hold,
+    then signs, then slides of few surfaces, each group from those that change little.
     """
     plan = plan_of(core)
     size = len(zero)
     total = 3**size
     ranks, all_ = np.empty(total, dtype=np.int64), np.empty((total, size), dtype=np.int64)
     for number in range(total):
-        rest, plain, loose, changed = number, 0, 0, 0
+        rest, released, plain, loose, changed = number, 0, 0, 0, 0
         for n in range(size - 1, -1, -1):
             value = 1 - rest % 3  # 1, 0, HELD
             rest //= 3
@@ -105,8 +107,11 @@ def _combinations(
             holds = plan.can_hold[zero[n]] == 1
             plain += value == HELD and not holds
             loose += value != HELD and holds
+            released += value != HELD and holds and stored[n] == HELD
             changed += value != stored[n]
-        ranks[number] = (plain * (size + 1) + loose) * (size + 1) + changed
+        ranks[number] = (
+            (released * (size + 1) + plain) * (size + 1) + loose
+        ) * (size + 1) + changed
     found, chosen = 0, stored.copy()
     for number in np.argsort(ranks, kind="mergesort"):
         assignment = all_[number]
@@ -199,6 +204,7 @@ def _consistent(
             return False
     along = np.empty(len(flow.bound))
     guard_rates(core, t, x, along)
+    moves = patterns(core, GUARD_RATES, t, x, len(flow.bound))
     for n, i in enumerate(zero):
         value = assignment[n]
         if value == HELD:
@@ -206,9 +212,10 @@ def _consistent(
         rate = along[i]
         if abs(rate) <= small[i]:
             rate = first_higher(core, t, x, i)
-        if rate == 0.0:  # it stays on the surface: what was stored goes on
-            if stored[n] != HELD and value != stored[n]:
-                return False
+        if rate == 0.0:  # it stays on the surface
+            pinned = np.any(moves[1:, i] != 0.0)  # by what is held there: both its sides are right
+            if not pinned and stored[n] != HELD and value != stored[n]:
+                return False  # else what was stored goes on
         elif (rate > 0) != (value == 1):
             return False
     return True

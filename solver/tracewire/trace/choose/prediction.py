@@ -47,10 +47,11 @@ class Prediction:
         return self.models[self.choice.taken]
 
     def again(self, refused: Collection[frozenset[str]]) -> Prediction:
-        """The same with another choice, of models that have none of some sets of effects."""
+        """The same with another choice, of models that have none of some sets of effects; the
+        declared model is always one of them."""
         scores = log_scores(self.errors)
         for number, entrant in enumerate(self.entrants):
-            if entrant.effects in refused:
+            if number and entrant.effects in refused:
                 scores[number] = np.inf
         choice = choose(self.entrants, scores, self.horizons.groups, self.options)
         return replace(self, choice=choice)

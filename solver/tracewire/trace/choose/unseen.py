@@ -27,13 +27,17 @@ def raises_unseen(search: Search, fewer: Trial, more: Trial, lengths: Sequence[i
     for length in lengths:
         unseen = search.stretches.unseen
         before, after = (squares_on(search, unseen, trial, length) for trial in (fewer, more))
+        if not np.isfinite(before.sum()):
+            continue
+        if not np.isfinite(after.sum()):
+            return f"does not run through unseen windows of {length} samples"
         rise, count = after - before, len(before)
         many = count >= options.few_windows
         part = options.harm if many else options.harm_few
         if after.sum() <= (1 + part) ** 2 * before.sum():
             continue
         error = float(np.std(rise, ddof=1)) * count**0.5 if many else 0.0
-        if not rise.sum() <= options.harm_errors * error:
+        if rise.sum() > options.harm_errors * error:
             factor = (after.sum() / before.sum()) ** 0.5 if before.sum() > 0 else float("inf")
             return f"multiplies the error on unseen windows of {length} samples by {factor:.3g}"
     return ""

@@ -159,7 +159,9 @@ def _harmless(search: Search, prediction: Prediction) -> tuple[Prediction, bool]
         harm = raises_unseen(search, declared, taken, lengths)
         if not harm:
             return prune_by_other_runs(search, prediction), bool(refused)
-        search.words.append(f"{joined(prediction.taken.names)} is not named: it {harm}")
+        left_out = joined(prediction.taken.dropped)
+        what = joined(prediction.taken.names) or f"the model without {left_out}"
+        search.words.append(f"{what} is not named: it {harm}")
         refused.append(prediction.taken.names)
         prediction = prediction.again(refused)
     if refused and len(refused) == search.options.refused:

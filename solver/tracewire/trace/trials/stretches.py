@@ -122,7 +122,10 @@ def shortest_window(stretches: Stretches, options: SplitOptions) -> int:
 
 def _moves(measured: Measured, end: int, least: float) -> bool:
     """Whether any signal moves from a sample on, by a part of its range before."""
-    return any(np.ptp(y[end:]) > least * np.ptp(y[:end]) for y in measured.values.values())
+    return any(
+        np.ptp(y[end:]) > least * np.ptp(np.quantile(y[:end], [0.02, 0.98]))  # without spikes
+        for y in measured.values.values()
+    )
 
 
 def _part(part: float) -> str:
