@@ -37,6 +37,7 @@ POINTS = np.linspace(0.0, 1.0, 9)
 EXPONENTS = np.arange(ORDER + 1)
 POWERS = POINTS[None, :] ** EXPONENTS[:, None]
 MOST_EVENTS = 400
+ROUNDING = 1e-11  # of a guard that is held at zero
 SOON = 1e-5  # after a reset: it may be one of a sequence without end
 LOWEST = 2 * CLOSE  # a flight that rises no higher counts as lying
 
@@ -189,13 +190,13 @@ class Solution:
             self.cell *= 2
             series = (powers @ self.z).T * (length * size / CELL) ** EXPONENTS
             samples = (rows @ series) @ POWERS  # (guards, points)
+            below, above = samples < -CLOSE, samples > CLOSE
+            if np.any(~armed & below.any(axis=1) & (below.argmax(axis=1) < first(above))):
+                raise Unclear("a guard turns where a piece begins")
             hits = self.hits(samples, armed)
             if hits:
                 self.happen(guards, rows, series, length, hits, armed)
                 return
-            below, above = samples < -CLOSE, samples > CLOSE
-            if np.any(~armed & below.any(axis=1) & (below.argmax(axis=1) < first(above))):
-                raise Unclear("a guard turns where a piece begins")
             armed |= samples[:, -1] > CLOSE
             self.pieces.append((self.t, length, series))
             self.z = series.sum(axis=1)
@@ -330,10 +331,10 @@ class Solution:
             moves = self.z - before
             if any(-CLOSE < float(r.guards()[0].row @ moves) < 0 for r in fired):
                 raise Unclear("a reset that hardly moves its own guard back")
-            self.carry()
+            self.carry([e for e in self.system.elements if not isinstance(e, Reader)])
             if not self.due():
                 self.hold()
-                self.carry(self.readers())  # what holds now has a force of its own
+                self.carry(self.readers())  # of what holds from now on, or slips
                 if not self.due():
                     return
         raise Unclear("resets without end")
@@ -341,13 +342,15 @@ class Solution:
     def due(self) -> list[Reset]:
         return [e for e in self.system.elements if isinstance(e, Reset) and e.due]
 
-    def carry(self, elements: Sequence[Element] | None = None) -> None:
+    def carry(self, elements: Sequence[Element]) -> None:
         """Let the guards act that a jump has carried over zero."""
-        for element in self.system.elements if elements is None else elements:
+        for element in elements:
             if isinstance(element, Switch) and element.held is not None:
-                if abs(float(element.row @ self.z)) > CLOSE:
-                    element.held = None
-                    element.mode = 1 if float(element.row @ self.z) > 0 else -1
+                value = float(element.row @ self.z)
+                if ROUNDING < abs(value) < CLOSE:
+                    raise Unclear("a jump that hardly leaves a surface")
+                if abs(value) > CLOSE:
+                    element.held, element.mode = None, 1 if value > 0 else -1
                 continue
             for _ in range(10):
                 values = [float(guard.row @ self.z) for guard in element.guards()]

@@ -29,10 +29,13 @@ def test_random_systems_agree_with_their_exact_solutions(
     assert tally.judged > 0.5 * count, tally
 
 
-@pytest.mark.parametrize("seed", [910100555, 910101433, 910110065])
+@pytest.mark.parametrize(
+    "seed",
+    [910100555, 910101433, 910110065, 1123001572, 1123001977, 1123002702, 1123003352, 1123005453],
+)
 def test_elements_on_one_surface(seed: int) -> None:
     """A relay and a dry friction on multiples of one rate hold a body together; a play on another
-    multiple does not chatter. Of 2840 systems of this kind these three were refused once."""
+    multiple does not chatter. Of 10 000 systems of this kind these were refused once, or wrong."""
     tally = fuzz(1, seed, kind="surfaces")
     assert tally.refusals == []
     assert tally.wrong == []

@@ -367,3 +367,27 @@ def test_a_friction_that_holds_goes_on_where_a_relay_slides() -> None:
     assert found["v"][-1] == pytest.approx(0.0, abs=1e-12)
     assert found["w"][-1] == pytest.approx(0.0, abs=1e-12)
     assert found["f"][-1] == pytest.approx(-0.5, abs=1e-9)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_play_in_far_units_follows_a_body_until_friction_holds_it(method: str) -> None:
+    """Where v comes to rest, its rounding is 1e-5 m/s, and the gear shows 1e-16 of that as a rate
+    below zero."""
+    for rtol in np.logspace(-6, -10, 17):
+        found = run(
+            """
+            span: [0, 0.0006]
+            blocks:
+              x: {type: integrator, of: v, start: -2.0558692122843503e+06}
+              v: {type: integrator, of: a, start: -9.024394666597225e+11}
+              a: {type: expression, formula: "-194047412.463*x - 364.085254*v + 11162436028339*f"}
+              i: {type: gain, of: x, k: 6.344361073914672e-12}
+              r: {type: gain, of: v, k: 6.344361073914672e-12}
+              e: {type: play_operator, of: i, rate: r, width: 0.000134639242, start: -1.304317e-05}
+              f: {type: dry_friction, rate: v, slip: 409.9286, stick: 531.98428688}
+            """,
+            method=method,
+            rtol=rtol,
+        )
+        assert found.final["v"] == 0.0
+        assert found.final["x"] == pytest.approx(-2708314.1, rel=1e-4)

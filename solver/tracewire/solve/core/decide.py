@@ -97,7 +97,7 @@ def _combinations(
     plan = plan_of(core)
     size = len(zero)
     total = 3**size
-    ranks, all_ = np.empty(total, dtype=np.int64), np.empty((total, size), dtype=np.int64)
+    ranks, all_ = np.zeros(total, dtype=np.int64), np.empty((total, size), dtype=np.int64)
     for number in range(total):
         rest, released, plain, loose, changed = number, 0, 0, 0, 0
         for n in range(size - 1, -1, -1):
@@ -109,9 +109,8 @@ def _combinations(
             loose += value != HELD and holds
             released += value != HELD and holds and stored[n] == HELD
             changed += value != stored[n]
-        ranks[number] = (
-            (released * (size + 1) + plain) * (size + 1) + loose
-        ) * (size + 1) + changed
+        for part in (released, plain, loose, changed):
+            ranks[number] = ranks[number] * (size + 1) + part
     found, chosen = 0, stored.copy()
     for number in np.argsort(ranks, kind="mergesort"):
         assignment = all_[number]

@@ -36,14 +36,12 @@ from tracewire.solve.core.codes import (
 )
 from tracewire.solve.core.flow import (
     FREE,
-    GRADIENTS,
     RESTING,
     SLIDING,
-    evaluate,
     held,
 )
 from tracewire.solve.core.jit import helper, unit
-from tracewire.solve.core.modes import NOISE, levels, piece
+from tracewire.solve.core.modes import held_levels, levels, piece
 from tracewire.solve.core.readings import guard_rates, guard_values
 
 SAMPLES = 5  # of the margins over a step, both ends included
@@ -209,21 +207,10 @@ def find(core: int, method: int) -> int:
 
 @unit
 def _floors(core: int, out: Vector) -> None:
-    """How far below zero each margin may be by rounding.
-
-    Where states are held, a step moves them by the rounding of what they were before: also a guard
-    behind a gear, whose own level is zero there.
-    """
+    """How far below zero each margin may be by rounding."""
     flow, trial, watched = flow_of(core), trial_of(core), watch_of(core)
-    modes, total, n = len(flow.bound), len(out), len(trial.x)
-    level = np.empty(modes)
-    levels(core, trial.ends[0], trial.x, level)
-    if flow.counts[SLIDING] + flow.counts[RESTING]:
-        gradients, largest = np.empty((modes, n)), progress_of(core).largest
-        evaluate(core, GRADIENTS, trial.ends[0], trial.x, gradients)
-        for i in range(modes):
-            for j in range(n):
-                level[i] = max(level[i], NOISE * abs(gradients[i, j]) * largest[j])
+    level, total = np.empty(len(flow.bound)), len(out)
+    held_levels(core, trial.ends[0], trial.x, level)
     forces = total - flow.counts[RESTING]
     for row in range(total):
         guard = watched.kind[row] == GUARD

@@ -6,9 +6,18 @@ import math
 
 import numpy as np
 
-from tracewire.solve.core.arrays import Vector, flow_of, plan_of
+from tracewire.solve.core.arrays import Vector, flow_of, plan_of, progress_of
 from tracewire.solve.core.codes import FLOOR, MEMORY, SIGN
-from tracewire.solve.core.flow import FREE, GUARD_RATE_SIZES, GUARD_SIZES, sizes
+from tracewire.solve.core.flow import (
+    FREE,
+    GRADIENTS,
+    GUARD_RATE_SIZES,
+    GUARD_SIZES,
+    RESTING,
+    SLIDING,
+    evaluate,
+    sizes,
+)
 from tracewire.solve.core.jit import helper, unit
 
 NOISE = 1e-14  # of the size of a guard
@@ -22,6 +31,21 @@ def levels(core: int, t: float, x: Vector, out: Vector) -> None:
     sizes(core, GUARD_SIZES, t, x, out)
     for i in range(len(out)):
         out[i] *= NOISE
+
+
+@unit
+def held_levels(core: int, t: float, x: Vector, out: Vector) -> None:
+    """As `levels`, where states may be held: these are moved there by the rounding of what they
+    were before, which a guard behind a gear shows, whose own level is zero there."""
+    flow, largest = flow_of(core), progress_of(core).largest
+    levels(core, t, x, out)
+    if flow.counts[SLIDING] + flow.counts[RESTING] == 0:
+        return
+    gradients = np.empty((len(out), len(x)))
+    evaluate(core, GRADIENTS, t, x, gradients)
+    for i in range(len(out)):
+        for j in range(len(x)):
+            out[i] = max(out[i], NOISE * abs(gradients[i, j]) * largest[j])
 
 
 @unit

@@ -37,6 +37,7 @@ from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.modes import JUMP, NOTHING, levels, margin, mode_value, rate_levels
 from tracewire.solve.core.readings import guard_rates, guard_values
 from tracewire.solve.core.resets import fire_transitions
+from tracewire.solve.core.surface import pin
 
 MOST_ROUNDS = 200
 MOST_EDGES = 20
@@ -113,6 +114,8 @@ def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
             if rounds < MOST_EDGES and _floor_edges(core, t, x, marks):
                 rounds += 1
                 continue
+            if flow.counts[SLIDING]:
+                pin(core, t, x)  # what is held stands still, also behind a gear
             left_rates(core, t, x, marks, after)
             status = fire_transitions(core, t, x, wrong)
             if status != FINISHED or not np.any(wrong):
