@@ -131,13 +131,14 @@ class Switch(Element):
         return [Guard(self.mode * self.row, self.meet)]
 
     def leave(self, way: int) -> None:
-        self.mode, self.held = way, None
+        self.mode, self.held, self.left = way, None, True
         self.met = False
 
     def meet(self) -> None:
         self.met = True
 
     met: bool = False
+    left: bool = False  # at this instant, after it held
 
     def begin(self, z: Vector) -> None:
         value = float(self.row @ z)

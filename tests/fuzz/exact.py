@@ -327,7 +327,14 @@ class Solution:
                 self.fired[id(reset)] = self.t
                 reset.due = False
                 writes |= reset.rows
+            left = [e for e in self.system.elements if isinstance(e, Switch) and e.left]
+            along = [float(switch.row @ (self.field() @ self.z)) for switch in left]
             self.write(writes)
+            for switch, rate in zip(left, along, strict=True):
+                after = float(switch.row @ (self.field() @ self.z))
+                on_it = abs(float(switch.row @ self.z)) < CLOSE
+                if on_it and abs(after - rate) > CLOSE:  # its load has changed: it may hold again
+                    switch.met, switch.left = True, False
             moves = self.z - before
             if any(-CLOSE < float(r.guards()[0].row @ moves) < 0 for r in fired):
                 raise Unclear("a reset that hardly moves its own guard back")
@@ -336,8 +343,12 @@ class Solution:
                 self.hold()
                 self.carry(self.readers())  # of what holds from now on, or slips
                 if not self.due():
-                    return
-        raise Unclear("resets without end")
+                    break
+        else:
+            raise Unclear("resets without end")
+        for element in self.system.elements:
+            if isinstance(element, Switch):
+                element.left = False
 
     def due(self) -> list[Reset]:
         return [e for e in self.system.elements if isinstance(e, Reset) and e.due]
