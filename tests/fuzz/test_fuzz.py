@@ -31,7 +31,17 @@ def test_random_systems_agree_with_their_exact_solutions(
 
 @pytest.mark.parametrize(
     "seed",
-    [910100555, 910101433, 910110065, 1123001572, 1123001977, 1123002702, 1123003352, 1123005453],
+    [
+        910100555,
+        910101433,
+        910110065,
+        1123001572,
+        1123001977,
+        1123002702,
+        1123003352,
+        1123005453,
+        1126004045,
+    ],
 )
 def test_elements_on_one_surface(seed: int) -> None:
     """A relay and a dry friction on multiples of one rate hold a body together; a play on another

@@ -391,3 +391,29 @@ def test_a_play_in_far_units_follows_a_body_until_friction_holds_it(method: str)
         )
         assert found.final["v"] == 0.0
         assert found.final["x"] == pytest.approx(-2708314.1, rel=1e-4)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("rate", ["0", "-0.01*z", "0.01*e", "0.01*e - 0.1*z"])
+def test_a_guard_that_a_clock_carries_off_and_a_reset_carries_back_has_crossed(
+    rate: str, method: str
+) -> None:
+    """The clock sets z above 2.1, the event that it sets off puts it below: i has risen again."""
+    found = run(
+        f"""
+        span: [0, 1.5]
+        blocks:
+          z: {{type: integrator, of: a, start: -1.6}}
+          a: {{type: expression, formula: "{rate}"}}
+          e: {{type: sign, of: d}}
+          d: {{type: gain, of: z, k: -1}}
+          j: {{type: expression, formula: 1 - 3*e}}
+          i: {{type: expression, formula: 2.1 - z}}
+          c: {{type: counter, of: i, threshold: 0}}
+        events:
+          - {{every: 1, offset: 1, set: {{z: 2.4}}}}
+          - {{when: j, crosses: up, set: {{z: -0.138*z}}}}
+        """,
+        method=method,
+    )
+    assert found.final["c"] == 1.0

@@ -253,5 +253,14 @@ def new_arrays(flow: Flow, plan: Plan, progress: Progress, sensitivity: Sensitiv
         found=np.full(most, np.inf),
         hit=ints(most),
     )
-    crossings = Crossings(how=np.full(modes, -1), to=np.zeros(modes), up=ints(modes))
+    crossings = Crossings(
+        how=np.full(modes, -1),
+        to=np.zeros(modes),
+        up=ints(modes),
+        x=np.zeros(len(progress.x)),
+        m=np.zeros(len(flow.m)),
+        bound=ints(modes),
+        due=ints(len(plan.resets)),
+        known=ints(1),
+    )
     return Arrays(flow, plan, progress, trial, watch, crossings, sensitivity)

@@ -148,11 +148,21 @@ class Crossings(NamedTuple):
 
     `how` is GUARD, FRACTION of a slide, FORCE of a contact, or TIME; `to` is the mode beyond, `up`
     1 where the guard went up.
+
+    An instant has stages, each of which ends where all modes stand still and something writes
+    states anew. `x` (n,), `m` and `bound`: how the last stage began; `known` (1,): 1 where it has
+    begun. `due`, per reset: 1 where the writes of a stage have carried its guard over zero, -1
+    where the guard has crossed on its own.
     """
 
     how: Ints
     to: Vector
     up: Ints
+    x: Vector
+    m: Vector
+    bound: Ints
+    due: Ints
+    known: Ints
 
 
 class Sensitivity(NamedTuple):
@@ -406,6 +416,11 @@ def crossings_of(core: int) -> Crossings:
         ints(core, 59),
         vector(core, 60),
         ints(core, 61),
+        vector(core, 62),
+        vector(core, 63),
+        ints(core, 64),
+        ints(core, 65),
+        ints(core, 66),
     )
 
 

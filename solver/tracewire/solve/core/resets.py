@@ -16,6 +16,7 @@ from tracewire.solve.core.arrays import (
     Ints,
     Vector,
     copy,
+    crossings_of,
     flow_of,
     plan_of,
     progress_of,
@@ -34,7 +35,7 @@ from tracewire.solve.core.codes import (
 )
 from tracewire.solve.core.decide import first_higher
 from tracewire.solve.core.flow import FREE, RESTING, SLIDING
-from tracewire.solve.core.jit import unit
+from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.modes import JUMP, levels, rate_levels
 from tracewire.solve.core.readings import (
     guard_rates,
@@ -97,7 +98,9 @@ def fire_transitions(core: int, t: float, x: Vector, moved: Ints) -> int:
         if reset >= 0:
             fired[reset] = 1
     if np.any(fired):
-        status = write(core, t, before, x, fired)
+        status = next_stage(core, t, x)
+        if status == FINISHED:
+            status = write(core, t, before, x, fired)
         if status != FINISHED:
             return status
     copy(to, flow.m)
@@ -106,6 +109,32 @@ def fire_transitions(core: int, t: float, x: Vector, moved: Ints) -> int:
     for memory in np.flatnonzero(moved):
         log(core, t, TRANSITION, memory, int(np.sign(flow.m[memory] - old[memory])), before, x)
     return FINISHED
+
+
+@helper
+def begin_stage(core: int, x: Vector) -> None:
+    """Remember how a stage of this instant begins."""
+    flow, crossings = flow_of(core), crossings_of(core)
+    copy(x, crossings.x)
+    copy(flow.m, crossings.m)
+    for i in range(len(flow.bound)):
+        crossings.bound[i] = flow.bound[i]
+    crossings.known[0] = 1
+
+
+@unit
+def next_stage(core: int, t: float, x: Vector) -> int:
+    """Before a transition writes states: mark the resets whose guards this stage has carried over
+    zero, for what is written may carry them back. A status."""
+    crossings = crossings_of(core)
+    if crossings.known[0] == 0:
+        return FINISHED
+    due = crossings.due.copy()
+    status = carried(core, t, crossings.x, x, crossings.m, crossings.bound, due)
+    for reset in range(len(due)):
+        crossings.due[reset] = max(crossings.due[reset], 0) | due[reset]
+    begin_stage(core, x)
+    return status
 
 
 @unit

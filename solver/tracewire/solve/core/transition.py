@@ -50,7 +50,7 @@ from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.modes import JUMP, levels, margin, mode_value, rate_levels
 from tracewire.solve.core.readings import guard_rates, guard_values
 from tracewire.solve.core.record import log
-from tracewire.solve.core.resets import carried, fire_carried, write
+from tracewire.solve.core.resets import begin_stage, carried, fire_carried, write
 from tracewire.solve.core.saltation import enter, leave, reset_sensitivities
 from tracewire.solve.core.settle import KNOWN, LEFT, forget, left_rates, settle
 
@@ -75,6 +75,7 @@ def happen(core: int, t: float, x: Vector) -> int:
     crossings = crossings_of(core)
     modes = len(plan.kind)
     enter(core, t, x)
+    begin_stage(core, x)
     before, old, bound = x.copy(), flow.m.copy(), flow.bound.copy()
     flags, numbers = np.zeros((3, modes), dtype=np.int64), np.zeros((2, modes))
     fired = flags[0]  # the last reset that the guard of a mode fired
@@ -86,6 +87,10 @@ def happen(core: int, t: float, x: Vector) -> int:
     status = _resets(core, t, x, done, fired, speed, turned, jumps)
     if status != FINISHED:
         return status
+    for reset in range(len(done)):
+        i = plan.resets[reset, 0]
+        own = i >= 0 and (crossings.how[i] >= 0 or fired[i] >= 0)
+        crossings.due[reset] = -1 if own else 0
     _cross(core, t, before, x, turned, marks)
     for i in range(modes):
         if turned[i]:
@@ -120,7 +125,8 @@ def happen(core: int, t: float, x: Vector) -> int:
             status = _count(core, t, i)
             if status != FINISHED:
                 return status
-    status = _carry_on(core, t, before, x, old, bound, fired, marks)
+    status = _carry_on(core, t, x, fired, marks)
+    crossings.known[0] = 0
     leave(core, t, before, x, old, waits)
     return status
 
@@ -198,37 +204,29 @@ def _resets(
 
 
 @unit
-def _carry_on(
-    core: int,
-    t: float,
-    before: Vector,
-    x: Vector,
-    old: Vector,
-    bound: Ints,
-    fired: Ints,
-    marks: Ints,
-) -> int:
+def _carry_on(core: int, t: float, x: Vector, fired: Ints, marks: Ints) -> int:
     """Fire the resets whose guards the jumps of this instant have carried over zero, then those
     that these carry over in turn. `fired` marks the guards whose resets have fired. A status."""
     flow, plan, crossings = flow_of(core), plan_of(core), crossings_of(core)
     progress, due = progress_of(core), np.zeros(len(plan.resets), dtype=np.int64)
     if len(due) == 0:
         return FINISHED
-    for reset in range(len(due)):
-        i = plan.resets[reset, 0]
-        if i >= 0 and (crossings.how[i] >= 0 or fired[i] >= 0):
-            due[reset] = -1
     no_crossings(core)
-    states, modes, held, waits = before, old, bound, np.full(len(plan.kind), contact.FLIES)
-    along = np.empty(len(plan.kind))
+    waits, along = np.full(len(plan.kind), contact.FLIES), np.empty(len(plan.kind))
     for _ in range(MOST_RESETS):
-        status = carried(core, t, states, x, modes, held, due)
+        for reset in range(len(due)):
+            due[reset] = crossings.due[reset]
+        status = carried(core, t, crossings.x, x, crossings.m, crossings.bound, due)
+        for reset in range(len(due)):
+            due[reset] |= max(crossings.due[reset], 0)
+            crossings.due[reset] = 0
         if status != FINISHED or not np.any(due):
             return status
         fired[:] = -1
         for reset in np.flatnonzero(due):
             i = plan.resets[reset, 0]
             fired[i], progress.which[0], progress.which[1] = reset, 1, i
+        begin_stage(core, x)
         states, modes, held = x.copy(), flow.m.copy(), flow.bound.copy()
         left_rates(core, t, x, marks, along)
         status = fire_carried(core, t, x, due)
