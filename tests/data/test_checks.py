@@ -91,6 +91,21 @@ def test_a_signal_from_a_lower_rate(k: int, seed: int) -> None:
     assert f"y changes only at every {k}th sample: it was taken at {1000 / k:.4g} Hz" in held
 
 
+def test_samples_far_from_all_others() -> None:
+    """A hammer's blow, of several samples, is none."""
+    y = np.sin(3 * T) + 0.01 * RNG.standard_normal(len(T))
+    y[70] = 1e6
+    (told,) = signal_remarks("y", T, y, "rad")
+    assert told.startswith(
+        f"y has samples far from all others, each alone: 1e+06 rad at t = {T[70]:.6g}"
+    )
+    assert told.endswith("leave them out by clean: [outliers: y]")
+    assert signal_remarks("y", T, y, exact=True) == []
+    blow = 0.01 * RNG.standard_normal(len(T))
+    blow[70:74] = [40, 90, 60, 20]
+    assert signal_remarks("y", T, blow) == []
+
+
 def test_a_coarse_reading() -> None:
     step = 2 * math.pi / 100
     (told,) = signal_remarks("y", T, np.round(np.sin(3 * T) / step) * step, "rad")

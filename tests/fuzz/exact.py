@@ -36,6 +36,7 @@ CELL = 0.5  # of 1/|A|: there a term of the series is below 1e-17 of the first o
 POINTS = np.linspace(0.0, 1.0, 9)
 EXPONENTS = np.arange(ORDER + 1)
 POWERS = POINTS[None, :] ** EXPONENTS[:, None]
+FINE = np.linspace(0.0, 1.0, 129)[None, :] ** EXPONENTS[:, None]
 MOST_EVENTS = 400
 ROUNDING = 1e-11  # of a guard that is held at zero
 SOON = 1e-5  # after a reset: it may be one of a sequence without end
@@ -190,8 +191,9 @@ class Solution:
             self.cell *= 2
             series = (powers @ self.z).T * (length * size / CELL) ** EXPONENTS
             samples = (rows @ series) @ POWERS  # (guards, points)
-            below, above = samples < -CLOSE, samples > CLOSE
-            if np.any(~armed & below.any(axis=1) & (below.argmax(axis=1) < first(above))):
+            fine = (rows[~armed] @ series) @ FINE
+            below, above = fine < -CLOSE, fine > CLOSE
+            if np.any(below.any(axis=1) & (below.argmax(axis=1) < first(above))):
                 raise Unclear("a guard turns where a piece begins")
             hits = self.hits(samples, armed)
             if hits:
@@ -365,6 +367,8 @@ class Solution:
                 continue
             for _ in range(10):
                 values = [float(guard.row @ self.z) for guard in element.guards()]
+                if any(-CLOSE <= value < -ROUNDING for value in values):
+                    raise Unclear("a jump that hardly passes a guard")
                 passed = [n for n, value in enumerate(values) if value < -CLOSE]
                 if not passed:
                     break

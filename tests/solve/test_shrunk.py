@@ -417,3 +417,19 @@ def test_a_guard_that_a_clock_carries_off_and_a_reset_carries_back_has_crossed(
         method=method,
     )
     assert found.final["c"] == 1.0
+
+
+@pytest.mark.parametrize("push", [0.0, 0.5, -0.5])
+def test_relays_that_drive_one_signal_apart_are_refused_at_zero(push: float) -> None:
+    """-3 sign(2x) + 2 sign(x) is -sign(x) and holds a push below 1; the solver does not know that
+    the two are one."""
+    with pytest.raises(SimulationError, match=r"no consistent mode at t = \S+ s"):
+        run(f"""
+            span: [0, 2]
+            blocks:
+              x: {{type: integrator, of: xd, start: 0.5}}
+              twice: {{type: gain, of: x, k: 2}}
+              one: {{type: sign, of: twice}}
+              other: {{type: sign, of: x}}
+              xd: {{type: expression, formula: -3*one + 2*other + {push}}}
+        """)

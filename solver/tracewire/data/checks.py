@@ -24,6 +24,9 @@ LONGEST_PATTERN = 50
 FEWEST_KINKS = 20
 REGULAR = 0.9
 
+SPIKE = 10.0  # times the range of nearly all samples is one away that stands alone
+NEARLY_ALL = (0.02, 0.98)  # quantiles
+
 MOST_LEVELS = 500
 FEWEST_LEVELS = 5
 
@@ -54,11 +57,19 @@ def time_remarks(t: Vector) -> list[str]:
 
 
 def signal_remarks(
-    name: str, t: Vector, y: Vector, unit: str = "", *, exact: bool = False
+    name: str,
+    t: Vector,
+    y: Vector,
+    unit: str = "",
+    *,
+    exact: bool = False,
+    cleaned: bool = False,
 ) -> list[str]:
-    """What is odd about a signal y(t), (N,): constant, clipped, made from a lower rate, coarse.
+    """What is odd about a signal y(t), (N,): constant, clipped, with spikes, made from a lower
+    rate, coarse.
 
     exact: its values are what they were meant to be, such as those of a command: none is rounded.
+    cleaned: its outliers are left out.
     """
     if len(y) < 3:
         return []
@@ -68,7 +79,10 @@ def signal_remarks(
     if len(y) < FEWEST:
         return []
     levels = np.unique(y)
-    found = _clipped(name, y, levels, shown)
+    found = [
+        *_clipped(name, y, levels, shown),
+        *([] if exact or cleaned else _spikes(name, t, y, shown)),
+    ]
     made = [] if len(levels) < FEWEST_LEVELS else _from_lower_rate(name, t, y)
     return [*found, *made, *([] if made or exact else _coarse(name, y, levels, shown))]
 
@@ -95,6 +109,24 @@ def _clipped(name: str, y: Vector, levels: Vector, unit: str) -> list[str]:
                 f"stretches of together {count} samples: is the sensor at the end of its range?"
             )
     return remarks
+
+
+def _spikes(name: str, t: Vector, y: Vector, unit: str) -> list[str]:
+    """Samples far beyond all others, whose neighbours are not."""
+    low, high = np.quantile(y, NEARLY_ALL)
+    beyond = np.maximum(low - y, y - high)
+    far = beyond > SPIKE * (high - low)
+    beside = np.concatenate([[False], far[:-1]]) | np.concatenate([far[1:], [False]])
+    alone = np.flatnonzero(far & ~beside)
+    if high == low or not len(alone):
+        return []
+    told = ", ".join(f"{y[i]:.6g}{unit} at t = {t[i]:.6g} s" for i in alone[:MOST_TOLD])
+    more = f" and {len(alone) - MOST_TOLD} more" if len(alone) > MOST_TOLD else ""
+    return [
+        f"{name} has samples far from all others, each alone: {told}{more}; nearly all are between "
+        f"{low:.4g} and {high:.4g}{unit}. Where they are faults of the measurement, leave them out "
+        f"by clean: [outliers: {name.removeprefix('input ')}]"
+    ]
 
 
 def _runs(marks: Marks) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,8 @@ FAR = 10.0
 NEAR_PI = 0.3
 RESTING = 5
 """Samples of exactly zero that are no passage through zero."""
+NEARLY_ALL = (0.02, 0.98)
+"""Quantiles: a spike is no range of angles."""
 LOST = 5e-3
 """The part of an input's amplitude that straight lines lose, from which on it is told."""
 
@@ -55,16 +58,18 @@ def remarks_on(
         found += time_remarks(read.t)
     for name, column in read.columns.items():
         exact = _is_command(series.inputs.get(name.removeprefix("input ")), column)
-        found += signal_remarks(name, read.t, column, read.unit(name).text, exact=exact)
+        unit, cleaned = read.unit(name).text, name in _without_outliers(series)
+        found += signal_remarks(name, read.t, column, unit, exact=exact, cleaned=cleaned)
     found += _on_span(model, series, read, values, zero)
     states = {state.name: state for state in model.flat.states}
     for name in series.channels:
-        unit = read.unit(name)
-        angle = unit.text or model.flat.units.get(name, "")
+        given = read.unit(name)
+        angle = given.text or model.flat.units.get(name, "")
         if name not in read.columns or angle != "rad":
             continue
         column = read.columns[name]
-        if unit.factor == 1.0 and float(np.ptp(column)) > LARGEST_ANGLE:
+        range_ = float(np.ptp(np.quantile(column, NEARLY_ALL)))
+        if given.factor == 1.0 and range_ > LARGEST_ANGLE:
             found.append(
                 f"{name} goes from {column.min():.4g} to {column.max():.4g} rad: "
                 "is the column in degrees? Then say unit: deg"
@@ -79,6 +84,15 @@ def remarks_on(
     found += _on_rest(model, series, read)
     found += _on_hold(series, read)
     return tuple(found)
+
+
+def _without_outliers(series: Series) -> set[str]:
+    """The columns whose outliers are left out."""
+    found: set[str] = set()
+    for step in series.clean:
+        signals = step.options["signals"] if step.step == "outliers" else ()
+        found |= {signals} if isinstance(signals, str) else set(cast(tuple[str, ...], signals))
+    return found
 
 
 def _is_command(channel: Channel | None, column: NDArray[np.float64]) -> bool:

@@ -14,6 +14,7 @@ from tracewire.solve.core.contact import bend
 from tracewire.solve.core.flow import (
     AFFINE,
     FREE,
+    GRADIENTS,
     GUARD_RATES,
     RATE_SIZES,
     RESTING,
@@ -21,6 +22,7 @@ from tracewire.solve.core.flow import (
     SECOND_SIZES,
     SLIDING,
     bind,
+    evaluate,
     held,
     is_affine,
     is_independent,
@@ -215,9 +217,50 @@ def _consistent(
             pinned = np.any(moves[1:, i] != 0.0)  # by what is held there: both its sides are right
             if not pinned and stored[n] != HELD and value != stored[n]:
                 return False  # else what was stored goes on
+            if pinned and _drives_apart(core, t, x, i):
+                return False
         elif (rate > 0) != (value == 1):
             return False
     return True
+
+
+@unit
+def _drives_apart(core: int, t: float, x: Vector, i: int) -> bool:
+    """Whether a relay that drives its guard away from zero stays there because another relay on the
+    same surface holds it. The two turn together, so that only their difference can hold."""
+    flow, plan = flow_of(core), plan_of(core)
+    if plan.can_hold[i]:
+        return False
+    modes, together, value = len(flow.bound), False, flow.m[i]
+    gradients = np.empty((modes, len(x)))
+    evaluate(core, GRADIENTS, t, x, gradients)
+    for j in range(modes):
+        if flow.bound[j] == SLIDING and plan.can_hold[j] == 0:
+            together = together or _parallel(gradients[i], gradients[j])
+    if not together:
+        return False
+    above, below = np.empty(modes), np.empty(modes)
+    flow.m[i] = 1.0
+    evaluate(core, GUARD_RATES, t, x, above)
+    flow.m[i] = 0.0
+    evaluate(core, GUARD_RATES, t, x, below)
+    flow.m[i] = value
+    return above[i] > below[i]
+
+
+@helper
+def _parallel(one: Vector, other: Vector) -> bool:
+    """Whether two gradients are multiples of each other, but for rounding."""
+    most = 0
+    for k in range(len(one)):
+        if abs(one[k]) > abs(one[most]):
+            most = k
+    if one[most] == 0.0 or other[most] == 0.0:
+        return False
+    part, same = other[most] / one[most], True
+    for k in range(len(one)):
+        same = same and abs(other[k] - part * one[k]) <= SLACK * abs(part * one[k])
+    return same
 
 
 @helper
