@@ -49,13 +49,19 @@ class Problem:
         return f"{text}. {self.hint}" if self.hint else f"{text}."
 
 
+MOST_MEANT = 6  # names that are proposed
+
+
 def unknown(
     kind: str, name: str, existing: Iterable[str], place: Place = Place(), hint: str = ""
 ) -> Problem:
-    """The problem "unknown KIND 'NAME'", with what exists and the nearest name that does."""
+    """The problem "unknown KIND 'NAME'", with what exists, and what of that is spelled alike or has
+    the name as one of its words."""
     names = tuple(sorted(existing))
     near = difflib.get_close_matches(name, names, n=1, cutoff=0.6)
-    meant = f"Did you mean '{near[0]}'?" if near else ""
+    near = near or [known for known in names if name.lower() in known.lower().split("_")]
+    shown = " or ".join(f"'{known}'" for known in near[:MOST_MEANT])
+    meant = f"Did you mean {shown}?" if near else ""
     nothing = "" if names else f"; there is no {kind} here"
     text = " ".join(part for part in (meant, hint) if part)
     return Problem(f"unknown {kind} '{name}'{nothing}", place, names, text)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from diagram.small_library import PENDULUM, refused
+from tracewire.errors import unknown
 
 SECTIONS = [
     ("titel: x\nblocks: {}", "1:1: unknown section 'titel'; there are: blocks, events, every"),
@@ -266,3 +267,10 @@ def test_an_input_of_the_diagram_is_a_mapping_of_unit_and_default() -> None:
     assert "input 'a' must be a mapping" in refused("blocks: {}\ninputs: {a: m}")
     told = refused("blocks: {}\ninputs: [a, a]")
     assert "two definitions of 'a': an input here, and an input in line 2" in told
+
+
+def test_a_word_of_a_name_is_enough_to_propose_it() -> None:
+    known = ["gain", "dry_friction", "asym_coulomb", "coulomb_smooth"]
+    assert str(unknown("block", "dry", known)).endswith("Did you mean 'dry_friction'?")
+    message = str(unknown("block", "Smooth", known))
+    assert message.endswith("Did you mean 'coulomb_smooth'?")

@@ -41,6 +41,8 @@ def test_random_systems_agree_with_their_exact_solutions(
         1123003352,
         1123005453,
         1126004045,
+        1130000852,
+        1131001050,
     ],
 )
 def test_elements_on_one_surface(seed: int) -> None:

@@ -420,15 +420,34 @@ def test_a_guard_that_a_clock_carries_off_and_a_reset_carries_back_has_crossed(
 
 
 @pytest.mark.parametrize("push", [0.0, 0.5, -0.5])
-def test_relays_that_drive_one_signal_apart_are_refused_at_zero(push: float) -> None:
-    """-3 sign(2x) + 2 sign(x) is -sign(x) and holds a push below 1; the solver does not know that
-    the two are one."""
+def test_relays_that_drive_one_signal_apart_hold_it_by_their_difference(push: float) -> None:
+    """-3 sign(2x) + 2 sign(3x) is -sign(x): it holds a push below 1. Each relay has its part."""
+    found = run(f"""
+        span: [0, 2]
+        record: [x, one, other]
+        blocks:
+          x: {{type: integrator, of: xd, start: 0.5}}
+          twice: {{type: gain, of: x, k: 2}}
+          one: {{type: sign, of: twice}}
+          less: {{type: gain, of: x, k: -3}}
+          other: {{type: sign, of: less}}
+          xd: {{type: expression, formula: -3*one - 2*other + {push}}}
+    """)
+    assert found.final == {"x": 0.0}
+    assert found["one"][-1] == pytest.approx(push)
+    assert found["other"][-1] == pytest.approx(-push)
+
+
+@pytest.mark.parametrize("push", [0.0, 0.5, -0.5])
+def test_relays_that_drive_one_signal_apart_by_a_parameter_are_refused_at_zero(push: float) -> None:
+    """The same, but that the two signals are multiples is known only in the run."""
     with pytest.raises(SimulationError, match=r"no consistent mode at t = \S+ s"):
         run(f"""
             span: [0, 2]
+            parameters: {{k: 2}}
             blocks:
               x: {{type: integrator, of: xd, start: 0.5}}
-              twice: {{type: gain, of: x, k: 2}}
+              twice: {{type: gain, of: x, k: k}}
               one: {{type: sign, of: twice}}
               other: {{type: sign, of: x}}
               xd: {{type: expression, formula: -3*one + 2*other + {push}}}

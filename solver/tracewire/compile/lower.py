@@ -107,6 +107,7 @@ class Lowering:
         self.tape = self.out.tape
         self.t = self.tape.push("t")
         self.by_guard: dict[tuple[str, int], int] = {}
+        self.by_multiple: dict[int, tuple[int, float]] = {}  # of an entry: a mode, and its factor
         self.index = {state.name: number for number, state in enumerate(flat.states)}
         self.signal = ""
 
@@ -261,7 +262,10 @@ class Lowering:
         holds: bool = False,
         always: bool = False,
     ) -> int:
-        """The entry that is 1 where guard >= 0 (or > 0): a mode, shared up to sign.
+        """The entry that is 1 where guard >= 0 (or > 0): a mode, shared up to a constant factor.
+
+        Relays on multiples of one signal turn together: that they share a mode lets the difference
+        of two that drive it apart hold it at zero. Frictions on multiples have each their own.
 
         A guard that never changes within a mode combination is compared on the spot, unless
         `always` asks for a mode: the event of a reset needs one.
@@ -277,8 +281,29 @@ class Lowering:
         if mirrored is not None and ("sign", mirrored) in self.by_guard:
             mode = self.mode("sign", mirrored, text, holds=holds)
             return tape.push("not", self.out.modes[mode].leaf)
+        plain = not holds and not always
+        base, factor = self.scaled(guard)
+        known = self.by_multiple.get(base) if plain else None
+        if known is not None and ("sign", guard) not in self.by_guard:
+            leaf = self.out.modes[known[0]].leaf
+            return leaf if known[1] * factor > 0 else tape.push("not", leaf)
         mode = self.mode("sign", guard, text, at_zero=0 if strict else 1, holds=holds)
+        if plain and not self.out.modes[mode].holds:
+            self.by_multiple.setdefault(base, (mode, factor))
         return self.out.modes[mode].leaf
+
+    def scaled(self, guard: int) -> tuple[int, float]:
+        """An entry and the number that it is multiplied with to be a guard."""
+        factor = 1.0
+        while (entry := self.tape.entries[guard]).op == "*":
+            left, right = entry.operands
+            value = self.tape.value(left)
+            if value is None:
+                left, right, value = right, left, self.tape.value(right)
+            if not value:
+                break
+            guard, factor = right, factor * value
+        return guard, factor
 
     def mode(
         self,
