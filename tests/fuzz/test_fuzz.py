@@ -54,6 +54,15 @@ def test_elements_on_one_surface(seed: int) -> None:
     assert tally.judged == 1
 
 
+@pytest.mark.parametrize("seed", [1132004020, 1132005754])
+def test_systems_that_were_wrong_once(seed: int) -> None:
+    """The rounding of one slide drowned the state on the other; a body sank into a stop when a
+    friction that held it there let go."""
+    tally = fuzz(1, seed)
+    assert tally.wrong == []
+    assert tally.judged == 1
+
+
 def solved(matrix: list[list[float]], start: list[float], *elements: Element) -> Solution:
     return Solution(System(np.array(matrix), np.array(start), elements), 6.0)
 

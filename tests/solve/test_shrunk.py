@@ -452,3 +452,26 @@ def test_relays_that_drive_one_signal_apart_by_a_parameter_are_refused_at_zero(p
               other: {{type: sign, of: x}}
               xd: {{type: expression, formula: -3*one + 2*other + {push}}}
         """)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_body_that_friction_holds_on_a_stop_does_not_sink_into_it(method: str) -> None:
+    """It falls onto the stop and rests. A pull relieves the stop until friction alone can hold the
+    body, and declines again: when friction lets go, the stop carries the body."""
+    found = run(
+        """
+        span: [0, 6]
+        blocks:
+          s: {type: hard_stop, force: total, low: 0, high: 5, restitution: 0.3, start: 0.2}
+          weight: {type: constant, value: -2}
+          pull: {type: integrator, of: way}
+          way: {type: gain, of: other, k: 2}
+          friction: {type: dry_friction, rate: s.v, slip: 1}
+          other: {type: sign, of: wave}
+          wave: {type: sine, amplitude: 1, omega: 5}
+          total: {type: sum, of: [weight, pull, friction]}
+        """,
+        method=method,
+    )
+    assert found.final["s.x"] == pytest.approx(0.0, abs=1e-12)
+    assert min(found["s.x"]) > -1e-12

@@ -178,10 +178,12 @@ def reset_jump(core: int, t: float, x: Vector, reset: int, out: Vector) -> None:
 
 
 @unit
-def touching(core: int, t: float, x: Vector, reset: int, level: Vector) -> bool:
-    """Whether a contact whose guard is zero stays closed; it then rests. `level`: of the rates.
+def touching(core: int, t: float, x: Vector, reset: int, level: Vector, higher: float) -> bool:
+    """Whether a contact whose guard is zero stays closed; it then rests. `level`: of the rates,
+    `higher`: the first derivative of the guard, from the second on, that is not zero.
 
-    It does where g' = 0 and g'' < 0 and its reset, had the bodies met, would push them apart.
+    It does where g' = 0 and g'' < 0 and its reset, had the bodies met, would push them apart; where
+    g'' = 0, as when a friction lets go that has held the body there, the next one decides.
     """
     flow = flow_of(core)
     plan = plan_of(core)
@@ -199,7 +201,9 @@ def touching(core: int, t: float, x: Vector, reset: int, level: Vector) -> bool:
     slope = curve(core, t, x, i)[:n]
     square = np.dot(slope, slope)
     jump = np.zeros(n)
-    if square > 0 and side * bend(core, t, x, i) < -NOTHING * bends[i]:
+    second, nothing = side * bend(core, t, x, i), NOTHING * bends[i]
+    pressed = second < -nothing or (second <= nothing and side * higher < 0)
+    if square > 0 and pressed:
         # the reset of bodies that approach tells the direction in which it pushes
         reset_jump(core, t, x - slope * (side / square), reset, jump)
     if side * np.dot(slope, jump) > 0:

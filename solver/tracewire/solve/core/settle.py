@@ -215,7 +215,10 @@ def _close_contacts(core: int, t: float, x: Vector, zero: Ints) -> None:
     rate_levels(core, t, x, level)
     for reset in range(len(plan.resets)):
         i = plan.resets[reset, 0]
-        if i >= 0 and zero[i] and contact.touching(core, t, x, reset, level):
+        if i < 0 or not zero[i]:
+            continue
+        higher = first_higher(core, t, x, i)
+        if contact.touching(core, t, x, reset, level, higher):
             zero[i] = 0
 
 
