@@ -398,14 +398,14 @@ def _undefined(core: int) -> int:
 
 @unit
 def _cross(core: int, how: int) -> int:
-    """Let the guards that are marked cross now. A status."""
+    """Let what is marked cross now, guards in this way. A status."""
     progress, watched, crossings = progress_of(core), watch_of(core), crossings_of(core)
     no_crossings(core)
     for row in range(locate.watched_count(core)):
         if watched.hit[row]:
-            i = watched.mode[row]
-            crossings.how[i], crossings.to[i] = how, watched.to[row]
-            crossings.up[i] = watched.sign[row] < 0
+            i, guard = watched.mode[row], watched.kind[row] == GUARD
+            crossings.how[i], crossings.to[i] = how if guard else watched.kind[row], watched.to[row]
+            crossings.up[i] = int(watched.sign[row] < 0 if guard else watched.to[row] > 0.5)
     return happen(core, progress.now[T], progress.x)
 
 

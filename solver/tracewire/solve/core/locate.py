@@ -106,13 +106,17 @@ def _add(core: int, row: int, mode: int, kind: int, to: float, level: float, sig
 
 @unit
 def passed(core: int, out: Ints) -> int:
-    """Mark the guards that are clearly beyond their level, and move away from it; how many."""
+    """Mark what is clearly beyond its level: guards that move away from it, and fractions, which
+    have left so slowly that no step has seen it; how many."""
     watched, progress, count, beyond = watch_of(core), progress_of(core), 0, False
     for row in range(watched_count(core)):
         out[row] = 0
+        if watched.kind[row] == FRACTION and watched.start[row] < -CLEARLY * HELD_NOISE:
+            out[row] = 1
+            count += 1
         beyond = beyond or (watched.kind[row] == GUARD and watched.start[row] < 0.0)
     if not beyond:
-        return 0
+        return count
     rates, level = trial_of(core).guards, np.empty(len(trial_of(core).guards))
     levels(core, progress.now[T], progress.x, level)
     guard_rates(core, progress.now[T], progress.x, rates)
