@@ -113,6 +113,7 @@ class Switch(Element):
     one: Vector
     mode: int = 1  # 0: held
     held: Vector | None = None  # the row of the mode that holds, over the level
+    friction: bool = False  # it holds wherever it can; else a relay
     lying: bool = False  # with a body on a stop, which its sticking force helps to hold there
 
     def output(self) -> Vector:

@@ -40,6 +40,7 @@ FINE = np.linspace(0.0, 1.0, 129)[None, :] ** EXPONENTS[:, None]
 MOST_EVENTS = 400
 ROUNDING = 1e-11  # of a guard that is held at zero
 SOON = 1e-5  # after a reset: it may be one of a sequence without end
+LAST_FLIGHTS = 1e-2  # before a body lies
 LOWEST = 2 * CLOSE  # a flight that rises no higher counts as lying
 
 
@@ -391,6 +392,8 @@ class Solution:
             self.cell = abs(self.z[stop.v] / pressed) / 2
         if self.z[stop.v] ** 2 < 2 * LOWEST * abs(pressed) or self.z[stop.v] == 0.0:
             self.clear(pressed)
+            if any(self.t - last < LAST_FLIGHTS for last in self.fired.values()):
+                raise Unclear("resets at impacts that come to an end")
             if pressed > 0:
                 self.z[stop.v], stop.side = 0.0, side
                 self.lie(stop)
@@ -445,13 +448,15 @@ def joined(elements: Sequence[Element]) -> list[Element]:
                 alike = same(known.row, element.row) and same(known.into, element.into)
                 if alike and known.stick == element.stick:
                     weight = element.level * math.copysign(1.0, float(known.row @ element.row))
+                    apart = float(known.into @ element.into) * weight < 0
+                    if apart and (known.friction or element.friction):
+                        raise Unclear("a friction holds what a relay drives away")
                     known.into = known.into + weight * element.into
                     of[id(element)] = known, weight
                     break
             else:
-                one = Switch(
-                    element.level * element.into, element.row, 1.0, element.stick, element.one
-                )
+                into, friction = element.level * element.into, element.friction
+                one = Switch(into, element.row, 1.0, element.stick, element.one, friction=friction)
                 switches.append(one)
                 found.append(one)
                 of[id(element)] = one, element.level

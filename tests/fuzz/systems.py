@@ -272,7 +272,11 @@ def _friction(draft: Draft, n: int, unit: float) -> None:
     draft.act(v, f"{draft.units[v] / draft.second / force!r}*e{n}")
     draft.switches.append((f"e{n}", len(draft.makes), force))
     draft.makes.append(
-        ("switch", {"row": {v: 1.0}, "level": -slip, "stick": stick / slip, "into": {v: 1.0}})
+        (
+            "switch",
+            {"row": {v: 1.0}, "level": -slip, "stick": stick / slip, "into": {v: 1.0}}
+            | {"friction": True},
+        )
     )
     draft.said.add("friction")
 
@@ -292,7 +296,7 @@ def _between(draft: Draft, n: int, unit: float) -> None:
     )
     draft.act(v, f"{draft.units[v] / draft.second!r}*e{n}")
     draft.act(w, f"{-draft.units[w] / draft.second / heavy!r}*e{n}")
-    parts = {"row": {v: 1.0, w: -1.0}, "level": -slip, "stick": stick / slip}
+    parts = {"row": {v: 1.0, w: -1.0}, "level": -slip, "stick": stick / slip, "friction": True}
     draft.switches.append((f"e{n}", len(draft.makes), 1.0))
     draft.makes.append(("switch", parts | {"into": {v: 1.0, w: -1.0 / heavy}}))
     draft.said.add("friction between")
