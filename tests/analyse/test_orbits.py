@@ -39,7 +39,9 @@ def test_the_multipliers_of_an_oscillator(k: float, c: float, period: float) -> 
     for multiplier in expected:
         assert np.abs(found.multipliers - multiplier).min() < 1e-6
     assert np.linalg.det(found.monodromy) == pytest.approx(math.exp(-c * period), rel=1e-8)
-    assert found.verdict == ("stable" if c * period > 1e-3 else "neutral")
+    largest = float(np.abs(expected).max())
+    if abs(1 - largest - 1e-4) > 1e-5:  # within 1e-4 of the circle nothing is decided
+        assert found.verdict == ("stable" if largest < 1 - 1e-4 else "neutral")
 
 
 @given(st.floats(0.05, 1.6), st.floats(0.7, 6))

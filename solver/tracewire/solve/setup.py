@@ -43,6 +43,7 @@ from tracewire.solve.core.locate import SAMPLES
 from tracewire.solve.core.methods import NAMES
 from tracewire.solve.core.methods.trial import DENSE, STAGES
 from tracewire.solve.held import Held
+from tracewire.solve.loading import load_core
 
 Vector = NDArray[np.float64]
 MOST_STIFF = 64  # mode combinations of a run that are remembered as stiff
@@ -129,6 +130,7 @@ def new_flow(model: Model, parameters: Vector, tables: Vector) -> Flow:
 
 def prepare(model: Model, flow: Flow, parameters: Vector) -> None:
     """Let a field whose constants are zero have these parameters, and the functions as they are."""
+    load_core()
     flow.address[:] = model.addresses(FUNCTIONS)
     invoke_at(model.address("prepare"), 0.0, parameters, NOTHING, NOTHING, NOTHING, flow.c)
 
