@@ -475,3 +475,21 @@ def test_a_body_that_friction_holds_on_a_stop_does_not_sink_into_it(method: str)
     )
     assert found.final["s.x"] == pytest.approx(0.0, abs=1e-12)
     assert min(found["s.x"]) > -1e-12
+
+
+def test_comparisons_of_multiples_of_a_signal_that_rests_at_zero_are_each_their_own() -> None:
+    """> and >= differ there, and relays alone share a mode."""
+    found = run(
+        """
+        span: [0, 1]
+        blocks:
+          x: {type: integrator, of: none}
+          none: {type: constant, value: 0}
+          a: {type: expression, formula: "1 if x > 0 else 0"}
+          b: {type: expression, formula: "1 if 2*x >= 0 else 0"}
+          c: {type: expression, formula: "1 if -3*x > 0 else 0"}
+          d: {type: expression, formula: "1 if 5*x > 0 else 0"}
+        """,
+        ("a", "b", "c", "d"),
+    )
+    assert [found[name][-1] for name in "abcd"] == [0.0, 1.0, 0.0, 0.0]

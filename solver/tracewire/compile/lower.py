@@ -107,7 +107,7 @@ class Lowering:
         self.tape = self.out.tape
         self.t = self.tape.push("t")
         self.by_guard: dict[tuple[str, int], int] = {}
-        self.by_multiple: dict[int, tuple[int, float]] = {}  # of an entry: a mode, and its factor
+        self.by_multiple: dict[int, tuple[int, float]] = {}  # of an entry: a relay, and its factor
         self.index = {state.name: number for number, state in enumerate(flat.states)}
         self.signal = ""
 
@@ -262,10 +262,7 @@ class Lowering:
         holds: bool = False,
         always: bool = False,
     ) -> int:
-        """The entry that is 1 where guard >= 0 (or > 0): a mode, shared up to a constant factor.
-
-        Relays on multiples of one signal turn together: that they share a mode lets the difference
-        of two that drive it apart hold it at zero. Frictions on multiples have each their own.
+        """The entry that is 1 where guard >= 0 (or > 0): a mode, shared up to sign.
 
         A guard that never changes within a mode combination is compared on the spot, unless
         `always` asks for a mode: the event of a reset needs one.
@@ -281,16 +278,24 @@ class Lowering:
         if mirrored is not None and ("sign", mirrored) in self.by_guard:
             mode = self.mode("sign", mirrored, text, holds=holds)
             return tape.push("not", self.out.modes[mode].leaf)
-        plain = not holds and not always
-        base, factor = self.scaled(guard)
-        known = self.by_multiple.get(base) if plain else None
-        if known is not None and ("sign", guard) not in self.by_guard:
-            leaf = self.out.modes[known[0]].leaf
-            return leaf if known[1] * factor > 0 else tape.push("not", leaf)
         mode = self.mode("sign", guard, text, at_zero=0 if strict else 1, holds=holds)
-        if plain and not self.out.modes[mode].holds:
-            self.by_multiple.setdefault(base, (mode, factor))
         return self.out.modes[mode].leaf
+
+    def relay(self, guard: int, text: str) -> int:
+        """As `positive`, for a relay, whose mode is shared up to a constant factor.
+
+        Relays on multiples of one signal turn together: that they share a mode lets the difference
+        of two that drive it apart hold it at zero. Frictions on multiples have each their own, and
+        comparisons, of which > and >= differ where the signal rests at zero.
+        """
+        base, factor = self.scaled(guard)
+        known = self.by_multiple.get(base)
+        if known is not None and ("sign", guard) not in self.by_guard:
+            return known[0] if known[1] * factor > 0 else self.tape.push("not", known[0])
+        positive = self.positive(guard, text)
+        if not self.out.modes[self.side(positive)[0]].holds:
+            self.by_multiple.setdefault(base, (positive, factor))
+        return positive
 
     def scaled(self, guard: int) -> tuple[int, float]:
         """An entry and the number that it is multiplied with to be a guard."""
@@ -363,7 +368,7 @@ class Lowering:
             zero = tape.constant(0.0)
             above = push("select", push("gt", guard, zero), one, zero)
             return push("select", push("ge", guard, zero), above, tape.constant(-1.0))
-        positive = self.positive(guard, text, holds=holds)
+        positive = self.positive(guard, text, holds=True) if holds else self.relay(guard, text)
         return push("-", push("*", tape.constant(2.0), positive), one)
 
     def absolute(self, arguments: tuple[Expression, ...]) -> int:

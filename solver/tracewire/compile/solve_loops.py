@@ -52,8 +52,9 @@ def lower_loop(lowering: Lowering, loop: Loop) -> None:
     guards = substitute_all(tape, [mode.guard for mode in opened], changes)
     for key in [key for key, index in lowering.by_guard.items() if index >= old]:
         del lowering.by_guard[key]
-    for base in [base for base, (index, _) in lowering.by_multiple.items() if index >= old]:
-        del lowering.by_multiple[base]
+    for base, (relay, _) in list(lowering.by_multiple.items()):
+        if lowering.side(relay)[0] >= old:
+            del lowering.by_multiple[base]
     for index, (mode, guard) in enumerate(zip(opened, guards, strict=True), old):
         needed = tape.needed([guard])
         known = lowering.t in needed and mode.leaf not in needed  # its own mode moves no known time

@@ -1,6 +1,6 @@
 """Measured data: columns of files, records and the steps that clean them, what is odd in them."""
 
-from tracewire.data.checks import signal_remarks, time_remarks
+from tracewire.data.checks import signal_remarks, time_remarks, usual_range
 from tracewire.data.headings import Headings, read_headings
 from tracewire.data.read import Columns, column_unit, read_columns, read_record
 from tracewire.data.record import Record
@@ -18,4 +18,5 @@ __all__ = [
     "read_record",
     "signal_remarks",
     "time_remarks",
+    "usual_range",
 ]

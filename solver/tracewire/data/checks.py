@@ -111,9 +111,15 @@ def _clipped(name: str, y: Vector, levels: Vector, unit: str) -> list[str]:
     return remarks
 
 
+def usual_range(y: Vector) -> tuple[float, float]:
+    """Between which values nearly all samples (N,) are: spikes are outside."""
+    low, high = np.quantile(y, NEARLY_ALL)
+    return float(low), float(high)
+
+
 def _spikes(name: str, t: Vector, y: Vector, unit: str) -> list[str]:
     """Samples far beyond all others, whose neighbours are not."""
-    low, high = np.quantile(y, NEARLY_ALL)
+    low, high = usual_range(y)
     beyond = np.maximum(low - y, y - high)
     far = beyond > SPIKE * (high - low)
     beside = np.concatenate([[False], far[:-1]]) | np.concatenate([far[1:], [False]])

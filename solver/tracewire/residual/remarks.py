@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
-from tracewire.data import Record, signal_remarks, time_remarks
+from tracewire.data import Record, signal_remarks, time_remarks, usual_range
 from tracewire.diagram import Channel, Series
 from tracewire.errors import DataError, FormulaError, Problem
 from tracewire.formula import evaluate, quantity_hint, read_unit, same_quantity
@@ -22,8 +22,6 @@ FAR = 10.0
 NEAR_PI = 0.3
 RESTING = 5
 """Samples of exactly zero that are no passage through zero."""
-NEARLY_ALL = (0.02, 0.98)
-"""Quantiles: a spike is no range of angles."""
 LOST = 5e-3
 """The part of an input's amplitude that straight lines lose, from which on it is told."""
 
@@ -68,8 +66,8 @@ def remarks_on(
         if name not in read.columns or angle != "rad":
             continue
         column = read.columns[name]
-        range_ = float(np.ptp(np.quantile(column, NEARLY_ALL)))
-        if given.factor == 1.0 and range_ > LARGEST_ANGLE:
+        low, high = usual_range(column)
+        if given.factor == 1.0 and high - low > LARGEST_ANGLE:
             found.append(
                 f"{name} goes from {column.min():.4g} to {column.max():.4g} rad: "
                 "is the column in degrees? Then say unit: deg"

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tracewire.compile import Model
+from tracewire.data import usual_range
 from tracewire.errors import DataError, Problem
 from tracewire.residual import Measured, Section, Segment, cut
 from tracewire.trace.thresholds import SplitOptions
@@ -122,10 +123,8 @@ def shortest_window(stretches: Stretches, options: SplitOptions) -> int:
 
 def _moves(measured: Measured, end: int, least: float) -> bool:
     """Whether any signal moves from a sample on, by a part of its range before."""
-    return any(
-        np.ptp(y[end:]) > least * np.ptp(np.quantile(y[:end], [0.02, 0.98]))  # without spikes
-        for y in measured.values.values()
-    )
+    ranges = [(y[end:], usual_range(y[:end])) for y in measured.values.values()]
+    return any(np.ptp(rest) > least * (high - low) for rest, (low, high) in ranges)
 
 
 def _part(part: float) -> str:
