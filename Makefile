@@ -36,7 +36,7 @@ format: .venv/installed-test            ## repair style where it can be done by 
 	$(BIN)/ruff format
 
 clean:            ## remove .venv, caches and build products
-	rm -rf .venv dist build .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf .venv dist build solver/tracewire/solve/core_library .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find solver blocks tests -name __pycache__ -prune -exec rm -rf {} +
 
 # A stamp is as old as the last installation; a newer pyproject.toml installs again.

@@ -24,7 +24,7 @@ FACADE = {"__init__", "__main__"}  # they stand above the rooms and may import e
 BLOCKS_MAY_IMPORT = {"__future__", "tracewire.library"}
 MOST_LINES = 500
 # the functions of a model, and the callers of the core by the names of their arguments
-RUN_THEIR_OWN_SOURCE = {"compile/source.py", "solve/core/jit.py"}
+RUN_THEIR_OWN_SOURCE = {"compile/source.py", "solve/core_build/lower.py"}
 WRITES_FILES = {"files.py", "cli/streams.py"}
 WRITING = {"write_text", "write_bytes", "savez_compressed", "savetxt", "tofile"}
 TAKES_A_FILE = {"savez", "savefig"}

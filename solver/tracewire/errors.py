@@ -107,6 +107,12 @@ class DownloadError(TracewireError):
     exit_code = 1
 
 
+class InstallationError(TracewireError):
+    """What belongs to tracewire is not there, and cannot be made."""
+
+    exit_code = 1
+
+
 class OptionError(TracewireError):
     """An argument of a function or a command that does not exist or has no meaning."""
 

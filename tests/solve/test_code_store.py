@@ -1,48 +1,22 @@
-"""Compiled code is read only where it is the user's own, private and whole; else it is made."""
+"""Machine code is read only where it is the user's own, private and whole; else it is made."""
 
 from __future__ import annotations
 
 import errno
 import os
-import pickle
-import shutil
 import signal
 import subprocess
 import sys
 import threading
 from pathlib import Path
-from typing import Any
 
-import numba
 import pytest
-from tracewire.cli import main
-from tracewire.solve.code_store import DIGEST, CodeStore, FunctionCode
-from tracewire.solve.core import jit
+from tracewire.solve.code_store import DIGEST, LOCK, CodeStore
+from tracewire.solve.core_file import KEPT_FILES, kept_or_made
 
-SWING = """\
-span: [0, 1]
-blocks:
-  x: {type: integrator, of: v, start: 1}
-  v: {type: integrator, of: a}
-  a: {type: gain, of: x, k: -1}
-"""
-
-
-class Trap:
-    """What runs when it is unpickled."""
-
-    sprung = False
-
-    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
-        return spring, ()
-
-
-def spring() -> None:
-    Trap.sprung = True
-
-
-def twice(x: float) -> float:
-    return 2 * x
+NAME = "core.o"
+CODE = b"machine code" * 100
+PLANTED = b"machine code of another"
 
 
 @pytest.fixture
@@ -55,37 +29,59 @@ def store(tmp_path: Path, said: list[str]) -> CodeStore:
     return CodeStore(tmp_path / "cache" / "core", said.append)
 
 
-def compiled(store: CodeStore) -> Any:
-    """The function, compiled or from the store; it has been called once."""
-    built = numba.njit(twice)
-    built._cache = FunctionCode(twice, store)
-    assert built(4.0) == 8.0
-    return built.stats
+def is_made(store: CodeStore) -> bool:
+    """Whether the code was made when it was asked for; else it was read from the store."""
+    times = []
+
+    def make() -> bytes:
+        times.append(1)
+        return CODE
+
+    assert kept_or_made(NAME, store, make) == CODE
+    return bool(times)
 
 
-def only_file(store: CodeStore) -> Path:
-    (file,) = store.folder.iterdir()
-    return file
+def code_of(store: CodeStore) -> Path:
+    return store.folder / NAME
 
 
-def test_a_function_is_compiled_once(store: CodeStore, said: list[str]) -> None:
-    assert compiled(store).cache_misses
-    assert compiled(CodeStore(store.folder)).cache_hits
+def test_code_is_made_once(store: CodeStore, said: list[str]) -> None:
+    assert is_made(store)
+    assert not is_made(CodeStore(store.folder))
     assert store.folder.stat().st_mode & 0o777 == 0o700
-    assert only_file(store).stat().st_mode & 0o777 == 0o600
+    assert code_of(store).stat().st_mode & 0o777 == 0o600
     assert said == []
+
+
+def test_code_of_old_sources_is_removed(store: CodeStore) -> None:
+    for number in range(KEPT_FILES + 3):
+        store.write(f"old-{number}.o", CODE)
+        os.utime(store.folder / f"old-{number}.o", (number, number))
+    assert is_made(store)
+    left = sorted(file.name for file in store.folder.iterdir() if file.name != LOCK)
+    assert left == [NAME, *(f"old-{number}.o" for number in range(4, 4 + KEPT_FILES - 1))]
+
+
+def test_what_waits_for_another_process_takes_its_code(store: CodeStore) -> None:
+    with store.alone():
+        thread = threading.Thread(target=lambda: made.append(is_made(CodeStore(store.folder))))
+        made: list[bool] = []
+        thread.start()
+        store.write(NAME, CODE)
+    thread.join()
+    assert made == [False]
 
 
 @pytest.mark.parametrize("left", [0, 1, DIGEST - 1, DIGEST, DIGEST + 1, 500, -1])
 def test_a_truncated_file_is_made_anew(store: CodeStore, said: list[str], left: int) -> None:
-    compiled(store)
-    file = only_file(store)
+    assert is_made(store)
+    file = code_of(store)
     whole = file.read_bytes()
     file.write_bytes(whole[:left])
-    assert compiled(store).cache_misses
+    assert is_made(store)
     assert len(said) == 1
-    assert f"'{file}' is damaged: what is damaged there is compiled anew" in said[0]
-    assert compiled(CodeStore(store.folder)).cache_hits
+    assert f"'{file}' is damaged: it is made anew" in said[0]
+    assert not is_made(CodeStore(store.folder))
 
 
 def test_any_changed_byte_is_found(store: CodeStore, said: list[str]) -> None:
@@ -107,27 +103,12 @@ def test_a_file_under_another_name_is_damaged(store: CodeStore, said: list[str])
     assert said != []
 
 
-def test_what_numba_cannot_use_is_made_anew(store: CodeStore, said: list[str]) -> None:
-    compiled(store)
-    store.write(only_file(store).name, pickle.dumps((1, 2, 3)))
-    assert compiled(store).cache_misses
-    assert len(said) == 1
-    assert compiled(CodeStore(store.folder)).cache_hits
-
-
 def planted(store: CodeStore) -> Path:
-    """The file of the function, with a whole and valid content that would run code."""
-    compiled(store)
-    file = only_file(store)
-    store.write(file.name, pickle.dumps(Trap()))
-    return file
-
-
-def test_the_trap_would_spring(store: CodeStore) -> None:
-    planted(store)
-    Trap.sprung = False
-    compiled(store)
-    assert Trap.sprung
+    """The file of the code, with another content that is whole and valid."""
+    assert is_made(store)
+    store.write(NAME, PLANTED)
+    assert store.read(NAME) == PLANTED
+    return code_of(store)
 
 
 @pytest.mark.parametrize("permissions", [0o777, 0o707, 0o770, 0o750, 0o701])
@@ -135,45 +116,37 @@ def test_nothing_is_read_from_a_folder_that_is_open_to_others(
     store: CodeStore, said: list[str], permissions: int
 ) -> None:
     planted(store)
-    Trap.sprung = False
     store.folder.chmod(permissions)
-    compiled(CodeStore(store.folder, said.append))
-    assert not Trap.sprung
-    assert "was open to other users: what is in it is compiled anew" in said[0]
-    assert compiled(CodeStore(store.folder)).cache_hits
+    assert is_made(CodeStore(store.folder, said.append))
+    assert "was open to other users: what is in it is made anew" in said[0]
+    assert not is_made(CodeStore(store.folder))
 
 
 def test_nothing_is_read_from_a_folder_of_another_user(
     store: CodeStore, said: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     file = planted(store)
-    Trap.sprung = False
     before = file.read_bytes()
     monkeypatch.setattr(os, "geteuid", lambda: file.stat().st_uid + 1)
-    compiled(CodeStore(store.folder, said.append))
-    assert not Trap.sprung
+    assert is_made(CodeStore(store.folder, said.append))
     assert file.read_bytes() == before
-    assert "it belongs to another user. The integrators are compiled at each start" in said[0]
+    assert "it belongs to another user. It is made at each start" in said[0]
 
 
 def test_nothing_is_read_from_a_file_that_is_open_to_others(
     store: CodeStore, said: list[str]
 ) -> None:
     file = planted(store)
-    Trap.sprung = False
     file.chmod(0o666)
-    compiled(store)
-    assert not Trap.sprung
+    assert is_made(store)
     assert len(said) == 1
 
 
 def test_nothing_is_read_through_a_link(store: CodeStore, said: list[str], tmp_path: Path) -> None:
     file = planted(store)
-    Trap.sprung = False
     file.rename(tmp_path / "elsewhere")
     file.symlink_to(tmp_path / "elsewhere")
-    compiled(store)
-    assert not Trap.sprung
+    assert is_made(store)
     link = tmp_path / "link"
     link.symlink_to(store.folder)
     assert not CodeStore(link, said.append).works
@@ -181,38 +154,26 @@ def test_nothing_is_read_through_a_link(store: CodeStore, said: list[str], tmp_p
 
 
 def test_a_pipe_does_not_hold_it_up(store: CodeStore, said: list[str]) -> None:
-    compiled(store)
-    file = only_file(store)
+    assert is_made(store)
+    file = code_of(store)
     file.unlink()
     os.mkfifo(file, 0o600)
-    assert compiled(store).cache_misses
+    assert is_made(store)
     assert len(said) == 1
 
 
-def test_no_folder_takes_the_place_of_the_user_s_own(
-    tmp_path: Path, said: list[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (tmp_path / "home").touch()
-    monkeypatch.setattr(numba.config, "CACHE_DIR", "")
-    monkeypatch.setattr(jit.platformdirs, "user_cache_path", lambda name: tmp_path / "home" / name)
-    folder = jit._folder()
-    assert folder.parent == tmp_path / "home" / "tracewire"
-    assert not CodeStore(folder, said.append).works
-    assert "compiled code cannot be kept" in said[0]
-
-
-def test_without_a_folder_it_compiles_and_says_why(tmp_path: Path, said: list[str]) -> None:
+def test_without_a_folder_it_makes_the_code_and_says_why(tmp_path: Path, said: list[str]) -> None:
     (tmp_path / "file").touch()
     store = CodeStore(tmp_path / "file" / "core", said.append)
-    compiled(store)
-    compiled(store)
+    assert is_made(store)
+    assert is_made(store)
     assert len(said) == 1
-    assert f"compiled code cannot be kept in '{tmp_path}/file/core': " in said[0]
-    assert "Set NUMBA_CACHE_DIR to a folder of your own." in said[0]
+    assert f"machine code cannot be kept in '{tmp_path}/file/core': " in said[0]
+    assert "Set TRACEWIRE_CACHE_DIR to a folder of your own." in said[0]
 
 
 @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EROFS, errno.EIO])
-def test_without_space_it_compiles_and_says_why(
+def test_without_space_it_makes_the_code_and_says_why(
     store: CodeStore, said: list[str], number: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def full(*_: object) -> None:
@@ -220,14 +181,14 @@ def test_without_space_it_compiles_and_says_why(
 
     store.write("early", b"content")
     monkeypatch.setattr(os, "fsync", full)
-    compiled(store)
+    assert is_made(store)
     store.write("late", b"content")
     assert len(said) == 1
     assert os.strerror(number) in said[0]
-    assert [file.name for file in store.folder.iterdir()] == ["early"]
+    assert {file.name for file in store.folder.iterdir()} == {"early", LOCK}
 
 
-def test_one_process_compiles_and_another_waits(store: CodeStore) -> None:
+def test_one_process_makes_it_and_another_waits(store: CodeStore) -> None:
     order = []
     inside = threading.Event()
 
@@ -267,30 +228,3 @@ def test_a_killed_process_holds_nobody_up(store: CodeStore) -> None:
     thread = threading.Thread(target=enter, daemon=True)
     thread.start()
     assert entered.wait(30)
-
-
-@pytest.mark.slow
-def test_a_damaged_core_runs_and_is_whole_again(tmp_path: Path) -> None:
-    """The real core: some files are cut, some are noise; one line is told, and only once."""
-    swing = tmp_path / "swing.yaml"
-    swing.write_text(SWING, encoding="utf-8")
-    assert main(["run", str(swing)]) == 0
-    folder = tmp_path / jit.STORE.folder.name
-    shutil.copytree(jit.STORE.folder, folder)
-    files = [file for file in sorted(folder.iterdir()) if file.name.startswith("modes.")]
-    whole = [file.read_bytes() for file in files]
-    assert len(files) > 1
-    for number, file in enumerate(files):
-        file.write_bytes(whole[number][: number * 40] if number % 2 else os.urandom(300))
-    environment = {
-        **os.environ,
-        "PYTHONPATH": ":".join(p for p in sys.path if p),
-        "NUMBA_CACHE_DIR": str(tmp_path),
-    }
-    lines = []
-    for _ in range(2):
-        command = [sys.executable, "-m", "tracewire", "run", str(swing)]
-        done = subprocess.run(command, env=environment, capture_output=True, text=True)
-        assert done.returncode == 0
-        lines.append([line for line in done.stderr.splitlines() if "damaged" in line])
-    assert [len(found) for found in lines] == [1, 0]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -149,17 +150,16 @@ def test_an_interrupted_run_is_the_first_part_of_the_whole(monkeypatch: pytest.M
 
 def test_an_interrupt_at_the_very_end_is_not_lost(monkeypatch: pytest.MonkeyPatch) -> None:
 
-    model, ready = made(BALL), execute.ready
+    model, code = made(BALL), execute.library()
     whole = simulate(model)
-    go_on = ready(execute.advance)
 
     def last(core: int) -> int:
-        status = int(go_on(core))
+        status = int(code.advance(core))
         signal.raise_signal(signal.SIGINT)
         return status
 
     paused(monkeypatch, 10**9)
-    monkeypatch.setattr(execute, "ready", lambda unit: last)
+    monkeypatch.setattr(execute, "library", lambda: replace(code, advance=last))
     with pytest.raises(Interrupted, match="interrupted at t = 12 s") as caught:
         simulate(model)
     assert caught.value.run is not None

@@ -98,8 +98,9 @@ times a second; there Ctrl-C is heard, and raises `Interrupted`, which carries t
 **Order at one instant.** What crosses there and what is scheduled there (clocks, too, which read
 left limits), resets, modes and transitions, resets of guards that were carried over, one sample.
 
-**How it runs.** `core` holds all of this as functions that numba compiles once per installation;
-they call the model's machine code by address. This room's other files are Python: they fill the
+**How it runs.** `core` holds all of this as functions that are compiled when the package is built
+(`core_build`); `core_library` loads their machine code, which calls that of a model by address. The
+room's other files are Python: they fill the
 arrays of a run (`setup`), let the core go on (`execute`), and find words for what went wrong
 (`failures`). Many rows of parameters run in threads (`many`); many short runs with the same
 parameters are prepared once, and the core goes from one to the next (`spans`).

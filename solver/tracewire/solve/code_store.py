@@ -1,9 +1,9 @@
-"""Machine code on disk: a file for each function, in a folder that is the user's own and private.
+"""Machine code on disk, in a folder that is the user's own and private.
 
 Code that is read from here runs. So nothing is read from a folder or a file that belongs to
 another user or that others may write to, nor a file whose SHA-256 is not the one at its beginning.
-What is missing or damaged is compiled anew. Where nothing can be kept, the code is compiled at each
-start; one line on stderr says so, and why.
+What is missing or damaged is made anew. Where nothing can be kept, it is made at each start; one
+line on stderr says so, and why.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
-import pickle
 import shutil
 import stat
 import sys
@@ -19,23 +18,17 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
-
-from numba.core.caching import _Cache
-from numba.core.compiler import CompileResult
-from numba.core.serialize import dumps
 
 from tracewire.files import write_file
 
 DIGEST = hashlib.sha256().digest_size
-LONGEST_WAIT = 600.0  # s for another process that compiles: then both do
+LONGEST_WAIT = 600.0  # s for another process that makes it: then both do
+LOCK = "lock"
 SOON = 1.0  # s after which the wait is told
-COMPLETE = "complete"
 OTHERS = stat.S_IRWXG | stat.S_IRWXO
-LATER = (
-    "The integrators are compiled at each start, which takes one to two minutes. "
-    "Set NUMBA_CACHE_DIR to a folder of your own."
-)
+CACHE = "TRACEWIRE_CACHE_DIR"
+"""The variable of the environment that names another folder than the system's."""
+LATER = f"It is made at each start, which takes a minute. Set {CACHE} to a folder of your own."
 
 
 def tell(text: str) -> None:
@@ -93,17 +86,24 @@ class CodeStore:
         except OSError as error:
             self._give_up(error.strerror or str(error))
 
+    def forget_all_but(self, most: int) -> None:
+        """Remove all files but those that were written last."""
+        with contextlib.suppress(OSError):
+            files = [file for file in self.folder.iterdir() if file.name != LOCK]
+            for file in sorted(files, key=lambda file: file.stat().st_mtime)[:-most]:
+                file.unlink()
+
     def damaged(self, name: str) -> None:
         """Remove what is there under a name, and say, once, that it is made anew."""
         with contextlib.suppress(OSError):
             (self.folder / name).unlink()
         if not self._told_damage:
             self._told_damage = True
-            self.tell(f"'{self.folder / name}' is damaged: what is damaged there is compiled anew")
+            self.tell(f"'{self.folder / name}' is damaged: it is made anew")
 
     @contextmanager
     def alone(self) -> Iterator[None]:
-        """Keep other processes that compile waiting, so that they find what this one makes.
+        """Keep other processes that make it waiting, so that they find what this one makes.
 
         A lock ends with its process. After 10 min, and where there are no locks, nobody waits.
         """
@@ -124,14 +124,14 @@ class CodeStore:
         if not _is_own(status):
             return self._give_up("it belongs to another user")
         if not _is_private(status, stat.S_IFDIR):
-            self.tell(f"'{self.folder}' was open to other users: what is in it is compiled anew")
+            self.tell(f"'{self.folder}' was open to other users: what is in it is made anew")
             shutil.rmtree(self.folder)
             self.folder.mkdir(mode=0o700)
         return True
 
     def _give_up(self, reason: str) -> bool:
         self._works = False
-        self.tell(f"compiled code cannot be kept in '{self.folder}': {reason}. {LATER}")
+        self.tell(f"machine code cannot be kept in '{self.folder}': {reason}. {LATER}")
         return False
 
     def _lock(self) -> int | None:
@@ -142,7 +142,7 @@ class CodeStore:
         flags = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC
         descriptor = None
         try:
-            descriptor = os.open(self.folder / "lock", flags, 0o600)
+            descriptor = os.open(self.folder / LOCK, flags, 0o600)
             began, told = time.monotonic(), False
             while True:
                 try:
@@ -154,56 +154,10 @@ class CodeStore:
                         return descriptor
                 if waited > SOON and not told:
                     told = True
-                    self.tell("another tracewire compiles the integrators: waiting for it ...")
+                    self.tell("another tracewire makes this machine code: waiting for it ...")
                 time.sleep(0.05)
         except OSError:
             return descriptor
-
-
-class FunctionCode(_Cache):  # type: ignore[misc]
-    """Where numba looks for the machine code of one function, and leaves it: in a store."""
-
-    def __init__(self, function: Callable[..., Any], store: CodeStore) -> None:
-        self.store = store
-        self.name = f"{function.__module__.rpartition('.')[2]}.{function.__name__}"
-        self.source = function.__code__.co_code
-
-    @property
-    def cache_path(self) -> str:
-        """The folder of the store."""
-        return str(self.store.folder)
-
-    def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """The compiled function, or None: numba then compiles it."""
-        target_context.refresh()
-        name = self._file(sig, target_context.codegen())
-        content = self.store.read(name)
-        if content is None:
-            return None
-        try:
-            return CompileResult._rebuild(target_context, *pickle.loads(content))
-        except Exception:  # of numba or LLVM, whatever a file of this name makes of them
-            self.store.damaged(name)
-            return None
-
-    def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep a compiled function."""
-        if not data.lifted and not data.library.has_dynamic_globals:
-            self.store.write(self._file(sig, data.codegen), dumps(data._reduce()))
-
-    def enable(self) -> None:
-        """Nothing: it always works."""
-
-    def disable(self) -> None:
-        """Nothing: it always works."""
-
-    def flush(self) -> None:
-        """Nothing: what is old has another name."""
-
-    def _file(self, sig: Any, codegen: Any) -> str:
-        """The name for a signature on this kind of processor."""
-        told = repr((str(sig), codegen.magic_tuple(), self.source))
-        return f"{self.name}-{hashlib.sha256(told.encode()).hexdigest()[:16]}"
 
 
 def _digest(name: str, content: bytes) -> bytes:

@@ -31,8 +31,7 @@ from tracewire.solve.core.codes import (
     T,
 )
 from tracewire.solve.core.flow import EVALUATIONS, FUNCTIONS
-from tracewire.solve.core.integrate import advance
-from tracewire.solve.core.jit import ready
+from tracewire.solve.core_library import library
 from tracewire.solve.failures import failure, too_long, too_many_events
 from tracewire.solve.interrupt import Halt, Interrupted, until_interrupted
 from tracewire.solve.limits import Limits
@@ -93,7 +92,7 @@ class Execution:
         Raises SimulationError where that cannot be, Interrupted where the user does not want it;
         a `halt` that is given is the business of the caller, else Ctrl-C is heard here.
         """
-        ready(advance)  # it may take a minute, in which Ctrl-C should end it at once
+        library()  # before the clock of the run begins
         if self.halt is not None:
             if not self.go_on(self.halt):
                 raise self.interrupted()
@@ -122,12 +121,13 @@ class Execution:
         began = time.perf_counter()
         ints, now = self.progress.ints, self.progress.now
         table = self.core
-        go_on, core = ready(advance), table.__array_interface__["data"][0]
+        code, core = library(), table.__array_interface__["data"][0]
         budget, last = first_budget(self.model), -PAUSE
         while not halt.asked:
             before, done = self.seconds, int(ints[STEPS])
             ints[BUDGET] = min(budget, self.limits.steps - done)
-            status = go_on(core) if status is None else status
+            status = code.advance(core) if status is None else status
+            code.check()
             self.seconds = time.perf_counter() - began
             self.empty_log()
             self.check_events()

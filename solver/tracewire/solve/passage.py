@@ -25,10 +25,10 @@ from tracewire.solve.core.codes import (
     STEPS,
     T,
 )
-from tracewire.solve.core.flow import FREE, FUNCTIONS, jacobian, rates
-from tracewire.solve.core.integrate import advance
-from tracewire.solve.core.jit import invoke_at, ready
+from tracewire.solve.core.flow import FREE, FUNCTIONS
+from tracewire.solve.core.memory import invoke
 from tracewire.solve.core.methods import NAMES
+from tracewire.solve.core_library import library
 from tracewire.solve.execute import Execution
 from tracewire.solve.failures import failure
 from tracewire.solve.interrupt import Halt, Interrupted
@@ -142,7 +142,9 @@ class Passage:
     def _settle(self) -> None:
         """Decide the modes at the beginning; no step is taken."""
         self.arrays.progress.ints[BUDGET] = 0
-        status = ready(advance)(self._address)
+        code = library()
+        status = code.advance(self._address)
+        code.check()
         if status not in (FINISHED, PAUSED, LOG_FULL):
             raise failure(self.model, self.arrays, status)
 
@@ -255,7 +257,7 @@ class Passage:
             m = m.copy()
             m[: len(modes)] = modes
         address = self.model.compiled_address(function)
-        invoke_at(address, t, np.ascontiguousarray(x), m, flow.c, flow.k, out)
+        invoke(address, t, np.ascontiguousarray(x), m, flow.c, flow.k, out)
         return out
 
     def rates(self) -> Vector:
@@ -266,7 +268,7 @@ class Passage:
         """The rates (n,) at other states, with the modes, slides and contacts of the stop."""
         at, out = np.ascontiguousarray(x, dtype=float), np.zeros(len(self.model.states))
         pointers = [as_ctypes(array) for array in (at, out)]
-        ready(rates)(self._address, self.t, pointers[0], len(at), pointers[1], len(at))
+        library().rates(self._address, self.t, pointers[0], len(at), pointers[1], len(at))
         return out
 
     def slopes(self) -> Matrix:
@@ -274,7 +276,7 @@ class Passage:
         x, n = self.x, len(self.model.states)
         out = np.zeros(n * (n + 1))
         pointers = [as_ctypes(array) for array in (x, out)]
-        ready(jacobian)(self._address, self.t, pointers[0], n, pointers[1], n, n + 1)
+        library().jacobian(self._address, self.t, pointers[0], n, pointers[1], n, n + 1)
         return out.reshape(n, n + 1)[:, :n]
 
     @property

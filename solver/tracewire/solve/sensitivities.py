@@ -14,7 +14,7 @@ from tracewire.errors import OptionError, unknown
 from tracewire.formula import Expression, Name, evaluate, names_of
 from tracewire.solve.core.arrays import Flow, Progress, Sensitivity
 from tracewire.solve.core.codes import FLAGS, GRAZES, LOST, SIMULTANEOUS, TOUCHES, ZENO
-from tracewire.solve.core.jit import invoke_at
+from tracewire.solve.core.memory import invoke
 from tracewire.solve.core.variation import DERIVATIVES, OF_STARTS
 from tracewire.solve.run import Sensitivities
 
@@ -201,7 +201,7 @@ def set_sensitivity(
         sensitivity.chain[:] = moving.rates
         rows, nothing = np.zeros((n, n + 1 + len(moving.names))), np.zeros(1)
         address = sensitivity.address[OF_STARTS]
-        invoke_at(address, 0.0, nothing, flow.m, flow.c, flow.k, rows.reshape(-1))
+        invoke(address, 0.0, nothing, flow.m, flow.c, flow.k, rows.reshape(-1))
         s[:] = rows[:, n + 1 :] @ sensitivity.chain
         s[[state in start for state in model.states]] = 0.0
     for j, name in enumerate(asked):

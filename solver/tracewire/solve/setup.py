@@ -38,12 +38,11 @@ from tracewire.solve.core.codes import (
     T,
 )
 from tracewire.solve.core.flow import FREE, FUNCTIONS
-from tracewire.solve.core.jit import invoke_at
 from tracewire.solve.core.locate import SAMPLES
+from tracewire.solve.core.memory import invoke
 from tracewire.solve.core.methods import NAMES
 from tracewire.solve.core.methods.trial import DENSE, STAGES
 from tracewire.solve.held import Held
-from tracewire.solve.loading import load_core
 
 Vector = NDArray[np.float64]
 MOST_STIFF = 64  # mode combinations of a run that are remembered as stiff
@@ -130,16 +129,15 @@ def new_flow(model: Model, parameters: Vector, tables: Vector) -> Flow:
 
 def prepare(model: Model, flow: Flow, parameters: Vector) -> None:
     """Let a field whose constants are zero have these parameters, and the functions as they are."""
-    load_core()
     flow.address[:] = model.addresses(FUNCTIONS)
-    invoke_at(model.address("prepare"), 0.0, parameters, NOTHING, NOTHING, NOTHING, flow.c)
+    invoke(model.address("prepare"), 0.0, parameters, NOTHING, NOTHING, NOTHING, flow.c)
 
 
 def starts(model: Model, flow: Flow) -> Vector:
     """The start values of the states, as the diagram says."""
     out = np.zeros(model.sizes.states)
     address = model.address("starts")
-    invoke_at(address, 0.0, NOTHING, flow.m, flow.c, flow.k, out)
+    invoke(address, 0.0, NOTHING, flow.m, flow.c, flow.k, out)
     return out
 
 

@@ -16,8 +16,8 @@ from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, SimulationError, unknown
 from tracewire.solve.core.arrays import Spans, table_of
 from tracewire.solve.core.codes import BUDGET, FINISHED, LOG_FULL, PAUSED
-from tracewire.solve.core.jit import ready
-from tracewire.solve.core.spans import INSIDE, LEFT, SPAN, advance_spans, keep_end
+from tracewire.solve.core.spans import INSIDE, LEFT, SPAN
+from tracewire.solve.core_library import library
 from tracewire.solve.execute import Execution
 from tracewire.solve.failures import failure
 from tracewire.solve.interrupt import Halt, Interrupted
@@ -190,7 +190,7 @@ def _executed(
     """Let the core go over the spans; errors and warnings of some by number."""
     errors: dict[int, SimulationError] = {}
     warnings: dict[int, tuple[str, ...]] = {}
-    go_on, keep_end_of, at = ready(advance_spans), ready(keep_end), many.at
+    code, at = library(), many.at
     tables = execution.core, table_of([many])
     addresses = [table.__array_interface__["data"][0] for table in tables]
     limits = execution.limits
@@ -203,7 +203,8 @@ def _executed(
             errors |= dict.fromkeys(range(int(at[SPAN]), len(many.ends)), beyond)
             break
         at[LEFT] = min(PAUSE_STEPS, budget - taken + 1)
-        status = go_on(*addresses)
+        status = code.advance_spans(*addresses)
+        code.check()
         if not at[INSIDE]:
             continue
         number = int(at[SPAN])
@@ -213,7 +214,7 @@ def _executed(
                 raise failure(one.model, one.arrays, status)
             if not one.go_on(halt, status):
                 raise one.interrupted()
-            keep_end_of(*addresses)
+            code.keep_end(*addresses)
             if one.warnings:
                 warnings[number] = one.warnings
         except Interrupted:

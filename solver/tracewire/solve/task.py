@@ -14,9 +14,8 @@ from tracewire.errors import OptionError, Problem, TracewireError, unknown
 from tracewire.formula import names_of
 from tracewire.solve.core.arrays import Plan
 from tracewire.solve.core.flow import FREE, FUNCTIONS
-from tracewire.solve.core.integrate import advance
-from tracewire.solve.core.jit import ready
 from tracewire.solve.core.methods import NAMES
+from tracewire.solve.core_library import library
 from tracewire.solve.execute import Execution
 from tracewire.solve.interrupt import Halt
 from tracewire.solve.limits import Limits
@@ -108,7 +107,7 @@ class Task:
         model.compiled_addresses(FUNCTIONS)  # made during a run one would wait for Python's lock
         self.flow = new_flow(model, vector, packed(tables))
         self.check_times()
-        ready(advance)  # not in a thread
+        library()  # not in a thread
 
     @property
     def inputs(self) -> Mapping[str, tuple[ArrayLike, ArrayLike]]:

@@ -1,1 +1,1 @@
-"""The compiled core: a run between Python's start and end, on plain arrays, by numba."""
+"""The core: a run between Python's start and end, on plain arrays; compiled before it is used."""

@@ -9,13 +9,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, NamedTuple, cast
 
-import numba
 import numpy as np
-from numba import types
-from numba.extending import intrinsic
 from numpy.typing import NDArray
 
-from tracewire.solve.core.jit import helper
+from tracewire.solve.core.memory import floats_at, ints_at
+from tracewire.solve.core.units import helper, reader
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -259,25 +257,6 @@ def table_of(groups: Arrays | Sequence[Spans]) -> Ints:
     return np.array(rows, dtype=np.int64).ravel()
 
 
-def _pointer(_: Any, address: Any) -> tuple[Any, Any]:
-    return _cast(types.CPointer(types.float64), address)
-
-
-def _int_pointer(_: Any, address: Any) -> tuple[Any, Any]:
-    return _cast(types.CPointer(types.int64), address)
-
-
-def _cast(kind: Any, address: Any) -> tuple[Any, Any]:
-    def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        return builder.inttoptr(values[0], context.get_value_type(kind))
-
-    return kind(address), generate
-
-
-pointer: Any = intrinsic(_pointer)
-int_pointer: Any = intrinsic(_int_pointer)
-
-
 @helper
 def copy(values: Vector, to: Vector) -> None:
     """Let `to` have these values: an assignment of arrays looks at their shapes, which is slow."""
@@ -285,175 +264,84 @@ def copy(values: Vector, to: Vector) -> None:
         to[i] = values[i]
 
 
-@helper
-def vector(core: int, field: int) -> Vector:
-    """A field of numbers."""
-    table = numba.carray(int_pointer(core), (3 * field + 3,))
-    return numba.carray(pointer(table[3 * field]), (table[3 * field + 1],))
+def _first_places() -> dict[type, int]:
+    """The place of the first array of each group in its table; spans have a table of their own."""
+    places: dict[type, int] = {Spans: 0}
+    place = 0
+    for group in (Flow, Plan, Progress, Trial, Watch, Crossings, Sensitivity):
+        places[group] = place
+        place += len(group._fields)
+    return places
 
 
-@helper
-def matrix(core: int, field: int) -> Matrix:
-    """A field of rows of numbers."""
-    table = numba.carray(int_pointer(core), (3 * field + 3,))
-    shape = (table[3 * field + 1], table[3 * field + 2])
-    return numba.carray(pointer(table[3 * field]), shape)
+FIRST = _first_places()
 
 
-@helper
-def ints(core: int, field: int) -> Ints:
-    """A field of whole numbers."""
-    table = numba.carray(int_pointer(core), (3 * field + 3,))
-    return numba.carray(int_pointer(table[3 * field]), (table[3 * field + 1],))
+def kinds_of(group: Any) -> dict[str, str]:
+    """The names of the arrays of a group, and of each its kind: Vector, Matrix, Ints, IntMatrix."""
+    return {name: hint.__forward_arg__ for name, hint in group.__annotations__.items()}
 
 
-@helper
-def int_matrix(core: int, field: int) -> IntMatrix:
-    """A field of rows of whole numbers."""
-    table = numba.carray(int_pointer(core), (3 * field + 3,))
-    shape = (table[3 * field + 1], table[3 * field + 2])
-    return numba.carray(int_pointer(table[3 * field]), shape)
+def _read(group: Any, address: int) -> Any:
+    """The arrays of a group, by the address of the table."""
+    kinds, place = kinds_of(group), FIRST[group]
+    table = ints_at(address, (place + len(kinds), 3))
+    found = []
+    for hint, (data, rows, columns) in zip(kinds.values(), table[place:], strict=True):
+        shape = (rows, columns) if hint.endswith("Matrix") else (rows,)
+        found.append((ints_at if hint.startswith("Int") else floats_at)(data, shape))
+    return group(*found)
 
 
-@helper
+@reader
 def flow_of(core: int) -> Flow:
     """The field of a run."""
-    return Flow(
-        ints(core, 0),
-        vector(core, 1),
-        vector(core, 2),
-        vector(core, 3),
-        ints(core, 4),
-        matrix(core, 5),
-        ints(core, 6),
-    )
+    return cast(Flow, _read(Flow, core))
 
 
-@helper
+@reader
 def plan_of(core: int) -> Plan:
     """The modes, resets and transitions."""
-    return Plan(
-        ints(core, 7),
-        ints(core, 8),
-        ints(core, 9),
-        ints(core, 10),
-        ints(core, 11),
-        ints(core, 12),
-        int_matrix(core, 13),
-        ints(core, 14),
-        int_matrix(core, 15),
-        ints(core, 16),
-        ints(core, 17),
-    )
+    return cast(Plan, _read(Plan, core))
 
 
-@helper
+@reader
 def progress_of(core: int) -> Progress:
     """How far the run is."""
-    return Progress(
-        vector(core, 18),
-        vector(core, 19),
-        vector(core, 20),
-        ints(core, 21),
-        vector(core, 22),
-        matrix(core, 23),
-        matrix(core, 24),
-        matrix(core, 25),
-        matrix(core, 26),
-        matrix(core, 27),
-        vector(core, 28),
-        ints(core, 29),
-        ints(core, 30),
-        vector(core, 31),
-        vector(core, 32),
-        vector(core, 33),
-        vector(core, 34),
-        vector(core, 35),
-    )
+    return cast(Progress, _read(Progress, core))
 
 
-@helper
+@reader
 def trial_of(core: int) -> Trial:
     """The trial step."""
-    return Trial(
-        vector(core, 36),
-        vector(core, 37),
-        vector(core, 38),
-        vector(core, 39),
-        vector(core, 40),
-        matrix(core, 41),
-        matrix(core, 42),
-        matrix(core, 43),
-        matrix(core, 44),
-        ints(core, 45),
-        vector(core, 46),
-        vector(core, 47),
-        vector(core, 48),
-    )
+    return cast(Trial, _read(Trial, core))
 
 
-@helper
+@reader
 def watch_of(core: int) -> Watch:
     """What is watched."""
-    return Watch(
-        ints(core, 49),
-        ints(core, 50),
-        vector(core, 51),
-        vector(core, 52),
-        vector(core, 53),
-        ints(core, 54),
-        matrix(core, 55),
-        vector(core, 56),
-        vector(core, 57),
-        ints(core, 58),
-    )
+    return cast(Watch, _read(Watch, core))
 
 
-@helper
+@reader
 def crossings_of(core: int) -> Crossings:
     """What happens now."""
-    return Crossings(
-        ints(core, 59),
-        vector(core, 60),
-        ints(core, 61),
-        vector(core, 62),
-        vector(core, 63),
-        ints(core, 64),
-        ints(core, 65),
-        ints(core, 66),
-    )
+    return cast(Crossings, _read(Crossings, core))
 
 
-BEHIND = sum(len(group._fields) for group in (Flow, Plan, Progress, Trial, Watch, Crossings))
-
-
-@helper
+@reader
 def sensitivity_of(core: int) -> Sensitivity:
     """How the states change with what was asked for."""
-    return Sensitivity(
-        ints(core, BEHIND),
-        matrix(core, BEHIND + 1),
-        matrix(core, BEHIND + 2),
-        vector(core, BEHIND + 3),
-        matrix(core, BEHIND + 4),
-        matrix(core, BEHIND + 5),
-        matrix(core, BEHIND + 6),
-        matrix(core, BEHIND + 7),
-        matrix(core, BEHIND + 8),
-        int_matrix(core, BEHIND + 9),
-        vector(core, BEHIND + 10),
-        vector(core, BEHIND + 11),
-        matrix(core, BEHIND + 12),
-        ints(core, BEHIND + 13),
-        matrix(core, BEHIND + 14),
-        matrix(core, BEHIND + 15),
-        matrix(core, BEHIND + 16),
-        ints(core, BEHIND + 17),
-        ints(core, BEHIND + 18),
-    )
+    return cast(Sensitivity, _read(Sensitivity, core))
+
+
+@reader
+def spans_of(spans: int) -> Spans:
+    """The spans."""
+    return cast(Spans, _read(Spans, spans))
 
 
 @helper
 def is_sensitive(core: int) -> bool:
     """Whether sensitivities are asked for."""
-    return len(vector(core, BEHIND + 3)) > 0
+    return len(sensitivity_of(core).moved) > 0

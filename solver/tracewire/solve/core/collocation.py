@@ -13,8 +13,8 @@ import numpy as np
 from tracewire.solve.core import methods
 from tracewire.solve.core.arrays import Ints, Matrix, flow_of, sensitivity_of, trial_of
 from tracewire.solve.core.flow import RESTING, SLIDING
-from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.linear import factor, substitute_all
+from tracewire.solve.core.units import helper, unit
 from tracewire.solve.core.variation import field
 
 ROOT = math.sqrt(6.0)

@@ -26,10 +26,11 @@ from tracewire.solve.core.flow import (
     rates,
     sizes,
 )
-from tracewire.solve.core.jit import helper, unit
+from tracewire.solve.core.linear import dot
 from tracewire.solve.core.modes import NOTHING, levels
 from tracewire.solve.core.readings import guard_rates, guard_values
 from tracewire.solve.core.surface import pin
+from tracewire.solve.core.units import helper, unit
 
 RESOLVED = 32.0  # a flight is resolved if it rises over so many times the noise of a guard
 SHORTEST = 1e-11  # of the span
@@ -51,7 +52,7 @@ def bend(core: int, t: float, x: Vector, i: int) -> float:
     """The second derivative of a guard along the flow."""
     slope, field, n = curve(core, t, x, i), np.empty(len(x)), len(x)
     rates(core, t, x, field)
-    return float(np.dot(slope[:n], field) + slope[n])
+    return float(dot(slope[:n], field) + slope[n])
 
 
 @unit
@@ -69,7 +70,7 @@ def turns(
     if not (old < 0 and side * along[i] >= STOPPED * old):
         return False
     slope = curve(core, t, after, i)[:n]
-    if not side * np.dot(slope, after - before) > 0:
+    if not side * dot(slope, after - before) > 0:
         return False
     level = np.empty(modes)
     guard_values(core, t, before, here)
@@ -152,8 +153,8 @@ def struck(core: int, t: float, before: Vector, after: Vector) -> None:
         return
     for i in np.flatnonzero(flow.bound == RESTING):
         slope = curve(core, t, after, i)[:n]
-        change = np.dot(slope, jump)
-        if abs(change) > STOPPED * np.dot(np.abs(slope), np.abs(jump)):
+        change = dot(slope, jump)
+        if abs(change) > STOPPED * dot(np.abs(slope), np.abs(jump)):
             release(core, i)
 
 
@@ -199,14 +200,14 @@ def touching(core: int, t: float, x: Vector, reset: int, level: Vector, higher: 
     old = flow.m[i]
     flow.m[i] = 1.0 if side > 0 else 0.0
     slope = curve(core, t, x, i)[:n]
-    square = np.dot(slope, slope)
+    square = dot(slope, slope)
     jump = np.zeros(n)
     second, nothing = side * bend(core, t, x, i), NOTHING * bends[i]
     pressed = second < -nothing or (second <= nothing and side * higher < 0)
     if square > 0 and pressed:
         # the reset of bodies that approach tells the direction in which it pushes
         reset_jump(core, t, x - slope * (side / square), reset, jump)
-    if side * np.dot(slope, jump) > 0:
+    if side * dot(slope, jump) > 0:
         close(core, t, jump, x, i)
         return True
     flow.m[i] = old

@@ -30,9 +30,9 @@ from tracewire.solve.core.flow import (
     rates,
     sizes,
 )
-from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.modes import NOTHING, rate_levels
 from tracewire.solve.core.readings import guard_rates
+from tracewire.solve.core.units import helper, unit
 
 MOST_TOGETHER = 6
 MOST_TRIED = 9  # 20 000 assignments, where the pivots end at none

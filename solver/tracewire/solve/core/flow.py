@@ -15,8 +15,9 @@ import numpy as np
 
 from tracewire.solve.core.arrays import Matrix, Vector, copy, flow_of, progress_of
 from tracewire.solve.core.codes import LENGTH
-from tracewire.solve.core.jit import helper, invoke, unit
-from tracewire.solve.core.linear import factor, solved
+from tracewire.solve.core.linear import dot, factor, solved
+from tracewire.solve.core.memory import invoke
+from tracewire.solve.core.units import helper, unit
 
 FUNCTIONS = (
     "rhs",
@@ -184,11 +185,11 @@ def held(core: int, t: float, x: Vector) -> Vector:
         for row in range(count):
             slope = gradients[slides[row]] if row < some else curves[rests[row - some], :n]
             for column in range(some, count):
-                matrix[row, column] = np.dot(slope, flow.push[rests[column - some]])
+                matrix[row, column] = dot(slope, flow.push[rests[column - some]])
             if row >= some:
-                right[row] = -np.dot(slope, fields[0]) - curves[rests[row - some], n]
+                right[row] = -dot(slope, fields[0]) - curves[rests[row - some], n]
                 for column in range(some):
-                    matrix[row, column] = np.dot(slope, fields[1 + column])
+                    matrix[row, column] = dot(slope, fields[1 + column])
     return solved(matrix, right)
 
 

@@ -58,7 +58,6 @@ from tracewire.solve.core.flow import (
     rates,
     sizes,
 )
-from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.locate import AT_ONCE, NOTHING
 from tracewire.solve.core.methods import DOP853, DORMAND_PRINCE, RK4, ROSENBROCK
 from tracewire.solve.core.record import sample_end, sample_inside
@@ -66,6 +65,7 @@ from tracewire.solve.core.saltation import begin_sensitivities
 from tracewire.solve.core.start import begin
 from tracewire.solve.core.surface import pin
 from tracewire.solve.core.transition import happen, no_crossings
+from tracewire.solve.core.units import helper, unit
 
 STIFF, STIFF_HIGH = 3.0, 6.1  # h*eigenvalue at the edge of stability, of order 5 and 8 (Hairer)
 TIGHT = 1e-8  # where order 8 takes fewer steps, and its errors add up to less

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.solve.core.jit import helper, inlined, unit
+from tracewire.solve.core.units import helper, inlined, unit
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -23,6 +23,15 @@ def towards_one(size: float) -> float:
     if not 0.0 < size < np.inf:
         return 1.0
     return math.ldexp(1.0, -min(max(math.frexp(size)[1], -MOST), MOST))
+
+
+@helper
+def dot(first: Vector, second: Vector) -> float:
+    """The sum of the products, from the first to the last."""
+    total = 0.0
+    for i in range(len(first)):
+        total += first[i] * second[i]
+    return total
 
 
 @unit

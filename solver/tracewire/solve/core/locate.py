@@ -40,9 +40,9 @@ from tracewire.solve.core.flow import (
     SLIDING,
     held,
 )
-from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.modes import held_levels, levels, piece
 from tracewire.solve.core.readings import guard_rates, guard_values
+from tracewire.solve.core.units import helper, unit
 
 SAMPLES = 5  # of the margins over a step, both ends included
 SLACK = 0.25  # a parabola that stays above zero by less than bend/32 may be wrong about it

@@ -18,7 +18,7 @@ from tracewire.solve.core.flow import (
     evaluate,
     sizes,
 )
-from tracewire.solve.core.jit import helper, unit
+from tracewire.solve.core.units import helper, unit
 
 NOISE = 1e-14  # of the size of a guard
 NOTHING = 1e-12  # of the size of a rate

@@ -31,8 +31,8 @@ from tracewire.solve.core.flow import (
     push,
     rates,
 )
-from tracewire.solve.core.jit import helper, unit
-from tracewire.solve.core.linear import solved
+from tracewire.solve.core.linear import dot, solved
+from tracewire.solve.core.units import helper, unit
 
 
 @helper
@@ -65,7 +65,8 @@ def guard_rates(core: int, t: float, x: Vector, out: Vector) -> None:
         gradients, more = np.empty((len(out), len(x))), np.zeros(len(x))
         evaluate(core, GRADIENTS, t, x, gradients)
         push(core, both[flow.counts[SLIDING] :], more)
-        out += np.dot(gradients, more)
+        for i in range(len(out)):
+            out[i] += dot(gradients[i], more)
     if flow.counts[READING] and flow.counts[SLIDING]:
         _add_held(core, GUARDS, t, x, _fraction_rates(core, t, x, both), out)
 

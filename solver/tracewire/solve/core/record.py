@@ -17,9 +17,9 @@ from tracewire.solve.core.arrays import (
 )
 from tracewire.solve.core.codes import LOG_HEAD, LOGGED, SAMPLED
 from tracewire.solve.core.flow import RESTING, SLIDING, outputs
-from tracewire.solve.core.jit import unit
 from tracewire.solve.core.sensitivity import follow, sample
 from tracewire.solve.core.surface import pin
+from tracewire.solve.core.units import unit
 
 
 @unit

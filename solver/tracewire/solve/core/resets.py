@@ -35,7 +35,6 @@ from tracewire.solve.core.codes import (
 )
 from tracewire.solve.core.decide import first_higher
 from tracewire.solve.core.flow import FREE, RESTING, SLIDING
-from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.modes import JUMP, levels, rate_levels
 from tracewire.solve.core.readings import (
     guard_rates,
@@ -45,6 +44,7 @@ from tracewire.solve.core.readings import (
 )
 from tracewire.solve.core.record import log
 from tracewire.solve.core.saltation import reset_sensitivities
+from tracewire.solve.core.units import helper, unit
 
 
 @unit

@@ -43,11 +43,11 @@ from tracewire.solve.core.flow import (
     patterns,
     rates,
 )
-from tracewire.solve.core.jit import helper, unit
-from tracewire.solve.core.linear import factor, substitute
+from tracewire.solve.core.linear import dot, factor, substitute
 from tracewire.solve.core.modes import levels
 from tracewire.solve.core.readings import guard_rates
 from tracewire.solve.core.sensitivity import flag, total_of
+from tracewire.solve.core.units import helper, unit
 from tracewire.solve.core.variation import (
     OF_GUARD_RATES,
     OF_GUARDS,
@@ -203,8 +203,8 @@ def _instant(core: int, t: float, x: Vector, rate: Vector, i: int, out: Vector) 
         kind = SLIDING if how == FRACTION else RESTING
         at = int(np.sum(flow.bound[:i] == kind))
         row[:] = rows[at if how == FRACTION else flow.counts[SLIDING] + at]
-        speed = np.dot(row[:n], rate) + row[n]
-        size = np.dot(np.abs(row[:n]), np.abs(rate)) + abs(row[n])
+        speed = dot(row[:n], rate) + row[n]
+        size = dot(np.abs(row[:n]), np.abs(rate)) + abs(row[n])
         if abs(speed) <= STILL * size:
             speed = 0.0
     out[:] = 0.0
@@ -325,7 +325,7 @@ def _rest(core: int, t: float, x: Vector, i: int) -> None:
     derive(core, OF_GUARDS, t, x, rows)
     derive(core, OF_GUARD_RATES, t, x, along)
     slope, bend = rows[i, :n], along[i, :n]
-    square, pushed = np.dot(slope, slope), np.dot(bend, flow.push[i])
+    square, pushed = dot(slope, slope), dot(bend, flow.push[i])
     far = False
     s = sensitivity.s
     before = s.copy()
@@ -358,10 +358,10 @@ def _turns(core: int, t: float, x: Vector, i: int) -> None:
         curves, jump, rows = np.empty((modes, n + 1)), np.empty(n), np.empty((len(plan.writes), w))
         evaluate(core, CURVES, t, x, curves)
         slope = curves[i, :n]
-        at = x - slope * (side_of(core, reset) / np.dot(slope, slope))
+        at = x - slope * (side_of(core, reset) / dot(slope, slope))
         reset_jump(core, t, at, reset, jump)
         derive(core, OF_RESETS, t, at, rows)
-        largest = np.dot(jump, flow.push[i]) / np.dot(flow.push[i], flow.push[i])
+        largest = dot(jump, flow.push[i]) / dot(flow.push[i], flow.push[i])
         if largest == 0.0 or not np.isfinite(largest):
             continue
         first = plan.resets[reset, 2]

@@ -7,8 +7,8 @@ import numpy as np
 from tracewire.solve.core.arrays import Vector, flow_of, plan_of
 from tracewire.solve.core.codes import FLOOR, SIGN
 from tracewire.solve.core.flow import TIMED, evaluate
-from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.modes import inside, right_limit
+from tracewire.solve.core.units import helper, unit
 
 TOGETHER = 1e-13
 CARRIED = 1e-12  # of the size of a line: what is farther beyond its level was carried there

@@ -35,7 +35,7 @@ from tracewire.solve.core.collocation import (
     collocate,
 )
 from tracewire.solve.core.flow import OUTPUTS, RESTING, SLIDING, held, patterns
-from tracewire.solve.core.jit import helper, unit
+from tracewire.solve.core.units import helper, unit
 from tracewire.solve.core.variation import OF_OUTPUTS, derive, derive_blended, held_parts
 
 SMALLEST = 1e-5  # of a step of the states

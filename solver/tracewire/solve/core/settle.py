@@ -33,11 +33,11 @@ from tracewire.solve.core.flow import (
     bind,
     held,
 )
-from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.modes import JUMP, NOTHING, levels, margin, mode_value, rate_levels
 from tracewire.solve.core.readings import guard_rates, guard_values
 from tracewire.solve.core.resets import fire_transitions
 from tracewire.solve.core.surface import pin
+from tracewire.solve.core.units import helper, unit
 
 MOST_ROUNDS = 200
 MOST_EDGES = 20

@@ -4,24 +4,18 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 
 from tracewire.solve.core.arrays import (
-    BEHIND,
-    Flow,
-    Plan,
+    FIRST,
     Progress,
     Sensitivity,
     Spans,
     copy,
-    int_pointer,
-    ints,
     is_sensitive,
-    matrix,
     progress_of,
     sensitivity_of,
-    vector,
+    spans_of,
 )
 from tracewire.solve.core.codes import (
     END,
@@ -36,39 +30,14 @@ from tracewire.solve.core.codes import (
     T,
 )
 from tracewire.solve.core.integrate import advance
-from tracewire.solve.core.jit import helper, unit
+from tracewire.solve.core.memory import ints_at
+from tracewire.solve.core.units import helper, unit
 
 SPAN, INSIDE, LEFT, EVENTS, STIFF = range(5)  # places in Spans.at
-BEFORE = len(Flow._fields) + len(Plan._fields)
-TIMES = BEFORE + Progress._fields.index("times")
-SAMPLES = BEFORE + Progress._fields.index("samples")
-ANSWERS = BEHIND + Sensitivity._fields.index("samples")
-FIELDS = BEHIND + len(Sensitivity._fields)
+TIMES = FIRST[Progress] + Progress._fields.index("times")
+SAMPLES = FIRST[Progress] + Progress._fields.index("samples")
+ANSWERS = FIRST[Sensitivity] + Sensitivity._fields.index("samples")
 OF_TIMES = Spans._fields.index("times")
-
-
-@helper
-def spans_of(spans: int) -> Spans:
-    """The spans."""
-    return Spans(
-        ints(spans, 0),
-        matrix(spans, 1),
-        ints(spans, 2),
-        matrix(spans, 3),
-        matrix(spans, 4),
-        matrix(spans, 5),
-        ints(spans, 6),
-        ints(spans, 7),
-        ints(spans, 8),
-        vector(spans, 9),
-        matrix(spans, 10),
-        matrix(spans, 11),
-        matrix(spans, 12),
-        matrix(spans, 13),
-        ints(spans, 14),
-        vector(spans, 15),
-        vector(spans, 16),
-    )
 
 
 @unit
@@ -114,8 +83,8 @@ def _begin(core: int, spans: int, number: int) -> None:
     """Let a run that has not begun be that over one of the spans."""
     many = spans_of(spans)
     copy(many.first, many.block)
-    table = numba.carray(int_pointer(core), (3 * FIELDS,))
-    there = numba.carray(int_pointer(spans), (3 * (OF_TIMES + 3),))
+    table = ints_at(core, (3 * (ANSWERS + 1),))
+    there = ints_at(spans, (3 * (OF_TIMES + 3),))
     row = many.rows[number]
     for place in range(3):
         field = TIMES if place == 0 else (SAMPLES if place == 1 else ANSWERS)

@@ -8,11 +8,11 @@ from tracewire.solve.core import schedule
 from tracewire.solve.core.arrays import Vector, crossings_of, flow_of, plan_of, progress_of
 from tracewire.solve.core.codes import DOWN, FINISHED, FLOOR, MEMORY, SIGN, TIME, UP, T
 from tracewire.solve.core.flow import FREE, TIMED, evaluate
-from tracewire.solve.core.jit import unit
 from tracewire.solve.core.modes import NOISE, levels, mode_value
 from tracewire.solve.core.readings import guard_values
 from tracewire.solve.core.settle import settle
 from tracewire.solve.core.transition import happen, no_crossings
+from tracewire.solve.core.units import unit
 
 
 @unit

@@ -6,9 +6,9 @@ import numpy as np
 
 from tracewire.solve.core.arrays import Matrix, Vector, flow_of
 from tracewire.solve.core.flow import CURVES, GRADIENTS, GUARDS, RESTING, SLIDING, evaluate
-from tracewire.solve.core.jit import unit
-from tracewire.solve.core.linear import solved
+from tracewire.solve.core.linear import dot, solved
 from tracewire.solve.core.readings import guard_rates
+from tracewire.solve.core.units import unit
 
 
 @unit
@@ -53,7 +53,10 @@ def _move_back(rows: Matrix, ways: Matrix, off: Vector, x: Vector) -> None:
     count = len(off)
     if not np.any(off != 0.0):
         return
-    matrix = np.dot(rows, ways.T)
+    matrix = np.empty((count, count))
+    for k in range(count):
+        for j in range(count):
+            matrix[k, j] = dot(rows[k], ways[j])
     parts = solved(matrix.copy(), off)
     for k in range(count):
         part = parts[k]

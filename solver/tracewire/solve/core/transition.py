@@ -46,13 +46,13 @@ from tracewire.solve.core.flow import (
     SLIDING,
     bind,
 )
-from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.modes import JUMP, levels, margin, mode_value, rate_levels
 from tracewire.solve.core.readings import guard_rates, guard_values
 from tracewire.solve.core.record import log
 from tracewire.solve.core.resets import begin_stage, carried, fire_carried, write
 from tracewire.solve.core.saltation import enter, leave, reset_sensitivities
 from tracewire.solve.core.settle import KNOWN, LEFT, forget, left_rates, settle
+from tracewire.solve.core.units import helper, unit
 
 CHATTER_PART = 1e-6
 MOST_RESETS = 100

@@ -21,8 +21,9 @@ from tracewire.solve.core.flow import (
     held,
     patterns,
 )
-from tracewire.solve.core.jit import helper, invoke, unit
-from tracewire.solve.core.linear import factor, substitute
+from tracewire.solve.core.linear import dot, factor, substitute
+from tracewire.solve.core.memory import invoke
+from tracewire.solve.core.units import helper, unit
 
 DERIVATIVES = ("rhs", "guards", "guard_rates", "outputs", "timed", "resets", "starts")
 OF_RHS, OF_GUARDS, OF_GUARD_RATES, OF_OUTPUTS, OF_TIMED, OF_RESETS, OF_STARTS = range(7)
@@ -136,7 +137,7 @@ def _held(core: int, t: float, x: Vector, both: Vector, frozen: Matrix, out: Mat
             i = slides[row] if row < some else rests[row - some]
             slope = gradients[i] if row < some else curves[i, :n]
             for column in range(some, count):
-                matrix[row, column] = np.dot(slope, flow.push[rests[column - some]])
+                matrix[row, column] = dot(slope, flow.push[rests[column - some]])
             if row < some:
                 turned = np.zeros(w)
                 for column, j in enumerate(rests):
@@ -144,7 +145,7 @@ def _held(core: int, t: float, x: Vector, both: Vector, frozen: Matrix, out: Mat
                 right[:, row] -= bent[i] + turned
             else:
                 for column in range(some):
-                    matrix[row, column] = np.dot(slope, fields[1 + column])
+                    matrix[row, column] = dot(slope, fields[1 + column])
                 right[:, row] = -bent_rates[i]
                 for j in range(n):
                     if slope[j] != 0.0:

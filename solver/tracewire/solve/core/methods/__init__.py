@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from tracewire.solve.core.arrays import Vector, copy, trial_of
-from tracewire.solve.core.jit import helper, unit
 from tracewire.solve.core.methods import dop853, dormand_prince, rosenbrock, runge_kutta
 from tracewire.solve.core.methods.trial import norm
+from tracewire.solve.core.units import helper, unit
 
 NAMES = ("dormand_prince", "rosenbrock", "dop853", "rk4")
 DORMAND_PRINCE, ROSENBROCK, DOP853, RK4 = 0, 1, 2, 3

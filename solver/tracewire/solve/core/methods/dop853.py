@@ -1,28 +1,20 @@
 """The explicit method of Dormand and Prince of order 8(5,3), with dense output of order 7.
 
 Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, 2nd edition, sections
-II.5 and II.6. The coefficients are those of scipy.
+II.5 and II.6.
 """
 
 from __future__ import annotations
 
 import math
 
-import numpy as np
-from scipy.integrate import DOP853
-
 from tracewire.solve.core.arrays import Matrix, Vector, trial_of
 from tracewire.solve.core.flow import rates
-from tracewire.solve.core.jit import unit
+from tracewire.solve.core.methods.dop853_coefficients import E3, E5, A, C, D
 from tracewire.solve.core.methods.trial import STAGES
+from tracewire.solve.core.units import unit
 
 MAIN = 12
-C = np.concatenate([DOP853.C, [1.0], DOP853.C_EXTRA])
-A = np.zeros((STAGES, STAGES))
-A[:MAIN, :MAIN] = DOP853.A
-A[MAIN, :MAIN] = DOP853.B
-A[MAIN + 1 :] = DOP853.A_EXTRA
-E3, E5, D = DOP853.E3.copy(), DOP853.E5.copy(), DOP853.D.copy()
 
 
 @unit

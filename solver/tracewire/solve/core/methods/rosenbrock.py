@@ -10,8 +10,8 @@ import numpy as np
 
 from tracewire.solve.core.arrays import Vector, copy, progress_of, trial_of
 from tracewire.solve.core.flow import jacobian, rates
-from tracewire.solve.core.jit import inlined, unit
 from tracewire.solve.core.linear import factor, substitute, towards_one
+from tracewire.solve.core.units import inlined, unit
 
 GAMMA = 0.21193756319429014
 C = (

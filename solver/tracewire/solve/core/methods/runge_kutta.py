@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from tracewire.solve.core.arrays import Vector, trial_of
 from tracewire.solve.core.flow import rates
-from tracewire.solve.core.jit import unit
+from tracewire.solve.core.units import unit
 
 
 @unit

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from tracewire.solve.core.arrays import Vector
-from tracewire.solve.core.jit import helper
+from tracewire.solve.core.units import helper
 
 DENSE = 7  # the most rows that the dense output of a method needs
 STAGES = 16

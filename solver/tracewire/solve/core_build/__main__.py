@@ -1,0 +1,65 @@
+"""Make the library of the core: `python solver/tracewire/solve/core_build FILE PROCESSOR`.
+
+It reads the core without the rest of tracewire, and needs only numba. Several processes share the
+units; each makes the helpers that its own units call.
+"""
+
+from __future__ import annotations
+
+import gc
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from types import ModuleType
+
+HERE = Path(__file__).resolve().parent
+MOST_PROCESSES = 4  # more of them make the same helpers more often
+
+
+def main(file: str, processor: str) -> None:
+    """Write the object file for a kind of processor, as LLVM names it."""
+    count = min(os.cpu_count() or 1, MOST_PROCESSES)
+    with tempfile.TemporaryDirectory() as folder:
+        parts = [Path(folder, str(number)) for number in range(count)]
+        command = [sys.executable, str(HERE), processor, str(count)]
+        running = [subprocess.Popen([*command, str(n), str(p)]) for n, p in enumerate(parts)]
+        try:
+            codes = [process.wait() for process in running]
+        finally:
+            for process in running:
+                process.kill()
+        if any(codes):
+            sys.exit(1)
+        from tracewire.files import write_file
+        from tracewire.solve.core_build.link import linked, target_of
+
+        write_file(file, linked([part.read_bytes() for part in parts], target_of(processor)))
+
+
+def make_part(processor: str, count: str, number: str, file: str) -> None:
+    """Write the bitcode of every `count`th unit."""
+    from tracewire.files import write_file
+    from tracewire.solve.core_build import lower, without_python
+    from tracewire.solve.core_build.link import optimised, target_of
+
+    gc.disable()  # it would look through all that is needed to the end, which takes a third longer
+    without_python.apply()
+    units = lower.read_core()
+    for symbol in list(units)[int(number) :: int(count)]:
+        units[symbol].lower()
+    write_file(file, optimised(without_python.TEXTS, units, target_of(processor)))
+
+
+def read_alone() -> None:
+    """Let Python find the core without what `tracewire` and `tracewire.solve` import."""
+    for name, folder in (("tracewire", HERE.parents[1]), ("tracewire.solve", HERE.parent)):
+        sys.modules[name] = ModuleType(name)
+        sys.modules[name].__path__ = [str(folder)]
+
+
+if __name__ == "__main__":
+    read_alone()
+    arguments = sys.argv[1:]
+    main(*arguments) if len(arguments) == 2 else make_part(*arguments)

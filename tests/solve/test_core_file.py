@@ -1,0 +1,76 @@
+"""Where the machine code of the core comes from."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from tracewire.errors import InstallationError
+from tracewire.solve import core_file
+
+
+@pytest.fixture
+def changed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A copy of the core with another comment, without machine code; an empty cache folder."""
+    there = tmp_path / "tracewire" / "solve"
+    for folder in core_file.SOURCES:
+        shutil.copytree(folder, there / folder.name)
+    for name in ("errors.py", "files.py"):
+        shutil.copy(core_file.HERE.parent / name, there.parent)
+    monkeypatch.setattr(core_file, "HERE", there)
+    monkeypatch.setattr(core_file, "SOURCES", tuple(there / f.name for f in core_file.SOURCES))
+    monkeypatch.setattr(core_file, "PACKAGED", there / "core_library")
+    monkeypatch.setenv("TRACEWIRE_CACHE_DIR", str(tmp_path / "cache"))
+    with open(there / "core" / "codes.py", "a", encoding="utf-8") as file:
+        file.write("# changed\n")
+    return there
+
+
+def test_another_text_has_another_file(changed: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    name = core_file.file_name()
+    assert not core_file.is_there()
+    monkeypatch.undo()
+    assert core_file.file_name() != name
+    assert core_file.is_there()
+
+
+def test_without_numba_it_says_how_to_install(
+    changed: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(core_file.importlib.util, "find_spec", lambda name: None)
+    with pytest.raises(InstallationError, match=r"Install again: pip install -e \."):
+        core_file.object_code()
+
+
+def test_what_cannot_be_made_is_told_with_the_reason(
+    changed: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    with open(changed / "core" / "codes.py", "a", encoding="utf-8") as file:
+        file.write("raise ValueError('a slip of the pen')\n")
+    with pytest.raises(InstallationError, match="a slip of the pen"):
+        core_file.object_code()
+    assert "has none yet. About a minute ..." in capfd.readouterr().err
+
+
+def test_the_file_lies_beside_the_sources_then(
+    changed: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Those of older sources go."""
+    monkeypatch.setattr(core_file, "make", lambda: b"machine code")
+    core_file.PACKAGED.mkdir()
+    (core_file.PACKAGED / "core-old.o").touch()
+    file = core_file.put_beside_sources()
+    assert [one.name for one in core_file.PACKAGED.iterdir()] == [core_file.file_name()]
+    assert file.read_bytes() == b"machine code" == core_file.object_code()
+
+
+@pytest.mark.slow
+def test_machine_code_is_made_of_the_sources_alone(changed: Path) -> None:
+    """The same sources have the same code, and the copy needs nothing else of the package."""
+    code = core_file.object_code()
+    assert len(code) > 100_000
+    assert core_file.object_code() == code
+    done = subprocess.run(["grep", "-c", str(changed), "-"], input=code, check=False)
+    assert done.returncode == 1  # no path of this machine
