@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tracewire.errors import FormulaError, Place
 from tracewire.formula import Unit, quantity_hint, read_unit, same_quantity
+from tracewire.formula.common_units import COMMON
 from tracewire.formula.units import COHERENT, _convert
 
 
@@ -127,10 +128,14 @@ def test_a_quantity_needs_a_unit() -> None:
         same_quantity("m", "parsnips")
 
 
-def test_si_units_do_not_load_the_unit_library() -> None:
+def test_common_units_are_those_of_the_unit_library() -> None:
+    assert {text: _convert(text) for text in COMMON} == {text: read_unit(text) for text in COMMON}
+
+
+def test_si_units_and_common_ones_do_not_load_the_unit_library() -> None:
     code = (
         "import sys; from tracewire.library import load_library; from tracewire.formula import *;"
-        "load_library(); read_unit('N m s/rad'); sys.exit('pint' in sys.modules)"
+        "load_library(); read_unit('N m s/rad'); read_unit('mm'); sys.exit('pint' in sys.modules)"
     )
     script = f"import sys; sys.path[:0] = {sys.path!r}; {code}"
     assert run([sys.executable, "-c", script], check=False).returncode == 0

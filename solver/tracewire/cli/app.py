@@ -5,42 +5,29 @@ from __future__ import annotations
 import sys
 import traceback
 from collections.abc import Sequence
+from importlib import import_module
 from typing import Annotated
 
 import typer
 from typer.main import get_command
 
-from tracewire.cli.analyse import analyse
-from tracewire.cli.blocks import blocks
-from tracewire.cli.check import check
-from tracewire.cli.data import data
-from tracewire.cli.demo import demo
-from tracewire.cli.fit import fit
 from tracewire.cli.output import INTERRUPTED, Cut, print_problems
-from tracewire.cli.paper import paper
-from tracewire.cli.report import report
-from tracewire.cli.run import run
 from tracewire.cli.several import Several
-from tracewire.cli.show import show
 from tracewire.cli.streams import close_streams, open_streams
-from tracewire.cli.sweep import sweep
-from tracewire.cli.trace import trace
-from tracewire.cli.units import units
 from tracewire.errors import Problem, TracewireError
 
 STOPPED = Problem("interrupted; nothing was finished")
 USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
 """The base of every usage error; typer has its own copy of click or uses the installed one."""
 
-app = typer.Typer(
-    add_completion=False,
-    pretty_exceptions_enable=False,
-    rich_markup_mode="rich",
-    context_settings={"help_option_names": ["-h", "--help"]},
+VERBS = (
+    *("check", "show", "run", "fit", "trace", "report", "sweep"),
+    *("paper", "blocks", "units", "demo", "analyse", "data"),
 )
+"""In the order of the help. Each is a function, or a `typer.Typer` of several, in the file of its
+name; a verb imports what is slow to import inside its function."""
 
 
-@app.callback(invoke_without_command=True)
 def tracewire_(
     version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
 ) -> None:
@@ -63,20 +50,22 @@ def tracewire_(
         raise typer.Exit
 
 
-# One line registers a verb. A verb imports what is slow to import inside its function.
-app.command()(check)
-app.command()(show)
-app.command()(run)
-app.command()(fit)
-app.command(cls=Several)(trace)
-app.command()(report)
-app.command()(sweep)
-app.command()(paper)
-app.command()(blocks)
-app.command()(units)
-app.command()(demo)
-app.add_typer(analyse, name="analyse")
-app.add_typer(data, name="data")
+def _app(verbs: Sequence[str]) -> typer.Typer:
+    """The command line with these verbs."""
+    app = typer.Typer(
+        add_completion=False,
+        pretty_exceptions_enable=False,
+        rich_markup_mode="rich",
+        context_settings={"help_option_names": ["-h", "--help"]},
+    )
+    app.callback(invoke_without_command=True)(tracewire_)
+    for verb in verbs:
+        made = getattr(import_module(f"tracewire.cli.{verb}"), verb)
+        if isinstance(made, typer.Typer):
+            app.add_typer(made, name=verb)
+        else:
+            app.command(cls=Several if verb == "trace" else None)(made)
+    return app
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -95,6 +84,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _ended(given: list[str], as_json: bool, debug: bool) -> int:
     """Run a command, and tell its errors; the exit code."""
     try:
+        known = given[0] in VERBS or given == ["--version"]  # to import all verbs takes 0.2 s
+        app = _app([verb for verb in VERBS if verb in given[:1] or not known])
         ended: object = get_command(app).main(given, prog_name="tracewire", standalone_mode=False)
         if ended != INTERRUPTED:  # what typer makes of an interrupt
             return ended if isinstance(ended, int) else 0

@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-import networkx as nx
-
 from tracewire.compile.flat import Flat
 from tracewire.compile.flatten import flatten
 from tracewire.compile.holding import modes_read
@@ -19,7 +17,7 @@ from tracewire.compile.routines import BACKENDS, PREPARE, Backend, Routines, Siz
 from tracewire.compile.vectors import element_names
 from tracewire.diagram import Diagram, find_recorded
 from tracewire.errors import OptionError, unknown
-from tracewire.formula import Expression, names_of, to_text
+from tracewire.formula import Expression, evaluation_order, names_of, to_text
 
 
 @dataclass(frozen=True)
@@ -56,11 +54,13 @@ class Model:
         if found is None:
             formulas = {name: parameter.formula for name, parameter in self.flat.parameters.items()}
             formulas |= self.flat.presets[preset] if preset else {}
-            graph: nx.DiGraph[str] = nx.DiGraph()
-            graph.add_nodes_from(formulas)
-            for name, formula in formulas.items():
-                graph.add_edges_from((read, name) for read in names_of(formula) if read in formulas)
-            found = {name: formulas[name] for name in nx.topological_sort(graph)}
+            reads = {
+                name: [read for read in names_of(formula) if read in formulas]
+                for name, formula in formulas.items()
+            }
+            order = evaluation_order(reads)
+            assert order is not None  # a diagram whose parameters need each other is not compiled
+            found = {name: formulas[name] for name in order}
             self._parameter_formulas[preset] = found
         return found
 

@@ -10,8 +10,6 @@ from functools import cache
 from threading import RLock
 from typing import Any
 
-import llvmlite.binding as llvm
-
 from tracewire.compile import libm
 from tracewire.compile.machine import PREFIX
 
@@ -50,6 +48,8 @@ def assemble(text: str, names: Iterable[str], *, quickly: bool = False) -> Nativ
 
 
 def _engine(text: str, quickly: bool) -> Any:
+    import llvmlite.binding as llvm  # a tenth of a second: a check needs no machine code
+
     _initialize()
     target = llvm.Target.from_default_triple().create_target_machine(
         cpu=llvm.get_host_cpu_name(),
@@ -67,6 +67,8 @@ def _engine(text: str, quickly: bool) -> Any:
 
 @cache
 def _initialize() -> None:
+    import llvmlite.binding as llvm
+
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     for name, address in libm.addresses().items():

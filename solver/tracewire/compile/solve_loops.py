@@ -13,8 +13,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import structural_rank
 
 from tracewire.compile.differentiate import jacobian_of, linear_in_t, search, substitute_all
 from tracewire.compile.flat import Loop
@@ -95,6 +93,9 @@ def _check(tape: Tape, loop: Loop, matrix: Sequence[int]) -> None:
         rank = int(np.linalg.matrix_rank(np.reshape(known, (size, size))))
     else:
         filled = np.reshape([value != 0 for value in found], (size, size))
+        from scipy.sparse import csr_array  # a tenth of a second that only loops pay
+        from scipy.sparse.csgraph import structural_rank
+
         rank = int(structural_rank(csr_array(filled.astype(float))))
     if rank < size:
         loops = "algebraic loop" if size == 1 else f"algebraic loops of {size} signals"

@@ -7,22 +7,30 @@ solved when it is compiled. Parameters that need each other are one.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-
-import networkx as nx
+from typing import TYPE_CHECKING
 
 from tracewire.diagram.diagram import Value
 from tracewire.diagram.problems import Problems
-from tracewire.formula import names_of
+from tracewire.formula import evaluation_order, names_of
+
+if TYPE_CHECKING:
+    import networkx as nx
 
 MOST_SHOWN = 100
 
 
 def check_parameters(parameters: Mapping[str, Value], problems: Problems) -> None:
     """Note the parameters of a diagram that depend on each other."""
+    reads = {
+        name: [read for read in names_of(value.formula) if read in parameters]
+        for name, value in parameters.items()
+    }
+    if evaluation_order(reads) is not None:
+        return
+    import networkx as nx  # a fifth of a second that only cycles pay
+
     graph: nx.DiGraph[str] = nx.DiGraph()
-    for name, value in parameters.items():
-        used = names_of(value.formula)
-        graph.add_edges_from((name, other) for other in used if other in parameters)
+    graph.add_edges_from((name, read) for name in parameters for read in reads[name])
     for loop in cycles(graph, list(parameters)):
         what = f"parameters depend on each other: {shown_cycle([*loop, loop[0]])}"
         problems.add(what, parameters[loop[0]].place, (), "Give one of them a number.")
@@ -30,6 +38,8 @@ def check_parameters(parameters: Mapping[str, Value], problems: Problems) -> Non
 
 def cycles(graph: nx.DiGraph[str], order: Sequence[str]) -> list[list[str]]:
     """A shortest cycle of each strongly connected part, from its first node in `order` on."""
+    import networkx as nx
+
     rank = {name: index for index, name in enumerate(order)}
     found = []
     for part in nx.strongly_connected_components(graph):

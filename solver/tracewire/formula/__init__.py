@@ -8,6 +8,7 @@ bounded, so a formula from a stranger can do nothing but arithmetic. It is never
 from tracewire.formula.evaluate import evaluate
 from tracewire.formula.expression import Call, Expression, Name, Number, names_of, rename
 from tracewire.formula.functions import CONSTANTS, FUNCTIONS
+from tracewire.formula.order import evaluation_order
 from tracewire.formula.parse import is_name, name_hint, parse, parse_condition
 from tracewire.formula.text import to_text
 from tracewire.formula.units import Unit, quantity_hint, read_unit, same_quantity
@@ -21,6 +22,7 @@ __all__ = [
     "Number",
     "Unit",
     "evaluate",
+    "evaluation_order",
     "is_name",
     "name_hint",
     "names_of",

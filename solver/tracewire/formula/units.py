@@ -9,6 +9,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from tracewire.errors import FormulaError, Place, Problem
+from tracewire.formula.common_units import COMMON
 
 if TYPE_CHECKING:
     from pint import UnitRegistry
@@ -46,7 +47,7 @@ class Unit:
 
 @lru_cache(maxsize=1)
 def _registry() -> UnitRegistry[Any]:
-    import pint  # half a second: only units that are not coherent SI pay for it
+    import pint  # half a second: only units that are neither SI nor common pay for it
 
     return pint.UnitRegistry(autoconvert_offset_to_baseunit=False)
 
@@ -81,6 +82,8 @@ def read_unit(text: str, place: Place = Place()) -> Unit:
         text = OHM.sub("ohm", TORQUE.sub(r"\1 m", text))
         if COHERENT.fullmatch(text.strip()):
             return Unit(text.strip(), 1.0)
+        if text.strip() in COMMON:
+            return Unit(*COMMON[text.strip()])
         if not WELL_FORMED.fullmatch(text):
             raise ValueError("grammar")
         return _convert(text.strip())

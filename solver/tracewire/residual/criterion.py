@@ -11,7 +11,6 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_triangular
 
 from tracewire.compile import Model
 from tracewire.errors import DataError, OptionError, Problem, SimulationError, unknown
@@ -359,6 +358,8 @@ class Criterion:
 
     def whiten(self, n: int, rows: Vector) -> Vector:
         """Rows (N, signals) or (N*signals, ...) of segment n, in sigma, as its residuals are."""
+        from scipy.linalg import solve_triangular
+
         factor = None if self.covariance is None else self.covariance(self.segments[n])
         if factor is None:
             return rows

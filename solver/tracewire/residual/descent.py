@@ -8,7 +8,6 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
 
 from tracewire.residual.criterion import half_square
 
@@ -62,6 +61,8 @@ def descend(
     Comp. 19, 1965, 577); and it ends where it creeps along, and the noise would hide what it gains.
     `stepped` gets each point from which a step is made, and its value.
     """
+    from scipy.optimize import least_squares
+
     low, high = criterion.bounds()
     room = np.where(np.isfinite(high - low), 1e-9 * (high - low), 1e-12)
     z = np.clip(begin, low + room, high - room)  # scipy wants to begin inside

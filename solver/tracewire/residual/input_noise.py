@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
 
 from tracewire.compile import Model, compile
 from tracewire.residual.input_response import (
@@ -126,12 +125,15 @@ def likely_input_noise(
         return LikelyNoise(0.0, float(np.mean(square)) if len(square) else 0.0, 0.0)
 
     def unlikely(log: float) -> float:
+
         variance = 1 + np.exp(log) * size
         return float(np.sum(np.log(variance) + square / variance))
 
     # from what no sample shows to what would make all of the residual
     ends = -np.log(np.max(size)) - 5, np.log(np.sum(square) / np.sum(size)) + 5
     grid = np.linspace(min(ends), max(ends), GRID)
+    from scipy.optimize import minimize_scalar
+
     best = int(np.argmin([unlikely(log) for log in grid]))
     around = grid[max(best - 1, 0)], grid[min(best + 1, GRID - 1)]
     found = float(np.exp(minimize_scalar(unlikely, bounds=around, method="bounded").x))

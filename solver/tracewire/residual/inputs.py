@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
-from scipy.linalg import solveh_banded
 
 from tracewire.diagram import Hold
 from tracewire.solve import Driving, Held
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline  # scipy is slow to import: who needs a part does it
 
 Vector = NDArray[np.float64]
 LEAST_SAMPLES = 9
@@ -98,6 +101,8 @@ def splined(t: Vector, u: Vector) -> tuple[Vector, Vector]:
     factor = int(np.clip(np.ceil(np.sqrt(lines / (4 * FINE * size))), 1, FINEST))
     count = (len(t) - 1) * factor + 1
     times = np.interp(np.arange(count) / factor, np.arange(len(t)), t)
+    from scipy.interpolate import CubicSpline
+
     return times, projected(CubicSpline(t, u), times)
 
 
@@ -107,6 +112,8 @@ def _errors(t: Vector, u: Vector) -> tuple[float, float]:
     if len(t) < 4:
         return 0.0, 0.0
     lines = np.interp(t[left], t[kept], u[kept]) - u[left]
+    from scipy.interpolate import CubicSpline
+
     spline = CubicSpline(t[kept], u[kept])(t[left]) - u[left]
     return float(np.max(np.abs(lines))), float(np.max(np.abs(spline)))
 
@@ -114,6 +121,8 @@ def _errors(t: Vector, u: Vector) -> tuple[float, float]:
 def projected(spline: CubicSpline, times: Vector) -> Vector:
     """The values at `times` (N,) whose straight lines are closest to a cubic spline, which is a
     cubic between any two of them."""
+    from scipy.linalg import solveh_banded
+
     h = np.diff(times)
     share = (1 + NODES) / 2
     values = spline(times[:-1, None] + h[:, None] * share) * (h[:, None] * WEIGHTS / 2)

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import lsq_linear
 
 from tracewire.residual.linearised import Projection
 from tracewire.residual.settling import (
@@ -115,6 +114,8 @@ def bounded_step(
     reduced: Matrix, residual: Vector, damping: float, room: tuple[Vector, Vector]
 ) -> Vector:
     """The step that minimises the squares, damped by the sizes of its columns, within bounds."""
+    from scipy.optimize import lsq_linear
+
     corner = np.asarray(np.linalg.qr(np.column_stack((reduced, residual)), mode="r"))
     count = reduced.shape[1]
     sizes = np.linalg.norm(reduced, axis=0)

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import matmul_toeplitz, solve_banded
 
 from tracewire.residual.noise_estimate import (
     NoiseEstimate,
@@ -62,6 +61,8 @@ class Noise:
         begun[: len(known)] = known
         for lag, coefficient in enumerate(self.coefficients, 1):
             bands[lag, len(known) - lag : count - lag] = -coefficient
+        from scipy.linalg import solve_banded
+
         return np.asarray(solve_banded((self.order, 0), bands, begun))
 
     def spread(self, matrix: Vector) -> Vector:
@@ -69,6 +70,8 @@ class Noise:
         if self.order == 0:
             return np.asarray(self.level**2 * matrix)
         rho = self.correlation(len(matrix))
+        from scipy.linalg import matmul_toeplitz
+
         return np.asarray(self.level**2 * matmul_toeplitz((rho, rho), matrix, check_finite=False))
 
     def degrees(self, count: int) -> float:

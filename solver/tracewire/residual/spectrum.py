@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
-from scipy.signal.windows import kaiser
 
 Vector = NDArray[np.float64]
 LONG, SHORT = 64, 32
@@ -49,6 +48,8 @@ def spectrum_of(values: Vector) -> Spectrum:
     take most of what is slow away beforehand. Each band has the median over the stretches, so that
     a few jumps, outliers or rests do not count; stretches that stand still are left out.
     """
+    from scipy.signal.windows import kaiser
+
     length = LONG if len(values) >= ENOUGH else SHORT
     bent = np.diff(values - np.mean(values), 2)
     high: list[float] = []

@@ -8,8 +8,6 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
 
-from llvmlite import binding
-
 from tracewire.errors import Problem, SimulationError
 from tracewire.solve.core_file import object_code
 from tracewire.solve.interrupt import until_interrupted
@@ -51,6 +49,8 @@ def library() -> Library:
 
     Ctrl-C is heard when it is loaded: an exception inside of LLVM would end the process.
     """
+    from llvmlite import binding  # as in `compile.native`
+
     code = object_code()
     with until_interrupted() as halt:
         binding.initialize_native_target()
