@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any
 
@@ -37,6 +37,10 @@ class Model:
     def __repr__(self) -> str:  # with its diagram and library it would fill many screens
         shown = f"states {', '.join(self.states) or 'none'}; {len(self.parameters)} parameters"
         return f"Model({self.flat.title!r}: {shown})"
+
+    def __getstate__(self) -> dict[str, object]:
+        """What pickle keeps: the equations. Machine code is made where it is needed."""
+        return {one.name: getattr(self, one.name) for one in fields(self)}
 
     @cached_property
     def states(self) -> tuple[str, ...]:

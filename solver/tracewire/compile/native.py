@@ -47,22 +47,40 @@ def assemble(text: str, names: Iterable[str], *, quickly: bool = False) -> Nativ
         return found
 
 
+def load_object(code: bytes) -> Any:
+    """An engine with the functions of an object file; they are in memory as long as it is."""
+    import llvmlite.binding as llvm
+
+    _initialize()
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _target(quickly=True))
+    engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+    engine.finalize_object()
+    return engine
+
+
 def _engine(text: str, quickly: bool) -> Any:
     import llvmlite.binding as llvm  # a tenth of a second: a check needs no machine code
 
     _initialize()
-    target = llvm.Target.from_default_triple().create_target_machine(
+    # The tape is folded and shared already; passes over the IR only cost time, and they would join
+    # the parts of long functions again. An engine that compiles itself keeps fifteen times as much.
+    return load_object(_compiler(quickly).emit_object(llvm.parse_assembly(text)))
+
+
+@cache
+def _compiler(quickly: bool) -> Any:
+    return _target(quickly)
+
+
+def _target(quickly: bool) -> Any:
+    import llvmlite.binding as llvm
+
+    return llvm.Target.from_default_triple().create_target_machine(
         cpu=llvm.get_host_cpu_name(),
         features=llvm.get_host_cpu_features().flatten(),
         opt=0 if quickly else 2,
         jit=True,
     )
-    # The tape is folded and shared already; passes over the IR only cost time, and they would join
-    # the parts of long functions again.
-    module = llvm.parse_assembly(text)
-    engine = llvm.create_mcjit_compiler(module, target)
-    engine.finalize_object()
-    return engine
 
 
 @cache

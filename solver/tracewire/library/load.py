@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 from tracewire.errors import BlockError, Place, Problem
 from tracewire.library.declare import Block
@@ -21,6 +22,10 @@ class Library:
 
     blocks: Mapping[str, Block]
     families: Mapping[str, str] = field(default_factory=dict)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """What pickle keeps: the declarations, which need none of the files where they are read."""
+        return _library, (dict(self.blocks), dict(self.families))
 
     def __contains__(self, name: object) -> bool:
         return name in self.blocks
@@ -66,6 +71,11 @@ def load_library(extra: Iterable[str | Path] = ()) -> Library:
                 families.setdefault(block.name, file.stem)
     if problems:
         raise BlockError(problems)
+    return _library(blocks, families)
+
+
+def _library(blocks: dict[str, Block], families: dict[str, str]) -> Library:
+    """A library that nobody can change."""
     return Library(MappingProxyType(blocks), MappingProxyType(families))
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
 
+from tracewire.compile.native import load_object
 from tracewire.errors import Problem, SimulationError
 from tracewire.solve.core_file import object_code
 from tracewire.solve.interrupt import until_interrupted
@@ -49,16 +50,9 @@ def library() -> Library:
 
     Ctrl-C is heard when it is loaded: an exception inside of LLVM would end the process.
     """
-    from llvmlite import binding  # as in `compile.native`
-
     code = object_code()
     with until_interrupted() as halt:
-        binding.initialize_native_target()
-        binding.initialize_native_asmprinter()
-        target = binding.Target.from_default_triple().create_target_machine(jit=True)
-        engine = binding.create_mcjit_compiler(binding.parse_assembly(""), target)
-        engine.add_object_file(binding.ObjectFileRef.from_data(code))
-        engine.finalize_object()
+        engine = load_object(code)
     if halt.asked:
         raise KeyboardInterrupt
 

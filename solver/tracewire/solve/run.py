@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Literal, overload
+from typing import Any, Literal, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,6 +53,10 @@ class EventLog(Sequence[Event]):
     def _events(self) -> tuple[Event, ...]:
         return self._make()
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """What pickle keeps: the events."""
+        return _log_of, (self._events,)
+
     @overload
     def __getitem__(self, index: int) -> Event: ...
     @overload
@@ -68,6 +72,10 @@ class EventLog(Sequence[Event]):
 
     def __repr__(self) -> str:
         return repr(self._events)
+
+
+def _log_of(events: tuple[Event, ...]) -> EventLog:
+    return EventLog(lambda: events)
 
 
 class Sensitivities(Mapping[str, Mapping[str, Vector]]):
