@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from pathlib import Path
-from threading import Lock
 from typing import Literal
 
 import numpy as np
@@ -18,14 +17,17 @@ from tracewire.analyse.plane import Plane, span_of
 from tracewire.analyse.section import extent_of, take_points
 from tracewire.analyse.sweep import grid_of
 from tracewire.analyse.turns import units_of
-from tracewire.analyse.work import Progress, Tell, checked, interrupted
+from tracewire.analyse.work import Progress, Tell, interrupted
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, TracewireError, unknown
 from tracewire.solve import Interrupted, Passage, parameter_values
 from tracewire.solve.interrupt import Halt, until_interrupted
+from tracewire.solve.parallel import crew
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
+Carried = tuple[float, Vector] | None
+"""Time and states at the end of the value before."""
 Cube = NDArray[np.float64]
 Direction = Literal["up", "down", "both", "up_down", "down_up", "apart"]
 BRANCHES: dict[str, tuple[tuple[str, ...], ...]] = {
@@ -106,6 +108,7 @@ def bifurcation(
     method: str = "auto",
     rtol: float = 1e-6,
     workers: int | None = None,
+    executor: Executor | None = None,
     progress: Tell | None = None,
     partial: str | Path | None = None,
 ) -> Bifurcation:
@@ -115,7 +118,8 @@ def bifurcation(
     the values, where the state at the last point is carried on to the next value; "both" of them,
     each from the start values, side by side; "down_up" and "up_down" one after the other, the
     second from the final state of the first; "apart" each value from the start values, in parallel.
-    Memories of blocks begin anew at each value. A motion is irregular when its points make more
+    `workers` and `executor` are those of `simulate_many`. Memories of blocks begin anew at each
+    value. A motion is irregular when its points make more
     clusters than a quarter of their number: see `count_clusters` for `near`. States of `modulo` are
     compared modulo that: {"phi": 6.283185307179586}. With `partial`, a .npz file, an interrupted
     diagram goes on where it was; a value that fails leaves the state as it was.
@@ -157,7 +161,7 @@ def bifurcation(
             order = range(count - 1, -1, -1) if name == "down" else range(count)
             rows += [(first + i, float(grid[i])) for i in order]
         tasks += [[row] for row in rows] if direction == "apart" else [rows]
-    _carry_out(work, tasks, store, checked(workers), progress)
+    _carry_out(work, tasks, store, workers, executor, progress)
     points = store.rows[:, : keep * n].reshape(len(names), count, keep, n)
     final = store.rows[:, keep * n : (keep + 1) * n].reshape(len(names), count, n)
     extent = store.rows[:, (keep + 1) * n : (keep + 2) * n].reshape(len(names), count, n)
@@ -211,7 +215,7 @@ class _Work:
         """The numbers that are kept of a value: points, final states, extents, the final time."""
         return (self.keep + 2) * len(self.model.states) + 1
 
-    def value(self, value: float, carried: tuple[float, Vector] | None, halt: Halt) -> Vector:
+    def value(self, number: int, value: float, carried: Carried, halt: Halt) -> Vector:
         """What is kept of one value; `carried` are time and states from the value before."""
         given = {**self.parameters, self.parameter: value}
         rhythm = self.plane.rhythm(self.model, given, self.preset)
@@ -242,47 +246,57 @@ class _Work:
 
 def _carry_out(
     work: _Work,
-    tasks: Sequence[Sequence[tuple[int, float]]],
+    chains: Sequence[Sequence[tuple[int, float]]],
     store: Partial,
-    threads: int,
+    workers: int | None,
+    executor: Executor | None,
     progress: Tell | None,
 ) -> None:
     """Go through the chains side by side, through the values of each one after the other."""
     tell = Progress(progress, len(store.done), store.resumed)
-    lock, firsts, n = Lock(), list[TracewireError](), len(work.model.states)
+    n, first = len(work.model.states), work.keep * len(work.model.states)
+    firsts: list[TracewireError] = []
 
-    def chain(rows: Sequence[tuple[int, float]], halt: Halt) -> None:
-        carried: tuple[float, Vector] | None = None
-        for number, value in rows:
-            if halt.asked:
-                return
-            if not store.done[number]:
-                try:
-                    row, error = work.value(value, carried, halt), ""
-                except Interrupted:
-                    return
-                except TracewireError as problem:
-                    firsts.append(problem)
-                    row, error = np.full(work.width, np.nan), str(problem)
-                with lock:
-                    store.put(number, row, error)
-                    tell.step()
-            if number not in store.errors:
-                kept = store.rows[number]
-                first = work.keep * n
-                carried = float(kept[-1]), kept[first : first + n].copy()
+    def after(number: int, carried: Carried) -> Carried:
+        """What a value carries to the next."""
+        if number in store.errors:
+            return carried
+        kept = store.rows[number]
+        return float(kept[-1]), kept[first : first + n].copy()
 
-    with until_interrupted() as halt, ThreadPoolExecutor(threads) as pool:
-        futures = [pool.submit(chain, rows, halt) for rows in tasks]
+    with until_interrupted() as halt, crew(work.value, halt, workers, executor) as made:
+        began: list[tuple[list[tuple[int, float]], Carried]] = []
+        for chain in chains:
+            carried: Carried = None
+            rest = list(chain)
+            while rest and store.done[rest[0][0]]:
+                carried = after(rest.pop(0)[0], carried)
+            began.append((rest, carried))
+        ready = [(rest, carried) for rest, carried in reversed(began) if rest]
+        going: dict[int, list[tuple[int, float]]] = {}
         try:
-            for future in as_completed(futures):
-                future.result()
-        except BaseException:
-            halt.asked = True
-            raise
+            while (ready and not halt.asked) or made.waiting:
+                if halt.asked:
+                    made.drop()
+                while ready and made.has_room and not halt.asked:
+                    rest, carried = ready.pop()
+                    number, value = rest.pop(0)
+                    going[number] = rest
+                    made.submit([(number, value, carried)])
+                for (number, _, carried), result in made.done():
+                    rest = going.pop(number)
+                    if isinstance(result, Interrupted):
+                        continue
+                    if isinstance(result, TracewireError):
+                        firsts.append(result)
+                        store.put(number, np.full(work.width, np.nan), str(result))
+                    else:
+                        store.put(number, result)
+                    tell.step()
+                    if rest:
+                        ready.append((rest, after(number, carried)))
         finally:
-            with lock:
-                store.write()
+            store.write()
     if halt.asked:
         raise interrupted(store)
     if firsts and len(store.errors) == len(store.done):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -61,6 +62,7 @@ def stability_chart(
     method: str = "auto",
     rtol: float = 1e-9,
     workers: int | None = None,
+    executor: Executor | None = None,
     progress: Tell | None = None,
     partial: str | Path | None = None,
 ) -> StabilityChart:
@@ -69,7 +71,8 @@ def stability_chart(
     At each point the Floquet multipliers of `floquet`, for its arguments: of rates that are linear
     in the states (Hill, Mathieu, Meissner) those of zero; of others those of the motion through the
     start states, which must be periodic at each point, as an equilibrium is. Points are made in
-    parallel; with `partial`, a .npz file, an interrupted chart goes on where it was.
+    parallel, as in `simulate_many`; with `partial`, a .npz file, an interrupted chart goes on
+    where it was.
 
     Raises OptionError; AnalysisError where no point could be made.
     """
@@ -87,13 +90,8 @@ def stability_chart(
     store = Partial(partial, identity, len(xs) * len(ys), 3)
 
     tries = Tries(model, period, begin, start, parameters, preset, method, rtol)
-
-    def point(number: int, halt: Halt) -> Vector:
-        row, column = divmod(number, len(xs))
-        found = tries.floquet({x[0]: float(xs[column]), y[0]: float(ys[row])})
-        return np.array([found.radius, found.period, found.margin])
-
-    work_through(point, store, workers, progress)
+    point = _Point(tries, (x[0], xs), (y[0], ys))
+    work_through(point, store, workers, progress, executor)
     radius, lengths, margin = store.rows.reshape(len(ys), len(xs), 3).transpose(2, 0, 1)
     with np.errstate(divide="ignore"):
         exponent = np.log(radius) / lengths
@@ -102,3 +100,18 @@ def stability_chart(
     return StabilityChart(
         model.flat.title, x[0], xs, y[0], ys, radius, exponent, margin, units, errors=errors
     )
+
+
+@dataclass(frozen=True)
+class _Point:
+    """Radius, period and margin at a point of a chart, by its number."""
+
+    tries: Tries
+    x: tuple[str, Vector]
+    y: tuple[str, Vector]
+
+    def __call__(self, number: int, halt: Halt) -> Vector:
+        (x, xs), (y, ys) = self.x, self.y
+        row, column = divmod(number, len(xs))
+        found = self.tries.floquet({x: float(xs[column]), y: float(ys[row])})
+        return np.array([found.radius, found.period, found.margin])

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-import itertools
 import math
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Unpack
@@ -63,6 +63,7 @@ def sweep(
     *,
     since: float | None = None,
     workers: int | None = None,
+    executor: Executor | None = None,
     progress: Tell | None = None,
     partial: str | Path | None = None,
     **options: Unpack[Options],
@@ -72,8 +73,9 @@ def sweep(
     `grid` maps parameters, and `start.NAME` of start values, to values in SI. `outputs` are
     end(s), max(s), min(s), range(s), mean(s), rms(s) of a signal s, over the samples from
     the time `since` in s on, and `events`, the number of them. `options` are those of `simulate`.
-    Points are run in parallel; with `partial`, a .npz file, an interrupted sweep goes on where it
-    was. Raises OptionError; the error of the first point where all of them fail.
+    Points are run in parallel, as in `simulate_many`; with `partial`, a .npz file, an interrupted
+    sweep goes on where it was. Raises OptionError; the error of the first point where all of them
+    fail.
     """
     unknown_options = [
         unknown("option", name, Options.__annotations__)
@@ -89,7 +91,6 @@ def sweep(
     if not measures:
         what = "a sweep without outputs keeps nothing"
         raise OptionError([Problem(what, hint="Name one, such as 'max(x)'.")])
-    points = list(itertools.product(*(values.tolist() for values in axes.values())))
     identity = {
         "diagram": fingerprint(model),
         "kind": "sweep",
@@ -97,26 +98,39 @@ def sweep(
         "outputs": [name for name, _, _ in measures],
         "options": [since, sorted((name, _identity(value)) for name, value in options.items())],
     }
-    store = Partial(partial, identity, len(points), len(measures))
-
-    def point(number: int, halt: Halt) -> Vector:
-        here = dict(zip(axes, points[number], strict=True))
-        own = {n: v for n, v in here.items() if n in model.flat.parameters}
-        starts = {n.removeprefix(START): v for n, v in here.items() if n not in own}
-        given = dict(options)
-        given["parameters"] = {**(options.get("parameters") or {}), **own}
-        given["start"] = {**(options.get("start") or {}), **starts}
-        run = simulate(seen, **given)  # type: ignore[arg-type]
-        return np.array([_number(run, kind, signal, since) for _, kind, signal in measures])
-
-    work_through(point, store, workers, progress)
     shape = tuple(len(values) for values in axes.values())
+    store = Partial(partial, identity, math.prod(shape), len(measures))
+
+    work_through(_Point(seen, axes, measures, since, options), store, workers, progress, executor)
     values = {name: store.rows[:, n].reshape(shape) for n, (name, _, _) in enumerate(measures)}
     errors = {
         tuple(int(i) for i in np.unravel_index(number, shape)): text
         for number, text in sorted(store.errors.items())
     }
     return Sweep(model.flat.title, axes, values, errors)
+
+
+@dataclass(frozen=True)
+class _Point:
+    """The numbers of a point of a grid, by its number."""
+
+    model: Model
+    axes: Mapping[str, Vector]
+    measures: Sequence[tuple[str, str, str]]
+    since: float | None
+    options: Options
+
+    def __call__(self, number: int, halt: Halt) -> Vector:
+        shape = tuple(len(values) for values in self.axes.values())
+        place = np.unravel_index(number, shape)
+        here = {n: float(v[i]) for (n, v), i in zip(self.axes.items(), place, strict=True)}
+        own = {n: v for n, v in here.items() if n in self.model.flat.parameters}
+        starts = {n.removeprefix(START): v for n, v in here.items() if n not in own}
+        given = dict(self.options)
+        given["parameters"] = {**(self.options.get("parameters") or {}), **own}
+        given["start"] = {**(self.options.get("start") or {}), **starts}
+        run = simulate(self.model, **given)  # type: ignore[arg-type]
+        return np.array([_number(run, kind, s, self.since) for _, kind, s in self.measures])
 
 
 def grid_of(model: Model, grid: Mapping[str, ArrayLike]) -> dict[str, Vector]:

@@ -1,19 +1,19 @@
-"""The work of a sweep: its points side by side in threads, with progress, and a file to resume."""
+"""The work of a sweep: its points side by side, with progress, and a file to resume."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from concurrent.futures import Executor
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.analyse.partial import Partial
-from tracewire.errors import OptionError, Problem, TracewireError
+from tracewire.errors import Problem, TracewireError
 from tracewire.solve import Interrupted
 from tracewire.solve.interrupt import Halt, until_interrupted
-from tracewire.solve.many import cores
+from tracewire.solve.parallel import crew, each
 
 Vector = NDArray[np.float64]
 Tell = Callable[[float, float], object]
@@ -43,37 +43,27 @@ def work_through(
     partial: Partial,
     workers: int | None = None,
     progress: Tell | None = None,
+    executor: Executor | None = None,
 ) -> None:
     """Make all rows of `partial` that are not done: point(number, halt) gives one of them.
 
     A point that raises a TracewireError fails for itself. Raises the error of the first point where
     all fail, and Interrupted where the user stops the work; what is done is in the file then.
     """
-    threads = checked(workers)
-    missing = np.flatnonzero(~partial.done).tolist()
+    missing = [(number,) for number in np.flatnonzero(~partial.done).tolist()]
     tell = Progress(progress, len(partial.done), len(partial.done) - len(missing))
-    waiting: dict[Future[Vector], int] = {}
     first: TracewireError | None = None
-    with until_interrupted() as halt, ThreadPoolExecutor(threads) as pool:
+    with until_interrupted() as halt, crew(point, halt, workers, executor) as made:
         try:
-            while (missing or waiting) and not halt.asked:
-                while missing and len(waiting) < 2 * threads:
-                    number = missing.pop(0)
-                    waiting[pool.submit(point, number, halt)] = number
-                ended, _ = wait(waiting, return_when=FIRST_COMPLETED)
-                for future in ended:
-                    number = waiting.pop(future)
-                    try:
-                        partial.put(number, future.result())
-                    except Interrupted:
-                        continue
-                    except TracewireError as error:
-                        first = first or error
-                        partial.put(number, None, str(error))
-                    tell.step()
-        except BaseException:
-            halt.asked = True
-            raise
+            for (number,), result in each(made, missing):
+                if isinstance(result, Interrupted):
+                    continue
+                if isinstance(result, TracewireError):
+                    first = first or result
+                    partial.put(number, None, str(result))
+                else:
+                    partial.put(number, result)
+                tell.step()
         finally:
             partial.write()
     if halt.asked:
@@ -88,11 +78,3 @@ def interrupted(partial: Partial) -> Interrupted:
     kept = f"They are in '{partial.path}': the same command goes on from there."
     hint = kept if partial.path else "Name a partial file (partial=, --partial) to keep them."
     return Interrupted([Problem(what, hint=hint)])
-
-
-def checked(workers: int | None) -> int:
-    """The number of threads. Raises OptionError."""
-    if workers is not None and workers < 1:
-        what = f"{workers} workers cannot work"
-        raise OptionError([Problem(what, hint="Give a whole number above 0, or None.")])
-    return workers or cores()

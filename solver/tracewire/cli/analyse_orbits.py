@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tracewire.cli.executors import ExecutorAddress, executor_at
 from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries
 from tracewire.cli.output import telling, working
 from tracewire.cli.setting import (
@@ -188,6 +189,7 @@ def chart(
     start: Start = None,
     rtol: Rtol = 1e-9,
     workers: Workers = None,
+    executor: ExecutorAddress = "",
     partial: PartialFile = None,
     figure: FigureFile = None,
     output: OutputFile = None,
@@ -208,7 +210,7 @@ def chart(
         what = f"--over names {len(grid)} parameter{'s' * (len(grid) != 1)}, and a chart has two"
         raise OptionError([Problem(what, hint="Give --over a=0:5:101 --over q=0:2:41.")])
     across, up = grid.items()
-    with working("charting") as show:
+    with executor_at(executor) as pool, working("charting") as show:
         from tracewire.analyse import stability_chart
 
         found = stability_chart(
@@ -220,6 +222,7 @@ def chart(
             start=setting.start,
             rtol=rtol,
             workers=workers,
+            executor=pool,
             partial=partial,
             progress=telling("charting", show),
             **setting.options,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tracewire.cli.executors import ExecutorAddress, executor_at
 from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries
 from tracewire.cli.output import telling, working
 from tracewire.cli.setting import (
@@ -158,6 +159,7 @@ def bifurcation(
     start: Start = None,
     rtol: Rtol = 1e-6,
     workers: Workers = None,
+    executor: ExecutorAddress = "",
     partial: PartialFile = None,
     figure: FigureFile = None,
     output: OutputFile = None,
@@ -187,7 +189,7 @@ def bifurcation(
             from tracewire.errors import unknown
 
             raise OptionError([unknown("state", state, setting.model.states) for state in wrong])
-    with working(f"going through {name}") as show:
+    with executor_at(executor) as pool, working(f"going through {name}") as show:
         from tracewire.analyse import bifurcation as bifurcation_of
 
         found = bifurcation_of(
@@ -202,6 +204,7 @@ def bifurcation(
             start=setting.start,
             rtol=rtol,
             workers=workers,
+            executor=pool,
             partial=partial,
             progress=telling(f"going through {name}", show),
             **setting.options,

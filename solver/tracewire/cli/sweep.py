@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from tracewire.cli.executors import ExecutorAddress, executor_at
 from tracewire.cli.one_run import Since, Span
 from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries
 from tracewire.cli.output import telling, working
@@ -55,6 +56,7 @@ def sweep(
     series: SeriesName = "",
     rtol: Rtol = 1e-6,
     workers: Workers = None,
+    executor: ExecutorAddress = "",
     partial: PartialFile = None,
     figure: FigureFile = None,
     output: OutputFile = None,
@@ -74,7 +76,7 @@ def sweep(
     setting = read_setting(diagram, library, preset, values, start, figure=figure, output=output)
     grid = values_of(setting.model, over)
     given = read_series(setting.model, series)
-    with working("sweeping") as show:
+    with executor_at(executor) as pool, working("sweeping") as show:
         from tracewire.analyse import sweep as sweep_of
 
         found = sweep_of(
@@ -83,6 +85,7 @@ def sweep(
             keep,
             since=since,
             workers=workers,
+            executor=pool,
             progress=telling("sweeping", show),
             partial=partial,
             parameters={**given.parameters, **setting.parameters},

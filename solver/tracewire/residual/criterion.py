@@ -22,7 +22,7 @@ from tracewire.residual.sensing import Sensing
 from tracewire.solve import Interrupted, Limits, Run, simulate
 from tracewire.solve.interrupt import until_interrupted
 from tracewire.solve.limits import beyond_budget
-from tracewire.solve.many import cores
+from tracewire.solve.parallel import cores
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]

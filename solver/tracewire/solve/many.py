@@ -1,15 +1,13 @@
-"""`simulate_many`: runs of one model for rows of parameters, side by side in threads.
+"""`simulate_many`: runs of one model for rows of parameters, side by side.
 
-The core is called with Python's lock released, so that threads are enough. Each row is what
-`simulate` gives for it alone, bit for bit, however many threads there are.
+Each row is what `simulate` gives for it alone, bit for bit, whoever runs it.
 """
 
 from __future__ import annotations
 
-import os
 import time
-from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import Unpack
 
@@ -21,6 +19,7 @@ from tracewire.errors import OptionError, Problem, SimulationError, TracewireErr
 from tracewire.solve.execute import Tell
 from tracewire.solve.interrupt import Interrupted, until_interrupted
 from tracewire.solve.observers import Observer, Section
+from tracewire.solve.parallel import crew, each
 from tracewire.solve.task import START, Options, Outcome, Row, Task
 
 Vector = NDArray[np.float64]
@@ -69,6 +68,7 @@ def simulate_many(
     *,
     observe: Observer | Sequence[Observer] = "samples",
     workers: int | None = None,
+    executor: Executor | None = None,
     progress: Tell | None = None,
     **options: Unpack[Options],
 ) -> Runs:
@@ -78,8 +78,10 @@ def simulate_many(
     a mapping from such names to arrays of equal lengths. `observe` says what is kept of each run:
     "samples", a `Section`, a function of a Run that gives a number or an array, or several of
     these. `workers` is the number of threads, the number of cores unless given; a criterion may be
-    called in any of them. `progress` is told the part of the rows that is done, and the seconds
-    that are left. All else is as in `simulate`.
+    called in any of them. With an `executor` of `concurrent.futures` its workers run the rows, with
+    the same results to the last bit; a criterion is a function of a module then.
+    `progress` is told the part of the rows that is done, and the seconds that are left. All else is
+    as in `simulate`.
 
     A row that fails does not end the others. Raises OptionError for arguments that do not fit, the
     error of the first row where all of them fail, and Interrupted with the rows that are done.
@@ -93,67 +95,37 @@ def simulate_many(
         raise OptionError(unknown_options)
     table = _rows(model, rows)
     observers = _observers(observe)
-    if workers is not None and workers < 1:
-        what = f"{workers} workers cannot work"
-        raise OptionError([Problem(what, hint="Give a whole number above 0, or None.")])
     outcomes: dict[int, Outcome] = {}
     errors: dict[int, TracewireError] = {}
     task = Task(model, table, observers, options)
-    with until_interrupted() as halt:
-        task.halt = halt
-        threads = min(workers or cores(), max(1, len(table)))
+    ended: SimulationError | None = None
+    with until_interrupted() as halt, crew(task.run, halt, workers, executor) as made:
         began, told = time.perf_counter(), -1.0
-        for number, outcome in _each(task, threads):
-            if isinstance(outcome, Outcome):
-                outcomes[number] = outcome
-            else:
-                errors[number] = outcome
-            done, seconds = len(outcomes) + len(errors), time.perf_counter() - began
-            if progress is not None and (seconds - told >= 0.1 or done == len(table)):
-                told = seconds
-                progress(done / len(table), seconds * (len(table) - done) / done)
-    if halt.asked:
+        try:
+            for (number, _), outcome in each(made, list(enumerate(table))):
+                if isinstance(outcome, Outcome):
+                    outcomes[number] = outcome
+                else:
+                    errors[number] = outcome
+                done, seconds = len(outcomes) + len(errors), time.perf_counter() - began
+                if progress is not None and (seconds - told >= 0.1 or done == len(table)):
+                    told = seconds
+                    progress(done / len(table), seconds * (len(table) - done) / done)
+        except SimulationError as error:
+            ended = error
+    stopped = halt.asked or ended is not None
+    if stopped:
         for number in range(len(table)):
             if number not in outcomes:
                 errors.setdefault(number, Interrupted([Problem("interrupted before it began")]))
     elif not outcomes:
         raise errors[0]
     runs = _gathered(model, table, outcomes, errors)
-    if halt.asked:
+    if stopped:
         what = f"interrupted when {len(outcomes)} of {len(table)} runs were done"
-        hint = "They are in `.runs` of this error."
-        raise Interrupted([Problem(what, hint=hint)], runs=runs)
+        problems = [Problem(what, hint="They are in `.runs` of this error.")]
+        raise Interrupted([*(ended.problems if ended else ()), *problems], runs=runs)
     return runs
-
-
-def _each(task: Task, threads: int) -> Iterator[tuple[int, Outcome | TracewireError]]:
-    """The rows with what became of them, as they are done."""
-
-    def attempt(number: int) -> tuple[int, Outcome | TracewireError]:
-        try:
-            return number, task.run(number)
-        except TracewireError as error:
-            return number, error
-
-    if threads == 1:
-        for number in range(len(task.rows)):
-            if task.halt.asked:
-                return
-            yield attempt(number)
-        return
-    with ThreadPoolExecutor(threads, thread_name_prefix="tracewire") as pool:
-        futures = [pool.submit(attempt, number) for number in range(len(task.rows))]
-        try:
-            for future in as_completed(futures):
-                yield future.result()
-                if task.halt.asked:
-                    pool.shutdown(wait=True, cancel_futures=True)
-                    yield from (f.result() for f in futures if f.done() and not f.cancelled())
-                    return
-        except BaseException:  # a callback of the user has failed, or a second Ctrl-C
-            task.halt.asked = True
-            pool.shutdown(wait=True, cancel_futures=True)
-            raise
 
 
 def _rows(model: Model, rows: Sequence[Row] | Mapping[str, ArrayLike]) -> list[Row]:
@@ -193,11 +165,6 @@ def _observers(observe: Observer | Sequence[Observer]) -> list[Observer]:
             text = f"{number} observers are a {what}"
             raise OptionError([Problem(text, hint=f"Give one {what}.")])
     return several  # type: ignore[return-value]
-
-
-def cores() -> int:
-    """The cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _gathered(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TypedDict
+from typing import Any, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -83,7 +83,7 @@ class Task:
         self, model: Model, rows: Sequence[Row], observers: Sequence[Observer], options: Options
     ) -> None:
         self.model, self.rows, self.options = model, rows, options
-        self.halt = Halt()
+        self.observers = tuple(observers)
         self.parameters = dict(options.get("parameters") or {})
         self.start = dict(options.get("start") or {})
         self.preset = options.get("preset", "")
@@ -108,6 +108,10 @@ class Task:
         self.flow = new_flow(model, vector, packed(tables))
         self.check_times()
         library()  # not in a thread
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """What pickle keeps: one row that has values stands for all; a run is given its own."""
+        return Task, (self.model, [self.one], self.observers, self.options)
 
     @property
     def inputs(self) -> Mapping[str, tuple[ArrayLike, ArrayLike]]:
@@ -136,7 +140,11 @@ class Task:
         problem: TracewireError | None = None
         for row in self.rows:
             try:
-                return parameter_values(self.model, self.parameters_and_start(row)[0], self.preset)
+                values = parameter_values(
+                    self.model, self.parameters_and_start(row)[0], self.preset
+                )
+                self.one = row
+                return values
             except TracewireError as error:
                 problem = problem or error
         raise problem or OptionError([Problem("there are no rows")])
@@ -165,10 +173,10 @@ class Task:
                 hint = "Give span= and times=, or observe something else than samples."
                 raise OptionError([Problem(what, hint=hint)])
 
-    def run(self, number: int) -> Outcome:
+    def run(self, number: int, row: Row, halt: Halt) -> Outcome:
         """The run of one row, and what is kept of it. Raises TracewireError."""
         model, options, base = self.model, self.options, self.flow
-        given, start = self.parameters_and_start(self.rows[number])
+        given, start = self.parameters_and_start(row)
         values = parameter_values(model, given, self.preset)
         begin, end, times = self.grid(values)
         if not (self.sampled or self.criterion):
@@ -203,7 +211,7 @@ class Task:
             state = state._replace(samples=np.full((len(every), width), np.nan))
         nothing = new_sensitivity(model, flow, state, (), UNMOVED, {}, {})
         arrays = new_arrays(flow, self.plan, state, nothing)
-        execution = Execution(model, arrays, self.limits, begin, halt=self.halt)
+        execution = Execution(model, arrays, self.limits, begin, halt=halt)
         execution.run()
         points = np.empty((0, 1 + len(x)))
         if section is not None and section.guard:

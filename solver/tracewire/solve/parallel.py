@@ -1,0 +1,175 @@
+"""Independent work side by side: in threads of this process, or wherever an executor runs it.
+
+A job is a function of a number and a `Halt`. Threads call it as it is: the core and numpy let go of
+Python's lock. An executor of `concurrent.futures` (of processes, dask, MPI) gets the job pickled,
+with several numbers at a time; a process that has seen a job keeps it, and with it the machine code
+of its model.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import pickle
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    Executor,
+    Future,
+    ThreadPoolExecutor,
+    wait,
+)
+from contextlib import contextmanager
+from functools import lru_cache
+from typing import Any, Generic, TypeVar
+
+from tracewire.errors import OptionError, Problem, SimulationError, TracewireError
+from tracewire.solve.interrupt import Halt
+
+T = TypeVar("T")
+Job = Callable[..., T]
+"""A function of some arguments and a `Halt`; it is picklable where an executor is to run it."""
+
+CHUNK = 0.5  # s of work that an executor is given at a time
+AHEAD = 2  # tasks that wait, for each worker
+JOBS = 8  # that a process keeps
+
+
+class Crew(Generic[T]):
+    """Who carries out a job: `submit` its arguments, and take from `done` what became of them."""
+
+    def __init__(self, job: Job[T], pool: Executor, halt: Halt, remote: bool, workers: int) -> None:
+        self.job, self.pool, self.halt, self.workers = job, pool, halt, workers
+        self.waiting: dict[Future[Any], Sequence[tuple[Any, ...]]] = {}
+        self.seconds = 0.0  # of a task, the last time
+        self.content = pickle.dumps(job) if remote else b""
+        self.key = hashlib.sha256(self.content).digest()
+
+    @property
+    def has_room(self) -> bool:
+        """Whether another task would not only wait."""
+        return len(self.waiting) < AHEAD * self.workers
+
+    @property
+    def chunk(self) -> int:
+        """How many tasks are handed out at once."""
+        return max(1, int(CHUNK / self.seconds)) if self.content and self.seconds else 1
+
+    def submit(self, tasks: Sequence[tuple[Any, ...]]) -> None:
+        """Hand out some tasks, each with the arguments of the job."""
+        if self.content:
+            future = self.pool.submit(_elsewhere, self.key, self.content, tasks)
+        else:
+            future = self.pool.submit(_here, self.job, tasks, self.halt)
+        self.waiting[future] = tasks
+
+    def drop(self) -> None:
+        """Forget what has not begun."""
+        for future in [future for future in self.waiting if future.cancel()]:
+            del self.waiting[future]
+
+    def done(self) -> Iterator[tuple[tuple[Any, ...], T | TracewireError]]:
+        """What has ended, at least one task, with its arguments.
+
+        Raises SimulationError where a worker has ended that the executor does not replace.
+        """
+        ended, _ = wait(self.waiting, return_when=FIRST_COMPLETED)
+        for future in ended:
+            tasks = self.waiting.pop(future)
+            try:
+                results, seconds = future.result()
+            except BrokenExecutor as error:
+                what = f"a worker of the executor has ended ({error})"
+                raise SimulationError([Problem(what, hint="Give a new executor.")]) from error
+            self.seconds = seconds / len(tasks)
+            yield from zip(tasks, results, strict=True)
+
+
+@contextmanager
+def crew(
+    job: Job[T], halt: Halt, workers: int | None = None, executor: Executor | None = None
+) -> Iterator[Crew[T]]:
+    """Threads, as many as there are `workers`, or an executor; what waits at the end is dropped.
+
+    Raises OptionError: less than one worker, a job that cannot be sent.
+    """
+    count = checked(workers)
+    if executor is None:
+        with ThreadPoolExecutor(count, thread_name_prefix="tracewire") as pool:
+            yield from _working(Crew(job, pool, halt, False, count))
+        return
+    if workers is None:
+        count = getattr(executor, "_max_workers", None) or count
+    try:
+        made = Crew(job, executor, halt, True, count)
+    except (pickle.PicklingError, AttributeError, TypeError) as error:
+        what = f"this cannot be sent to another process: {error}"
+        hint = "Give functions that a module defines, not a lambda or one inside of another."
+        raise OptionError([Problem(what, hint=hint)]) from error
+    yield from _working(made)
+
+
+def _working(made: Crew[T]) -> Iterator[Crew[T]]:
+    try:
+        yield made
+    except BaseException:
+        made.halt.asked = True
+        raise
+    finally:
+        made.drop()
+
+
+def each(
+    made: Crew[T], tasks: Sequence[tuple[Any, ...]]
+) -> Iterator[tuple[tuple[Any, ...], T | TracewireError]]:
+    """The tasks with what became of them, in the order in which they end, until the user stops it.
+
+    Then what has begun comes to its end and is given, too.
+    """
+    missing = list(reversed(tasks))
+    while (missing or made.waiting) and not made.halt.asked:
+        while missing and made.has_room:
+            made.submit([missing.pop() for _ in range(min(made.chunk, len(missing)))])
+        yield from made.done()
+    made.drop()
+    while made.waiting:
+        yield from made.done()
+
+
+def checked(workers: int | None) -> int:
+    """The number of workers, the cores unless given. Raises OptionError."""
+    if workers is not None and workers < 1:
+        what = f"{workers} workers cannot work"
+        raise OptionError([Problem(what, hint="Give a whole number above 0, or None.")])
+    return workers or cores()
+
+
+def cores() -> int:
+    """The cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _here(
+    job: Job[T], tasks: Sequence[tuple[Any, ...]], halt: Halt
+) -> tuple[list[T | TracewireError], float]:
+    """What the job makes of some tasks, and the seconds that it took."""
+    began, results = time.perf_counter(), list[T | TracewireError]()
+    for arguments in tasks:
+        try:
+            results.append(job(*arguments, halt))
+        except TracewireError as error:
+            results.append(error)
+    return results, time.perf_counter() - began
+
+
+def _elsewhere(
+    key: bytes, content: bytes, tasks: Sequence[tuple[Any, ...]]
+) -> tuple[list[Any], float]:
+    return _here(_job(key, content), tasks, Halt())
+
+
+@lru_cache(maxsize=JOBS)
+def _job(key: bytes, content: bytes) -> Job[Any]:
+    return pickle.loads(content)  # type: ignore[no-any-return]
