@@ -63,7 +63,21 @@ def test_the_file_lies_beside_the_sources_then(
     (core_file.PACKAGED / "core-old.o").touch()
     file = core_file.put_beside_sources()
     assert [one.name for one in core_file.PACKAGED.iterdir()] == [core_file.file_name()]
-    assert file.read_bytes() == b"machine code" == core_file.object_code()
+    assert core_file.object_code() == b"machine code"
+    assert file.read_bytes().endswith(b"machine code")
+
+
+@pytest.mark.parametrize("left", [0, 10, 40, -1])
+def test_a_damaged_file_of_the_package_is_not_used(
+    changed: Path, left: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What LLVM makes of half an object file is a crash."""
+    monkeypatch.setattr(core_file, "make", lambda: b"machine code")
+    file = core_file.put_beside_sources()
+    file.write_bytes(file.read_bytes()[:left])
+    monkeypatch.setattr(core_file, "make", lambda: b"made anew")
+    monkeypatch.setenv("TRACEWIRE_CACHE_DIR", str(changed / "another cache"))
+    assert core_file.object_code() == b"made anew"
 
 
 @pytest.mark.slow

@@ -71,10 +71,9 @@ class CodeStore:
             return None
         except OSError:
             whole = b""
-        digest, content = whole[:DIGEST], whole[DIGEST:]
-        if digest != _digest(name, content):
+        content = opened(name, whole)
+        if content is None:
             self.damaged(name)
-            return None
         return content
 
     def write(self, name: str, content: bytes) -> None:
@@ -82,7 +81,7 @@ class CodeStore:
         if not self.works:
             return
         try:
-            write_file(self.folder / name, _digest(name, content) + content, 0o600)
+            write_file(self.folder / name, sealed(name, content), 0o600)
         except OSError as error:
             self._give_up(error.strerror or str(error))
 
@@ -160,8 +159,15 @@ class CodeStore:
             return descriptor
 
 
-def _digest(name: str, content: bytes) -> bytes:
-    return hashlib.sha256(name.encode() + b"\0" + content).digest()
+def sealed(name: str, content: bytes) -> bytes:
+    """A content with the SHA-256 of its name and itself before it."""
+    return hashlib.sha256(name.encode() + b"\0" + content).digest() + content
+
+
+def opened(name: str, whole: bytes) -> bytes | None:
+    """The content that was sealed under a name; None where it is damaged."""
+    content = whole[DIGEST:]
+    return content if whole == sealed(name, content) else None
 
 
 def _is_own(status: os.stat_result) -> bool:

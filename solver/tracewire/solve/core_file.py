@@ -23,7 +23,7 @@ import platformdirs
 
 from tracewire.errors import InstallationError
 from tracewire.files import write_file
-from tracewire.solve.code_store import CACHE, CodeStore, tell
+from tracewire.solve.code_store import CACHE, CodeStore, opened, sealed, tell
 
 HERE = Path(__file__).resolve().parent
 PACKAGED = HERE / "core_library"
@@ -62,25 +62,30 @@ def object_code() -> bytes:
     Raises InstallationError where that cannot be.
     """
     name = file_name()
-    try:
-        return (PACKAGED / name).read_bytes()
-    except OSError:
-        return kept_or_made(name, _store(), make)
+    return _packaged(name) or kept_or_made(name, _store(), make)
 
 
 def is_there() -> bool:
     """Whether the object file need not be made."""
     name = file_name()
-    return (PACKAGED / name).is_file() or _store().read(name) is not None
+    return (_packaged(name) or _store().read(name)) is not None
 
 
 def put_beside_sources() -> Path:
     """Where the object file then lies in the package; those of other sources are removed."""
-    content = object_code()
+    name, content = file_name(), object_code()
     PACKAGED.mkdir(exist_ok=True)
     for file in PACKAGED.glob("*.o"):
         file.unlink()
-    return write_file(PACKAGED / file_name(), content)
+    return write_file(PACKAGED / name, sealed(name, content))
+
+
+def _packaged(name: str) -> bytes | None:
+    """The object file beside the sources; None where there is none, or it is damaged."""
+    try:
+        return opened(name, (PACKAGED / name).read_bytes())
+    except OSError:
+        return None
 
 
 def kept_or_made(name: str, files: CodeStore, make: Callable[[], bytes]) -> bytes:
