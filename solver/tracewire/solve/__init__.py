@@ -112,10 +112,11 @@ on it keeps its last side while the stop holds.
 from tracewire.solve.held import Driving, Held, values_at, with_points
 from tracewire.solve.interrupt import Interrupted
 from tracewire.solve.limits import Limits
-from tracewire.solve.many import Runs, simulate_many
+from tracewire.solve.many import simulate_many
 from tracewire.solve.observers import Section
 from tracewire.solve.passage import Passage
 from tracewire.solve.run import Event, Run, Sensitivities, Statistics
+from tracewire.solve.runs import Runs
 from tracewire.solve.simulate import parameter_values, simulate
 from tracewire.solve.space import release
 from tracewire.solve.spans import Span, SpanRuns, simulate_spans

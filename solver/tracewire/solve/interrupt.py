@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 from tracewire.errors import SimulationError
 
 if TYPE_CHECKING:
-    from tracewire.solve.many import Runs
     from tracewire.solve.run import Run
+    from tracewire.solve.runs import Runs
 
 
 @dataclass(eq=False)

@@ -8,7 +8,6 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
 from typing import Unpack
 
 import numpy as np
@@ -20,46 +19,12 @@ from tracewire.solve.execute import Tell
 from tracewire.solve.interrupt import Interrupted, until_interrupted
 from tracewire.solve.observers import Observer, Section
 from tracewire.solve.parallel import crew, each
+from tracewire.solve.runs import Runs
 from tracewire.solve.task import START, Options, Outcome, Row, Task
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 Cube = NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class Runs:
-    """Many runs of one model: `runs["name"]` (rows, N) in SI at `runs.t` (N,) in s.
-
-    `parameters` holds the rows, by name (rows,), NaN where a row does not have it. `final` (rows,
-    states) and `event_counts` (rows,) are always kept; `samples` (rows, N, signals), `points` (per
-    row K times 1 + states: time and states of the section) and `criterion` (rows, ...) if they are
-    observed, else they are empty. Of a row that failed all values are NaN, it has no points, and
-    `errors` holds the message by row.
-    """
-
-    t: Vector
-    signals: tuple[str, ...]
-    states: tuple[str, ...]
-    parameters: Mapping[str, Vector]
-    samples: Cube
-    final: Matrix
-    event_counts: Vector
-    points: tuple[Matrix, ...]
-    criterion: NDArray[np.float64]
-    errors: Mapping[int, str]
-
-    def __len__(self) -> int:
-        return len(self.final)
-
-    def __getitem__(self, name: str) -> Matrix:
-        if name not in self.signals:
-            hint = "Add it to `record:` of the diagram, or to `record=` of compile."
-            raise OptionError([unknown("recorded signal", name, self.signals, hint=hint)])
-        if not len(self.t):
-            what = "the samples of these runs were not kept"
-            raise OptionError([Problem(what, hint="Add 'samples' to `observe`.")])
-        return self.samples[:, :, self.signals.index(name)]
 
 
 def simulate_many(
