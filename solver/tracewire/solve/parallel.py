@@ -26,7 +26,7 @@ from functools import lru_cache
 from typing import Any, Generic, TypeVar
 
 from tracewire.errors import OptionError, Problem, SimulationError, TracewireError
-from tracewire.solve.interrupt import Halt
+from tracewire.solve.interrupt import Halt, Interrupted
 
 T = TypeVar("T")
 Job = Callable[..., T]
@@ -50,7 +50,7 @@ class Crew(Generic[T]):
     @property
     def has_room(self) -> bool:
         """Whether another task would not only wait."""
-        return len(self.waiting) < AHEAD * self.workers
+        return len(self.waiting) < max(1, AHEAD * self.workers)
 
     @property
     def chunk(self) -> int:
@@ -87,15 +87,29 @@ class Crew(Generic[T]):
             yield from zip(tasks, results, strict=True)
 
 
+class _Here(Executor):
+    """One worker, which is the thread that asks."""
+
+    def submit(self, function: Callable[..., T], /, *arguments: Any, **named: Any) -> Future[T]:
+        future: Future[T] = Future()
+        future.set_result(function(*arguments, **named))
+        return future
+
+
 @contextmanager
 def crew(
     job: Job[T], halt: Halt, workers: int | None = None, executor: Executor | None = None
 ) -> Iterator[Crew[T]]:
     """Threads, as many as there are `workers`, or an executor; what waits at the end is dropped.
 
+    One worker is the thread that asks, so that its callbacks run there.
+
     Raises OptionError: less than one worker, a job that cannot be sent.
     """
     count = checked(workers)
+    if executor is None and count == 1:
+        yield from _working(Crew(job, _Here(), halt, False, 0))
+        return
     if executor is None:
         with ThreadPoolExecutor(count, thread_name_prefix="tracewire") as pool:
             yield from _working(Crew(job, pool, halt, False, count))
@@ -157,6 +171,9 @@ def _here(
     """What the job makes of some tasks, and the seconds that it took."""
     began, results = time.perf_counter(), list[T | TracewireError]()
     for arguments in tasks:
+        if halt.asked:
+            results.append(Interrupted([Problem("interrupted before it began")]))
+            continue
         try:
             results.append(job(*arguments, halt))
         except TracewireError as error:
