@@ -62,7 +62,8 @@ def read_array(context: Any, builder: Any, kind: Group, address: Any, name: str)
     """The array whose address and shape stand in the table.
 
     LLVM is told that these never change, so that it reads them before a loop and not in it. That
-    holds for what a unit calls: `spans` changes the table of a run before it calls `advance`.
+    holds inside of a unit: `spans` changes the table of a run, and calls `advance` after that,
+    which therefore must not become a part of it (`noinline` in `link`).
     """
     place, array_kind = kind.arrays[name]
     table = builder.inttoptr(address, WORD.as_pointer())

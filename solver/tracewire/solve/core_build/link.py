@@ -22,7 +22,8 @@ def optimised(texts: Iterable[str], names: Iterable[str], target: Any) -> bytes:
         if function.is_declaration:
             continue
         if function.name in seen:
-            function.add_function_attribute("noinline")  # it would be compiled again in each caller
+            # A table may change between two calls of a unit, and not in one: see `read_array`.
+            function.add_function_attribute("noinline")
         else:
             function.linkage = "internal"
     tuning = binding.create_pipeline_tuning_options(speed_level=SPEED)
