@@ -1,4 +1,4 @@
-"""What the README says can be done is done here, in a copy of the diagrams."""
+"""What the README and the pages in docs say can be done is done here, in a copy of the diagrams."""
 
 from __future__ import annotations
 
@@ -13,15 +13,18 @@ from tracewire.diagram import read_text
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
+PAGES = [README, *(page.read_text(encoding="utf-8") for page in sorted(ROOT.glob("docs/*.md")))]
+MOST_LINES = 150
 
 
-def fenced(language: str) -> list[str]:
-    return re.findall(rf"```{language}\n(.*?)```", README, flags=re.DOTALL)
+def fenced(language: str, page: str = README) -> list[str]:
+    return re.findall(rf"```{language}\n(.*?)```", page, flags=re.DOTALL)
 
 
 COMMANDS = [
     line.split("#")[0].strip()
-    for block in fenced("sh")
+    for page in PAGES
+    for block in fenced("sh", page)
     for line in block.splitlines()
     if line.startswith("tracewire ")
 ]
@@ -34,15 +37,24 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_the_readme_shows_every_kind_of_example() -> None:
+def test_the_pages_show_every_kind_of_example() -> None:
     verbs = {shlex.split(command)[1] for command in COMMANDS}
     assert verbs == {"blocks", "check", "show", "run", "fit", "trace", "analyse", "sweep", "paper"}
     assert len(fenced("python")) == len(fenced("yaml")) == 1
 
 
+def test_the_readme_is_short() -> None:
+    assert len(README.splitlines()) <= MOST_LINES
+
+
+@pytest.mark.parametrize("link", re.findall(r"\]\(([^)\s]+)\)", README))
+def test_links_of_the_readme_lead_to_files(link: str) -> None:
+    assert (ROOT / link.split("#")[0]).exists()
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("command", COMMANDS)
-def test_each_command_of_the_readme_works(here: Path, command: str) -> None:
+def test_each_command_of_the_pages_works(here: Path, command: str) -> None:
     words = shlex.split(command)[1:]
     assert main(words) == 0
     for option in ("--output" if words[0] == "paper" else "--figure", "--report"):
