@@ -54,11 +54,21 @@ def test_elements_on_one_surface(seed: int) -> None:
     assert tally.judged == 1
 
 
-@pytest.mark.parametrize("seed", [1132004020, 1132005754])
+@pytest.mark.parametrize(
+    "seed",
+    [
+        1132004020,  # the rounding of one slide drowned the state on the other
+        1132005754,  # a body sank into a stop when a friction that held it there let go
+        2000005320,  # DOP853's estimate vanished by accident in a long step after an event
+        2000005794,  # the same
+        2000021644,  # a reset fired again when a sign that follows it moved its guard
+        2000023813,  # the same
+        2000034726,  # a play was left while a stop held the body that drives it
+    ],
+)
 def test_systems_that_were_wrong_once(seed: int) -> None:
-    """The rounding of one slide drowned the state on the other; a body sank into a stop when a
-    friction that held it there let go."""
     tally = fuzz(1, seed)
+    assert tally.refusals == []
     assert tally.wrong == []
     assert tally.judged == 1
 

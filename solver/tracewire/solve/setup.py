@@ -176,7 +176,7 @@ def new_progress(
     n, count = len(x), len(model.modes)
     width = LOG_HEAD + 2 * n
     progress = Progress(
-        now=np.zeros(9),
+        now=np.zeros(10),
         x=np.empty(n),
         atol=np.empty(n),
         ints=np.zeros(15, dtype=np.int64),

@@ -28,7 +28,7 @@ from tracewire.solve.core.flow import (
 )
 from tracewire.solve.core.linear import dot
 from tracewire.solve.core.modes import NOTHING, levels
-from tracewire.solve.core.readings import guard_rates, guard_values
+from tracewire.solve.core.readings import guard_rates, guard_values, guard_values_then
 from tracewire.solve.core.surface import pin
 from tracewire.solve.core.units import helper, unit
 
@@ -57,10 +57,18 @@ def bend(core: int, t: float, x: Vector, i: int) -> float:
 
 @unit
 def turns(
-    core: int, t: float, before: Vector, after: Vector, i: int, old: float, side: float
+    core: int,
+    t: float,
+    before: Vector,
+    then: Vector,
+    after: Vector,
+    i: int,
+    old: float,
+    side: float,
 ) -> bool:
     """Whether a reset is an impact: it turns the guard's rate, was `old`, and keeps the guard.
 
+    `then` are the modes before: a guard that jumps with a mode that follows the reset is not kept.
     `side` is 1 where the guard stays above zero, -1 where below; `old` counts along it.
     """
     flow = flow_of(core)
@@ -73,7 +81,7 @@ def turns(
     if not side * dot(slope, after - before) > 0:
         return False
     level = np.empty(modes)
-    guard_values(core, t, before, here)
+    guard_values_then(core, t, before, then, flow.bound, here)
     guard_values(core, t, after, there)
     levels(core, t, before, level)
     return bool(abs(there[i] - here[i]) <= level[i])

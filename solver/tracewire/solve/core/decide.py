@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracewire.solve.core.arrays import Ints, Vector, flow_of, plan_of, progress_of
+from tracewire.solve.core.codes import LENGTH
 from tracewire.solve.core.contact import bend
 from tracewire.solve.core.flow import (
     AFFINE,
@@ -37,6 +38,7 @@ from tracewire.solve.core.units import helper, unit
 MOST_TOGETHER = 6
 MOST_TRIED = 9  # 20 000 assignments, where the pivots end at none
 SLACK = 1e-9
+AHEAD = 1e-6  # of the span
 BLOCK_ROUNDS = 6
 MOST_ROUNDS = 500
 HELD = -1  # in place of a mode: the guard stays on its surface
@@ -308,6 +310,22 @@ def note_undetermined(core: int, t: float, x: Vector, zero: Ints) -> None:
 
 
 @unit
+def _stays(core: int, t: float, x: Vector, i: int) -> bool:
+    """Whether a guard whose rate is nothing keeps that rate while contacts rest.
+
+    `bend` does not know what a contact holds: the rate of a gear behind a body on a stop, say,
+    whose force goes on to change.
+    """
+    flow, n = flow_of(core), len(x)
+    modes, later = len(flow.bound), AHEAD * progress_of(core).now[LENGTH]
+    field, along, small = np.empty(n), np.empty(modes), np.empty(modes)
+    rates(core, t, x, field)
+    guard_rates(core, t + later, x + later * field, along)
+    rate_levels(core, t, x, small)
+    return bool(abs(along[i]) <= small[i])
+
+
+@unit
 def first_higher(core: int, t: float, x: Vector, i: int) -> float:
     """The first derivative of a guard, from the second to the fourth, that is not zero; 0: none.
 
@@ -322,7 +340,8 @@ def first_higher(core: int, t: float, x: Vector, i: int) -> float:
     if flow.counts[RESTING]:
         sizes(core, SECOND_SIZES, t, x, size)
         second = bend(core, t, x, i)
-        return second if abs(second) > NOTHING * size[i] else 0.0
+        nothing = abs(second) <= NOTHING * size[i] or _stays(core, t, x, i)
+        return 0.0 if nothing else second
     fractions = held(core, t, x) if flow.counts[SLIDING] else size[:0]
     for order in range(3):
         values = patterns(core, SECOND + order, t, x, count)

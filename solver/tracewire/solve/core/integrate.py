@@ -26,6 +26,7 @@ from tracewire.solve.core.codes import (
     FINISHED,
     FIXED,
     GUARD,
+    LAST,
     LENGTH,
     LOG_FULL,
     LOGGED,
@@ -370,8 +371,9 @@ def _attempt(core: int, rate: Vector, limit: float) -> int:
         if now[T] + h * (1.0 + 1e-9 if fixed else 1.01) >= limit:
             h = limit - now[T]
         methods.step(core, method, now[T], progress.x, rate, h)
-        error = methods.error_of(core, method, now[RTOL], progress.atol)
+        error = methods.error_of(core, method, now[RTOL], progress.atol, now[LAST])
         if error <= 1.0:
+            now[LAST] = h
             if method == ROSENBROCK:
                 ints[STIFF_STEPS] += 1
             now[RATIO] = min(6.0, max(0.2, safety * max(error, 1e-10) ** power))

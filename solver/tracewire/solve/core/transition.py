@@ -193,7 +193,9 @@ def _resets(
             side = contact.side_of(core, reset)
             done[reset], fired[i], speed[i] = 1, reset, side * along[i]
             timed = crossings.how[i] == TIME
-            turned[i] = not timed and contact.turns(core, t, before, x, i, speed[i], side)
+            turned[i] = not timed and contact.turns(
+                core, t, before, modes_before, x, i, speed[i], side
+            )
             jumps[i] = x - before
         _driven_together(core, t, before, x, along, due)
         guard_rates(core, t, x, along)
