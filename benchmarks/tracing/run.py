@@ -77,7 +77,7 @@ def main(arguments: Sequence[str]) -> int:
 
 def _all(cases: Sequence[Case], folder: Path, options: Any) -> tuple[list[dict[str, Any]], int]:
     """The rows of the cases, and how many could not be made."""
-    from benchmarks.tracing.refit import sanity
+    from benchmarks.tracing.sanity import sanity
     from benchmarks.tracing.work import generate, work
 
     rows: list[dict[str, Any]] = []
