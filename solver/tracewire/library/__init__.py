@@ -1,19 +1,11 @@
 """Block declarations: what a block is, and how a folder of block files becomes a library."""
 
 from tracewire.library.check_effect import Face, check_effect
-from tracewire.library.declare import (
-    Block,
-    Event,
-    Input,
-    Mode,
-    Output,
-    Parameter,
-    State,
-    Transition,
-)
+from tracewire.library.declare import Block
 from tracewire.library.describe import describe, describe_json, palette
 from tracewire.library.effect import SCALES, SYMBOLS, Effect, Scale, Shape, Tone
 from tracewire.library.load import Library, load_library
+from tracewire.library.parts import Event, Input, Mode, Output, Parameter, State, Transition
 
 __all__ = [
     "SCALES",

@@ -5,21 +5,18 @@ from __future__ import annotations
 import keyword
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from tracewire.errors import FormulaError, Place, Problem
 from tracewire.formula import is_name, read_unit
 from tracewire.library.check_effect import Face, check_effect
 from tracewire.library.check_formula import Use, check_formula
 from tracewire.library.check_memory import check_by_mode, check_memory
-
-if TYPE_CHECKING:
-    from tracewire.library.declare import Block, Input, Output, Parameter, State
+from tracewire.library.parts import Input, Output, Parameter, Parts, State
 
 
-def check_block(block: Block) -> list[Problem]:
-    """Every problem of a declaration, in the order of its parts."""
-    place = Place(block.place.file, block.place.line, 0, block.name)
+def check_block(block: Parts, place: Place) -> list[Problem]:
+    """Every problem of a declaration that stands at `place`, in the order of its parts."""
+    place = Place(place.file, place.line, 0, block.name)
     wires: Use = "wires"
     value: Use = "value"
     ports = {port.name: wires if port.many else value for port in block.inputs}
@@ -57,7 +54,7 @@ def _use(parameter: Parameter) -> Use:
     return "points" if parameter.kind == "points" else "value"
 
 
-def _check_names(block: Block, place: Place) -> list[Problem]:
+def _check_names(block: Parts, place: Place) -> list[Problem]:
     problems = []
     if not block.outputs:
         problems.append(Problem("a block needs at least one output", place))
@@ -80,7 +77,7 @@ def _check_names(block: Block, place: Place) -> list[Problem]:
     return problems + _check_shared(block, place)
 
 
-def _check_shared(block: Block, place: Place) -> list[Problem]:
+def _check_shared(block: Parts, place: Place) -> list[Problem]:
     """An output of several has the full name of a state of its name: both must be the same."""
     states = {state.name for state in block.states} | ({"mode"} if block.modes else set())
     hint = "Rename one: a diagram knows both by the same name."
@@ -110,7 +107,7 @@ def _check_parameters(parameters: Sequence[Parameter], place: Place) -> list[Pro
     return problems
 
 
-def _face(block: Block) -> Face:
+def _face(block: Parts) -> Face:
     return Face(
         ports={port.name: port.default is not None for port in block.inputs},
         parameters={p.name: p.default is not None for p in block.parameters},

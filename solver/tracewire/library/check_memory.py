@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
 
 from tracewire.errors import Place, Problem, unknown
 from tracewire.formula import is_name
 from tracewire.library.check_formula import Use, check_formula
-
-if TYPE_CHECKING:
-    from tracewire.library.declare import Block, ByMode, Event, Transition
+from tracewire.library.parts import ByMode, Event, Parts, Transition
 
 DIRECTIONS = ("up", "down", "both")
 KINDS = ("reset", "impact")
 
 
 def check_memory(
-    block: Block, visible: Mapping[str, Use], fixed: Mapping[str, Use], place: Place
+    block: Parts, visible: Mapping[str, Use], fixed: Mapping[str, Use], place: Place
 ) -> list[Problem]:
     """Every problem of modes, transitions and events, in this order.
 
@@ -42,7 +39,7 @@ def check_memory(
     return problems
 
 
-def formulas(block: Block, given: ByMode, what: str, place: Place) -> Iterator[str | Problem]:
+def formulas(block: Parts, given: ByMode, what: str, place: Place) -> Iterator[str | Problem]:
     """The texts of a formula, one for each mode where it has several, and problems of that form."""
     if isinstance(given, str):
         yield given
@@ -58,7 +55,7 @@ def formulas(block: Block, given: ByMode, what: str, place: Place) -> Iterator[s
 
 
 def check_by_mode(
-    block: Block, given: ByMode, what: str, visible: Mapping[str, Use], place: Place
+    block: Parts, given: ByMode, what: str, visible: Mapping[str, Use], place: Place
 ) -> list[Problem]:
     """The problems of a formula that may be one for each mode."""
     problems: list[Problem] = []
@@ -67,7 +64,7 @@ def check_by_mode(
     return problems
 
 
-def _check_modes(block: Block, visible: Mapping[str, Use], place: Place) -> Iterator[Problem]:
+def _check_modes(block: Parts, visible: Mapping[str, Use], place: Place) -> Iterator[Problem]:
     names = [mode.name for mode in block.modes]
     if len(names) == 1:
         hint = "Declare a second one, or none."
@@ -85,7 +82,7 @@ def _check_modes(block: Block, visible: Mapping[str, Use], place: Place) -> Iter
 
 
 def _check_transition(
-    block: Block, transition: Transition, visible: Mapping[str, Use], place: Place
+    block: Parts, transition: Transition, visible: Mapping[str, Use], place: Place
 ) -> list[Problem]:
     modes = [mode.name for mode in block.modes]
     ends = (transition.source, transition.target)
@@ -102,7 +99,7 @@ def _check_transition(
     return problems + _check_set(block, transition.set, shown, visible, place)
 
 
-def _check_reached(block: Block, place: Place) -> list[Problem]:
+def _check_reached(block: Parts, place: Place) -> list[Problem]:
     """The modes that no run can reach: no start, and no way from one that is."""
     reached = {mode.name for mode in block.modes if mode.start is not None}
     reached |= {mode.name for mode in block.modes[:1]}
@@ -121,7 +118,7 @@ def _check_reached(block: Block, place: Place) -> list[Problem]:
 
 
 def _check_event(
-    block: Block,
+    block: Parts,
     event: Event,
     visible: Mapping[str, Use],
     fixed: Mapping[str, Use],
@@ -152,7 +149,7 @@ def _check_event(
 
 
 def _check_set(
-    block: Block,
+    block: Parts,
     values: Mapping[str, ByMode],
     shown: str,
     visible: Mapping[str, Use],

@@ -6,18 +6,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 
 from tracewire.errors import BlockError, Problem, unknown
-from tracewire.library.declare import (
-    Block,
-    ByMode,
-    Event,
-    Input,
-    Mode,
-    Output,
-    Parameter,
-    Transition,
-)
+from tracewire.library.declare import Block
 from tracewire.library.effect import SCALES, SYMBOLS, Effect, Shape
 from tracewire.library.load import Library
+from tracewire.library.parts import ByMode, Event, Input, Mode, Output, Parameter, Transition
 
 MOST_VALUES = 8
 SENSOR = "It is a number of a measured signal: signals: {{x: {{column: x, {0}: ...}}}}."
