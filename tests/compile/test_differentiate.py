@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from solve.models import made
 from tracewire.compile.differentiate import differentiate, linear_in_t, substitute
-from tracewire.compile.lower import Lowered, lower
+from tracewire.compile.lower import lower
+from tracewire.compile.lowered import Lowered
 from tracewire.compile.tape import Tape
 
 STEP = 1e-5

@@ -6,7 +6,8 @@ import pytest
 from compile.formulas import worked_out
 from solve.models import made
 from tracewire.compile import Model
-from tracewire.compile.memory import Reset, as_guard
+from tracewire.compile.lowered import Reset
+from tracewire.compile.memory import as_guard
 from tracewire.formula import parse_condition, to_text
 
 RELAY = """

@@ -9,8 +9,7 @@ from tracewire.compile.flat import (
     FlatState,
     FlatTransition,
 )
-from tracewire.compile.lower import Mode
-from tracewire.compile.memory import Reset, Transition
+from tracewire.compile.lowered import Mode, Reset, Transition
 from tracewire.compile.model import Model, compile
 
 __all__ = [

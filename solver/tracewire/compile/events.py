@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
+from tracewire.compile.flat import FlatEvent
 from tracewire.compile.jumps import lower_jumps, only_jumps
-from tracewire.compile.memory import Direction, Reset, values_of
-
-if TYPE_CHECKING:
-    from tracewire.compile.flat import FlatEvent
-    from tracewire.compile.lower import Lowering
+from tracewire.compile.lowered import Direction, Reset
+from tracewire.compile.lowering import Lowering
+from tracewire.compile.memory import values_of
 
 
 def lower_events(lowering: Lowering) -> None:

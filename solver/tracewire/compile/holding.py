@@ -7,11 +7,9 @@ between them: it moves without an event. So what reads it is compared by a guard
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from tracewire.compile.lower import Mode
-    from tracewire.compile.tape import Tape
+from tracewire.compile.lowered import Mode
+from tracewire.compile.tape import Tape
 
 
 def holding(tape: Tape, modes: Sequence[Mode], rates: Sequence[int]) -> frozenset[int]:

@@ -21,16 +21,14 @@ Source: the rule for a jump from or to zero is that of triggered subsystems in S
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from tracewire.compile.differentiate import differentiate
+from tracewire.compile.flat import FlatEvent
 from tracewire.compile.holding import reads
-from tracewire.compile.memory import Transition
+from tracewire.compile.lowered import Transition
+from tracewire.compile.lowering import Lowering
 from tracewire.formula import to_text
-
-if TYPE_CHECKING:
-    from tracewire.compile.flat import FlatEvent
-    from tracewire.compile.lower import Lowering
 
 NAMES = ("below", "level", "above", "reached", "new")
 BELOW, LEVEL, ABOVE, REACHED, NEW = range(len(NAMES))

@@ -1,79 +1,17 @@
-"""From flat equations to the tape: every relation becomes a mode and the guard that changes it."""
+"""From flat equations to the tape of a model: its signals, rates, starts, events and memories."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
-from dataclasses import dataclass, field
-from typing import Literal
+from collections.abc import Collection
 
-from tracewire.compile.differentiate import differentiate, linear_in_t
 from tracewire.compile.events import lower_events
 from tracewire.compile.flat import Flat
-from tracewire.compile.holding import holding, modes_read
-from tracewire.compile.linear import solve_linear, work
-from tracewire.compile.memory import (
-    Reset,
-    Transition,
-    declare_memories,
-    lower_memories,
-)
+from tracewire.compile.holding import modes_read
+from tracewire.compile.lowered import Lowered
+from tracewire.compile.lowering import Lowering
+from tracewire.compile.memory import declare_memories, lower_memories
 from tracewire.compile.solve_loops import lower_loop
-from tracewire.compile.tape import BINARY, UNARY, Entry, Tape
-from tracewire.errors import DiagramError, Place, Problem
-from tracewire.formula import CONSTANTS, Call, Expression, Name, Number, to_text
-
-MOST_FULL = 60  # unknowns of a linear system without zeros
-MOST_WORK = 300_000  # entries of its elimination
-
-ModeKind = Literal["sign", "floor", "segment", "memory"]
-
-
-@dataclass(frozen=True)
-class Mode:
-    """A frozen choice of the model and the guard that changes it.
-
-    kind `sign`: 1 where guard >= 0, else 0. `floor`: the whole number below the guard. `segment`:
-    the piece of table `table` on which the guard lies. `timed`: the guard is a*t + b with these
-    entries, so its changes are known times. `holds`: at guard = 0 a `dry` may hold the guard at
-    zero. `at_zero`: the sign mode that the user's comparison gives at exactly zero. `memory`: the
-    number of the mode of a block with memory, by the order of `names`; its guard is the number at
-    the start, and only the model's transitions change it. `jumps`: it is there for an event, and no
-    log shows it: the `side` of zero that a guard is on which only jumps, the memory by which the
-    event fires where that goes `up` or `down`, or the time at which a `clock` begins.
-    """
-
-    kind: ModeKind
-    guard: int
-    leaf: int
-    signal: str
-    text: str
-    timed: tuple[int, int] | None = None
-    holds: bool = False
-    at_zero: int = 1
-    table: int = -1
-    names: tuple[str, ...] = ()
-    jumps: Literal["", "side", "up", "down", "clock"] = ""
-
-
-@dataclass
-class Lowered:
-    """The tape of a model with its roots: entries of signals, rates, starts, resets; the modes.
-
-    The resets of `flat.events` come first, in their order, and then those of transitions. `loops`
-    holds the modes inside of each algebraic loop: their guards read the solution, which jumps with
-    them, so that they are decided together.
-    """
-
-    tape: Tape = field(default_factory=Tape)
-    modes: list[Mode] = field(default_factory=list)
-    entries: dict[str, int] = field(default_factory=dict)
-    states: list[int] = field(default_factory=list)
-    rates: list[int] = field(default_factory=list)
-    starts: list[int] = field(default_factory=list)
-    tables: list[str] = field(default_factory=list)
-    resets: list[Reset] = field(default_factory=list)
-    transitions: list[Transition] = field(default_factory=list)
-    loops: list[tuple[int, ...]] = field(default_factory=list)
+from tracewire.formula import CONSTANTS
 
 
 def lower(flat: Flat) -> Lowered:
@@ -82,350 +20,45 @@ def lower(flat: Flat) -> Lowered:
     What reads only modes is compared on the spot, and needs no guard; not so where a slide may hold
     one of these modes, which is known when all rates are: then it is lowered again.
     """
-    first = Lowering(flat)
-    found = first.lowered()
+    first = _lowering(flat)
+    found = first.out
     if not first.on_the_spot:
         return found
     held = first.holding() & modes_read(first.tape, first.on_the_spot)
     if not held:
         return found
-    return Lowering(flat, {(found.modes[i].signal, found.modes[i].text) for i in held}).lowered()
+    return _lowering(flat, {(found.modes[i].signal, found.modes[i].text) for i in held}).out
 
 
-class Lowering:
-    """A tape while it is written; what is lowered next belongs to `signal`.
-
-    `held` are the modes that a slide may hold, by signal and text, as far as they are known.
-    `on_the_spot` are the entries that were compared as if their modes changed at events alone.
-    """
-
-    def __init__(self, flat: Flat, held: Collection[tuple[str, str]] = ()) -> None:
-        self.held = frozenset(held)
-        self.on_the_spot: list[int] = []
-        self.flat = flat
-        self.out = Lowered()
-        self.tape = self.out.tape
-        self.t = self.tape.push("t")
-        self.by_guard: dict[tuple[str, int], int] = {}
-        self.by_multiple: dict[int, tuple[int, float]] = {}  # of an entry: a relay, and its factor
-        self.index = {state.name: number for number, state in enumerate(flat.states)}
-        self.signal = ""
-
-    def lowered(self) -> Lowered:
-        flat, out, tape = self.flat, self.out, self.tape
-        out.entries["t"] = self.t
-        for name, value in CONSTANTS.items():
-            out.entries[name] = tape.constant(value)
-        for number, name in enumerate(flat.parameters):
-            out.entries[name] = tape.push("param", payload=number)
-        for number, state in enumerate(flat.states):
-            entry = tape.push("state", payload=number)
-            out.entries[state.name] = entry
-            out.states.append(entry)
-        declare_memories(self)
-        out.tables = [*flat.tables, *flat.inputs]
-        for name in flat.inputs:
-            self.signal = name
-            out.entries[name] = self.interpolated(self.t, name)
-        loops = {loop.unknowns[0]: loop for loop in flat.loops}
-        for name, formula in flat.signals.items():
-            if name in loops:
-                lower_loop(self, loops[name])
-            elif name not in out.entries:
-                self.signal = name
-                out.entries[name] = self.lower(formula)
-        for state in flat.states:
-            self.signal = state.name
-            out.rates.append(self.lower(state.rate))
-            out.starts.append(self.start(state.start, state.name, state.place))
-        lower_events(self)
-        lower_memories(self)
-        return out
-
-    def start(self, formula: Expression, name: str, place: Place) -> int:
-        entry = self.lower(formula)
-        if not self.tape.leaves([entry]) <= {"param", "const"}:
-            what = f"the start '{to_text(formula)}' reads a signal"
-            hint = "A start value may only read parameters."
-            at = Place(place.file, place.line, place.column, name)
-            raise DiagramError([Problem(what, at, (), hint)])
-        return entry
-
-    def static(self, entry: int) -> bool:
-        """Whether an entry changes only where parameters or modes do, and so needs no guard."""
-        leaves = self.tape.leaves([entry])
-        return leaves <= {"param", "const", "mode", "hold"} and self.stands_still(entry)
-
-    def stands_still(self, entry: int) -> bool:
-        """Whether no mode that an entry reads is one that a slide may hold, as far as is known."""
-        read = modes_read(self.tape, [entry])
-        if any((self.out.modes[i].signal, self.out.modes[i].text) in self.held for i in read):
-            return False
-        if read:
-            self.on_the_spot.append(entry)
-        return True
-
-    def flow(self) -> dict[int, int]:
-        """The rates of the states and of t."""
-        rates = dict(zip(self.out.states, self.out.rates, strict=True))
-        return rates | {self.t: self.tape.constant(1.0)}
-
-    def holding(self) -> frozenset[int]:
-        """The modes that a slide may hold; all rates are known."""
-        rates = differentiate(self.tape, [mode.guard for mode in self.out.modes], self.flow())
-        return holding(self.tape, self.out.modes, rates)
-
-    def lower(self, node: Expression) -> int:
-        if isinstance(node, Number):
-            return self.tape.constant(node.value)
-        if isinstance(node, Name):
-            return self.out.entries[node.name]
-        function, arguments = node.function, node.arguments
-        special: dict[str, Callable[[tuple[Expression, ...]], int]] = {
-            "if": self.choice,
-            "sign": self.sign,
-            "abs": self.absolute,
-            "min": lambda a: self.extreme(a, largest=False),
-            "max": lambda a: self.extreme(a, largest=True),
-            "floor": lambda a: self.floor(self.lower(a[0])),
-            "mod": self.modulo,
-            "dry": self.dry,
-            "is_held": self.is_held,
-            "interp": self.interp,
-        }
-        if function in special:
-            return special[function](arguments)
-        if function in ("<", "<=", ">", ">=", "and", "or", "not"):
-            return self.boolean(node)
-        if function == "[]":
-            return self.unknown(node)
-        if function in UNARY or function in BINARY:
-            return self.tape.push(function, *(self.lower(argument) for argument in arguments))
-        raise AssertionError(f"no entry for {function}")
-
-    def unknown(self, node: Call) -> int:
-        """The entry of one unknown of a linear system, written `solve(matrix, right)[index]`."""
-        system, index = node.arguments
-        if not isinstance(system, Call) or not isinstance(index, Number):
-            raise AssertionError("elements of signals are signals of their own")
-        rows, right = (part.arguments for part in system.arguments if isinstance(part, Call))
-        cells = [cell for row in rows if isinstance(row, Call) for cell in row.arguments]
-        matrix = [self.lower(cell) for cell in cells]
-        if index.value == 0:
-            self.refuse_large(matrix, len(rows))
-        return solve_linear(self.tape, matrix, [self.lower(f) for f in right])[int(index.value)]
-
-    def refuse_large(self, matrix: list[int], size: int) -> None:
-        """Raise where the equations of a linear system would take minutes to compile."""
-        if work(self.tape, matrix, size) > MOST_WORK:
-            block = self.flat.blocks.get(self.signal)
-            what = f"the matrix of {size} unknowns has too few zeros to be solved"
-            hint = (
-                f"Full ones may have {MOST_FULL} unknowns. Split the system, or write zeros as 0."
-            )
-            raise DiagramError([Problem(what, block.place if block else Place(), (), hint)])
-
-    def boolean(self, node: Call) -> int:
-        push = self.tape.push
-        if node.function == "not":
-            return push("not", self.lower(node.arguments[0]))
-        if node.function in ("and", "or"):
-            parts = [self.lower(argument) for argument in node.arguments]
-            result = parts[0]
-            for part in parts[1:]:
-                result = push(node.function, result, part)
-            return result
-        left, right = node.arguments
-        difference = Call("-", (left, right))
-        match node.function:
-            case ">=":
-                return self.condition(difference, strict=False)
-            case ">":
-                return self.condition(difference, strict=True)
-            case "<":
-                return push("not", self.condition(difference, strict=False))
-            case _:
-                return push("not", self.condition(difference, strict=True))
-
-    def condition(self, guard: Expression, strict: bool, always: bool = False) -> int:
-        """The entry of guard >= 0 (or > 0)."""
-        text = to_text(guard)
-        if isinstance(guard, Call) and guard.arguments[-1:] == (Number(0.0),):
-            text = to_text(guard.arguments[0])
-        return self.positive(self.lower(guard), text, strict, always=always)
-
-    def positive(
-        self,
-        guard: int,
-        text: str,
-        strict: bool = False,
-        holds: bool = False,
-        always: bool = False,
-    ) -> int:
-        """The entry that is 1 where guard >= 0 (or > 0): a mode, shared up to sign.
-
-        A guard that never changes within a mode combination is compared on the spot, unless
-        `always` asks for a mode: the event of a reset needs one.
-        """
-        tape = self.tape
-        if self.static(guard) and not always:
-            return tape.push("gt" if strict else "ge", guard, tape.constant(0.0))
-        entry = tape.entries[guard]
-        if entry.op == "neg":
-            inner = self.positive(entry.operands[0], f"-({text})", not strict, holds, always)
-            return tape.push("not", inner)
-        mirrored = tape.known.get(Entry("-", entry.operands[::-1])) if entry.op == "-" else None
-        if mirrored is not None and ("sign", mirrored) in self.by_guard:
-            mode = self.mode("sign", mirrored, text, holds=holds)
-            return tape.push("not", self.out.modes[mode].leaf)
-        mode = self.mode("sign", guard, text, at_zero=0 if strict else 1, holds=holds)
-        return self.out.modes[mode].leaf
-
-    def relay(self, guard: int, text: str) -> int:
-        """As `positive`, for a relay, whose mode is shared up to a constant factor.
-
-        Relays on multiples of one signal turn together: that they share a mode lets the difference
-        of two that drive it apart hold it at zero. Frictions on multiples have each their own, and
-        comparisons, of which > and >= differ where the signal rests at zero.
-        """
-        base, factor = self.scaled(guard)
-        known = self.by_multiple.get(base)
-        if known is not None and ("sign", guard) not in self.by_guard:
-            return known[0] if known[1] * factor > 0 else self.tape.push("not", known[0])
-        positive = self.positive(guard, text)
-        if not self.out.modes[self.side(positive)[0]].holds:
-            self.by_multiple.setdefault(base, (positive, factor))
-        return positive
-
-    def scaled(self, guard: int) -> tuple[int, float]:
-        """An entry and the number that it is multiplied with to be a guard."""
-        factor = 1.0
-        while (entry := self.tape.entries[guard]).op == "*":
-            left, right = entry.operands
-            value = self.tape.value(left)
-            if value is None:
-                left, right, value = right, left, self.tape.value(right)
-            if not value:
-                break
-            guard, factor = right, factor * value
-        return guard, factor
-
-    def mode(
-        self,
-        kind: ModeKind,
-        guard: int,
-        text: str,
-        at_zero: int = 1,
-        holds: bool = False,
-        table: int = -1,
-    ) -> int:
-        """The index of the mode of a guard; one guard has one mode, whoever asks."""
-        modes = self.out.modes
-        key = (kind if table < 0 else f"{kind}{table}", guard)
-        found = self.by_guard.get(key)
-        if found is not None:
-            old = modes[found]
-            if holds and not old.holds:
-                modes[found] = Mode(
-                    kind, guard, old.leaf, old.signal, old.text, old.timed, True, old.at_zero, table
-                )
-            return found
-        index = self.by_guard[key] = len(modes)
-        leaf = self.tape.push("mode", payload=index)
-        reads_t = "t" in self.tape.leaves([guard])
-        timed = linear_in_t(self.tape, guard, self.t) if reads_t else None
-        if timed and not self.stands_still(guard):
-            timed = None
-        modes.append(Mode(kind, guard, leaf, self.signal, text, timed, holds, at_zero, table))
-        return index
-
-    def memory(self, names: tuple[str, ...]) -> int:
-        """The leaf of a new memory with modes of these names."""
-        modes = self.out.modes
-        leaf = self.tape.push("mode", payload=len(modes))
-        start = self.tape.constant(0.0)
-        modes.append(Mode("memory", start, leaf, self.signal, "/".join(names), names=names))
-        return leaf
-
-    def side(self, condition: int) -> tuple[int, int]:
-        """The number of the mode behind a condition, and the value of the mode where it holds."""
-        entry = self.tape.entries[condition]
-        if entry.op == "not":
-            return int(self.tape.entries[entry.operands[0]].payload), 0
-        return int(entry.payload), 1
-
-    def choice(self, arguments: tuple[Expression, ...]) -> int:
-        condition, then, other = (self.lower(argument) for argument in arguments)
-        return self.tape.push("select", condition, then, other)
-
-    def sign(self, arguments: tuple[Expression, ...]) -> int:
-        return self.sign_of(self.lower(arguments[0]), to_text(arguments[0]))
-
-    def sign_of(self, guard: int, text: str, holds: bool = False) -> int:
-        tape, push = self.tape, self.tape.push
-        one = tape.constant(1.0)
-        if self.static(guard):
-            zero = tape.constant(0.0)
-            above = push("select", push("gt", guard, zero), one, zero)
-            return push("select", push("ge", guard, zero), above, tape.constant(-1.0))
-        positive = self.positive(guard, text, holds=True) if holds else self.relay(guard, text)
-        return push("-", push("*", tape.constant(2.0), positive), one)
-
-    def absolute(self, arguments: tuple[Expression, ...]) -> int:
-        value = self.lower(arguments[0])
-        positive = self.positive(value, to_text(arguments[0]))
-        return self.tape.push("select", positive, value, self.tape.push("neg", value))
-
-    def extreme(self, arguments: tuple[Expression, ...], largest: bool) -> int:
-        push = self.tape.push
-        result = self.lower(arguments[0])
-        for argument in arguments[1:]:
-            other = self.lower(argument)
-            text = to_text(Call("-", (arguments[0], argument)))
-            above = self.positive(push("-", result, other), text)
-            pair = (result, other) if largest else (other, result)
-            result = push("select", above, *pair)
-        return result
-
-    def floor(self, value: int) -> int:
-        if self.static(value):
-            return self.tape.push("floor", value)
-        return self.out.modes[self.mode("floor", value, f"floor in {self.signal}")].leaf
-
-    def modulo(self, arguments: tuple[Expression, ...]) -> int:
-        push = self.tape.push
-        value, base = (self.lower(argument) for argument in arguments)
-        whole = self.floor(push("/", value, base))
-        return push("-", value, push("*", base, whole))
-
-    def dry(self, arguments: tuple[Expression, ...]) -> int:
-        """slip*sign(u), or a level within +-stick while the mode holds u at zero."""
-        push = self.tape.push
-        guard, slip, stick = (self.lower(argument) for argument in arguments)
-        sign = self.sign_of(guard, to_text(arguments[0]), holds=True)
-        if slip == stick or self.static(guard):
-            return push("*", sign, slip)
-        mode = next(i for i, m in enumerate(self.out.modes) if m.leaf in self.tape.needed([sign]))
-        held = push("hold", payload=mode)
-        level = push("select", held, stick, slip)
-        return push("*", sign, level)
-
-    def is_held(self, arguments: tuple[Expression, ...]) -> int:
-        """1 while the mode of a guard holds it at zero."""
-        guard = self.lower(arguments[0])
-        if self.static(guard):
-            return self.tape.constant(0.0)
-        mode, _ = self.side(self.positive(guard, to_text(arguments[0])))
-        return self.tape.push("hold", payload=mode)
-
-    def interp(self, arguments: tuple[Expression, ...]) -> int:
-        table = arguments[1]
-        if not isinstance(table, Name):
-            raise AssertionError("interp reads a table by its name")
-        return self.interpolated(self.lower(arguments[0]), table.name)
-
-    def interpolated(self, value: int, name: str) -> int:
-        push, table = self.tape.push, self.out.tables.index(name)
-        leaf = push("table", payload=table)
-        mode = self.mode("segment", value, f"breakpoint of {name}", table=table)
-        return push("segment", leaf, value, self.out.modes[mode].leaf)
+def _lowering(flat: Flat, held: Collection[tuple[str, str]] = ()) -> Lowering:
+    """The flat equations on a new tape; `held` are the modes that a slide may hold."""
+    lowering = Lowering(flat, held)
+    out, tape = lowering.out, lowering.tape
+    out.entries["t"] = lowering.t
+    for name, value in CONSTANTS.items():
+        out.entries[name] = tape.constant(value)
+    for number, name in enumerate(flat.parameters):
+        out.entries[name] = tape.push("param", payload=number)
+    for number, state in enumerate(flat.states):
+        entry = tape.push("state", payload=number)
+        out.entries[state.name] = entry
+        out.states.append(entry)
+    declare_memories(lowering)
+    out.tables = [*flat.tables, *flat.inputs]
+    for name in flat.inputs:
+        lowering.signal = name
+        out.entries[name] = lowering.interpolated(lowering.t, name)
+    loops = {loop.unknowns[0]: loop for loop in flat.loops}
+    for name, formula in flat.signals.items():
+        if name in loops:
+            lower_loop(lowering, loops[name])
+        elif name not in out.entries:
+            lowering.signal = name
+            out.entries[name] = lowering.lower(formula)
+    for state in flat.states:
+        lowering.signal = state.name
+        out.rates.append(lowering.lower(state.rate))
+        out.starts.append(lowering.start(state.start, state.name, state.place))
+    lower_events(lowering)
+    lower_memories(lowering)
+    return lowering

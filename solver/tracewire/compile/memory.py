@@ -22,52 +22,14 @@ with it is no guard.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import reduce
-from typing import TYPE_CHECKING, Literal
 
+from tracewire.compile.flat import Flat, FlatMemory
 from tracewire.compile.happenings import told_clock
-from tracewire.errors import Place
+from tracewire.compile.lowered import Reset, Transition
+from tracewire.compile.lowering import Lowering
 from tracewire.formula import Call, Expression, Number, to_text
-
-if TYPE_CHECKING:
-    from tracewire.compile.flat import Flat, FlatMemory
-    from tracewire.compile.lower import Lowering
-
-Direction = Literal["up", "down", "both"]
-
-
-@dataclass(frozen=True)
-class Reset:
-    """States that get new values where the mode `trigger` crosses; -1: where a transition says so.
-
-    values: {number of a state: entry of its new value}. `kind` is what the log calls it.
-    """
-
-    name: str
-    kind: Literal["reset", "impact"]
-    trigger: int
-    direction: Direction
-    values: Mapping[int, int] = field(hash=False)
-    place: Place = Place()
-
-
-@dataclass(frozen=True)
-class Transition:
-    """While mode `memory` is `source` and mode `trigger` is `level`, `memory` becomes `target`.
-
-    `reset` is the number of the reset that fires with it, -1: none. `level` is 1, or 0 where the
-    condition is that of the mirrored guard. at_zero: whether the condition holds at a guard of
-    exactly zero.
-    """
-
-    memory: int
-    source: int
-    trigger: int
-    target: int
-    reset: int = -1
-    level: int = 1
-    at_zero: bool = True
 
 
 def declare_memories(lowering: Lowering) -> None:

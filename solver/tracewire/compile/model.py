@@ -11,7 +11,8 @@ from typing import Any
 from tracewire.compile.flat import Flat
 from tracewire.compile.flatten import flatten
 from tracewire.compile.holding import modes_read
-from tracewire.compile.lower import Lowered, Mode, lower
+from tracewire.compile.lower import lower
+from tracewire.compile.lowered import Lowered, Mode
 from tracewire.compile.memory import told
 from tracewire.compile.routines import BACKENDS, PREPARE, Backend, Routines, Sizes
 from tracewire.compile.vectors import element_names

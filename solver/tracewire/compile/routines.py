@@ -11,9 +11,8 @@ from typing import Any, Literal
 from tracewire.compile.constants import Constants
 from tracewire.compile.differentiate import differentiate, gradients
 from tracewire.compile.holding import holding, reads
-from tracewire.compile.lower import Lowered
+from tracewire.compile.lowered import Lowered, Reset
 from tracewire.compile.machine import MachineWriter, machine_text
-from tracewire.compile.memory import Reset
 from tracewire.compile.pace import pace
 from tracewire.compile.pointers import address_of, as_c, when_called
 from tracewire.compile.sizes import sizes

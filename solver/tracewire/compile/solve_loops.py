@@ -10,19 +10,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tracewire.compile.differentiate import jacobian_of, linear_in_t, search, substitute_all
 from tracewire.compile.flat import Loop
 from tracewire.compile.linear import solve_linear
+from tracewire.compile.lowering import Lowering
 from tracewire.compile.tape import Tape
 from tracewire.errors import DiagramError, Problem
 from tracewire.formula import Number
-
-if TYPE_CHECKING:
-    from tracewire.compile.lower import Lowering
 
 
 def lower_loop(lowering: Lowering, loop: Loop) -> None:
