@@ -29,7 +29,7 @@ if TYPE_CHECKING:
         sweep,
     )
     from tracewire.compile import Model, compile
-    from tracewire.diagram import Diagram, read, read_text
+    from tracewire.diagram import Diagram, read, read_text, write
     from tracewire.errors import TracewireError
     from tracewire.fit import Fit, diagnose, fit, fminsearch, optimset, profile
     from tracewire.library import Block, Effect, Input, Output, Parameter, State, load_library
@@ -103,13 +103,14 @@ __all__ = [
     "steady_state",
     "sweep",
     "trace",
+    "write",
 ]
 
 ROOM_OF = {
     "analyse": "Plane bifurcation floquet growth_rate invariant_drift linearise lyapunov "
     "periodic_orbit scalogram section spectrum stability_chart steady_state sweep",
     "compile": "compile Model",
-    "diagram": "Diagram read read_text",
+    "diagram": "Diagram read read_text write",
     "errors": "TracewireError",
     "fit": "Fit diagnose fit fminsearch optimset profile",
     "library": "Block Effect Input Output Parameter State load_library",

@@ -18,6 +18,7 @@ from tracewire.diagram import (
     remove_addend,
     set_sensors,
     set_values,
+    write,
 )
 from tracewire.errors import DiagramError, OptionError
 from tracewire.formula import Number
@@ -351,19 +352,19 @@ def test_write_leaves_other_files_alone(tmp_path: Path) -> None:
     file = tmp_path / "a.yaml"
     text = PENDULUM.replace("\n", "\r\n")
     diagram = read_text(text, file, library=LIBRARY)
-    assert diagram.write(file) == file
+    assert write(diagram, file) == file
     assert file.read_bytes() == text.encode()
-    set_values(diagram, {"stiffness": 2e-3}).write(str(file))
+    write(set_values(diagram, {"stiffness": 2e-3}), str(file))
     assert b"value: 0.002," in file.read_bytes()
     other = tmp_path / "b.yaml"
     other.write_text("mine")
     with pytest.raises(OptionError, match="there is a file of this name"):
-        diagram.write(other)
+        write(diagram, other)
     assert other.read_text() == "mine"
-    diagram.write(other, overwrite=True)
+    write(diagram, other, overwrite=True)
     assert other.read_bytes() == text.encode()
     with pytest.raises(OptionError, match="cannot be written"):
-        diagram.write(tmp_path / "nowhere" / "c.yaml")
+        write(diagram, tmp_path / "nowhere" / "c.yaml")
 
 
 def test_write_elsewhere_checks_the_files_that_are_named(tmp_path: Path) -> None:
@@ -371,9 +372,9 @@ def test_write_elsewhere_checks_the_files_that_are_named(tmp_path: Path) -> None
     (tmp_path / "sub").mkdir()
     diagram = made(SERIES, tmp_path / "d.yaml")
     with pytest.raises(DiagramError, match=r"unknown file 'run\.csv'"):
-        diagram.write(tmp_path / "sub" / "d.yaml")
+        write(diagram, tmp_path / "sub" / "d.yaml")
     assert not (tmp_path / "sub" / "d.yaml").exists()
-    assert diagram.write(tmp_path / "e.yaml").exists()
+    assert write(diagram, tmp_path / "e.yaml").exists()
 
 
 def test_equal_texts_do_not_differ() -> None:

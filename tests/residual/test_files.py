@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from tracewire.compile import compile
 from tracewire.diagram import Diagram, add_sensor, difference, read, set_values, with_series_of
+from tracewire.diagram import write as write_diagram
 from tracewire.errors import DataError, OptionError
 from tracewire.residual import Measured, load_measured, series_from_files
 from tracewire.residual.endings import endings
@@ -225,7 +226,7 @@ def test_a_sensor_needs_the_series_in_the_diagram(tmp_path: Path) -> None:
     other = tmp_path / "elsewhere" / "d.yaml"
     other.parent.mkdir()
     moved = with_series_of(add_sensor(diagram, "theta", "gain", 1.1, (0.5, 2)), own, other)
-    moved.write(other)
+    write_diagram(moved, other)
     assert read(other).measured["a"].file.samefile(tmp_path / "a.csv")
 
 

@@ -189,11 +189,13 @@ def store(
     patch: str | None = None,
 ) -> list[str]:
     """Write an edited diagram, or its patch, as asked; the paths that were written."""
+    from tracewire.diagram import write
+
     if output is None and patch is None and not apply:
         return []
     new = edited()
     if output is not None and not output.endswith(".patch"):
-        written = [str(new.write(output, overwrite=True))]
+        written = [str(write(new, output, overwrite=True))]
         patches = [patch]
     else:
         written = []
@@ -204,5 +206,5 @@ def store(
                 write_file(path, patch_of(diagram, new))
             written.append(path)
     if apply:
-        written.append(str(new.write(diagram.file, overwrite=True)))
+        written.append(str(write(new, diagram.file, overwrite=True)))
     return written

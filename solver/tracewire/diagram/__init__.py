@@ -51,6 +51,7 @@ from tracewire.diagram.names import (
     states,
 )
 from tracewire.diagram.read import read, read_text
+from tracewire.diagram.write import write
 
 __all__ = [
     "SENSOR",
@@ -102,4 +103,5 @@ __all__ = [
     "state_names",
     "states",
     "with_series_of",
+    "write",
 ]

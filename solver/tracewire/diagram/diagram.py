@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from tracewire.errors import OptionError, Place
-from tracewire.files import write_file
+from tracewire.errors import Place
 from tracewire.formula import Expression
 from tracewire.library import Effect, Library
 
@@ -256,27 +255,3 @@ class Diagram:
     measured: Mapping[str, Series] = field(default_factory=dict)
     place: Place = Place()
     effect: Effect | None = None
-
-    def write(self, path: str | Path, overwrite: bool = False) -> Path:
-        """Write the diagram's text to a file, and return its path.
-
-        Raises OptionError where another file is there already and `overwrite` is not said, or the
-        file cannot be written; DiagramError where files that the diagram names are not found from
-        there.
-        """
-        from tracewire.diagram.read import read_text  # the reader makes this noun
-
-        target = Path(path)
-        try:
-            own = target.exists() and self.file.exists() and target.samefile(self.file)
-            if target.exists() and not own and not overwrite:
-                hint = "Choose another name, or say that it may be overwritten."
-                raise OptionError.one("there is a file of this name", Place(str(target)), hint=hint)
-            if target.resolve().parent != self.file.resolve().parent:
-                read_text(self.text, target, library=self.library)
-            write_file(target, self.text)
-        except (OSError, ValueError) as error:
-            reason = getattr(error, "strerror", None) or str(error)
-            what = f"the file cannot be written: {reason}"
-            raise OptionError.one(what, Place(str(target)), hint="Check its folder.") from None
-        return target
