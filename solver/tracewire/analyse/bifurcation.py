@@ -20,9 +20,7 @@ from tracewire.analyse.turns import units_of
 from tracewire.analyse.work import Progress, Tell, interrupted
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, TracewireError, unknown
-from tracewire.solve import Interrupted, Passage, parameter_values
-from tracewire.solve.interrupt import Halt, until_interrupted
-from tracewire.solve.parallel import crew
+from tracewire.solve import Halt, Interrupted, Passage, crew, parameter_values, until_interrupted
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]

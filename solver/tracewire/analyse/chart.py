@@ -16,7 +16,7 @@ from tracewire.analyse.sweep import grid_of
 from tracewire.analyse.work import Tell, work_through
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem
-from tracewire.solve.interrupt import Halt
+from tracewire.solve import Halt
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]

@@ -13,8 +13,7 @@ from tracewire.analyse.plane import span_of
 from tracewire.analyse.work import Progress, Tell
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, OptionError, Problem
-from tracewire.solve import Passage, parameter_values
-from tracewire.solve.interrupt import until_interrupted
+from tracewire.solve import Passage, parameter_values, until_interrupted
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]

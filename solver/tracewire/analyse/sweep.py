@@ -18,8 +18,7 @@ from tracewire.analyse.partial import Partial, fingerprint
 from tracewire.analyse.work import Tell, work_through
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, unknown
-from tracewire.solve import Run, simulate
-from tracewire.solve.interrupt import Halt
+from tracewire.solve import Halt, Run, simulate
 from tracewire.solve.task import START, Options
 
 Vector = NDArray[np.float64]

@@ -11,9 +11,7 @@ from numpy.typing import NDArray
 
 from tracewire.analyse.partial import Partial
 from tracewire.errors import Problem, TracewireError
-from tracewire.solve import Interrupted
-from tracewire.solve.interrupt import Halt, until_interrupted
-from tracewire.solve.parallel import crew, each
+from tracewire.solve import Halt, Interrupted, crew, each, until_interrupted
 
 Vector = NDArray[np.float64]
 Tell = Callable[[float, float], object]

@@ -45,7 +45,7 @@ def steady(
         from tracewire.analyse import steady_state
 
         found = steady_state(setting.model, guess=setting.start, **setting.options)
-    from tracewire.show.summary import Table
+    from tracewire.show import Table
 
     units = {state.name: state.unit for state in setting.model.flat.states}
     rows = tuple((name, units[name], shown(x)) for name, x in found.values.items())
@@ -118,7 +118,7 @@ def linearise(
         found = linearise_model(
             setting.model, at=at, t=time, inputs=inputs or (), outputs=outputs, **setting.options
         )
-    from tracewire.show.summary import Table
+    from tracewire.show import Table
 
     def table(name: str, matrix: list[list[float]], across: tuple[str, ...], down: str) -> Table:
         names = found.states if down == "state" else found.outputs

@@ -35,7 +35,7 @@ from tracewire.errors import OptionError, Problem
 
 if TYPE_CHECKING:
     from tracewire.analyse import Floquet
-    from tracewire.show.summary import Table
+    from tracewire.show import Table
 
 
 def orbit(
@@ -83,7 +83,7 @@ def orbit(
             rtol=rtol,
             **setting.options,
         )
-    from tracewire.show.summary import Table
+    from tracewire.show import Table
 
     units = {state.name: state.unit for state in setting.model.flat.states}
     rows = tuple(
@@ -260,7 +260,7 @@ def chart(
 
 
 def _multipliers(found: Floquet) -> Table:
-    from tracewire.show.summary import Table
+    from tracewire.show import Table
 
     rows = tuple(
         (complex_text(m), shown(abs(m)), complex_text(e))

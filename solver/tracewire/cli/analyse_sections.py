@@ -96,7 +96,7 @@ def section(
             rtol=rtol,
             **setting.options,
         )
-    from tracewire.show.summary import Table
+    from tracewire.show import Table
 
     rows = tuple(
         (name, found.units.get(name, ""), shown(found[name].min()), shown(found[name].max()))
@@ -211,7 +211,7 @@ def bifurcation(
         )
     import numpy as np
 
-    from tracewire.show.summary import Table
+    from tracewire.show import Table
 
     rows, lines = [], []
     for branch in found.branches:
@@ -314,7 +314,7 @@ def lyapunov(
             progress=telling("following deviations", show),
             **setting.options,
         )
-    from tracewire.show.summary import Table
+    from tracewire.show import Table
 
     rows = tuple(
         (shown(value), f"{error:.2g}")

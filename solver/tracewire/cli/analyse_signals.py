@@ -54,7 +54,7 @@ def spectrum(
     )
     run = run_of(setting, span, every, rtol)
     from tracewire.analyse import spectrum as spectrum_of
-    from tracewire.show.summary import Table
+    from tracewire.show import Table
 
     found = spectrum_of(run, signal, since=since, window=window, lines=lines)
     rows = tuple((shown(line.frequency), shown(line.amplitude)) for line in found.lines)
@@ -237,7 +237,7 @@ def invariants(
     )
     run = run_of(setting, span, every, rtol)
     from tracewire.analyse import invariant_drift
-    from tracewire.show.summary import Table
+    from tracewire.show import Table
 
     found = invariant_drift(run, names, scale=scale)
     rows = tuple(

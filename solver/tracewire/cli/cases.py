@@ -48,7 +48,7 @@ def cases_of(model: Model, over: Sequence[str], presets: Sequence[str]) -> list[
 
 def _told(model: Model, name: str, value: float) -> str:
     """`k = 2 N/m`, in SI."""
-    from tracewire.show.summary import shown
+    from tracewire.show import shown
 
     units = {state.name: state.unit for state in model.flat.states}
     parameter = model.flat.parameters.get(name)

@@ -26,7 +26,7 @@ def list_(as_json: AsJson = False, debug: Debug = False) -> None:
       tracewire data list
     """
     from tracewire.data.index import SETS
-    from tracewire.show.summary import Table
+    from tracewire.show import Table
 
     if as_json:
         sets = {

@@ -17,7 +17,7 @@ import typer
 from tracewire.errors import OptionError, Problem, unknown
 
 if TYPE_CHECKING:
-    from tracewire.show.summary import Table
+    from tracewire.show import Table
 
 INTERRUPTED = 130
 WIDTH_OF_A_PIPE = 200

@@ -24,7 +24,7 @@ from tracewire.files import replacing, write_rows, writing
 
 if TYPE_CHECKING:
     from tracewire.compile import Model
-    from tracewire.show.summary import Table
+    from tracewire.show import Table
 
 OUTPUTS = (".csv", ".npz")
 FIGURES = (".png", ".svg", ".pdf")

@@ -97,7 +97,7 @@ def sweep(
         )
     import numpy as np
 
-    from tracewire.show.summary import Table
+    from tracewire.show import Table
 
     rows = tuple(
         (name, shown(float(np.nanmin(v))), shown(float(np.nanmax(v))))

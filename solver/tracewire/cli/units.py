@@ -50,7 +50,7 @@ def units(
       tracewire units
       tracewire units "mN m s/deg"
     """
-    from tracewire.formula.units import read_unit
+    from tracewire.formula import read_unit
 
     if unit is not None:
         found = read_unit(unit)

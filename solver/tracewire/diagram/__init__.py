@@ -51,6 +51,7 @@ from tracewire.diagram.names import (
     states,
 )
 from tracewire.diagram.read import read, read_text
+from tracewire.diagram.rewire import add_to_drive, rewired
 from tracewire.diagram.write import write
 
 __all__ = [
@@ -77,6 +78,7 @@ __all__ = [
     "add_addend",
     "add_own",
     "add_sensor",
+    "add_to_drive",
     "cycles",
     "difference",
     "effects_of",
@@ -92,6 +94,7 @@ __all__ = [
     "read_text",
     "remove_addend",
     "replace_series",
+    "rewired",
     "sensor_factor",
     "sensor_numbers",
     "series_parts",

@@ -10,8 +10,17 @@ from tracewire.diagram.body import Body
 from tracewire.diagram.diagram import Diagram
 from tracewire.diagram.problems import clip
 from tracewire.diagram.strict import Items, Node
-from tracewire.library import SCALES, SYMBOLS, Effect, Face, Shape, check_effect
-from tracewire.library.effect import Scale, Symbol, Where
+from tracewire.library import (
+    SCALES,
+    SYMBOLS,
+    Effect,
+    Face,
+    Scale,
+    Shape,
+    Symbol,
+    Where,
+    check_effect,
+)
 
 Word = TypeVar("Word")
 KEYS = ("coefficient", "inputs", "sign", "shapes", "place", "at")

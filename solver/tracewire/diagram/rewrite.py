@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from tracewire.diagram.diagram import Diagram
 from tracewire.diagram.read import read_text
 from tracewire.diagram.splice import Change, changed
-from tracewire.formula.text import number_text
+from tracewire.formula import number_text
 
 
 def reread(diagram: Diagram, changes: Sequence[Change]) -> Diagram:

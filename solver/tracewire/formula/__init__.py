@@ -10,7 +10,7 @@ from tracewire.formula.expression import Call, Expression, Name, Number, names_o
 from tracewire.formula.functions import CONSTANTS, FUNCTIONS
 from tracewire.formula.order import evaluation_order
 from tracewire.formula.parse import is_name, name_hint, parse, parse_condition
-from tracewire.formula.text import to_text
+from tracewire.formula.text import number_text, to_text
 from tracewire.formula.units import Unit, quantity_hint, read_unit, same_quantity
 
 __all__ = [
@@ -26,6 +26,7 @@ __all__ = [
     "is_name",
     "name_hint",
     "names_of",
+    "number_text",
     "parse",
     "parse_condition",
     "quantity_hint",

@@ -3,7 +3,7 @@
 from tracewire.library.check_effect import Face, check_effect
 from tracewire.library.declare import Block
 from tracewire.library.describe import describe, describe_json, palette
-from tracewire.library.effect import SCALES, SYMBOLS, Effect, Scale, Shape, Tone
+from tracewire.library.effect import SCALES, SYMBOLS, Effect, Scale, Shape, Symbol, Tone, Where
 from tracewire.library.load import Library, load_library
 from tracewire.library.parts import Event, Input, Mode, Output, Parameter, State, Transition
 
@@ -22,8 +22,10 @@ __all__ = [
     "Scale",
     "Shape",
     "State",
+    "Symbol",
     "Tone",
     "Transition",
+    "Where",
     "check_effect",
     "describe",
     "describe_json",

@@ -10,8 +10,8 @@ from tracewire.paper.figure import PAPERS, PaperFigure
 from tracewire.paper.headers import read_headers
 from tracewire.paper.reproduction import Reproduction, Row
 from tracewire.paper.setting import Amount
-from tracewire.show.document import Figure, Report, Section
-from tracewire.show.summary import Table
+from tracewire.show import Report, Table
+from tracewire.show.document import Figure, Section
 
 HEADER = ("statement", "the paper", "source", "measured", "expected", "verdict")
 READING = (

@@ -14,7 +14,7 @@ from tracewire.paper.runs import Systems
 from tracewire.paper.statement import VERDICTS, Statement, Verdict
 from tracewire.paper.statements import DIAGRAMS, statements_of
 from tracewire.paper.tables import tables_of
-from tracewire.show.summary import Table
+from tracewire.show import Table
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from tracewire.paper.identification import FLOOR, NINE, SPRING, identification, 
 from tracewire.paper.runs import Systems, largest
 from tracewire.paper.statements_a import STAGES
 from tracewire.paper.statements_b import diagram_of, exponents_of
-from tracewire.show.summary import Table, shown
+from tracewire.show import Table, shown
 
 
 def tables_of(paper: str, systems: Systems) -> tuple[Table, ...]:

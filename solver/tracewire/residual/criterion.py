@@ -19,10 +19,8 @@ from tracewire.residual.loss import LOSSES
 from tracewire.residual.measured import LARGEST
 from tracewire.residual.segment import Segment, Unknown, of_diagram
 from tracewire.residual.sensing import Sensing
-from tracewire.solve import Interrupted, Limits, Run, simulate
-from tracewire.solve.interrupt import until_interrupted
+from tracewire.solve import Interrupted, Limits, Run, cores, simulate, until_interrupted
 from tracewire.solve.limits import beyond_budget
-from tracewire.solve.parallel import cores
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]

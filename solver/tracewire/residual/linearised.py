@@ -13,8 +13,7 @@ from tracewire.compile import Model
 from tracewire.residual.measured import LARGEST, Measured
 from tracewire.residual.segment import Segment, absolute_tolerances, of_diagram, parameter_in
 from tracewire.residual.sensing import Sensing
-from tracewire.solve import Limits, Span, simulate_spans
-from tracewire.solve.interrupt import Halt
+from tracewire.solve import Halt, Limits, Span, simulate_spans
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]

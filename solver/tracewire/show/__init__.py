@@ -27,11 +27,13 @@ if TYPE_CHECKING:
         plot_scalogram,
         plot_spectrum,
     )
+    from tracewire.show.summary import Table, shown
     from tracewire.show.sweep_figures import plot_chart, plot_sweep
     from tracewire.show.trace_summary import paragraph_of
 
 __all__ = [
     "Report",
+    "Table",
     "optimplotfit",
     "optimplotfval",
     "optimplotx",
@@ -59,6 +61,7 @@ __all__ = [
     "plot_spectrum",
     "plot_sweep",
     "report",
+    "shown",
 ]
 
 FILE_OF = {
@@ -74,6 +77,7 @@ FILE_OF = {
     "any_report": "report",
     "several_runs": "plot_runs",
     "signal_figures": "plot_growth plot_invariants plot_lyapunov plot_scalogram plot_spectrum",
+    "summary": "Table shown",
     "sweep_figures": "plot_chart plot_sweep",
     "trace_summary": "paragraph_of",
 }

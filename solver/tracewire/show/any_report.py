@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from tracewire.fit import Fit
-from tracewire.fit.profile import Profile
+from tracewire.fit import Fit, Profile
 from tracewire.show.document import Figure, Report, Section
 from tracewire.show.figures import plot_run
 from tracewire.show.fit_report import fit_report

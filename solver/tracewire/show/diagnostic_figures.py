@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.errors import OptionError, Problem
-from tracewire.fit import Fit
-from tracewire.fit.diagnostics import DOUBT, Diagnosis, diagnose
-from tracewire.fit.profile import Profile
+from tracewire.fit import Diagnosis, Fit, Profile, diagnose
+from tracewire.fit.diagnostics import DOUBT
 from tracewire.show.style import (
     AFTER,
     BAND,

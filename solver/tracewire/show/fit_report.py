@@ -11,9 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tracewire.fit import Fit
-from tracewire.fit.diagnostics import diagnose
-from tracewire.fit.profile import Profile
+from tracewire.fit import Fit, Profile, diagnose
 from tracewire.residual import Measured, Sensor
 from tracewire.show.comparison_figures import plot_comparisons
 from tracewire.show.diagnostic_figures import plot_diagnostics, plot_profiles

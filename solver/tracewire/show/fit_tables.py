@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from tracewire.fit import Comparison, Fit
-from tracewire.fit.diagnostics import Diagnosis, diagnose
+from tracewire.fit import Comparison, Diagnosis, Fit, diagnose
 from tracewire.show.comparison_figures import root_mean_square
 from tracewire.show.parameter_figures import unknown_width
 from tracewire.show.summary import Table, shown

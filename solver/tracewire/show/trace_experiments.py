@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from tracewire.trace.found import Experiment, Found
+from tracewire.trace import Experiment, Found
 
 NOTHING = 0.1
 """A separation in sigma that needs no number."""

@@ -27,9 +27,7 @@ from tracewire.show.style import (
     shortened,
     styled,
 )
-from tracewire.trace import Found
-from tracewire.trace.found import Curve, Ranked
-from tracewire.trace.units import users_unit
+from tracewire.trace import Curve, Found, Ranked, users_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

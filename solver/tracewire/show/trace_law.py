@@ -21,9 +21,7 @@ from tracewire.show.style import (
     styled,
     with_unit,
 )
-from tracewire.trace import Found
-from tracewire.trace.found import Force
-from tracewire.trace.units import unit_at
+from tracewire.trace import Force, Found, unit_at
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

@@ -23,9 +23,7 @@ from tracewire.show.style import (
 )
 from tracewire.show.trace_experiments import setting_unit
 from tracewire.show.trace_words import percent
-from tracewire.trace import Found
-from tracewire.trace.found import Dependence, Experiment, Missing
-from tracewire.trace.units import signal_of, unit_at
+from tracewire.trace import Dependence, Experiment, Found, Missing, signal_of, unit_at
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

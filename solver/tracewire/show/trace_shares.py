@@ -10,8 +10,7 @@ import numpy as np
 
 from tracewire.show.style import AFTER, BAND, BEFORE, QUIET, cut, plain_log, save, styled
 from tracewire.show.trace_words import share_words
-from tracewire.trace import Found
-from tracewire.trace.found import Explained, HeldOut
+from tracewire.trace import Explained, Found, HeldOut
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -23,9 +23,7 @@ from tracewire.show.trace_words import (
     value_words,
     variables_words,
 )
-from tracewire.trace.found import Found, FoundEffect, Tie
-from tracewire.trace.options import TraceOptions
-from tracewire.trace.units import coefficient_of, unit_of_power
+from tracewire.trace import Found, FoundEffect, Tie, TraceOptions, coefficient_of, unit_of_power
 
 LITTLE = 0.5
 """The share of the excess below which the variables found explain little of it."""

@@ -14,9 +14,16 @@ from tracewire.show.trace_words import (
     stood_in,
     to_its_interval,
 )
-from tracewire.trace import Found
-from tracewire.trace.found import Dependence, Ranked
-from tracewire.trace.units import coefficient_of, signal_of, unit_of, unit_of_power, users_unit
+from tracewire.trace import (
+    Dependence,
+    Found,
+    Ranked,
+    coefficient_of,
+    signal_of,
+    unit_of,
+    unit_of_power,
+    users_unit,
+)
 
 MOST_POWERS, MOST_WHERE = 12, 8
 ALL = 10_000

@@ -22,9 +22,7 @@ from tracewire.show.trace_words import (
     value_words,
     variables_words,
 )
-from tracewire.trace import Found, FoundEffect
-from tracewire.trace.found import StepTold
-from tracewire.trace.units import coefficient_of, signal_of, unit_of_power
+from tracewire.trace import Found, FoundEffect, StepTold, coefficient_of, signal_of, unit_of_power
 
 MOST_CHANNELS = 4
 NONE = "no effect of the library explains it"

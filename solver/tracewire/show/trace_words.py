@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Iterable, Sequence
 
-from tracewire.trace.found import (
+from tracewire.trace import (
     ChannelError,
     Explained,
     Found,
@@ -14,8 +14,10 @@ from tracewire.trace.found import (
     Moved,
     Power,
     Remainder,
+    signal_of,
+    unit_of,
+    users_unit,
 )
-from tracewire.trace.units import signal_of, unit_of, users_unit
 
 SENSORS = {
     "sensor_offset": "an offset",

@@ -110,10 +110,11 @@ on it keeps its last side while the stop holds.
 """
 
 from tracewire.solve.held import Driving, Held, values_at, with_points
-from tracewire.solve.interrupt import Interrupted
+from tracewire.solve.interrupt import Halt, Interrupted, until_interrupted
 from tracewire.solve.limits import Limits
 from tracewire.solve.many import simulate_many
 from tracewire.solve.observers import Section
+from tracewire.solve.parallel import cores, crew, each
 from tracewire.solve.passage import Passage
 from tracewire.solve.run import Event, Run, Sensitivities, Statistics
 from tracewire.solve.runs import Runs
@@ -124,6 +125,7 @@ from tracewire.solve.spans import Span, SpanRuns, simulate_spans
 __all__ = [
     "Driving",
     "Event",
+    "Halt",
     "Held",
     "Interrupted",
     "Limits",
@@ -135,11 +137,15 @@ __all__ = [
     "Span",
     "SpanRuns",
     "Statistics",
+    "cores",
+    "crew",
+    "each",
     "parameter_values",
     "release",
     "simulate",
     "simulate_many",
     "simulate_spans",
+    "until_interrupted",
     "values_at",
     "with_points",
 ]

@@ -1,7 +1,24 @@
 """From a diagram and measured series to the effect that the diagram lacks."""
 
 from tracewire.trace.check.option_checks import check_options
-from tracewire.trace.found import Found, FoundEffect
+from tracewire.trace.found import (
+    ChannelError,
+    Curve,
+    Dependence,
+    Experiment,
+    Explained,
+    Force,
+    Found,
+    FoundEffect,
+    HeldOut,
+    Missing,
+    Moved,
+    Power,
+    Ranked,
+    Remainder,
+    StepTold,
+    Tie,
+)
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.saved import load, save
 from tracewire.trace.thresholds import (
@@ -15,21 +32,49 @@ from tracewire.trace.thresholds import (
     TrialOptions,
 )
 from tracewire.trace.trace import trace
+from tracewire.trace.units import (
+    coefficient_of,
+    signal_of,
+    unit_at,
+    unit_of,
+    unit_of_power,
+    users_unit,
+)
 
 __all__ = [
     "CandidateOptions",
+    "ChannelError",
     "CheckOptions",
+    "Curve",
+    "Dependence",
+    "Experiment",
     "ExperimentOptions",
+    "Explained",
+    "Force",
     "Found",
     "FoundEffect",
+    "HeldOut",
     "MapOptions",
+    "Missing",
+    "Moved",
+    "Power",
+    "Ranked",
+    "Remainder",
     "ScreenOptions",
     "SearchOptions",
     "SplitOptions",
+    "StepTold",
+    "Tie",
     "TraceOptions",
     "TrialOptions",
     "check_options",
+    "coefficient_of",
     "load",
     "save",
+    "signal_of",
     "trace",
+    "unit_at",
+    "unit_of",
+    "unit_of_power",
+    "users_unit",
 ]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tracewire.fit.search import Search
 from tracewire.residual import Criterion
-from tracewire.solve.parallel import cores
+from tracewire.solve import cores
 
 Vector = NDArray[np.float64]
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from tracewire.diagram import Diagram, add_addend, add_own, add_sensor
-from tracewire.diagram.rewire import add_to_drive
-from tracewire.formula.text import number_text
+from tracewire.diagram import Diagram, add_addend, add_own, add_sensor, add_to_drive
+from tracewire.formula import number_text
 from tracewire.trace.candidates.candidate import Candidate, is_default
 
 

@@ -6,10 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tracewire.diagram import Diagram, add_addend
-from tracewire.diagram.rewire import add_to_drive
+from tracewire.diagram import Diagram, add_addend, add_to_drive
 from tracewire.errors import OptionError
-from tracewire.formula.text import number_text
+from tracewire.formula import number_text
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.found import Missing
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from tracewire.diagram import BlockUse, Diagram, InputPort, Value, Wire
-from tracewire.diagram.rewire import rewired
+from tracewire.diagram import BlockUse, Diagram, InputPort, Value, Wire, rewired
 from tracewire.formula import Call, Expression, Name, Number
 from tracewire.trace.candidates.places import Place
 
