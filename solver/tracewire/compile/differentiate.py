@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from tracewire.compile.linear import solve_linear
 from tracewire.compile.tape import Implicit, System, Tape
+from tracewire.formula import FUNCTIONS, Expression, Name, Number, parse
 
 
 def differentiate(tape: Tape, roots: Iterable[int], seeds: Mapping[int, int]) -> list[int]:
@@ -140,37 +141,20 @@ def _power_rate(tape: Tape, index: int, base: tuple[int, int], exponent: tuple[i
 
 def slope_of(tape: Tape, op: str, a: int, value: int) -> int:
     """The derivative of a function of one argument; `value` is the entry of the function itself."""
-    push, one = tape.push, tape.constant(1.0)
+    slope = FUNCTIONS[op].slope if op in FUNCTIONS else ""
+    if not slope:
+        raise AssertionError(f"no derivative of {op}")
+    return _pushed(tape, parse(slope), {"u": a, "f": value})
 
-    def square(index: int) -> int:
-        return push("*", index, index)
 
-    match op:
-        case "sin":
-            return push("cos", a)
-        case "cos":
-            return push("neg", push("sin", a))
-        case "tan":
-            return push("+", one, square(value))
-        case "asin":
-            return push("/", one, push("sqrt", push("-", one, square(a))))
-        case "acos":
-            return push("neg", push("/", one, push("sqrt", push("-", one, square(a)))))
-        case "atan":
-            return push("/", one, push("+", one, square(a)))
-        case "sinh":
-            return push("cosh", a)
-        case "cosh":
-            return push("sinh", a)
-        case "tanh":
-            return push("-", one, square(value))
-        case "exp":
-            return value
-        case "log":
-            return push("/", one, a)
-        case "sqrt":
-            return push("/", tape.constant(0.5), value)
-    raise AssertionError(f"no derivative of {op}")
+def _pushed(tape: Tape, formula: Expression, entries: Mapping[str, int]) -> int:
+    """The entry of a formula over entries by their names."""
+    if isinstance(formula, Number):
+        return tape.constant(formula.value)
+    if isinstance(formula, Name):
+        return entries[formula.name]
+    arguments = (_pushed(tape, argument, entries) for argument in formula.arguments)
+    return tape.push(formula.function, *arguments)
 
 
 def linear_in_t(tape: Tape, index: int, t: int) -> tuple[int, int] | None:

@@ -8,8 +8,11 @@ import os
 from collections.abc import Callable
 from functools import cache
 
-ONE = ("sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log")
-TWO = ("pow", "atan2")
+from tracewire.formula import OPERATIONS
+
+CALLED = [operation for operation in OPERATIONS.values() if operation.library]
+ONE = tuple(operation.library for operation in CALLED if operation.most == 1)
+TWO = tuple(operation.library for operation in CALLED if operation.most == 2)
 BOTH = "sincos"
 """Functions of one and of two numbers, and the one of GNU that gives sine and cosine together."""
 

@@ -17,12 +17,14 @@ from collections.abc import Mapping, Sequence
 
 from tracewire.compile import libm
 from tracewire.compile.constants import Constants
-from tracewire.compile.search import FABS, SearchText
+from tracewire.compile.search import SearchText
 from tracewire.compile.tape import Entry, Tape
+from tracewire.formula import OPERATIONS
 
-ARITHMETIC = {"+": "fadd", "-": "fsub", "*": "fmul", "/": "fdiv", "and": "fmul"}
-LIBRARY = {name: name for name in (*libm.ONE, *libm.TWO)} | {"**": "pow"}
-INTRINSIC = {"sqrt": "llvm.sqrt.f64", "floor": "llvm.floor.f64", "abs": FABS}
+ARITHMETIC = {name: o.instruction for name, o in OPERATIONS.items() if o.instruction}
+ARITHMETIC |= {"and": "fmul"}  # of 0 and 1
+LIBRARY = {name: o.library for name, o in OPERATIONS.items() if o.library}
+INTRINSIC = {name: o.intrinsic for name, o in OPERATIONS.items() if o.intrinsic}
 PREFIX = "tracewire."
 ARGUMENTS = "double %t, " + ", ".join(f"ptr noalias readonly %{a}" for a in "xmck")
 LONGEST_RUN = 8  # stores of one value to neighbours, beyond which a loop does them

@@ -23,9 +23,10 @@ from collections.abc import Mapping, Sequence
 
 from tracewire.compile.differentiate import differentiate
 from tracewire.compile.tape import Tape
+from tracewire.formula import FUNCTIONS
 
-TURNING = ("sin", "cos", "tan")
-FADING = ("exp", "tanh", "sinh", "cosh", "atan")
+TURNING = {name for name, function in FUNCTIONS.items() if function.pace == "turns"}
+FADING = {name for name, function in FUNCTIONS.items() if function.pace == "fades"}
 STILL = ("ge", "gt", "and", "or", "not", "floor", "slope")
 
 
@@ -51,7 +52,7 @@ def pace(tape: Tape, roots: Sequence[int], flow: Mapping[int, int]) -> int:
 def _argument(tape: Tape, index: int) -> int | None:
     """The operand whose rate adds to the pace of an entry."""
     entry = tape.entries[index]
-    if entry.op in (*TURNING, *FADING):
+    if entry.op in TURNING | FADING:
         return entry.operands[0]
     if entry.op == "/":
         return entry.operands[1]

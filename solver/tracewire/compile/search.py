@@ -6,8 +6,9 @@ import struct
 from collections.abc import Sequence
 
 from tracewire.compile.tape import CLOSE, LEAST_SHARE, SEARCHES
+from tracewire.formula import FUNCTIONS
 
-FABS = "llvm.fabs.f64"
+FABS = FUNCTIONS["abs"].intrinsic
 
 
 def bits(value: float) -> str:

@@ -38,36 +38,26 @@ import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
+from tracewire.formula import OPERATIONS
+
+COMPUTED = {
+    name: operation.value
+    for name, operation in OPERATIONS.items()
+    if operation.value and (operation.library or operation.intrinsic or operation.instruction)
+}
 UNARY: dict[str, Callable[[float], float]] = {
-    "sin": math.sin,
-    "cos": math.cos,
-    "tan": math.tan,
-    "asin": math.asin,
-    "acos": math.acos,
-    "atan": math.atan,
-    "sinh": math.sinh,
-    "cosh": math.cosh,
-    "tanh": math.tanh,
-    "exp": math.exp,
-    "log": math.log,
-    "sqrt": math.sqrt,
-    "floor": math.floor,
-    "abs": abs,
+    **{name: value for name, value in COMPUTED.items() if OPERATIONS[name].most == 1},
     "neg": lambda a: -a,
     "not": lambda a: 1.0 - a,
 }
 BINARY: dict[str, Callable[[float, float], float]] = {
-    "+": lambda a, b: a + b,
-    "-": lambda a, b: a - b,
-    "*": lambda a, b: a * b,
-    "/": lambda a, b: a / b,
-    "**": lambda a, b: a**b,
-    "atan2": math.atan2,
+    **{name: value for name, value in COMPUTED.items() if OPERATIONS[name].most == 2},
     "ge": lambda a, b: 1.0 if a >= b else 0.0,
     "gt": lambda a, b: 1.0 if a > b else 0.0,
     "and": lambda a, b: a * b,
     "or": lambda a, b: max(a, b),
 }
+"""What operations of the tape give for numbers; conditions are 0.0 and 1.0."""
 
 SEARCHES = 100
 LEAST_SHARE = 2.0**-10
@@ -171,7 +161,7 @@ class Tape:
             result = UNARY[op](values[0]) if len(values) == 1 else BINARY[op](*values)
         except (ValueError, ZeroDivisionError, OverflowError):
             return None  # left to fail where it is used, with a name
-        if isinstance(result, complex) or not math.isfinite(result):
+        if not math.isfinite(result):
             return None
         return self.constant(result)
 

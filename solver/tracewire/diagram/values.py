@@ -12,6 +12,7 @@ from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.errors import DataError, FormulaError, Place
 from tracewire.formula import (
     CONSTANTS,
+    FUNCTIONS,
     Call,
     Expression,
     Number,
@@ -23,12 +24,7 @@ from tracewire.formula import (
 
 FREE = (-math.inf, math.inf)
 UNBOUNDED = {"inf": math.inf, "+inf": math.inf, "-inf": -math.inf}
-OF_BLOCKS = {
-    "sum": "Use a block of type sum, or write a + b.",
-    "product": "Use a block of type product, or write a*b.",
-    "interp": "Use a block that has a table of points.",
-    "join": "Use a block of type mux, or write the list [a, b].",
-}
+OF_BLOCKS = {name: function.instead for name, function in FUNCTIONS.items() if function.reads}
 """Functions that read a port or a table; a diagram's own formulas have neither."""
 NO_UNIT = Unit("", 1.0)
 

@@ -7,7 +7,7 @@ bounded, so a formula from a stranger can do nothing but arithmetic. It is never
 
 from tracewire.formula.evaluate import evaluate
 from tracewire.formula.expression import Call, Expression, Name, Number, names_of, rename
-from tracewire.formula.functions import CONSTANTS, FUNCTIONS
+from tracewire.formula.functions import CONSTANTS, FUNCTIONS, OPERATIONS
 from tracewire.formula.order import evaluation_order
 from tracewire.formula.parse import is_name, name_hint, parse, parse_condition
 from tracewire.formula.text import number_text, to_text
@@ -16,6 +16,7 @@ from tracewire.formula.units import Unit, quantity_hint, read_unit, same_quantit
 __all__ = [
     "CONSTANTS",
     "FUNCTIONS",
+    "OPERATIONS",
     "Call",
     "Expression",
     "Name",

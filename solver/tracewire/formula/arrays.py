@@ -11,46 +11,20 @@ from numpy.typing import NDArray
 
 from tracewire.errors import FormulaError
 from tracewire.formula.expression import Expression, Name, Number
-from tracewire.formula.functions import CONSTANTS
+from tracewire.formula.functions import CONSTANTS, OPERATIONS
 from tracewire.formula.text import to_text
 
 Vector = NDArray[np.float64]
-OPERATIONS: dict[str, Callable[..., Any]] = {
-    "+": np.add,
-    "-": np.subtract,
-    "*": np.multiply,
-    "/": np.divide,
-    "**": np.power,
-    "neg": np.negative,
-    "<": np.less,
-    "<=": np.less_equal,
-    ">": np.greater,
-    ">=": np.greater_equal,
-    "and": lambda *terms: reduce(np.logical_and, terms),
-    "or": lambda *terms: reduce(np.logical_or, terms),
-    "not": np.logical_not,
-    "abs": np.abs,
-    "sign": np.sign,
-    "min": lambda *terms: reduce(np.minimum, terms),
-    "max": lambda *terms: reduce(np.maximum, terms),
-    "floor": np.floor,
-    "mod": np.mod,
-    "dry": lambda u, slip, stick: slip * np.sign(u),
-    "if": lambda condition, then, other: np.where(condition, then, other),
-    "sin": np.sin,
-    "cos": np.cos,
-    "tan": np.tan,
-    "asin": np.arcsin,
-    "acos": np.arccos,
-    "atan": np.arctan,
-    "atan2": np.arctan2,
-    "sinh": np.sinh,
-    "cosh": np.cosh,
-    "tanh": np.tanh,
-    "exp": np.exp,
-    "log": np.log,
-    "sqrt": np.sqrt,
-}
+
+
+def _of_numpy(name: str) -> Callable[..., Any]:
+    function = getattr(np, name)
+    return function if function.nin == 1 else lambda *terms: reduce(function, terms)
+
+
+ALONG = {name: _of_numpy(one.numpy) for name, one in OPERATIONS.items() if one.numpy}
+ALONG |= {"if": np.where, "dry": lambda u, slip, stick: slip * np.sign(u)}
+"""What numpy has for operators and functions, and what it does not have."""
 
 
 def evaluate_along(
@@ -78,5 +52,5 @@ def _value(node: Expression, values: Mapping[str, float | Vector]) -> float | Ve
         return node.value
     if isinstance(node, Name):
         return CONSTANTS[node.name] if node.name in CONSTANTS else values[node.name]
-    found: Vector = OPERATIONS[node.function](*(_value(a, values) for a in node.arguments))
+    found: Vector = ALONG[node.function](*(_value(a, values) for a in node.arguments))
     return found

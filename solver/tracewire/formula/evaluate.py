@@ -3,52 +3,12 @@
 from __future__ import annotations
 
 import math
-import operator
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 from tracewire.errors import FormulaError, Place, Problem
 from tracewire.formula.expression import Expression, Name, Number
-from tracewire.formula.functions import CONSTANTS
+from tracewire.formula.functions import CONSTANTS, OPERATIONS
 from tracewire.formula.text import to_text
-
-OPERATIONS: dict[str, Callable[..., float]] = {
-    "+": operator.add,
-    "-": operator.sub,
-    "*": operator.mul,
-    "/": operator.truediv,
-    "**": math.pow,
-    "neg": operator.neg,
-    "<": operator.lt,
-    "<=": operator.le,
-    ">": operator.gt,
-    ">=": operator.ge,
-    "and": lambda *terms: all(terms),
-    "or": lambda *terms: any(terms),
-    "not": operator.not_,
-    "abs": abs,
-    "sign": lambda u: (u > 0) - (u < 0),
-    "min": min,
-    "max": max,
-    "floor": math.floor,
-    "mod": lambda a, b: a - b * math.floor(a / b),
-    "dry": lambda u, slip, stick: slip * ((u > 0) - (u < 0)),
-    "is_held": lambda u: 0.0,  # of parameters: nothing moves that could be held
-    "dot": operator.mul,  # a parameter is one number, a vector of one element
-    "solve": lambda matrix, right: right / matrix,
-    "sin": math.sin,
-    "cos": math.cos,
-    "tan": math.tan,
-    "asin": math.asin,
-    "acos": math.acos,
-    "atan": math.atan,
-    "atan2": math.atan2,
-    "sinh": math.sinh,
-    "cosh": math.cosh,
-    "tanh": math.tanh,
-    "exp": math.exp,
-    "log": math.log,
-    "sqrt": math.sqrt,
-}
 
 
 def evaluate(expression: Expression, values: Mapping[str, float], place: Place = Place()) -> float:
@@ -79,4 +39,7 @@ def _value(node: Expression, values: Mapping[str, float]) -> float:
     if node.function == "if":  # the other branch may be undefined
         condition, then, other = node.arguments
         return _value(then if _value(condition, values) else other, values)
-    return OPERATIONS[node.function](*(_value(a, values) for a in node.arguments))
+    value = OPERATIONS[node.function].value
+    if value is None:
+        raise KeyError(node.function)
+    return value(*(_value(a, values) for a in node.arguments))

@@ -1,57 +1,147 @@
-"""The functions and constants of the formula language."""
+"""The operators, functions and constants of the formula language: one record says all of each.
+
+What the compiler does with a function that needs more than arithmetic (a guard, a table, the
+elements of vectors) is code of `tracewire.compile`, and so are derivatives by two arguments.
+"""
 
 from __future__ import annotations
 
 import math
+import operator
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Literal
+
+Reads = Literal["", "wires", "points"]
+UnitRule = Literal[
+    "number", "same", "compared", "kept", "lost", "root", "product", "quotient", "power"
+]
 
 
 @dataclass(frozen=True)
 class Function:
-    """A function of the language: how many arguments it takes (`most` None: any) and what it is."""
+    """A function of the language, or an operator.
+
+    It takes from `least` to `most` arguments (None: any number); `doc` says what it is.
+
+    value: what it is of numbers, such as parameters; None: nothing. numpy: the name of the same in
+    numpy, which takes two arguments at a time.
+
+    unit: a `number` of numbers; of arguments of the `same` unit, which the value has, too; of those
+    that are `compared`, the value has none. Of one argument: its unit is `kept`, or `lost`, or the
+    value is its `root`. Of two: their `product`, `quotient` or `power`.
+
+    slope: of one argument u, the derivative, a formula of u and of the value f. pace: whether it
+    `turns` again and again as u grows, as a sine does, or `fades` where u is large.
+
+    library, intrinsic, instruction: the name of the function of the C library, of the function of
+    LLVM, or of the instruction that computes it. None of them: it is made of others.
+
+    reads: the last argument is no value, but the name of a port with several `wires` or of a table
+    of `points`. instead: what to write in a formula of a diagram, which has neither.
+    """
 
     least: int
     most: int | None
     doc: str
+    value: Callable[..., float] | None = None
+    numpy: str = ""
+    unit: UnitRule = "number"
+    slope: str = ""
+    pace: Literal["", "turns", "fades"] = ""
+    library: str = ""
+    intrinsic: str = ""
+    instruction: str = ""
+    reads: Reads = ""
+    instead: str = ""
 
 
-FUNCTIONS = {
-    "sin": Function(1, 1, "sine of an angle in rad"),
-    "cos": Function(1, 1, "cosine of an angle in rad"),
-    "tan": Function(1, 1, "tangent of an angle in rad"),
-    "asin": Function(1, 1, "inverse sine, in rad"),
-    "acos": Function(1, 1, "inverse cosine, in rad"),
-    "atan": Function(1, 1, "inverse tangent, in rad"),
-    "atan2": Function(2, 2, "angle of the point (x, y) given as atan2(y, x), in rad"),
-    "sinh": Function(1, 1, "hyperbolic sine"),
-    "cosh": Function(1, 1, "hyperbolic cosine"),
-    "tanh": Function(1, 1, "hyperbolic tangent"),
-    "exp": Function(1, 1, "exponential"),
-    "log": Function(1, 1, "natural logarithm"),
-    "sqrt": Function(1, 1, "square root"),
-    "abs": Function(1, 1, "absolute value; its kink is a guard"),
-    "sign": Function(1, 1, "1 above zero, -1 below, set-valued at zero; its jump is a guard"),
-    "min": Function(2, None, "the least argument; every change of it is a guard"),
-    "max": Function(2, None, "the largest argument; every change of it is a guard"),
-    "floor": Function(1, 1, "the largest whole number not above; every jump is a guard"),
-    "mod": Function(2, 2, "a - b*floor(a/b); every jump is a guard"),
-    "dry": Function(
-        3,
-        3,
-        "dry(u, slip, stick): slip*sign(u); at u = 0 any value within +-stick that holds u there",
-    ),
-    "is_held": Function(
-        1, 1, "is_held(u): 1 while a closed contact or sticking friction holds u at zero, else 0"
-    ),
-    "interp": Function(2, 2, "interp(u, points): straight lines through points, held beyond them"),
-    "sum": Function(1, 1, "sum(port): the sum of all wires of an input that takes several"),
-    "product": Function(1, 1, "product(port): the product of all wires of such an input"),
-    "join": Function(1, 1, "join(port): the vector of all wires of such an input, end to end"),
-    "dot": Function(
-        2, 2, "dot(a, b): the sum of products of two vectors, or a matrix times a vector"
-    ),
-    "solve": Function(2, 2, "solve(M, f): the x with M x = f, of a square matrix and a vector"),
+# What formulas write as signs and words. `a if c else b` has no record: it works out one of two.
+# fmt: off
+OPERATORS = {
+    "+": Function(2, 2, "the sum", operator.add, numpy="add", unit="same", instruction="fadd"),
+    "-": Function(2, 2, "the difference", operator.sub, numpy="subtract", unit="same",
+        instruction="fsub"),
+    "*": Function(2, 2, "the product", operator.mul, numpy="multiply", unit="product",
+        instruction="fmul"),
+    "/": Function(2, 2, "the quotient", operator.truediv, numpy="divide", unit="quotient",
+        instruction="fdiv"),
+    "**": Function(2, 2, "the power", math.pow, numpy="power", unit="power", library="pow"),
+    "neg": Function(1, 1, "the sign turned round", operator.neg, numpy="negative", unit="kept"),
+    "<": Function(2, 2, "less", operator.lt, numpy="less", unit="compared"),
+    "<=": Function(2, 2, "less or equal", operator.le, numpy="less_equal", unit="compared"),
+    ">": Function(2, 2, "greater", operator.gt, numpy="greater", unit="compared"),
+    ">=": Function(2, 2, "greater or equal", operator.ge, numpy="greater_equal", unit="compared"),
+    "and": Function(2, None, "all hold", lambda *terms: all(terms), numpy="logical_and",
+        unit="lost"),
+    "or": Function(2, None, "one of them holds", lambda *terms: any(terms), numpy="logical_or",
+        unit="lost"),
+    "not": Function(1, 1, "it does not hold", operator.not_, numpy="logical_not", unit="lost"),
 }
+# fmt: on
+
+# What formulas call by name.
+# fmt: off
+FUNCTIONS = {
+    "sin": Function(1, 1, "sine of an angle in rad", math.sin, numpy="sin", slope="cos(u)",
+        pace="turns", library="sin"),
+    "cos": Function(1, 1, "cosine of an angle in rad", math.cos, numpy="cos", slope="-sin(u)",
+        pace="turns", library="cos"),
+    "tan": Function(1, 1, "tangent of an angle in rad", math.tan, numpy="tan", slope="1 + f*f",
+        pace="turns", library="tan"),
+    "asin": Function(1, 1, "inverse sine, in rad", math.asin, numpy="arcsin",
+        slope="1/sqrt(1 - u*u)", library="asin"),
+    "acos": Function(1, 1, "inverse cosine, in rad", math.acos, numpy="arccos",
+        slope="-(1/sqrt(1 - u*u))", library="acos"),
+    "atan": Function(1, 1, "inverse tangent, in rad", math.atan, numpy="arctan",
+        slope="1/(1 + u*u)", pace="fades", library="atan"),
+    "atan2": Function(2, 2, "angle of the point (x, y) given as atan2(y, x), in rad", math.atan2,
+        numpy="arctan2", library="atan2"),
+    "sinh": Function(1, 1, "hyperbolic sine", math.sinh, numpy="sinh", slope="cosh(u)",
+        pace="fades", library="sinh"),
+    "cosh": Function(1, 1, "hyperbolic cosine", math.cosh, numpy="cosh", slope="sinh(u)",
+        pace="fades", library="cosh"),
+    "tanh": Function(1, 1, "hyperbolic tangent", math.tanh, numpy="tanh", slope="1 - f*f",
+        pace="fades", library="tanh"),
+    "exp": Function(1, 1, "exponential", math.exp, numpy="exp", slope="f", pace="fades",
+        library="exp"),
+    "log": Function(1, 1, "natural logarithm", math.log, numpy="log", slope="1/u", library="log"),
+    "sqrt": Function(1, 1, "square root", math.sqrt, numpy="sqrt", unit="root", slope="0.5/f",
+        intrinsic="llvm.sqrt.f64"),
+    "abs": Function(1, 1, "absolute value; its kink is a guard", abs, numpy="abs", unit="kept",
+        intrinsic="llvm.fabs.f64"),
+    "sign": Function(1, 1, "1 above zero, -1 below, set-valued at zero; its jump is a guard",
+        lambda u: (u > 0) - (u < 0), numpy="sign", unit="lost"),
+    "min": Function(2, None, "the least argument; every change of it is a guard", min,
+        numpy="minimum", unit="same"),
+    "max": Function(2, None, "the largest argument; every change of it is a guard", max,
+        numpy="maximum", unit="same"),
+    "floor": Function(1, 1, "the largest whole number not above; every jump is a guard", math.floor,
+        numpy="floor", unit="kept", intrinsic="llvm.floor.f64"),
+    "mod": Function(2, 2, "a - b*floor(a/b); every jump is a guard",
+        lambda a, b: a - b * math.floor(a / b), numpy="mod", unit="same"),
+    "dry": Function(3, 3,
+        "dry(u, slip, stick): slip*sign(u); at u = 0 any value within +-stick that holds u there",
+        lambda u, slip, stick: slip * ((u > 0) - (u < 0))),
+    "is_held": Function(1, 1,
+        "is_held(u): 1 while a closed contact or sticking friction holds u at zero, else 0",
+        lambda u: 0.0),
+    "interp": Function(2, 2, "interp(u, points): straight lines through points, held beyond them",
+        reads="points", instead="Use a block that has a table of points."),
+    "sum": Function(1, 1, "sum(port): the sum of all wires of an input that takes several",
+        reads="wires", instead="Use a block of type sum, or write a + b."),
+    "product": Function(1, 1, "product(port): the product of all wires of such an input",
+        reads="wires", instead="Use a block of type product, or write a*b."),
+    "join": Function(1, 1, "join(port): the vector of all wires of such an input, end to end",
+        reads="wires", instead="Use a block of type mux, or write the list [a, b]."),
+    "dot": Function(2, 2,
+        "dot(a, b): the sum of products of two vectors, or a matrix times a vector", operator.mul),
+    "solve": Function(2, 2, "solve(M, f): the x with M x = f, of a square matrix and a vector",
+        lambda matrix, right: right / matrix),
+}
+# fmt: on
+
+OPERATIONS = OPERATORS | FUNCTIONS
 
 CONSTANTS = {"pi": math.pi}
 """Names with a fixed value. `t` is the time and is no constant."""

@@ -35,7 +35,7 @@ INSTEAD: dict[type[ast.operator], str] = {
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 WITH_UNIT = re.compile(r"(?<![\w.])(\d+(?:\.\d*)?(?:[eE][+-]?\d+)?)\s*([A-Za-z%]+)(?![\w.(])")
 ZEROS = re.compile(r"(?<![\w.])0+([1-9]\d*)(?![\w.])")
-BY_NAME = {"sum": "a port", "product": "a port", "join": "a port", "interp": "a table of points"}
+BY_NAME = {"wires": "a port", "points": "a table of points"}
 LANGUAGE = (
     "A formula knows + - * / **, < <= > >=, and/or/not, 'a if c else b' and: "
     + ", ".join(FUNCTIONS)
@@ -285,8 +285,8 @@ class _Converter:
             wanted = wanted if function.most else f"at least {wanted}"
             raise self.refuse(node, f"{name} takes {wanted}, {given} given", "")
         arguments = tuple(self.value(argument, depth + 1) for argument in node.args)
-        if name in BY_NAME and not isinstance(arguments[-1], Name):
-            raise self.refuse(node, f"{name} reads {BY_NAME[name]} by its name", "")
+        if function.reads and not isinstance(arguments[-1], Name):
+            raise self.refuse(node, f"{name} reads {BY_NAME[function.reads]} by its name", "")
         return Call(name, arguments)
 
 

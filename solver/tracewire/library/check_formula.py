@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Literal
 
 from tracewire.errors import FormulaError, Place, Problem, unknown
-from tracewire.formula import CONSTANTS, Call, Expression, Name, parse, parse_condition
+from tracewire.formula import CONSTANTS, FUNCTIONS, Call, Expression, Name, parse, parse_condition
 
 Use = Literal["value", "wires", "points"]
 READ_BY: dict[Use, str] = {
@@ -39,10 +39,8 @@ def _uses(formula: Expression, use: Use = "value") -> Iterator[tuple[str, Use]]:
     if isinstance(formula, Name):
         yield formula.name, use
     elif isinstance(formula, Call):
-        for number, argument in enumerate(formula.arguments):
-            if formula.function in ("sum", "product", "join"):
-                yield from _uses(argument, "wires")
-            elif formula.function == "interp" and number == 1:
-                yield from _uses(argument, "points")
-            else:
-                yield from _uses(argument)
+        called = FUNCTIONS.get(formula.function)
+        reads = called.reads if called is not None else ""
+        for number, argument in enumerate(formula.arguments, start=1):
+            is_last = number == len(formula.arguments)
+            yield from _uses(argument, (is_last and reads) or "value")

@@ -15,7 +15,7 @@ import numpy as np
 from tracewire.compile import compile
 from tracewire.diagram import EffectType, effects_of
 from tracewire.errors import TracewireError
-from tracewire.formula import Call, Expression, Name, Number
+from tracewire.formula import OPERATIONS, Call, Expression, Name, Number
 from tracewire.trace.candidates.places import Place, find_places
 from tracewire.trace.found import Found, FoundEffect, Power
 
@@ -25,11 +25,6 @@ SYMBOL_UNITS = {
     "q": (0, 1, 0), "v": (0, 1, -1), "a": (0, 1, -2), "other_q": (0, 1, 0),
     "other_v": (0, 1, -1), "u": (1, 0, 0),
 }  # fmt: skip
-SAME = {"+", "-", "min", "max", "mod", "clip", "hypot"}
-COMPARED = {"<", "<=", ">", ">=", "==", "!="}
-KEPT = {"neg", "abs", "floor", "ceil"}
-NO_UNIT = {"sign"}
-"""The argument may have any unit, the value has none."""
 PART = re.compile(r"([A-Za-z]+|1)(?:\s*(?:\^|\*\*)\s*(-?\d+(?:\.\d+)?))?")
 
 Term = dict[str, float]
@@ -214,20 +209,7 @@ def _term(
             return {f"\0{b}": e for b, e in zip("FQT", known[node.name], strict=True) if e}
         return {node.name: 1.0}
     terms = [_term(argument, known, equations) for argument in node.arguments]
-    name = node.function
-    if name == "*":
-        return None if None in terms else _times(terms[0] or {}, terms[1] or {})
-    if name == "/":
-        return None if None in terms else _times(terms[0] or {}, terms[1] or {}, -1.0)
-    if name == "**":
-        return _power(node, terms, equations)
-    if name == "sqrt":
-        return None if terms[0] is None else {n: e / 2 for n, e in terms[0].items()}
-    if name in KEPT:
-        return terms[0]
-    if name in NO_UNIT or name in ("and", "or", "not"):
-        return {}
-    if name == "if":
+    if node.function == "if":
         branches = node.arguments[1:]
         known_branches = [
             term  # a number may stand for any unit beside what has one
@@ -237,11 +219,25 @@ def _term(
         if len(known_branches) == 2:
             _equal(known_branches[0], known_branches[1], equations)
         return next((term for term in known_branches if term is not None), terms[1])
-    if name in SAME or name in COMPARED:
-        for other in terms[1:]:
-            _equal(terms[0], other, equations)
-        first = next((term for term in terms if term is not None), None)
-        return {} if name in COMPARED else first
+    operation = OPERATIONS.get(node.function)
+    match operation.unit if operation is not None else "number":
+        case "product":
+            return None if None in terms else _times(terms[0] or {}, terms[1] or {})
+        case "quotient":
+            return None if None in terms else _times(terms[0] or {}, terms[1] or {}, -1.0)
+        case "power":
+            return _power(node, terms, equations)
+        case "root":
+            return None if terms[0] is None else {n: e / 2 for n, e in terms[0].items()}
+        case "kept":
+            return terms[0]
+        case "lost":
+            return {}
+        case "same" | "compared" as rule:
+            for other in terms[1:]:
+                _equal(terms[0], other, equations)
+            first = next((term for term in terms if term is not None), None)
+            return {} if rule == "compared" else first
     for term in terms:  # exp, sin, tanh ...: a number of a number
         _equal(term, {}, equations)
     return {}
