@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+import sys
+import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -88,3 +91,35 @@ def test_machine_code_is_made_of_the_sources_alone(changed: Path) -> None:
     assert core_file.object_code() == code
     done = subprocess.run(["grep", "-c", str(changed), "-"], input=code, check=False)
     assert done.returncode == 1  # no path of this machine
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="looks for processes in /proc")
+def test_the_processes_of_a_killed_build_end(tmp_path: Path) -> None:
+    """They would work on for minutes, and slow down the next build."""
+    command = [sys.executable, str(core_file.HERE / "core_build"), str(tmp_path / "a.o"), "generic"]
+    build = subprocess.Popen(command, stderr=subprocess.DEVNULL)
+    try:
+        children = Path(f"/proc/{build.pid}/task/{build.pid}/children")
+        assert waited_for(lambda: len(children.read_text(encoding="ascii").split()) > 0)
+        parts = children.read_text(encoding="ascii").split()
+    finally:
+        build.kill()
+        build.wait()
+    assert waited_for(lambda: not any(alive(int(part)) for part in parts))
+
+
+def alive(process: int) -> bool:
+    """Whether a process runs; one that has ended and that nobody asked about does not."""
+    try:
+        status = Path(f"/proc/{process}/stat").read_text(encoding="ascii")
+    except OSError:
+        return False
+    return status.rpartition(")")[2].split()[0] != "Z"
+
+
+def waited_for(condition: Callable[[], bool]) -> bool:
+    """Whether the condition holds within 20 s."""
+    until = time.monotonic() + 20.0
+    while not condition() and time.monotonic() < until:
+        time.sleep(0.02)
+    return condition()

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from threading import Thread
 from types import ModuleType
 
 HERE = Path(__file__).resolve().parent
@@ -24,7 +25,10 @@ def main(file: str, processor: str) -> None:
     with tempfile.TemporaryDirectory() as folder:
         parts = [Path(folder, str(number)) for number in range(count)]
         command = [sys.executable, str(HERE), processor, str(count)]
-        running = [subprocess.Popen([*command, str(n), str(p)]) for n, p in enumerate(parts)]
+        running = [
+            subprocess.Popen([*command, str(number), str(part)], stdin=subprocess.PIPE)
+            for number, part in enumerate(parts)
+        ]
         try:
             codes = [process.wait() for process in running]
         finally:
@@ -40,6 +44,7 @@ def main(file: str, processor: str) -> None:
 
 def make_part(processor: str, count: str, number: str, file: str) -> None:
     """Write the bitcode of every `count`th unit."""
+    Thread(target=_end_with_parent, daemon=True).start()
     from tracewire.files import write_file
     from tracewire.solve.core_build import lower, without_python
     from tracewire.solve.core_build.link import optimised, target_of
@@ -50,6 +55,12 @@ def make_part(processor: str, count: str, number: str, file: str) -> None:
     for symbol in list(units)[int(number) :: int(count)]:
         units[symbol].lower()
     write_file(file, optimised(without_python.TEXTS, units, target_of(processor)))
+
+
+def _end_with_parent() -> None:
+    """End this process when the one that began it is no more, which closes the pipe."""
+    sys.stdin.buffer.read()
+    os._exit(1)
 
 
 def read_alone() -> None:
