@@ -10,7 +10,7 @@ import typer
 
 from tracewire.cli.options import AsJson, Debug, Libraries, load_model
 from tracewire.cli.output import print_json, print_text, working
-from tracewire.errors import OptionError, Problem, TracewireError
+from tracewire.errors import DiagramError, OptionError, Problem, TracewireError
 
 if TYPE_CHECKING:
     from tracewire.compile import Model
@@ -65,11 +65,13 @@ def check(
 
 def _contents(file: str, library: Sequence[str] | None, quiet: bool) -> dict[str, Any]:
     """What is in a diagram, printed unless `quiet`. Raises TracewireError."""
-    from tracewire.compile.remarks import remarks_of
+    from tracewire.compile import remarks_of, unit_problems
     from tracewire.show.summary import contents, contents_text, series_contents
     from tracewire.solve import parameter_values
 
     model = load_model(file, library) if file != "-" else _from_stdin(library)
+    if problems := unit_problems(model.flat):
+        raise DiagramError(problems)
     for preset in ("", *model.flat.presets):  # they must be what the diagram requires
         parameter_values(model, {}, preset)
     measured: list[dict[str, object]] = []

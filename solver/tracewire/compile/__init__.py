@@ -1,5 +1,6 @@
 """From a diagram to a model: flat equations, one tape, and functions written from the tape."""
 
+from tracewire.compile.dimensions import unit_problems
 from tracewire.compile.flat import (
     Flat,
     FlatBlock,
@@ -11,6 +12,7 @@ from tracewire.compile.flat import (
 )
 from tracewire.compile.lowered import Mode, Reset, Transition
 from tracewire.compile.model import Model, compile
+from tracewire.compile.remarks import remarks_of
 
 __all__ = [
     "Flat",
@@ -25,4 +27,6 @@ __all__ = [
     "Reset",
     "Transition",
     "compile",
+    "remarks_of",
+    "unit_problems",
 ]

@@ -5,12 +5,14 @@ A formula is arithmetic (`+ - * / **`), comparisons (`< <= > >=`), `and / or / n
 bounded, so a formula from a stranger can do nothing but arithmetic. It is never given to `eval`.
 """
 
+from tracewire.formula.dimension import dimension_of, dimension_text
 from tracewire.formula.evaluate import evaluate
 from tracewire.formula.expression import Call, Expression, Name, Number, names_of, rename
 from tracewire.formula.functions import CONSTANTS, FUNCTIONS, OPERATIONS
 from tracewire.formula.order import evaluation_order
 from tracewire.formula.parse import is_name, name_hint, parse, parse_condition
 from tracewire.formula.text import number_text, to_text
+from tracewire.formula.unit_rules import Term, times, unit_term
 from tracewire.formula.units import Unit, quantity_hint, read_unit, same_quantity
 
 __all__ = [
@@ -21,7 +23,10 @@ __all__ = [
     "Expression",
     "Name",
     "Number",
+    "Term",
     "Unit",
+    "dimension_of",
+    "dimension_text",
     "evaluate",
     "evaluation_order",
     "is_name",
@@ -34,5 +39,7 @@ __all__ = [
     "read_unit",
     "rename",
     "same_quantity",
+    "times",
     "to_text",
+    "unit_term",
 ]

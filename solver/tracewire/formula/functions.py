@@ -14,7 +14,17 @@ from typing import Literal
 
 Reads = Literal["", "wires", "points"]
 UnitRule = Literal[
-    "number", "same", "compared", "kept", "lost", "root", "product", "quotient", "power"
+    "number",
+    "same",
+    "compared",
+    "levels",
+    "kept",
+    "lost",
+    "root",
+    "product",
+    "quotient",
+    "power",
+    "any",
 ]
 
 
@@ -28,8 +38,9 @@ class Function:
     numpy, which takes two arguments at a time.
 
     unit: a `number` of numbers; of arguments of the `same` unit, which the value has, too; of those
-    that are `compared`, the value has none. Of one argument: its unit is `kept`, or `lost`, or the
-    value is its `root`. Of two: their `product`, `quotient` or `power`.
+    that are `compared`, the value has none; of `levels` behind the first argument, which the value
+    has; of `any`, nothing is known of the value. Of one argument: its unit is `kept`, or `lost`, or
+    the value is its `root`. Of two: their `product`, `quotient` or `power`.
 
     slope: of one argument u, the derivative, a formula of u and of the value f. pace: whether it
     `turns` again and again as u grows, as a sine does, or `fades` where u is large.
@@ -122,10 +133,10 @@ FUNCTIONS = {
         lambda a, b: a - b * math.floor(a / b), numpy="mod", unit="same"),
     "dry": Function(3, 3,
         "dry(u, slip, stick): slip*sign(u); at u = 0 any value within +-stick that holds u there",
-        lambda u, slip, stick: slip * ((u > 0) - (u < 0))),
+        lambda u, slip, stick: slip * ((u > 0) - (u < 0)), unit="levels"),
     "is_held": Function(1, 1,
         "is_held(u): 1 while a closed contact or sticking friction holds u at zero, else 0",
-        lambda u: 0.0),
+        lambda u: 0.0, unit="lost"),
     "interp": Function(2, 2, "interp(u, points): straight lines through points, held beyond them",
         reads="points", instead="Use a block that has a table of points."),
     "sum": Function(1, 1, "sum(port): the sum of all wires of an input that takes several",
@@ -135,9 +146,10 @@ FUNCTIONS = {
     "join": Function(1, 1, "join(port): the vector of all wires of such an input, end to end",
         reads="wires", instead="Use a block of type mux, or write the list [a, b]."),
     "dot": Function(2, 2,
-        "dot(a, b): the sum of products of two vectors, or a matrix times a vector", operator.mul),
+        "dot(a, b): the sum of products of two vectors, or a matrix times a vector", operator.mul,
+        unit="product"),
     "solve": Function(2, 2, "solve(M, f): the x with M x = f, of a square matrix and a vector",
-        lambda matrix, right: right / matrix),
+        lambda matrix, right: right / matrix, unit="any"),
 }
 # fmt: on
 

@@ -1,8 +1,8 @@
 """The units of a result; that of a parameter of an effect follows from its formulas and its place.
 
-A formula is of one kind on both sides: what is added or compared has one unit, and the argument of
-`exp` or `sin` has none. With the units of the place (of its sum, its coordinate, s) these are
-linear equations for the exponents of each parameter, which are solved for all at once.
+The rules of units (`tracewire.formula.unit_rules`), with the units of the place (of its sum, its
+coordinate, s), are linear equations for the exponents of each parameter, which are solved for all
+at once.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from tracewire.compile import compile
 from tracewire.diagram import EffectType, effects_of
 from tracewire.errors import TracewireError
-from tracewire.formula import OPERATIONS, Call, Expression, Name, Number
+from tracewire.formula import Expression, Term, times, unit_term
 from tracewire.trace.candidates.places import Place, find_places
 from tracewire.trace.found import Found, FoundEffect, Power
 
@@ -26,9 +26,6 @@ SYMBOL_UNITS = {
     "other_v": (0, 1, -1), "u": (1, 0, 0),
 }  # fmt: skip
 PART = re.compile(r"([A-Za-z]+|1)(?:\s*(?:\^|\*\*)\s*(-?\d+(?:\.\d+)?))?")
-
-Term = dict[str, float]
-"""Exponents of unknown names that multiply; '' + base number for those that are known."""
 
 
 def unit_at(found: Found, place: str) -> str:
@@ -163,12 +160,25 @@ def _exponents(kind: EffectType) -> dict[str, tuple[float, ...]]:
     for parameter in block.parameters:
         if parameter.unit in ("s", "rad", "1"):
             known[parameter.name] = (0.0, 0.0, float(parameter.unit == "s"))
+
+    def named(name: str) -> Term:
+        if name not in known:
+            return {name: 1.0}
+        return {f"\0{base}": e for base, e in zip("FQT", known[name], strict=True) if e}
+
+    def note(one: Term, other: Term, *nodes: Expression | None) -> None:
+        equations.append(times(one, other, -1.0))
+
+    def same(formula: Expression, unit: Term) -> None:
+        term = unit_term(formula, named, note, strict=True)
+        if term is not None:
+            note(term, unit)
+
     for formula in block.formulas.values():
-        _equal(_term(formula, known, equations), {"\0F": 1.0}, equations)
+        same(formula, {"\0F": 1.0})
     for state in block.states:
-        rate = _term(block.rates[state.name], known, equations)
-        _equal(rate, {state.name: 1.0, "\0T": -1.0}, equations)
-        _equal(_term(block.starts[state.name], known, equations), {state.name: 1.0}, equations)
+        same(block.rates[state.name], {state.name: 1.0, "\0T": -1.0})
+        same(block.starts[state.name], {state.name: 1.0})
     names = sorted({n for e in equations for n in e if not n.startswith("\0")})
     if not names:
         return {}
@@ -184,73 +194,6 @@ def _exponents(kind: EffectType) -> dict[str, tuple[float, ...]]:
         for name, row, open_ in zip(names, solution, free, strict=True)
         if not open_
     }
-
-
-def _equal(one: Term | None, other: Term | None, equations: list[Term]) -> None:
-    if one is not None and other is not None:
-        equations.append(_times(one, other, -1.0))
-
-
-def _times(one: Term, other: Term, power: float = 1.0) -> Term:
-    found = dict(one)
-    for name, exponent in other.items():
-        found[name] = found.get(name, 0.0) + power * exponent
-    return found
-
-
-def _term(
-    node: Expression, known: Mapping[str, tuple[float, ...]], equations: list[Term]
-) -> Term | None:
-    """The exponents of a formula; None: a plain 0, or what may have any unit."""
-    if isinstance(node, Number):
-        return {} if node.value else None
-    if isinstance(node, Name):
-        if node.name in known:
-            return {f"\0{b}": e for b, e in zip("FQT", known[node.name], strict=True) if e}
-        return {node.name: 1.0}
-    terms = [_term(argument, known, equations) for argument in node.arguments]
-    if node.function == "if":
-        branches = node.arguments[1:]
-        known_branches = [
-            term  # a number may stand for any unit beside what has one
-            for term, branch in zip(terms[1:], branches, strict=True)
-            if not isinstance(branch, Number)
-        ]
-        if len(known_branches) == 2:
-            _equal(known_branches[0], known_branches[1], equations)
-        return next((term for term in known_branches if term is not None), terms[1])
-    operation = OPERATIONS.get(node.function)
-    match operation.unit if operation is not None else "number":
-        case "product":
-            return None if None in terms else _times(terms[0] or {}, terms[1] or {})
-        case "quotient":
-            return None if None in terms else _times(terms[0] or {}, terms[1] or {}, -1.0)
-        case "power":
-            return _power(node, terms, equations)
-        case "root":
-            return None if terms[0] is None else {n: e / 2 for n, e in terms[0].items()}
-        case "kept":
-            return terms[0]
-        case "lost":
-            return {}
-        case "same" | "compared" as rule:
-            for other in terms[1:]:
-                _equal(terms[0], other, equations)
-            first = next((term for term in terms if term is not None), None)
-            return {} if rule == "compared" else first
-    for term in terms:  # exp, sin, tanh ...: a number of a number
-        _equal(term, {}, equations)
-    return {}
-
-
-def _power(node: Call, terms: list[Term | None], equations: list[Term]) -> Term | None:
-    base, exponent = terms
-    last = node.arguments[1]
-    if isinstance(last, Number):
-        return None if base is None else {n: e * last.value for n, e in base.items()}
-    _equal(exponent, {}, equations)
-    _equal(base, {}, equations)
-    return {}
 
 
 # --- texts --------------------------------------------------------------------------------------

@@ -1,0 +1,158 @@
+"""Whether the units of a model go together: one equation for each formula and each wire.
+
+A signal or a state without a unit takes the one that its equations give it. A number, the time
+`t`, or a parameter without a unit may have any: only what units contradict is told.
+"""
+
+from __future__ import annotations
+
+from tracewire.compile.flat import Flat, FlatState
+from tracewire.errors import Place, Problem
+from tracewire.formula import (
+    CONSTANTS,
+    Call,
+    Expression,
+    Name,
+    Number,
+    Term,
+    dimension_of,
+    dimension_text,
+    times,
+    to_text,
+    unit_term,
+)
+
+OPEN = "\0"
+"""Begins the name of a signal whose unit is not known yet: no base unit does."""
+SECOND: Term = {"s": 1.0}
+HINT = "Correct a unit, or give the number between them a unit. What has no unit may have any."
+
+
+def unit_problems(flat: Flat) -> list[Problem]:
+    """Where the units of a model contradict each other, each with its place and both units."""
+    return _Units(flat).problems()
+
+
+class _Units:
+    def __init__(self, flat: Flat) -> None:
+        self.flat = flat
+        self.states = {state.name: state for state in flat.states}
+        self.known: dict[str, Term] = {}
+        self.found: list[Problem] = []
+        self.where = Place()
+        for name, unit in flat.units.items():
+            dimension = dimension_of(unit)
+            if dimension is not None:
+                self.known[OPEN + name] = dimension
+
+    def problems(self) -> list[Problem]:
+        for name, parameter in self.flat.parameters.items():
+            self.where = parameter.place
+            self.same(name, parameter.formula, "its value")
+        for state in self.flat.states:
+            self.where = state.place
+            self.integral(state)
+        for name, formula in self.flat.signals.items():
+            self.where = self.place(name)
+            self.same(name, formula, "its formula")
+        for state in self.flat.states:
+            self.where = state.place
+            self.same(state.name, state.start, "its start")
+        for event in self.flat.events:
+            self.where = event.place
+            self.term(event.when)
+            for name, formula in event.set.items():
+                self.same(name, formula, f"what '{event.name}' sets it to")
+        return self.found
+
+    def term(self, formula: Expression) -> Term | None:
+        """The unit of a formula; what contradicts inside of it is noted."""
+        return unit_term(formula, self.named, self.together, strict=False)
+
+    def named(self, name: str) -> Term | None:
+        if name in CONSTANTS:
+            return {}
+        parameter = self.flat.parameters.get(name)
+        if parameter is not None:
+            own = dimension_of(parameter.unit)
+            number = isinstance(parameter.formula, Number)
+            return own if own is not None or number else self.term(parameter.formula)
+        if name in self.states or name in self.flat.signals or OPEN + name in self.known:
+            return {OPEN + name: 1.0}
+        return None
+
+    def together(self, one: Term, other: Term, left: Expression | None, right: Expression) -> None:
+        """What a formula adds or compares, or takes for a number."""
+        if self.agree(one, other):
+            return
+        if left is None:
+            self.note(f"{self.said(right, other)} where a number or an angle is needed")
+        else:
+            both = f"{self.said(left, one)} and {self.said(right, other)}"
+            self.note(f"{both}: they cannot be added or compared")
+
+    def same(self, name: str, formula: Expression, what: str) -> None:
+        """The unit of a name is that of its formula."""
+        own, made = self.named(name), self.term(formula)
+        if own is None or made is None or self.agree(own, made):
+            return
+        made_of = self.said(formula, made) if isinstance(formula, Name) else ""
+        made_of = made_of or f"{what} is in {self.text(made)}"
+        self.note(f"{self.said(Name(name), own)}, and {made_of}")
+
+    def integral(self, state: FlatState) -> None:
+        """The unit of a rate is that of its state over time."""
+        rate, own = self.term(state.rate), self.named(state.name)
+        if rate is None or own is None:
+            return
+        needed = times(own, SECOND, -1.0)
+        if not self.agree(needed, rate):
+            self.note(
+                f"{self.said(Name(state.name), own)}, and is the integral of what is in "
+                f"{self.text(rate, state.rate)}; it needs a rate in {self.text(needed)}"
+            )
+
+    def agree(self, one: Term, other: Term) -> bool:
+        """Whether two units are the same; where they leave a signal open, its unit is known now."""
+        apart = self.resolved(times(one, other, -1.0))
+        signal = next((name for name in apart if name.startswith(OPEN)), None)
+        if signal is None:
+            return not apart
+        power = apart.pop(signal)
+        self.known[signal] = times({}, apart, -1.0 / power)
+        return True
+
+    def note(self, what: str) -> None:
+        problem = Problem(what, self.where, hint=HINT)
+        if problem not in self.found:
+            self.found.append(problem)
+
+    def resolved(self, term: Term) -> Term:
+        """The same without signals whose unit is known by now."""
+        while name := next((name for name in term if name in self.known), ""):
+            rest = {other: power for other, power in term.items() if other != name}
+            term = times(rest, self.known[name], term[name])
+        return term
+
+    def text(self, term: Term, formula: Expression | None = None) -> str:
+        """The unit, as the diagram writes it where it does."""
+        written = ""
+        if isinstance(formula, Name):
+            parameter = self.flat.parameters.get(formula.name)
+            written = parameter.unit if parameter else self.flat.units.get(formula.name, "")
+        return written or dimension_text(self.resolved(term))
+
+    def said(self, formula: Expression, term: Term) -> str:
+        """A part of a formula, its line and its unit: `'phi' (line 12) is in rad`."""
+        while isinstance(formula, Call) and formula.function == "neg":
+            formula = formula.arguments[0]
+        if not isinstance(formula, Name):
+            return f"'{to_text(formula)}' is in {self.text(term)}"
+        line = self.place(formula.name).line
+        beside = f" (line {line})" if line and line != self.where.line else ""
+        return f"'{formula.name}'{beside} is in {self.text(term, formula)}"
+
+    def place(self, name: str) -> Place:
+        """Where the diagram has a name; nowhere for an input."""
+        tables = (self.flat.parameters, self.flat.blocks, self.states)
+        return next((table[name].place for table in tables if name in table), Place())

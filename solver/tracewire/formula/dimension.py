@@ -1,0 +1,54 @@
+"""Dimensions: a unit of the SI as powers of its base units."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from functools import lru_cache
+
+from tracewire.formula.unit_rules import Term, times
+
+# The powers of base units. An angle has none: rad is 1.
+# fmt: off
+POWERS: dict[str, Term] = {
+    "1": {}, "rad": {}, "sr": {}, "m": {"m": 1}, "kg": {"kg": 1}, "s": {"s": 1}, "A": {"A": 1},
+    "K": {"K": 1}, "mol": {"mol": 1}, "cd": {"cd": 1}, "Hz": {"s": -1},
+    "N": {"kg": 1, "m": 1, "s": -2}, "Pa": {"kg": 1, "m": -1, "s": -2},
+    "J": {"kg": 1, "m": 2, "s": -2}, "W": {"kg": 1, "m": 2, "s": -3}, "C": {"A": 1, "s": 1},
+    "V": {"kg": 1, "m": 2, "s": -3, "A": -1}, "F": {"kg": -1, "m": -2, "s": 4, "A": 2},
+    "Ohm": {"kg": 1, "m": 2, "s": -3, "A": -2}, "S": {"kg": -1, "m": -2, "s": 3, "A": 2},
+    "Wb": {"kg": 1, "m": 2, "s": -2, "A": -1}, "T": {"kg": 1, "s": -2, "A": -1},
+    "H": {"kg": 1, "m": 2, "s": -2, "A": -2},
+}
+# fmt: on
+SHOWN = ("N", "N m", "N/m", "N s/m", "N m s", "Pa", "W", "V", "Ohm", "H", "F", "C", "T", "Wb")
+"""Derived units by which a dimension is told."""
+PART = re.compile(r"\s*([*/])?\s*([A-Za-z]+|1)\s*(?:(?:\^|\*\*)\s*([+-]?\d+(?:\.\d+)?))?")
+
+
+@lru_cache(maxsize=1024)
+def dimension_of(text: str) -> Term | None:
+    """The dimension of a coherent SI unit such as `N m s/rad`; None for '' and for other texts."""
+    at, end, found = 0, len(text.rstrip()), Term()
+    while at < end:
+        part = PART.match(text, at)
+        if part is None or part[2] not in POWERS:
+            return None
+        power = float(part[3] or 1) * (-1 if part[1] == "/" else 1)
+        found = times(found, POWERS[part[2]], power)
+        at = part.end()
+    return found if end else None
+
+
+def dimension_text(dimension: Mapping[str, float]) -> str:
+    """A unit of this dimension: `N m`, `m/s^2`, or `1`, which is a number or an angle."""
+    for text in SHOWN:
+        if dimension_of(text) == dimension:
+            return text
+    over = [_power(name, power) for name, power in dimension.items() if power > 0]
+    under = [_power(name, -power) for name, power in dimension.items() if power < 0]
+    return "/".join([" ".join(over) or "1", *under])
+
+
+def _power(name: str, power: float) -> str:
+    return name if power == 1 else f"{name}^{power:g}"

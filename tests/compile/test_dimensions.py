@@ -1,0 +1,133 @@
+"""Units that contradict each other, at every wire: what is told, and what is not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from tracewire.compile import compile, unit_problems
+from tracewire.diagram import read, read_text
+
+ROOT = Path(__file__).parents[2]
+BODY = """\
+parameters:
+  m: {value: 2, unit: kg}
+  k: {value: 3, unit: N/m}
+  c: {value: 0.1, unit: N s/m}
+  level: {value: 1, unit: N}
+blocks:
+  x: {type: integrator, of: v, unit: m}
+  v: {type: integrator, of: a, unit: m/s}
+  spring: {type: gain, of: x, k: -k}
+  damper: {type: gain, of: v, k: -c}
+  friction: {type: coulomb, rate: v, level: level}
+  force: {type: sum, of: [spring, damper, friction]}
+  a: {type: gain, of: force, k: 1/m}
+"""
+HINT = "Correct a unit, or give the number between them a unit. What has no unit may have any."
+
+
+def told(text: str) -> list[str]:
+    return [str(p) for p in unit_problems(compile(read_text(text), backend="quick").flat)]
+
+
+def test_units_that_go_together_are_not_told() -> None:
+    assert told(BODY) == []
+
+
+def shipped() -> list[Path]:
+    """Diagrams; those of measured sets whose data are absent cannot be read."""
+    files = sorted(ROOT.glob("diagrams/**/*.yaml"))
+    return [f for f in files if "\nblocks:" in f.read_text("utf-8") and "real" not in f.parts]
+
+
+@pytest.mark.parametrize("file", shipped(), ids=lambda file: file.stem)
+def test_the_units_of_each_shipped_diagram_go_together(file: Path) -> None:
+    assert unit_problems(compile(read(file), backend="quick").flat) == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            "[spring, damper, friction]",
+            "[spring, x]",
+            "<text>:12:3: block 'force': 'spring' (line 9) is in N and 'x' (line 7) is in m: they "
+            "cannot be added or compared. ",
+        ),
+        (
+            "unit: N/m}",
+            "unit: N/m^2}",
+            "<text>:12:3: block 'force': 'spring' (line 9) is in N/m and 'damper' (line 10) is in N: "
+            "they cannot be added or compared. ",
+        ),
+        (
+            "v: {type: integrator, of: a, unit: m/s}",
+            "v: {type: integrator, of: a, unit: m}",
+            "<text>:7:3: block 'x': 'x' is in m, and is the integral of what is in m; it needs a "
+            "rate in m/s. ",
+        ),
+        (
+            "sum, of: [spring, damper, friction]",
+            "expression, formula: spring + damper + level*sin(v)",
+            "<text>:12:3: block 'force': 'v' (line 8) is in m/s where a number or an angle is "
+            "needed. ",
+        ),
+        (
+            "sum, of: [spring, damper, friction]}",
+            "sum, of: [spring, damper, friction], unit: J}",
+            "<text>:12:3: block 'force': 'force' is in J, and its formula is in N. ",
+        ),
+        (
+            "of: v, unit: m}",
+            "of: v, unit: m, start: level}",
+            "<text>:7:3: block 'x': 'x' is in m, and 'level' (line 5) is in N. ",
+        ),
+        (
+            "sum, of: [spring, damper, friction]",
+            "expression, formula: spring if x > v else damper",
+            "<text>:12:3: block 'force': 'x' (line 7) is in m and 'v' (line 8) is in m/s: they "
+            "cannot be added or compared. ",
+        ),
+        (
+            "1, unit: N}",
+            "k*m, unit: N}",
+            "<text>:5:10: 'level' is in N, and its value is in kg^2/s^2. ",
+        ),
+        (
+            "blocks:",
+            "events: [{when: x - 1, set: {v: -x}}]\nblocks:",
+            "'v' (line 9) is in m/s, and what 'events[0]' sets it to is in m. ",
+        ),
+    ],
+)
+def test_what_contradicts_is_told_with_both_ends(old: str, new: str, message: str) -> None:
+    assert old in BODY
+    first = told(BODY.replace(old, new))[0]
+    assert message in first
+    assert HINT in first
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("k: {value: 3, unit: N/m}", "k: 3"),  # a parameter without a unit
+        ("m: {value: 2, unit: kg}", "m: 2"),
+        ("k: -k}", "k: -3}"),  # a number
+        ("unit: m}", "unit: mm}"),  # the same quantity
+        ("unit: N s/m}", "unit: kg/s}"),
+        ("sum, of: [spring, damper, friction]", "expression, formula: spring*sin(3*t) + damper"),
+        ("gain, of: v, k: -c", "expression, formula: -0.2*abs(v)**1.7*sign(v)"),
+    ],
+)
+def test_what_has_no_unit_may_have_any(old: str, new: str) -> None:
+    assert old in BODY
+    assert told(BODY.replace(old, new)) == []
+
+
+def test_a_signal_without_a_unit_has_that_of_its_equations() -> None:
+    """That of the acceleration follows from its integral, that of the force from its terms."""
+    text = BODY.replace("1/m}", "k/m}")
+    assert told(text) == [
+        f"<text>:13:3: block 'a': 'a' is in m/s^2, and its formula is in kg m/s^4. {HINT}"
+    ]
