@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tracewire.solve.core.methods import NAMES
 
 BLOW_UP = """\
 span: [0, 2]
@@ -16,6 +17,11 @@ blocks:
   x: {type: integrator, of: r, start: 1}
   r: {type: expression, formula: x**2}
 """
+
+
+def test_the_help_names_every_method(call: Any) -> None:
+    told = call("run", "--help").out
+    assert [name for name in ("auto", *NAMES) if name not in told] == []
 
 
 def test_run_prints_signals_events_and_cost(call: Any, swing: Path) -> None:

@@ -13,12 +13,19 @@ from solve.models import BALL, LIMITS, kinds, made, one, run
 from tracewire.compile import Model
 from tracewire.errors import OptionError, SimulationError
 from tracewire.solve import simulate
+from tracewire.solve.core import methods
 
 Vector = NDArray[np.float64]
 ADAPTIVE = ["dormand_prince", "dop853", "rosenbrock"]
 ALL: list[dict[str, Any]] = [*({"method": name} for name in ADAPTIVE)]
 ALL += [{"method": "rk4", "step": 0.01}, {"method": "auto"}]
 SAMPLES = np.linspace(0, 6, 1201)  # nearly all of them lie inside steps
+
+
+def test_the_core_knows_each_method_by_its_place_in_the_table() -> None:
+    numbers = {"dormand_prince": methods.DORMAND_PRINCE, "rosenbrock": methods.ROSENBROCK}
+    numbers |= {"dop853": methods.DOP853, "rk4": methods.RK4}
+    assert numbers == {name: number for number, name in enumerate(methods.NAMES)}
 
 
 @cache

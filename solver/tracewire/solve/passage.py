@@ -27,7 +27,7 @@ from tracewire.solve.core.codes import (
 )
 from tracewire.solve.core.flow import FREE, FUNCTIONS
 from tracewire.solve.core.memory import invoke
-from tracewire.solve.core.methods import NAMES
+from tracewire.solve.core.methods import NAMES, STEPPED
 from tracewire.solve.core_library import library
 from tracewire.solve.execute import Execution
 from tracewire.solve.failures import failure
@@ -79,8 +79,8 @@ class Passage:
         inner: int = 0,
         halt: Halt | None = None,
     ) -> None:
-        if method not in ("auto", *NAMES) or method == "rk4":
-            known = ["auto", *(name for name in NAMES if name != "rk4")]
+        known = ["auto", *(name for name in NAMES if name not in STEPPED)]
+        if method not in known:
             raise OptionError([unknown("method", method, known)])
         if not (np.isfinite(length) and length > 0 and np.isfinite(begin)):
             what = f"an interval of {length:g} s from t = {begin:g} s has no use"

@@ -40,8 +40,7 @@ from tracewire.solve.core.codes import (
 from tracewire.solve.core.flow import FREE, FUNCTIONS
 from tracewire.solve.core.locate import SAMPLES
 from tracewire.solve.core.memory import invoke
-from tracewire.solve.core.methods import NAMES
-from tracewire.solve.core.methods.trial import DENSE, STAGES
+from tracewire.solve.core.methods import METHODS, NAMES
 from tracewire.solve.held import Held
 
 Vector = NDArray[np.float64]
@@ -232,8 +231,8 @@ def new_arrays(flow: Flow, plan: Plan, progress: Progress, sensitivity: Sensitiv
         x_end=np.zeros(n),
         rate_end=np.zeros(n),
         error=np.zeros(n),
-        inner=np.zeros((DENSE, n)),
-        stages=np.zeros((STAGES, n)),
+        inner=np.zeros((max(method.inner for method in METHODS), n)),
+        stages=np.zeros((max(method.stages for method in METHODS), n)),
         matrix=np.zeros((n, n + 1)),
         factors=np.zeros((n, n)),
         pivots=ints(n),

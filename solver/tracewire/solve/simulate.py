@@ -13,7 +13,7 @@ from tracewire.errors import OptionError, Problem, SimulationError, unknown
 from tracewire.formula import evaluate, names_of, to_text
 from tracewire.solve.core.arrays import Flow
 from tracewire.solve.core.codes import SAMPLED
-from tracewire.solve.core.methods import NAMES
+from tracewire.solve.core.methods import NAMES, STEPPED
 from tracewire.solve.execute import Execution, Tell
 from tracewire.solve.failures import place_of
 from tracewire.solve.held import Held
@@ -151,9 +151,11 @@ def tolerance_of(
         told = f"{{{shown}}}" if given else f"{rtol * 1e-3 if usual is None else usual:g}"
         what = f"rtol = {rtol:g} and atol = {told} cannot be met"
         raise OptionError([Problem(what, hint="Take rtol between 1e-13 and 0.1 and atol above 0.")])
-    if (method == "rk4") != (step is not None):
-        what = "the method rk4 needs a step" if step is None else "only the method rk4 takes a step"
-        raise OptionError([Problem(what, hint="Give method='rk4' and step= in s together.")])
+    if (method in STEPPED) != (step is not None):
+        known = " or ".join(STEPPED)
+        needs = f"the method {method} needs a step"
+        what = needs if step is None else f"only the method {known} takes a step"
+        raise OptionError([Problem(what, hint=f"Give method='{known}' and step= in s together.")])
     if step is not None and not 0 < step <= length:
         what = f"steps of {step:g} s do not fit into a span of {length:g} s"
         raise OptionError([Problem(what, hint="Give a step above 0 and below the span.")])

@@ -60,7 +60,16 @@ from tracewire.solve.core.flow import (
     sizes,
 )
 from tracewire.solve.core.locate import AT_ONCE, NOTHING
-from tracewire.solve.core.methods import DOP853, DORMAND_PRINCE, RK4, ROSENBROCK
+from tracewire.solve.core.methods import (
+    DOP853,
+    DORMAND_PRINCE,
+    EDGE,
+    EXPONENT,
+    FIXED_STEP,
+    IMPLICIT,
+    ROSENBROCK,
+    SAFETY,
+)
 from tracewire.solve.core.record import sample_end, sample_inside
 from tracewire.solve.core.saltation import begin_sensitivities
 from tracewire.solve.core.start import begin
@@ -68,7 +77,6 @@ from tracewire.solve.core.surface import pin
 from tracewire.solve.core.transition import happen, no_crossings
 from tracewire.solve.core.units import helper, unit
 
-STIFF, STIFF_HIGH = 3.0, 6.1  # h*eigenvalue at the edge of stability, of order 5 and 8 (Hairer)
 TIGHT = 1e-8  # where order 8 takes fewer steps, and its errors add up to less
 MANY_STIFF = 8
 MANY_CALM = 6
@@ -170,7 +178,7 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
             pin(core, now[T], x)
         _remember(core, x)
         now[H] = max(now[H], trial.ends[1] * ratio) if last else trial.ends[1] * ratio
-        if method == ROSENBROCK or flow.counts[SLIDING] + flow.counts[RESTING]:
+        if IMPLICIT[method] or flow.counts[SLIDING] + flow.counts[RESTING]:
             rates(core, now[T], x, rate)
         else:
             copy(trial.rate_end, rate)
@@ -303,9 +311,9 @@ def _watch_stiffness(core: int) -> bool:
     progress = progress_of(core)
     trial = trial_of(core)
     ints = progress.ints
-    if ints[METHOD] >= 0 or ints[CURRENT] == ROSENBROCK:
+    if ints[METHOD] >= 0 or IMPLICIT[ints[CURRENT]]:
         return False
-    if trial.ends[2] > (STIFF_HIGH if ints[CURRENT] == DOP853 else STIFF):
+    if trial.ends[2] > EDGE[ints[CURRENT]]:
         ints[SUSPICIOUS] += 1
         ints[CALM] = 0
     else:
@@ -335,7 +343,7 @@ def _first_step(core: int, rate: Vector, limit: float) -> float:
     progress = progress_of(core)
     now, x = progress.now, progress.x
     length = now[LENGTH]
-    if progress.ints[CURRENT] == RK4:
+    if FIXED_STEP[progress.ints[CURRENT]]:
         return now[FIXED]
     size = _size(x, x, now[RTOL], progress.atol)
     speed = _size(rate, x, now[RTOL], progress.atol)
@@ -360,11 +368,8 @@ def _attempt(core: int, rate: Vector, limit: float) -> int:
     """
     progress = progress_of(core)
     now, ints = progress.now, progress.ints
-    method, power = ints[CURRENT], methods.exponent_of(ints[CURRENT])
-    fixed, safety = (
-        method == RK4,
-        0.85 if method == DOP853 else 0.9,
-    )  # to the power of 8: 0.27, 0.43
+    method = ints[CURRENT]
+    fixed, safety, power = FIXED_STEP[method], SAFETY[method], EXPONENT[method]
     while True:
         ints[STEPS] += 1
         h = min(now[H], now[FIXED] if fixed else LARGEST_PART * now[LENGTH], now[LONGEST])
@@ -374,7 +379,7 @@ def _attempt(core: int, rate: Vector, limit: float) -> int:
         error = methods.error_of(core, method, now[RTOL], progress.atol, now[LAST])
         if error <= 1.0:
             now[LAST] = h
-            if method == ROSENBROCK:
+            if IMPLICIT[method]:
                 ints[STIFF_STEPS] += 1
             now[RATIO] = min(6.0, max(0.2, safety * max(error, 1e-10) ** power))
             if fixed:

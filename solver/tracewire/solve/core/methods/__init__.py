@@ -5,10 +5,19 @@ from __future__ import annotations
 from tracewire.solve.core.arrays import Vector, copy, trial_of
 from tracewire.solve.core.methods import dop853, dormand_prince, rosenbrock, runge_kutta
 from tracewire.solve.core.methods.trial import norm
-from tracewire.solve.core.units import helper, unit
+from tracewire.solve.core.units import unit
 
-NAMES = ("dormand_prince", "rosenbrock", "dop853", "rk4")
-DORMAND_PRINCE, ROSENBROCK, DOP853, RK4 = 0, 1, 2, 3
+METHODS = (dormand_prince.METHOD, rosenbrock.METHOD, dop853.METHOD, runge_kutta.METHOD)
+DORMAND_PRINCE, ROSENBROCK, DOP853, RK4 = range(len(METHODS))
+NAMES = tuple(method.name for method in METHODS)
+STEPPED = tuple(method.name for method in METHODS if method.fixed)
+"""The methods that take steps of a given length."""
+# what the core reads of a method by its number
+EXPONENT = tuple(method.exponent for method in METHODS)
+SAFETY = tuple(method.safety for method in METHODS)
+EDGE = tuple(method.edge for method in METHODS)
+IMPLICIT = tuple(method.implicit for method in METHODS)
+FIXED_STEP = tuple(method.fixed for method in METHODS)
 MUCH_LONGER = 1.5  # the error of a step grows by this to the power of 9, 38 times
 # A step is refused whose defect is larger than both. Of the accepted steps of seven smooth
 # problems, at tolerances from 1e-6 to 1e-13, none with a defect above 30 tolerances was above 2.7
@@ -65,20 +74,19 @@ def error_of(core: int, method: int, rtol: float, atol: Vector, last: float) -> 
     return size
 
 
-@helper
-def exponent_of(method: int) -> float:
-    """How the step follows from the error: h is multiplied with error to this power."""
-    return -1.0 / 8.0 if method == DOP853 else -0.2
-
-
 __all__ = [
     "DOP853",
     "DORMAND_PRINCE",
+    "EDGE",
+    "EXPONENT",
+    "FIXED_STEP",
+    "IMPLICIT",
+    "METHODS",
     "NAMES",
-    "RK4",
     "ROSENBROCK",
+    "SAFETY",
+    "STEPPED",
     "error_of",
-    "exponent_of",
     "inside",
     "step",
 ]

@@ -12,7 +12,10 @@ import numpy as np
 
 from tracewire.solve.core.arrays import Vector, copy, trial_of
 from tracewire.solve.core.flow import rates
+from tracewire.solve.core.methods.method import Method
 from tracewire.solve.core.units import unit
+
+METHOD = Method("dormand_prince", stages=7, inner=3, edge=3.0)
 
 C = (0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0)
 A = np.array(

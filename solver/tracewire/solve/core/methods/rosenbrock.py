@@ -11,7 +11,10 @@ import numpy as np
 from tracewire.solve.core.arrays import Vector, copy, progress_of, trial_of
 from tracewire.solve.core.flow import jacobian, rates
 from tracewire.solve.core.linear import factor, substitute, towards_one
+from tracewire.solve.core.methods.method import Method
 from tracewire.solve.core.units import inlined, unit
+
+METHOD = Method("rosenbrock", stages=8, inner=3, implicit=True)
 
 GAMMA = 0.21193756319429014
 C = (

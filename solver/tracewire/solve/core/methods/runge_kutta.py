@@ -9,7 +9,10 @@ from __future__ import annotations
 
 from tracewire.solve.core.arrays import Vector, trial_of
 from tracewire.solve.core.flow import rates
+from tracewire.solve.core.methods.method import Method
 from tracewire.solve.core.units import unit
+
+METHOD = Method("rk4", stages=4, inner=3, fixed=True)
 
 
 @unit

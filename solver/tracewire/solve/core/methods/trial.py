@@ -7,9 +7,6 @@ import math
 from tracewire.solve.core.arrays import Vector
 from tracewire.solve.core.units import helper
 
-DENSE = 7  # the most rows that the dense output of a method needs
-STAGES = 16
-
 
 @helper
 def norm(error: Vector, x: Vector, x_end: Vector, rtol: float, atol: Vector) -> float:

@@ -1,0 +1,27 @@
+"""What there is to know of a method beside its functions: one record, in the method's file."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Method:
+    """A method by its name, and what the core must know of it.
+
+    stages, inner: the rows that it needs of these arrays of a trial step. exponent: how the step
+    follows from the error, h is multiplied with `safety` times the error to this power. edge:
+    |h*eigenvalue| at the edge of its stability, inf where it has no edge or does not estimate it.
+    implicit: it takes the Jacobian, counts as a step of a stiff method, and leaves no rate of the
+    field at its end. fixed: its steps have the length that the user gives.
+    """
+
+    name: str
+    stages: int
+    inner: int
+    exponent: float = -0.2
+    safety: float = 0.9
+    edge: float = math.inf
+    implicit: bool = False
+    fixed: bool = False
