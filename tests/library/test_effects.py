@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from library.values import library, output
-from tracewire.library import Block
+from tracewire.library import SENSOR_TERMS, Block
 
 POSITIVE_ONLY = (
     "viscous coulomb quad_drag cubic_damping stribeck disp_friction position_friction backlash"
@@ -97,7 +97,7 @@ FORMULAS: dict[str, tuple[Callable[..., float], dict[str, float]]] = {
     "drive_dead_zone": (lambda u, **_: -clip(u, 0.2), {"zone": 0.2}),
     "drive_quantiser": (lambda u, **_: 0.3 * math.floor(u / 0.3 + 0.5) - u, {"step": 0.3}),
 }
-SENSOR = {f"sensor_{kind}" for kind in ("offset", "gain", "delay", "quad", "drift")}
+SENSOR = {f"sensor_{name}" for name in SENSOR_TERMS}
 
 
 def force(block: Block, coefficient: float, shapes: dict[str, float], **signals: float) -> float:

@@ -1,6 +1,5 @@
 """Diagrams: from a YAML file to a checked description, and edits of its text."""
 
-from tracewire.diagram.channels import SENSOR, sensor_factor
 from tracewire.diagram.diagram import (
     Array,
     BlockUse,
@@ -55,7 +54,6 @@ from tracewire.diagram.rewire import add_to_drive, rewired
 from tracewire.diagram.write import write
 
 __all__ = [
-    "SENSOR",
     "Array",
     "BlockUse",
     "Channel",
@@ -95,7 +93,6 @@ __all__ = [
     "remove_addend",
     "replace_series",
     "rewired",
-    "sensor_factor",
     "sensor_numbers",
     "series_parts",
     "set_sensors",

@@ -14,10 +14,9 @@ from tracewire.diagram.quantities import SECOND, read_above_zero, read_unit_like
 from tracewire.diagram.strict import Entries, Node, Scalar
 from tracewire.diagram.values import read_bounds, read_value
 from tracewire.formula import Number, Unit
+from tracewire.library import SENSOR_TERMS
 
-SENSOR = {"offset": 0.0, "gain": 1.0, "delay": 0.0, "quad": 0.0, "drift": 0.0}
-"""What a sensor may do to its signal, and the value of each that does nothing."""
-OF_A_SIGNAL = ("sigma", "weight", "modulo", *SENSOR)
+OF_A_SIGNAL = ("sigma", "weight", "modulo", *SENSOR_TERMS)
 OF_AN_INPUT = ("sigma", "hold")
 HOLDS: dict[str, Hold] = {word: word for word in get_args(Hold)}
 NO_UNIT = Unit("", 1.0)
@@ -93,15 +92,10 @@ def _channel(
         name: None if (number := numbers.get(name)) is None else number * unit.factor
         for name in ("sigma", "modulo")
     }
-    units = {
-        "offset": unit,
-        "gain": NO_UNIT,
-        "delay": SECOND,
-        "quad": _derived(unit, "1/{}", sensor_factor("quad", unit.factor)),
-        "drift": _derived(unit, "{}/s", sensor_factor("drift", unit.factor)),
-    }
     sensor = {
-        name: _of_sensor(name, values[name], body, units[name]) for name in SENSOR if name in values
+        name: _of_sensor(name, values[name], body, _unit_of(name, unit))
+        for name in SENSOR_TERMS
+        if name in values
     }
     hold = _hold(values["hold"], body) if "hold" in values else None
     if column is None:
@@ -134,13 +128,13 @@ def _hold(node: Node, body: Body) -> Hold | None:
     return HOLDS.get(word or "")
 
 
-def sensor_factor(kind: str, factor: float) -> float:
-    """The factor to SI of a number of a sensor, in units of a column with this factor to SI."""
-    return {"offset": factor, "drift": factor, "quad": 1 / factor}.get(kind, 1.0)
-
-
-def _derived(unit: Unit, text: str, factor: float) -> Unit:
-    """The unit of a number that goes with that of the column; none where the column has none."""
+def _unit_of(name: str, unit: Unit) -> Unit:
+    """The unit of a number of a sensor, from that of the column; none where the column has none."""
+    text, factor = SENSOR_TERMS[name].unit, SENSOR_TERMS[name].factor(unit.factor)
+    if text == "{}":
+        return unit
+    if "{}" not in text:
+        return SECOND if text == "s" else NO_UNIT
     plain = unit.text if re.fullmatch(r"\w*", unit.text) else f"({unit.text})"
     return Unit(text.format(plain), factor) if unit.text else Unit("", factor)
 
@@ -164,7 +158,7 @@ def _free(name: str, node: Entries, body: Body, unit: Unit) -> Value | None:
     bounds = read_bounds(node.values["fit"], body)
     if bounds is None:
         return None
-    begin, place = SENSOR[name], body.place(node)
+    begin, place = SENSOR_TERMS[name].neutral, body.place(node)
     if not bounds[0] <= begin <= bounds[1]:
         what = (
             f"the {name} begins at {begin:g}, outside of its bounds {bounds[0]:g} to {bounds[1]:g}"

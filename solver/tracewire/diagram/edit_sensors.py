@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping
 
 from tracewire.data import column_unit
-from tracewire.diagram.channels import SENSOR, sensor_factor
 from tracewire.diagram.diagram import Diagram, Series, Value
 from tracewire.diagram.names import find_recorded
 from tracewire.diagram.outline import Outline
@@ -15,6 +14,7 @@ from tracewire.diagram.splice import Change, entry_last, replaced
 from tracewire.diagram.strict import Entries, Node, Scalar
 from tracewire.errors import FormulaError, OptionError, unknown
 from tracewire.formula import Number, read_unit
+from tracewire.library import SENSOR_TERMS
 
 
 def add_sensor(
@@ -30,8 +30,8 @@ def add_sensor(
     SI; the text gets them in the unit of the column (a delay in s). Raises OptionError: there is no
     such measured signal, or no such kind.
     """
-    if kind not in SENSOR:
-        raise OptionError([unknown("number of a sensor", kind, SENSOR)])
+    if kind not in SENSOR_TERMS:
+        raise OptionError([unknown("number of a sensor", kind, SENSOR_TERMS)])
     full = find_recorded(diagram, signal)
     having = [
         series
@@ -45,7 +45,7 @@ def add_sensor(
     changes = []
     for series in having:
         node = _channel(diagram, root, series, full)
-        text = _value_text(value, fit, sensor_factor(kind, _factor(series, full)))
+        text = _value_text(value, fit, SENSOR_TERMS[kind].factor(_factor(series, full)))
         changes.append(_with_number(diagram.text, node, kind, text))
     return reread(diagram, changes)
 
@@ -112,7 +112,7 @@ def sensor_numbers(
     found: dict[str, tuple[float, tuple[float, float] | None]] = {}
     for series in diagram.measured.values():
         for signal, channel in series.channels.items():
-            for kind in SENSOR:
+            for kind in SENSOR_TERMS:
                 known: Value | None = getattr(channel, kind)
                 if known is None or not isinstance(known.formula, Number):
                     continue
@@ -129,7 +129,7 @@ def _factor_of(known: Value, kind: str, series: Series, signal: str) -> float:
     """The factor to SI of a number of a sensor as it stands in the text."""
     if known.unit or series.channels[signal].declared is not None:
         return known.factor
-    return known.factor * sensor_factor(kind, _factor(series, signal))
+    return known.factor * SENSOR_TERMS[kind].factor(_factor(series, signal))
 
 
 def _channel(diagram: Diagram, root: Entries, series: Series, signal: str) -> Node:

@@ -6,9 +6,11 @@ from tracewire.library.describe import describe, describe_json, palette
 from tracewire.library.effect import SCALES, SYMBOLS, Effect, Scale, Shape, Symbol, Tone, Where
 from tracewire.library.load import Library, load_library
 from tracewire.library.parts import Event, Input, Mode, Output, Parameter, State, Transition
+from tracewire.library.sensor import SENSOR_TERMS
 
 __all__ = [
     "SCALES",
+    "SENSOR_TERMS",
     "SYMBOLS",
     "Block",
     "Effect",

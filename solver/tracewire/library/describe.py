@@ -10,11 +10,11 @@ from tracewire.library.declare import Block
 from tracewire.library.effect import SCALES, SYMBOLS, Effect, Shape
 from tracewire.library.load import Library
 from tracewire.library.parts import ByMode, Event, Input, Mode, Output, Parameter, Transition
+from tracewire.library.sensor import SENSOR_TERMS
 
 MOST_VALUES = 8
 SENSOR = "It is a number of a measured signal: signals: {{x: {{column: x, {0}: ...}}}}."
-ELSEWHERE = {f"sensor_{name}": SENSOR.format(name) for name in
-             ("delay", "gain", "offset", "quad", "drift")}  # fmt: skip
+ELSEWHERE = {f"sensor_{name}": SENSOR.format(name) for name in SENSOR_TERMS}
 """Where names that are no blocks stand in a diagram."""
 
 

@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model, compile
 from tracewire.data import STEPS, Record, read_record
-from tracewire.diagram import SENSOR, Channel, Diagram, Series
+from tracewire.diagram import Channel, Diagram, Series
 from tracewire.errors import DataError, OptionError, Place, Problem, TracewireError
 from tracewire.formula import evaluate
+from tracewire.library import SENSOR_TERMS
 from tracewire.residual.inputs import between_samples
 from tracewire.residual.remarks import check_quantities, remarks_on
 from tracewire.residual.sensor import PLAIN, Sensor, read_sensor
@@ -191,7 +192,7 @@ def _measured(
         sensors={
             name: read_sensor(channel, values, factors[name])
             for name, channel in channels.items()
-            if any(getattr(channel, kind) is not None for kind in SENSOR)
+            if any(getattr(channel, kind) is not None for kind in SENSOR_TERMS)
         },
         periods={
             name: channel.modulo * factors[name]

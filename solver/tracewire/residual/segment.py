@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
+from tracewire.library import SENSOR_TERMS
 from tracewire.residual.measured import Measured
 
 Vector = NDArray[np.float64]
-SENSED = ("offset.", "gain.", "delay.", "quad.", "drift.")
+SENSED = tuple(f"{term}." for term in SENSOR_TERMS)
 """What the names of a sensor's unknowns begin with; all other names are the diagram's."""
 OWN = "@"
 """Stands between a parameter and the series that has it of its own: `harmonic.phase@run_1`."""

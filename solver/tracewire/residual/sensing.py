@@ -12,7 +12,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.diagram import SENSOR
+from tracewire.library import SENSOR_TERMS
 from tracewire.residual.segment import Segment
 from tracewire.residual.sensor import Sensor
 from tracewire.solve import Sensitivities
@@ -117,13 +117,9 @@ class Sensing:
         delayed = run[signal][self.at[number]]
         if kind == "delay":
             return -self._slope(self.sensors[number], delayed) * self._rate(run, signal, number)
-        known: dict[str, Vector | float] = {
-            "offset": 1.0,
-            "gain": delayed,
-            "quad": delayed**2,
-            "drift": self.since,
-        }
-        return known.get(kind, 0.0)
+        term = SENSOR_TERMS.get(kind)
+        slope: Vector | float = term.slope(delayed, self.since) if term and term.slope else 0.0
+        return slope
 
     def _slope(self, sensor: Sensor, delayed: Vector) -> Vector | float:
         """d shown/d y(t - delay)."""
@@ -138,6 +134,6 @@ class Sensing:
 
 def _sensor(segment: Segment, signal: str, named: Mapping[str, float]) -> Sensor:
     own = segment.measured.sensor(signal)
-    names = {kind: f"{kind}.{signal}" for kind in SENSOR}
+    names = {kind: f"{kind}.{signal}" for kind in SENSOR_TERMS}
     changed: dict[str, Any] = {k: named[name] for k, name in names.items() if name in named}
     return replace(own, **changed) if changed else own

@@ -8,8 +8,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.diagram import SENSOR, Channel, Value, sensor_factor
+from tracewire.diagram import Channel, Value
 from tracewire.formula import CONSTANTS, evaluate, names_of
+from tracewire.library import SENSOR_TERMS
 
 Vector = NDArray[np.float64]
 
@@ -56,11 +57,11 @@ PLAIN = Sensor()
 def read_sensor(channel: Channel, values: Mapping[str, float], factor: float) -> Sensor:
     """What a channel's sensor does; `factor` puts numbers in the unit of the header into SI."""
     free, numbers = {}, {}
-    for name in SENSOR:
+    for name, term in SENSOR_TERMS.items():
         given: Value | None = getattr(channel, name)
         if given is None:
             continue
-        own = 1.0 if given.unit else sensor_factor(name, factor)
+        own = 1.0 if given.unit else term.factor(factor)
         plain = all(symbol in CONSTANTS for symbol in names_of(given.formula))
         value = evaluate(given.formula, values) * given.factor
         numbers[name] = value * own if plain else value

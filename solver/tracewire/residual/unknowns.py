@@ -7,9 +7,9 @@ from collections.abc import Collection, Mapping, Sequence
 import numpy as np
 
 from tracewire.compile import Model
-from tracewire.diagram import SENSOR
 from tracewire.errors import OptionError, Place, Problem, unknown
 from tracewire.formula import names_of
+from tracewire.library import SENSOR_TERMS
 from tracewire.residual.measured import Measured
 from tracewire.residual.segment import Unknown, own_name
 
@@ -127,7 +127,9 @@ def refuse_readers_of_free(model: Model, free: Collection[str] | None = None) ->
         read = {f"start of '{name}'": (value, "free") for name, value in series.start.items()}
         for signal, channel in series.channels.items():
             bounds = "{value: ..., fit: [low, high]}"
-            read |= {f"{kind} of '{signal}'": (getattr(channel, kind), bounds) for kind in SENSOR}
+            read |= {
+                f"{kind} of '{signal}'": (getattr(channel, kind), bounds) for kind in SENSOR_TERMS
+            }
         for what, (value, instead) in read.items():
             if value is None:
                 continue

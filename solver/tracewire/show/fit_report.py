@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from tracewire.fit import Fit, Profile, diagnose
+from tracewire.library import SENSOR_TERMS
 from tracewire.residual import Measured, Sensor
 from tracewire.show.comparison_figures import plot_comparisons
 from tracewire.show.diagnostic_figures import plot_diagnostics, plot_profiles
@@ -258,18 +259,13 @@ def _signals_table(fit: Fit) -> Table:
 def _sensor_text(series: Measured, signal: str) -> str:
     sensor, plain = series.sensor(signal), Sensor()
     parts = []
-    for kind, unit in (
-        ("offset", ""),
-        ("gain", ""),
-        ("delay", " s"),
-        ("quad", ""),
-        ("drift", " 1/s"),
-    ):
+    units = {"delay": " s", "drift": " 1/s"}
+    for kind in SENSOR_TERMS:
         value = getattr(sensor, kind)
         if kind in sensor.free:
             parts.append(f"{kind} fitted")
         elif value != getattr(plain, kind):
-            parts.append(f"{kind} {value:g}{unit}")
+            parts.append(f"{kind} {value:g}{units.get(kind, '')}")
     if period := series.periods.get(signal):
         parts.append(f"modulo {period:g}")
     return ", ".join(parts) or "as it is"

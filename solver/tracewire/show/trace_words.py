@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Iterable, Sequence
 
+from tracewire.library import SENSOR_TERMS
 from tracewire.trace import (
     ChannelError,
     Explained,
@@ -19,13 +20,7 @@ from tracewire.trace import (
     users_unit,
 )
 
-SENSORS = {
-    "sensor_offset": "an offset",
-    "sensor_gain": "a gain that is not 1",
-    "sensor_delay": "a delay",
-    "sensor_quad": "a bent scale",
-    "sensor_drift": "a drift",
-}
+SENSORS = {f"sensor_{name}": term.words for name, term in SENSOR_TERMS.items()}
 VARIABLES = {
     "q": "the coordinate",
     "v": "the rate",

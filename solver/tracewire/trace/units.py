@@ -16,6 +16,7 @@ from tracewire.compile import compile
 from tracewire.diagram import EffectType, effects_of
 from tracewire.errors import TracewireError
 from tracewire.formula import Expression, Term, times, unit_term
+from tracewire.library import SENSOR_TERMS
 from tracewire.trace.candidates.places import Place, find_places
 from tracewire.trace.found import Found, FoundEffect, Power
 
@@ -103,12 +104,11 @@ def unit_of_power(found: Found, power: Power) -> str:
     if power.name.startswith("sensor_"):
         signal = power.place.partition(".")[2]
         unit = found.units.get(signal, "")
-        return {
-            "offset": unit,
-            "delay": "s",
-            "drift": f"{unit}/s" if unit else "",
-            "quad": f"1/({unit})" if "/" in unit or " " in unit else f"1/{unit}" if unit else "",
-        }.get(coefficient_of(power), "")
+        text = SENSOR_TERMS[coefficient_of(power)].unit
+        if "{}" in text and not unit:
+            return ""
+        inner = text.startswith("1/") and ("/" in unit or " " in unit)
+        return text.format(f"({unit})" if inner else unit)
     return unit_of_effect(found, power.name, power.place, coefficient_of(power))
 
 

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 
 from tracewire.compile import Model
-from tracewire.diagram import SENSOR, Diagram, EffectType, effects_of
-from tracewire.library import Effect, Shape
+from tracewire.diagram import Diagram, EffectType, effects_of
+from tracewire.library import SENSOR_TERMS, Effect, Shape
 from tracewire.trace.candidates.candidate import (
     Candidate,
     is_default,
@@ -252,19 +252,18 @@ def _sensor_candidates(diagram: Diagram, place: Place, levels: Levels) -> Iterat
         "drift": level.rms / levels.duration,
     }
     channels = [s.channels[signal] for s in diagram.measured.values() if signal in s.channels]
-    for kind in SENSOR:
+    for kind, term in SENSOR_TERMS.items():
         values = [getattr(channel, kind) for channel in channels]
         if any(value is not None for value in values):
             continue
-        low = 0.0 if kind in ("delay", "gain") else -math.inf
         yield Candidate(
             f"sensor_{kind}",
             place,
             "",
             {"y": signal},
             f"{kind}.{signal}",
-            int(kind == "delay"),
+            term.sign,
             scale=max(scales[kind], 1e-300),
-            neutral=float(kind == "gain"),
-            limits={kind: (low, math.inf)},
+            neutral=term.neutral,
+            limits={kind: (term.low, math.inf)},
         )

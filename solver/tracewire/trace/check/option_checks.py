@@ -6,8 +6,9 @@ import math
 from collections.abc import Iterator
 
 from tracewire.compile import Model
-from tracewire.diagram import SENSOR, effects_of
+from tracewire.diagram import effects_of
 from tracewire.errors import OptionError, Problem, unknown
+from tracewire.library import SENSOR_TERMS
 from tracewire.trace.candidates.places import find_places
 from tracewire.trace.options import TraceOptions
 
@@ -32,7 +33,7 @@ def _places(options: TraceOptions, model: Model) -> Iterator[Problem]:
 
 def _effects(options: TraceOptions, model: Model) -> Iterator[Problem]:
     names = [kind.name for kind in effects_of(model.diagram)]
-    names += [f"sensor_{kind}" for kind in SENSOR]
+    names += [f"sensor_{kind}" for kind in SENSOR_TERMS]
     places = [place.name for place in find_places(model)]
     hint = "`tracewire blocks` lists the effects."
     for text in options.without:

@@ -8,7 +8,7 @@ number of them, is a product of small matrices, without another run.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import compile
 from tracewire.diagram import Diagram
+from tracewire.library import SENSOR_TERMS
 from tracewire.residual import Segment, Windows
 from tracewire.solve import Span
 from tracewire.trace.candidates.levels import signals_at
@@ -34,14 +35,6 @@ from tracewire.trace.screen.probe import probed
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-SENSED: Mapping[str, Callable[[Vector, Vector], Vector]] = {
-    "sensor_offset": lambda y, t: np.ones(len(t)),
-    "sensor_gain": lambda y, t: y,
-    "sensor_delay": lambda y, t: -np.gradient(y, t),
-    "sensor_quad": lambda y, t: y**2,
-    "sensor_drift": lambda y, t: t - t[0],
-}
-"""What the coefficient 1 of a sensor's effect adds to a signal y(t)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,7 +137,9 @@ class Tangent:
             segment = self.windows.criterion.segments[joined.window]
             rows = joined.samples[joined.counts]
             y, t = run.signals[signal], run.t
-            shown = SENSED[effect](y, t)
+            term = SENSOR_TERMS[effect.removeprefix("sensor_")]
+            slope = -np.gradient(y, t) if term.slope is None else term.slope(y, t - t[0])
+            shown = np.broadcast_to(slope, len(t))
             column = np.zeros((len(rows), len(self.outputs)))
             at = self.outputs.index(signal)
             sigma = self.windows.criterion.sigma[segment.measured.name][at]
