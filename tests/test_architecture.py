@@ -15,8 +15,8 @@ PACKAGE = ROOT / "solver" / "tracewire"
 BLOCKS = ROOT / "blocks"
 
 # a room may import itself and the rooms before it
-ROOMS = ["errors", "files", "shipped", "formula", "library", "data", "diagram", "compile", "solve"]
-ROOMS += ["residual", "fit", "trace", "analyse", "show", "paper", "cli"]
+ROOMS = ["errors", "files", "shipped", "formula", "library", "data", "diagram", "draw", "compile"]
+ROOMS += ["solve", "residual", "fit", "trace", "analyse", "show", "paper", "cli"]
 # the same for the stages of a trace, files and folders of that room
 STAGES = ["thresholds", "options", "found", "candidates", "units", "trials", "check", "screen"]
 STAGES += ["missing", "search", "choose", "experiment", "results", "saved", "trace"]

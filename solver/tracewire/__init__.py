@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     )
     from tracewire.compile import Model, compile
     from tracewire.diagram import Diagram, read, read_text, write
+    from tracewire.draw import Drawing, draw
     from tracewire.errors import TracewireError
     from tracewire.fit import Fit, diagnose, fit, fminsearch, optimset, profile
     from tracewire.library import Block, Effect, Input, Output, Parameter, State, load_library
@@ -52,6 +53,7 @@ __version__ = "0.1.0"
 __all__ = [
     "Block",
     "Diagram",
+    "Drawing",
     "Effect",
     "Fit",
     "Found",
@@ -74,6 +76,7 @@ __all__ = [
     "bifurcation",
     "compile",
     "diagnose",
+    "draw",
     "fit",
     "floquet",
     "fminsearch",
@@ -111,6 +114,7 @@ ROOM_OF = {
     "periodic_orbit scalogram section spectrum stability_chart steady_state sweep",
     "compile": "compile Model",
     "diagram": "Diagram read read_text write",
+    "draw": "Drawing draw",
     "errors": "TracewireError",
     "fit": "Fit diagnose fit fminsearch optimset profile",
     "library": "Block Effect Input Output Parameter State load_library",
@@ -133,7 +137,7 @@ def __dir__() -> list[str]:
 
 
 class _Package(ModuleType):
-    """The package, on which `compile`, `fit` and `trace` stay the functions.
+    """The package, on which `compile`, `draw`, `fit` and `trace` stay the functions.
 
     Importing the room of the same name sets the attribute to the room's module; a property lets
     that pass without effect.
@@ -150,6 +154,6 @@ class _Package(ModuleType):
         return property(get, ignore)
 
 
-for _room in ("compile", "fit", "trace"):
+for _room in ("compile", "draw", "fit", "trace"):
     setattr(_Package, _room, _Package._function(_room))
 sys.modules[__name__].__class__ = _Package

@@ -21,7 +21,7 @@ USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
 """The base of every usage error; typer has its own copy of click or uses the installed one."""
 
 VERBS = (
-    *("check", "show", "run", "fit", "trace", "report", "sweep"),
+    *("check", "show", "draw", "run", "fit", "trace", "report", "sweep"),
     *("paper", "blocks", "units", "demo", "analyse", "data"),
 )
 """In the order of the help. Each is a function, or a `typer.Typer` of several, in the file of its
@@ -37,6 +37,7 @@ def tracewire_(
     Examples:
       tracewire check pendulum.yaml
       tracewire show pendulum.yaml --equations
+      tracewire draw pendulum.yaml --depth 1
       tracewire run pendulum.yaml --figure swing.png
       tracewire run pendulum.yaml --set "phi=13.6 deg" --output swing.csv
       tracewire fit pendulum.yaml --report fit.html

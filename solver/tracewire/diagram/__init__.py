@@ -49,7 +49,7 @@ from tracewire.diagram.names import (
     state_names,
     states,
 )
-from tracewire.diagram.read import read, read_text
+from tracewire.diagram.read import read, read_readable, read_text
 from tracewire.diagram.rewire import add_to_drive, rewired
 from tracewire.diagram.write import write
 
@@ -89,6 +89,7 @@ __all__ = [
     "path_text",
     "quoted",
     "read",
+    "read_readable",
     "read_text",
     "remove_addend",
     "replace_series",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -255,3 +256,8 @@ class Diagram:
     measured: Mapping[str, Series] = field(default_factory=dict)
     place: Place = Place()
     effect: Effect | None = None
+
+    def _repr_svg_(self) -> str:
+        """The picture of the diagram, as a notebook shows it."""
+        # the package stands above its subpackages: they do not import it, but it is there
+        return str(sys.modules["tracewire"].draw(self).svg)

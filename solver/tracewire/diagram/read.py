@@ -31,7 +31,7 @@ from tracewire.diagram.settings import (
 )
 from tracewire.diagram.strict import Entries, Node, Scalar, compose
 from tracewire.diagram.uses import read_blocks
-from tracewire.errors import DiagramError, Place
+from tracewire.errors import DiagramError, Place, Problem
 from tracewire.formula import is_name, name_hint
 from tracewire.library import Block, Library, load_library
 
@@ -73,17 +73,43 @@ def read_text(
     library: the blocks, where they are at hand already.
     """
     problems = Problems()
-    reader = _Reader(load_library(libraries) if library is None else library, problems)
-    try:
-        diagram = reader.top(text, file)
-    except DiagramError as error:  # the text cannot be read any further
-        if error.problems is not problems.found:
-            problems.take(error)
-        diagram = None
+    known = load_library(libraries) if library is None else library
+    diagram = _readable(text, file, known, problems)
     problems.raise_found(str(file))
     if diagram is None:
         raise AssertionError("a diagram that cannot be read has problems")
     return diagram
+
+
+def read_readable(
+    path: str | Path, libraries: Iterable[str | Path] = ()
+) -> tuple[Diagram, tuple[Problem, ...]]:
+    """A diagram as far as it can be read, and what `read` would raise: for a picture of mistakes.
+
+    Raises DiagramError where nothing can be read; BlockError where a library is wrong.
+    """
+    library = load_library(libraries)
+    file = Path(path)
+    problems = Problems()
+    diagram = _readable(load(file), file, library, problems)
+    try:
+        problems.raise_found(str(file))
+    except DiagramError as error:
+        if diagram is None or not diagram.blocks:
+            raise
+        return diagram, tuple(error.problems)
+    assert diagram is not None
+    return diagram, ()
+
+
+def _readable(text: str, file: Path, library: Library, problems: Problems) -> Diagram | None:
+    """What can be read of a text; what is wrong with it is noted."""
+    try:
+        return _Reader(library, problems).top(text, file)
+    except DiagramError as error:  # the text cannot be read any further
+        if error.problems is not problems.found:
+            problems.take(error)
+        return None
 
 
 @dataclass(eq=False)

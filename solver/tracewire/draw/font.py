@@ -1,0 +1,43 @@
+"""The font of all pictures, DejaVu Sans, and how wide a text is in it."""
+
+from __future__ import annotations
+
+from functools import cache, lru_cache
+from importlib.util import find_spec
+from pathlib import Path
+
+from PIL import ImageFont
+
+FAMILY = "DejaVu Sans"
+SIZE, SMALL = 11.0, 9.0  # px, of names and of what stands beside ports
+MEASURED_AT = 100  # px
+
+
+@cache
+def font_file() -> Path:
+    """The file of the font, which comes with matplotlib; that is not imported."""
+    spec = find_spec("matplotlib")
+    assert spec is not None
+    assert spec.origin is not None
+    return Path(spec.origin).parent / "mpl-data" / "fonts" / "ttf" / "DejaVuSans.ttf"
+
+
+@cache
+def _font() -> ImageFont.FreeTypeFont:
+    return ImageFont.truetype(str(font_file()), MEASURED_AT, layout_engine=ImageFont.Layout.BASIC)
+
+
+@lru_cache(maxsize=10_000)
+def text_width(text: str, size: float = SIZE) -> float:
+    """The width of a line of text in px."""
+    return float(_font().getlength(text)) * size / MEASURED_AT
+
+
+def shortened(text: str, most: float, size: float = SIZE) -> str:
+    """The text, cut so that it is no wider than `most` px, with an ellipsis where it was cut."""
+    text = " ".join(text[:500].split())
+    if text_width(text, size) <= most:
+        return text
+    while text and text_width(f"{text}…", size) > most:
+        text = text[:-1]
+    return f"{text.rstrip()}…"

@@ -1,0 +1,219 @@
+"""Where everything goes: a graph is handed to ELK, and comes back with coordinates."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from tracewire.draw.elk import lay_out
+from tracewire.draw.font import SIZE, SMALL, text_width
+from tracewire.draw.graph import Connection, Graph, Node, Port
+
+Point = tuple[float, float]
+
+LINE_HEIGHT = 1.3
+OPTIONS = {
+    "elk.algorithm": "layered",
+    "elk.direction": "RIGHT",
+    "elk.edgeRouting": "ORTHOGONAL",
+    "elk.json.shapeCoords": "ROOT",
+    "elk.json.edgeCoords": "ROOT",
+    "elk.randomSeed": "1",
+    "elk.padding": "[top=12,left=12,bottom=12,right=12]",
+    "elk.spacing.nodeNode": "18",
+    "elk.spacing.edgeNode": "14",
+    "elk.spacing.edgeEdge": "10",
+    "elk.spacing.labelNode": "3",
+    "elk.spacing.labelPortHorizontal": "3",
+    "elk.spacing.labelPortVertical": "2",
+    "elk.spacing.componentComponent": "30",
+    "elk.layered.spacing.nodeNodeBetweenLayers": "26",
+    "elk.layered.spacing.edgeNodeBetweenLayers": "12",
+    "elk.layered.spacing.edgeEdgeBetweenLayers": "9",
+    "elk.layered.considerModelOrder.strategy": "NODES_AND_EDGES",
+    "elk.layered.thoroughness": "3",
+}
+"""ELK's own names; https://eclipse.dev/elk/reference/options.html tells each."""
+STRAIGHT = {"elk.layered.priority.straightness": "10"}
+COMPACT = {"elk.layered.nodePlacement.strategy": "NETWORK_SIMPLEX"}
+"""Half as high, and straighter lines, for a time that grows with the square of the wires."""
+MOST_COMPACT = 70
+"""Wires up to which a picture is compact; 70 take half a second."""
+
+
+@dataclass(frozen=True)
+class Rectangle:
+    """A place in the picture in px, y downwards."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Where a graph's parts are, by their ids.
+
+    nodes, names (the labels below nodes) and labels (on wires, by port) are rectangles, ports
+    points, wires lines of points from source to target, dots the points where wires part.
+    """
+
+    width: float
+    height: float
+    nodes: dict[str, Rectangle]
+    names: dict[str, Rectangle]
+    labels: dict[str, tuple[str, Rectangle]]
+    ports: dict[str, Point]
+    wires: dict[str, tuple[Point, ...]]
+    dots: tuple[Point, ...]
+
+
+def layout_of(graph: Graph) -> Layout:
+    """The layout of a graph: left to right, wires at right angles, the same each time."""
+    labels = _labels(graph.wires) | {
+        port: text for node in _all(graph.nodes) for port, text in _labels(node.wires).items()
+    }
+    options = dict(OPTIONS)
+    if sum(1 for _ in all_wires(graph)) <= MOST_COMPACT:
+        options |= COMPACT
+    if any(node.nodes for node in graph.nodes):
+        options["elk.hierarchyHandling"] = "INCLUDE_CHILDREN"
+    root = {
+        "id": "",
+        "layoutOptions": options,
+        "children": [_child(node, labels) for node in graph.nodes],
+        "edges": _edges(graph.nodes, graph.wires),
+    }
+    return _read(lay_out(root), graph)
+
+
+def _all(nodes: Sequence[Node]) -> Iterator[Node]:
+    """The nodes and those inside of them."""
+    for node in nodes:
+        yield node
+        yield from _all(node.nodes)
+
+
+def all_nodes(graph: Graph) -> Iterator[Node]:
+    """Every node of a graph, those of open subsystems behind them."""
+    return _all(graph.nodes)
+
+
+def all_wires(graph: Graph) -> Iterator[Connection]:
+    """Every wire of a graph."""
+    yield from graph.wires
+    for node in _all(graph.nodes):
+        yield from node.wires
+
+
+def _labels(wires: Sequence[Connection]) -> dict[str, str]:
+    """What stands on the wires that leave a port, once for all of them."""
+    return {wire.source: wire.label for wire in wires if wire.label}
+
+
+def _label(text: str, size: float) -> dict[str, Any]:
+    return {"text": text, "width": text_width(text, size), "height": size * LINE_HEIGHT}
+
+
+def _child(node: Node, labels: dict[str, str]) -> dict[str, Any]:
+    options = {
+        "elk.portConstraints": "FIXED_ORDER" if node.ordered else "FIXED_SIDE",
+        "elk.nodeLabels.placement": "OUTSIDE V_BOTTOM H_CENTER",
+        "elk.portLabels.placement": "OUTSIDE NEXT_TO_PORT_IF_POSSIBLE",
+        "elk.portAlignment.default": "CENTER",
+        "elk.spacing.portPort": "18",
+    }
+    child: dict[str, Any] = {
+        "id": f"node {node.id}",
+        "width": node.look.width,
+        "height": node.look.height,
+        "layoutOptions": options,
+        "labels": [_label(node.name, SIZE)] if node.name else [],
+        "ports": [_port(node, port, n, labels) for n, port in enumerate(node.ports)],
+    }
+    if node.nodes:
+        child["children"] = [_child(inner, labels) for inner in node.nodes]
+        child["edges"] = _edges(node.nodes, node.wires)
+        options["elk.padding"] = "[top=30,left=34,bottom=16,right=34]"
+        options["elk.nodeSize.constraints"] = "PORTS MINIMUM_SIZE"
+        options["elk.nodeSize.minimum"] = f"({node.look.width},{node.look.height})"
+        del child["width"], child["height"]
+    return child
+
+
+def _port(node: Node, port: Port, number: int, labels: dict[str, str]) -> dict[str, Any]:
+    west = (port.side == "west") != node.flipped
+    # ELK counts clockwise from the top left: down on the right side, up on the left one
+    index = len(node.ports) - number if west else number
+    found: dict[str, Any] = {
+        "id": f"port {port.id}",
+        "width": 0,
+        "height": 0,
+        "layoutOptions": {
+            "elk.port.side": "WEST" if west else "EAST",
+            "elk.port.index": str(index),
+        },
+    }
+    if port.id in labels:
+        found["labels"] = [_label(labels[port.id], SMALL)]
+    return found
+
+
+def _edges(nodes: Sequence[Node], wires: Sequence[Connection]) -> list[dict[str, Any]]:
+    """The wires for ELK: one that goes from right to left is handed over the other way round."""
+    flipped = {port.id for node in nodes if node.flipped for port in node.ports}
+    return [
+        {
+            "id": f"wire {wire.id}",
+            "sources": [f"port {wire.target if _turned(wire, flipped) else wire.source}"],
+            "targets": [f"port {wire.source if _turned(wire, flipped) else wire.target}"],
+            "layoutOptions": STRAIGHT if wire.main and not wire.back else {},
+        }
+        for wire in wires
+    ]
+
+
+def _turned(wire: Connection, flipped: set[str]) -> bool:
+    return wire.back or wire.source in flipped or wire.target in flipped
+
+
+def _read(placed: dict[str, Any], graph: Graph) -> Layout:
+    nodes: dict[str, Rectangle] = {}
+    names: dict[str, Rectangle] = {}
+    labels: dict[str, tuple[str, Rectangle]] = {}
+    ports: dict[str, Point] = {}
+    wires: dict[str, tuple[Point, ...]] = {}
+    dots: set[Point] = set()
+
+    def visit(part: dict[str, Any]) -> None:
+        for child in part.get("children", ()):
+            id = child["id"].removeprefix("node ")
+            nodes[id] = _rectangle(child)
+            for label in child.get("labels", ()):
+                names[id] = _rectangle(label)
+            for port in child.get("ports", ()):
+                own = port["id"].removeprefix("port ")
+                ports[own] = (port["x"], port["y"])
+                for label in port.get("labels", ()):
+                    labels[own] = (label["text"], _rectangle(label))
+            visit(child)
+        for edge in part.get("edges", ()):
+            (section,) = edge["sections"]
+            points = [section["startPoint"], *section.get("bendPoints", ()), section["endPoint"]]
+            wires[edge["id"].removeprefix("wire ")] = tuple((p["x"], p["y"]) for p in points)
+            dots.update((p["x"], p["y"]) for p in edge.get("junctionPoints", ()))
+
+    visit(placed)
+    for wire in all_wires(graph):
+        line = wires[wire.id]
+        if line[0] != ports[wire.source] and line[-1] == ports[wire.source]:
+            wires[wire.id] = line[::-1]
+    return Layout(
+        placed["width"], placed["height"], nodes, names, labels, ports, wires, tuple(sorted(dots))
+    )
+
+
+def _rectangle(part: dict[str, Any]) -> Rectangle:
+    return Rectangle(part["x"], part["y"], part["width"], part["height"])

@@ -1,0 +1,180 @@
+"""The picture of a laid-out graph as SVG: a group for each block, with its full name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from xml.sax.saxutils import escape, quoteattr
+
+from tracewire.draw.font import FAMILY, SIZE, SMALL, shortened, text_width
+from tracewire.draw.graph import Connection, Graph, Node
+from tracewire.draw.layout import Layout, Point, Rectangle, all_nodes, all_wires
+from tracewire.draw.outlines import arrow, number, outline, path, rim
+
+MARGIN = 6.0
+NOTE_LINE = 16.0
+TITLE = 13.0
+LEAST_WIDTH = 160.0
+MOST_NOTE = 900.0
+COLOURS = {
+    "": ("#ffffff", "#3b4a5a"),
+    "frame": ("#f6f8fa", "#9aa7b4"),
+    "tag": ("#eef4fa", "#3b6ea5"),
+    "subsystem": ("#fdf8ec", "#8a6d1f"),
+    "effect": ("#e6f4ea", "#1a7f37"),
+    "bar": ("#3b4a5a", "#3b4a5a"),
+    "wrong": ("#fdecea", "#c62828"),
+}
+"""The fill and the line of each kind of block."""
+STYLE = f"""
+.tracewire text{{font-family:"{FAMILY}",Verdana,sans-serif;font-size:{SIZE:g}px;fill:#1f2933}}
+.tracewire .small{{font-size:{SMALL:g}px;fill:#52606d}}
+.tracewire .title{{font-size:{TITLE:g}px}}
+.tracewire .wire path{{fill:none;stroke:#3b4a5a;stroke-width:1.1}}
+.tracewire .wire .head{{fill:#3b4a5a;stroke:none}}
+.tracewire .wire.effect path{{stroke:#1a7f37}}
+.tracewire .wire.effect .head{{fill:#1a7f37}}
+.tracewire .wire.wrong path{{stroke:#c62828;stroke-dasharray:4 3}}
+.tracewire .wire.wrong .head{{fill:#c62828}}
+.tracewire .dot{{fill:#3b4a5a}}
+.tracewire .outline{{stroke-width:1.2}}
+.tracewire .curve{{fill:none;stroke:#0b63a5;stroke-width:1.6;stroke-linejoin:round}}
+.tracewire .axis{{fill:none;stroke:#c3cad2;stroke-width:.8}}
+.tracewire .mistake{{fill:#c62828}}
+.tracewire .measured{{fill:#0b63a5}}
+.tracewire .event{{fill:none;stroke:#b45309;stroke-width:1.3}}
+"""
+
+
+def svg_of(graph: Graph, layout: Layout) -> str:
+    """The picture as a text of SVG; every text of the diagram is escaped in it."""
+    notes = [("small", f"⚡ {note}") for note in graph.notes]
+    notes += [("small mistake", f"✗ {mistake}") for mistake in graph.mistakes]
+    width = max(layout.width, LEAST_WIDTH, *(_note_width(text) for _, text in notes), 0)
+    height = layout.height + NOTE_LINE * len(notes) + (6 if notes else 0)
+    box = f"0 0 {number(width + 2 * MARGIN)} {number(height + 2 * MARGIN)}"
+    lines = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" class="tracewire" viewBox="{box}" '
+        f'width="{number(width + 2 * MARGIN)}" height="{number(height + 2 * MARGIN)}">',
+        f"<title>{_text(graph.title)}</title>",
+        f"<style>{STYLE}</style>",
+        f'<g transform="translate({number(MARGIN)} {number(MARGIN)})">',
+    ]
+    frames = [node for node in all_nodes(graph) if node.nodes]
+    lines += [line for node in frames for line in _block(node, layout)]
+    owners = {port.id: node for node in all_nodes(graph) for port in node.ports}
+    lines += [_wire(owners, wire, layout) for wire in all_wires(graph)]
+    lines += [
+        f'<circle class="dot" cx="{number(x)}" cy="{number(y)}" r="2.4"/>' for x, y in layout.dots
+    ]
+    lines += [line for node in all_nodes(graph) if not node.nodes for line in _block(node, layout)]
+    for text, place in layout.labels.values():
+        lines.append(_write(text, place.x, place.y + SMALL, "small"))
+    for row, (kind, text) in enumerate(notes):
+        y = layout.height + NOTE_LINE * (row + 1)
+        lines.append(_write(shortened(text, MOST_NOTE, SMALL), 12, y, kind))
+    return "\n".join([*lines, "</g>", "</svg>"]) + "\n"
+
+
+def _note_width(text: str) -> float:
+    return min(text_width(text, SMALL), MOST_NOTE) + 24
+
+
+def _text(text: str) -> str:
+    """Text for XML, which has no control characters."""
+    return escape("".join(c if c.isprintable() or c in "\n\t" else "�" for c in text))
+
+
+def _attribute(text: str) -> str:
+    return quoteattr("".join(c if c.isprintable() else "�" for c in text))
+
+
+def _write(text: str, x: float, y: float, kind: str = "", anchor: str = "") -> str:
+    named = f' class="{kind}"' if kind else ""
+    placed = f' text-anchor="{anchor}"' if anchor else ""
+    return f'<text x="{number(x)}" y="{number(y)}"{named}{placed}>{_text(text)}</text>'
+
+
+def _wire(nodes: Mapping[str, Node], wire: Connection, layout: Layout) -> str:
+    line = list(layout.wires[wire.id])
+    line[0] = _to_rim(nodes[wire.source], line[0], layout)
+    line[-1] = _to_rim(nodes[wire.target], line[-1], layout)
+    marks = {nodes[wire.source].mark, nodes[wire.target].mark} - {""}
+    mark = wire.mark or ("effect" if "effect" in marks else "")
+    kind = f"wire {mark}".strip()
+    head = arrow(line) if not nodes[wire.target].nodes or line[-1][0] > line[-2][0] else ""
+    return (
+        f'<g class="{kind}" data-signal={_attribute(wire.signal)}>'
+        f'<path d="{path(line)}"/>{head}</g>'
+    )
+
+
+def _to_rim(node: Node, point: Point, layout: Layout) -> Point:
+    return rim(node.look.outline, layout.nodes[node.id], point, node.flipped)
+
+
+def _block(node: Node, layout: Layout) -> Iterator[str]:
+    """The group of a block: its tooltip, outline, what is inside of it, and its name below."""
+    place = layout.nodes[node.id]
+    look = node.look
+    fill, stroke = COLOURS[node.mark or _kind(node)]
+    classes = " ".join(part for part in ("block", node.mark, "measured" * node.measured) if part)
+    yield (
+        f'<g class="{classes}" data-block={_attribute(node.id)} data-type={_attribute(node.type)}>'
+    )
+    yield f"<title>{_text(chr(10).join(node.details))}</title>"
+    shape = outline(look.outline, place, node.flipped)
+    yield f'<path class="outline" d="{shape}" fill="{fill}" stroke="{stroke}"/>'
+    yield from _inside(node, place)
+    for port in node.ports:
+        if port.text:
+            x, y = layout.ports[port.id]
+            west = (port.side == "west") != node.flipped
+            anchor = "start" if west else "end"
+            up = -4 if node.nodes else 3  # in a frame its wire goes on
+            yield _write(port.text, x + (5 if west else -5), y + up, "small", anchor)
+    if node.id in layout.names:
+        name = layout.names[node.id]
+        kind = "measured" if node.measured else ""
+        yield _write(node.name, name.x + name.width / 2, name.y + SIZE, kind, "middle")
+    if node.has_event:
+        x, y = place.x + place.width - 7, place.y - 4
+        flash = path([(x + 3, y - 6), (x - 1, y), (x + 3, y), (x - 1, y + 6)])
+        yield f'<path class="event" d="{flash}"/>'
+    yield "</g>"
+
+
+def _kind(node: Node) -> str:
+    if node.nodes:
+        return "frame"
+    if node.look.outline in ("tag", "bar"):
+        return node.look.outline
+    return "subsystem" if node.is_subsystem else ""
+
+
+def _inside(node: Node, place: Rectangle) -> Iterator[str]:
+    """The text or the curve of a block."""
+    look = node.look
+    x, y = place.x + place.width / 2, place.y + place.height / 2
+    if node.nodes:
+        yield _write(look.lines[0], place.x + 10, place.y + 16)
+    elif look.fraction:
+        yield _write(look.lines[0], x, y - 4, "", "middle")
+        yield f'<path class="axis" style="stroke:#1f2933" d="{path([(x - 6, y), (x + 6, y)])}"/>'
+        yield _write(look.lines[1], x, y + 12, "", "middle")
+    elif look.curve:
+        west, east = node.labels
+        x += (east - west) / 2 if node.flipped else (west - east) / 2
+        wide, high = (place.width - west - east) / 2 - 6, place.height / 2 - 7
+        if look.axes:
+            yield f'<path class="axis" d="{path([(x - wide, y), (x + wide, y)])}"/>'
+            yield f'<path class="axis" d="{path([(x, y - high), (x, y + high)])}"/>'
+        for line in look.curve:
+            drawn = path([(x + wide * a, y - high * b) for a, b in line])
+            yield f'<path class="curve" d="{drawn}"/>'
+    else:
+        west, east = node.labels
+        x += (east - west) / 2 if node.flipped else (west - east) / 2
+        if look.outline == "triangle":
+            x += place.width * (0.13 if node.flipped else -0.13)
+        for n, text in enumerate(look.lines):
+            yield _write(text, x, y + 4 + 14 * (n - (len(look.lines) - 1) / 2), "", "middle")
