@@ -23,6 +23,7 @@ from tracewire.draw.orient import oriented
 from tracewire.draw.shapes import Drawn, port_width, shape_of, subsystem_look, tag_look
 from tracewire.errors import Problem
 from tracewire.formula import Call, Name, Number, names_of
+from tracewire.library import Block
 
 SIGNED = {"sum"}
 """Types whose inputs carry their sign inside, a plus as well; elsewhere only a minus is written."""
@@ -131,8 +132,7 @@ class _Builder:
     ) -> Node:
         """The node of a block; its input wires are noted."""
         full = level.path + use.name
-        library = level.diagram.library
-        block = None if use.type not in library else library[use.type]
+        block = _block(level.diagram, use)
         ports = self.connect(level, use, full)
         if use.subsystem is not None:
             outputs = tuple(use.subsystem.outputs)
@@ -262,6 +262,13 @@ class _Builder:
         if self.options.units and unit:
             parts.append(f"[{unit}]")
         return shortened(" ".join(parts), MOST_NAME, SMALL)
+
+
+def _block(diagram: Diagram, use: BlockUse) -> Block | None:
+    """The library block of a use; None for a subsystem, or a type that does not exist."""
+    if use.type in diagram.library:
+        return diagram.library[use.type]
+    return None
 
 
 def _short(text: str) -> str:

@@ -13,8 +13,7 @@ from tracewire.library import Block
 
 SCALES = tuple(10.0 ** (n / 3) for n in range(-12, 13))
 """Ranges of the input that are tried, in its unit; the one with the sharpest bend counts."""
-SAMPLES = 33
-COARSE = 8  # every so many samples are enough to compare ranges
+SAMPLES, COARSE = 32, 8  # even numbers: none is at 0, where a friction jumps
 JUMP = 0.6  # of the height of the curve, between two samples: it is drawn upright
 STRAIGHT = 1e-6
 FLAT = 1e-12
@@ -39,7 +38,7 @@ def curve_of(
         return ()
     best, sharpest = 0.0, -1.0
     for scale in sorted(SCALES, key=lambda scale: abs(math.log10(scale))):
-        coarse = _sampled(formula, along, known, scale, SAMPLES // COARSE * 2 + 1)
+        coarse = _sampled(formula, along, known, scale, COARSE)
         bend = _bend([y for _, y in coarse])
         if bend > sharpest + 0.02:
             best, sharpest = scale, bend

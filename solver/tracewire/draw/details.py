@@ -66,7 +66,9 @@ def event_text(event: Event) -> str:
     elif isinstance(event.when, Call):
         compares = event.when.function in SIGNS
         when = f"when {to_text(event.when)}" + ("" if compares else f" {ARROW[event.crosses]}")
-    else:
+    elif "." in to_text(event.when):  # the event of a block
         when = f"at {to_text(event.when)}"
+    else:
+        when = f"when {to_text(event.when)} {ARROW[event.crosses]}"
     values = ", ".join(f"{name} := {to_text(formula)}" for name, formula in event.set.items())
     return f"{when}: {values}" if values else when

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from tracewire.draw.elk import lay_out
@@ -71,22 +71,43 @@ class Layout:
 
 
 def layout_of(graph: Graph) -> Layout:
-    """The layout of a graph: left to right, wires at right angles, the same each time."""
+    """The layout of a graph: left to right, wires at right angles, the same each time.
+
+    Feedback shall stand below: where it does not, the picture is laid out upside down, too.
+    """
+    few = sum(1 for _ in all_wires(graph)) <= MOST_COMPACT
+    layout = _read(lay_out(_root(graph, few, upside_down=False)), graph)
+    if few and _feedback_height(graph, layout) > 0:
+        other = mirrored(_read(lay_out(_root(graph, few, upside_down=True)), graph))
+        if _feedback_height(graph, other) <= 0:
+            return other
+    return layout
+
+
+def _root(graph: Graph, few: bool, upside_down: bool) -> dict[str, Any]:
+    """The graph in ELK's JSON."""
+    options = OPTIONS | (COMPACT if few else {})
+    if any(node.nodes for node in graph.nodes):
+        options["elk.hierarchyHandling"] = "INCLUDE_CHILDREN"
     labels = _labels(graph.wires) | {
         port: text for node in _all(graph.nodes) for port, text in _labels(node.wires).items()
     }
-    options = dict(OPTIONS)
-    if sum(1 for _ in all_wires(graph)) <= MOST_COMPACT:
-        options |= COMPACT
-    if any(node.nodes for node in graph.nodes):
-        options["elk.hierarchyHandling"] = "INCLUDE_CHILDREN"
-    root = {
+    return {
         "id": "",
         "layoutOptions": options,
-        "children": [_child(node, labels) for node in graph.nodes],
+        "children": [_child(node, labels, upside_down) for node in graph.nodes],
         "edges": _edges(graph.nodes, graph.wires),
     }
-    return _read(lay_out(root), graph)
+
+
+def _feedback_height(graph: Graph, layout: Layout) -> float:
+    """How far the feedback stands above the other blocks on the average, in px."""
+
+    def middle(flipped: bool) -> float:
+        places = [layout.nodes[node.id] for node in graph.nodes if node.flipped == flipped]
+        return sum(p.y + p.height / 2 for p in places) / len(places) if places else 0.0
+
+    return middle(False) - middle(True) if any(node.flipped for node in graph.nodes) else 0.0
 
 
 def _all(nodes: Sequence[Node]) -> Iterator[Node]:
@@ -117,10 +138,10 @@ def _label(text: str, size: float) -> dict[str, Any]:
     return {"text": text, "width": text_width(text, size), "height": size * LINE_HEIGHT}
 
 
-def _child(node: Node, labels: dict[str, str]) -> dict[str, Any]:
+def _child(node: Node, labels: dict[str, str], upside_down: bool) -> dict[str, Any]:
     options = {
         "elk.portConstraints": "FIXED_ORDER" if node.ordered else "FIXED_SIDE",
-        "elk.nodeLabels.placement": "OUTSIDE V_BOTTOM H_CENTER",
+        "elk.nodeLabels.placement": f"OUTSIDE V_{'TOP' if upside_down else 'BOTTOM'} H_CENTER",
         "elk.portLabels.placement": "OUTSIDE NEXT_TO_PORT_IF_POSSIBLE",
         "elk.portAlignment.default": "CENTER",
         "elk.spacing.portPort": "18",
@@ -131,22 +152,25 @@ def _child(node: Node, labels: dict[str, str]) -> dict[str, Any]:
         "height": node.look.height,
         "layoutOptions": options,
         "labels": [_label(node.name, SIZE)] if node.name else [],
-        "ports": [_port(node, port, n, labels) for n, port in enumerate(node.ports)],
+        "ports": [_port(node, port, n, labels, upside_down) for n, port in enumerate(node.ports)],
     }
     if node.nodes:
-        child["children"] = [_child(inner, labels) for inner in node.nodes]
+        child["children"] = [_child(inner, labels, upside_down) for inner in node.nodes]
         child["edges"] = _edges(node.nodes, node.wires)
-        options["elk.padding"] = "[top=30,left=34,bottom=16,right=34]"
+        top, bottom = (16, 30) if upside_down else (30, 16)
+        options["elk.padding"] = f"[top={top},left=34,bottom={bottom},right=34]"
         options["elk.nodeSize.constraints"] = "PORTS MINIMUM_SIZE"
         options["elk.nodeSize.minimum"] = f"({node.look.width},{node.look.height})"
         del child["width"], child["height"]
     return child
 
 
-def _port(node: Node, port: Port, number: int, labels: dict[str, str]) -> dict[str, Any]:
+def _port(
+    node: Node, port: Port, number: int, labels: dict[str, str], upside_down: bool
+) -> dict[str, Any]:
     west = (port.side == "west") != node.flipped
     # ELK counts clockwise from the top left: down on the right side, up on the left one
-    index = len(node.ports) - number if west else number
+    index = len(node.ports) - number if west != upside_down else number
     found: dict[str, Any] = {
         "id": f"port {port.id}",
         "width": 0,
@@ -202,7 +226,8 @@ def _read(placed: dict[str, Any], graph: Graph) -> Layout:
         for edge in part.get("edges", ()):
             (section,) = edge["sections"]
             points = [section["startPoint"], *section.get("bendPoints", ()), section["endPoint"]]
-            wires[edge["id"].removeprefix("wire ")] = tuple((p["x"], p["y"]) for p in points)
+            line = [(p["x"], p["y"]) for p in points]
+            wires[edge["id"].removeprefix("wire ")] = _upright(line)
             dots.update((p["x"], p["y"]) for p in edge.get("junctionPoints", ()))
 
     visit(placed)
@@ -213,6 +238,38 @@ def _read(placed: dict[str, Any], graph: Graph) -> Layout:
     return Layout(
         placed["width"], placed["height"], nodes, names, labels, ports, wires, tuple(sorted(dots))
     )
+
+
+def mirrored(layout: Layout) -> Layout:
+    """The layout upside down; every part keeps its size."""
+
+    def turned(place: Rectangle) -> Rectangle:
+        return replace(place, y=layout.height - place.y - place.height)
+
+    def point(at: Point) -> Point:
+        return at[0], layout.height - at[1]
+
+    return replace(
+        layout,
+        nodes={id: turned(place) for id, place in layout.nodes.items()},
+        names={id: turned(place) for id, place in layout.names.items()},
+        labels={id: (text, turned(place)) for id, (text, place) in layout.labels.items()},
+        ports={id: point(at) for id, at in layout.ports.items()},
+        wires={id: tuple(map(point, line)) for id, line in layout.wires.items()},
+        dots=tuple(map(point, layout.dots)),
+    )
+
+
+def _upright(line: Sequence[Point]) -> tuple[Point, ...]:
+    """The line with right angles only: beside ports of frames ELK is off by parts of a pixel."""
+    found = [line[0]]
+    for x, y in line[1:]:
+        before_x, before_y = found[-1]
+        if before_x != x and before_y != y:
+            middle = (before_x + x) / 2
+            found += [(middle, before_y), (middle, y)]
+        found.append((x, y))
+    return tuple(found)
 
 
 def _rectangle(part: dict[str, Any]) -> Rectangle:

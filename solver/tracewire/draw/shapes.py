@@ -12,7 +12,7 @@ from tracewire.draw.graph import Line, Look
 from tracewire.library import Block
 
 PITCH = 18.0  # px between ports
-BOX = (44.0, 38.0)  # px, the least width and height
+BOX = (44.0, 40.0)  # px, the least width and height
 MOST_TEXT = 190.0  # px
 MOST_GAIN = 74.0
 LINE = 14.0
