@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -233,7 +234,7 @@ def _read(placed: dict[str, Any], graph: Graph) -> Layout:
     visit(placed)
     for wire in all_wires(graph):
         line = wires[wire.id]
-        if line[0] != ports[wire.source] and line[-1] == ports[wire.source]:
+        if math.dist(line[-1], ports[wire.source]) < math.dist(line[0], ports[wire.source]):
             wires[wire.id] = line[::-1]
     return Layout(
         placed["width"], placed["height"], nodes, names, labels, ports, wires, tuple(sorted(dots))
