@@ -160,12 +160,16 @@ HEAVY = ("numpy", "scipy", "networkx", "matplotlib", "pint", "llvmlite", "numba"
         (["--version"], []),
         (["blocks", "gain"], []),
         (["check", "LESSON"], ["numpy"]),
+        (["draw", "LESSON", "--output", "PICTURE"], ["numpy"]),
         (["run", "LESSON"], ["numpy", "llvmlite", "rich"]),
     ],
 )
-def test_a_verb_imports_what_it_needs(arguments: list[str], imported: list[str]) -> None:
+def test_a_verb_imports_what_it_needs(
+    arguments: list[str], imported: list[str], tmp_path: Path
+) -> None:
     """Each of the others takes a tenth of a second and more."""
-    given = [str(LESSON) if word == "LESSON" else word for word in arguments]
+    files = {"LESSON": str(LESSON), "PICTURE": str(tmp_path / "a.svg")}
+    given = [files.get(word, word) for word in arguments]
     program = (
         f"import sys; from tracewire.cli import main; main({given!r}); "
         f"print([name for name in {HEAVY} if name in sys.modules])"
