@@ -162,7 +162,14 @@ def test_the_report_tells_what_was_fitted_and_each_step(tmp_path: Path) -> None:
         "mean(residual²)/2",
     ):
         assert words in text
-    for figure in ("fit.png", "fit_parameters.png", "fit_correlation.png", "fit_convergence.png"):
+    assert text.index("(fit_diagram.svg)") < text.index("## Result")
+    for figure in (
+        "fit_diagram.svg",
+        "fit.png",
+        "fit_parameters.png",
+        "fit_correlation.png",
+        "fit_convergence.png",
+    ):
         assert f"({figure})" in text
         assert (tmp_path / figure).is_file()
     assert not NOT_A_NUMBER.search(text)
@@ -171,6 +178,7 @@ def test_the_report_tells_what_was_fitted_and_each_step(tmp_path: Path) -> None:
 def test_the_report_as_html_is_one_file(tmp_path: Path) -> None:
     page = report(FIT).write(tmp_path / "fit.html").read_text(encoding="utf-8")
     assert page.count('src="data:image/png;base64,') >= 4
+    assert page.count('src="data:image/svg+xml;base64,') == 1
     assert list(tmp_path.iterdir()) == [tmp_path / "fit.html"]
 
 

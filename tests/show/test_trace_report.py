@@ -98,6 +98,8 @@ def test_an_effect_is_reported_with_the_answer_first(tmp_path: Path) -> None:
         assert words in text
     for name in figures(FOUND):
         assert (tmp_path / f"swing_{name}").stat().st_size > 1000
+    picture = (tmp_path / "swing_diagram.svg").read_text(encoding="utf-8")
+    assert 'class="block effect" data-block="coulomb"' in picture
 
 
 def test_a_report_has_the_sections_that_there_is_something_to_say_in() -> None:
@@ -118,14 +120,14 @@ def test_a_report_has_the_sections_that_there_is_something_to_say_in() -> None:
 
 def test_a_figure_is_drawn_for_what_there_is() -> None:
     assert figures(FOUND) == [
-        "law.png", "forces.png", "free_runs.png", "residuals.png", "confusable.png",
+        "diagram.svg", "law.png", "forces.png", "free_runs.png", "residuals.png", "confusable.png",
         "experiments.png", "candidates.png",
     ]  # fmt: skip
     assert {"shares.png", "remainder.png"} < set(figures(JUDGED))
-    assert figures(NULL) == ["free_runs.png", "residuals.png"]
+    assert figures(NULL) == ["diagram.svg", "free_runs.png", "residuals.png"]
     assert {"where.png", "missing.png"} < set(figures(UNEXPLAINED))
     bare = replace(NULL, curves=(), errors=(), power=(), steps=())
-    assert figures(bare) == []
+    assert figures(bare) == ["diagram.svg"]
 
 
 def test_forces_that_cannot_be_computed_cost_their_figures_only(tmp_path: Path) -> None:

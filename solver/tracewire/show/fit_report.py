@@ -16,6 +16,7 @@ from tracewire.library import SENSOR_TERMS
 from tracewire.residual import Measured, Sensor
 from tracewire.show.comparison_figures import plot_comparisons
 from tracewire.show.diagnostic_figures import plot_diagnostics, plot_profiles
+from tracewire.show.diagram_picture import diagram_figure
 from tracewire.show.document import Figure, Report, Section
 from tracewire.show.fit_tables import (
     comparison_table,
@@ -67,6 +68,7 @@ GLOSSARY = (
 def fit_report(fit: Fit, profiles: Sequence[Profile] = ()) -> Report:
     """The report of a fit, with those profile likelihoods that were computed."""
     sections = (
+        Section("The diagram", figures=(diagram_figure(fit.model.diagram),)),
         _result(fit),
         _determined(fit),
         _compared(fit),

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
+from tracewire.show.diagram_picture import diagram_figure
 from tracewire.show.document import Figure, Report, Section
 from tracewire.show.fit_tables import sentence
 from tracewire.show.trace_experiments import experiment_words
@@ -123,7 +124,9 @@ def trace_report(found: Found) -> Report:
 
 
 def _answer(found: Found) -> Section:
-    figures = _figure(
+    added = [effect.block for effect in found.effects if effect.block]
+    figures: tuple[Figure, ...] = (diagram_figure(found.diagram, added),)
+    figures += _figure(
         _has_law(found), found, plot_law, "law.png",
         "The force that the data need, and the law that was found",
     )  # fmt: skip
