@@ -22,6 +22,11 @@ def faults(drawing: Drawing) -> list[str]:
         found += _overlaps(node.nodes, layout)
         found += _wires(node.nodes, node.wires, layout)
         found += [
+            f"what stands on the wire of {port} overlaps {node.id}"
+            for port, (_, place) in layout.labels.items()
+            if not node.nodes and _overlap(place, layout.nodes[node.id])
+        ]
+        found += [
             f"{inner.id} is not inside of {node.id}"
             for inner in node.nodes
             if not _holds(layout.nodes[node.id], layout.nodes[inner.id])

@@ -162,7 +162,8 @@ def _child(node: Node, labels: dict[str, str], upside_down: bool) -> dict[str, A
         child["children"] = [_child(inner, labels, upside_down) for inner in node.nodes]
         child["edges"] = _edges(node.nodes, node.wires)
         top, bottom = (16, 30) if upside_down else (30, 16)
-        options["elk.padding"] = f"[top={top},left=34,bottom={bottom},right=34]"
+        left, right = (max(width + 18, 34) for width in node.labels)
+        options["elk.padding"] = f"[top={top},left={left},bottom={bottom},right={right}]"
         options["elk.nodeSize.constraints"] = "PORTS MINIMUM_SIZE"
         options["elk.nodeSize.minimum"] = f"({node.look.width},{node.look.height})"
         del child["width"], child["height"]
