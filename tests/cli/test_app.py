@@ -15,7 +15,7 @@ from tracewire.errors import DataError, FitError, Place, Problem
 
 LESSON = Path(__file__).parents[2] / "diagrams" / "lessons" / "pendulum.yaml"
 SOLVER = Path(tracewire.__file__).parents[1]
-VERBS = ("check", "show", "run", "fit", "trace", "report", "sweep", "blocks")
+VERBS = ("check", "show", "draw", "run", "fit", "trace", "report", "sweep", "blocks")
 
 
 def raising(error: BaseException) -> Callable[..., None]:

@@ -25,7 +25,7 @@ def mermaid_of(graph: Graph) -> str:
         for number, port in enumerate(node.ports):
             ends[port.id] = names[node.id] + (f"p{number}" if node.nodes else "")
             texts[port.id] = "" if node.nodes else port.text
-    lines = ["flowchart LR", f"  %% {_plain(graph.title)}", *_level(graph.nodes, names, "  ")]
+    lines = ["flowchart LR", f"  %% {_quoted(graph.title)}", *_level(graph.nodes, names, "  ")]
     wires = [*graph.wires, *(wire for node in all_nodes(graph) for wire in node.wires)]
     lines += [_wire(wire, ends, texts) for wire in wires]
     for mark, style in CLASSES.items():
@@ -63,10 +63,5 @@ def _wire(wire: Connection, ends: dict[str, str], texts: dict[str, str]) -> str:
 
 
 def _quoted(text: str) -> str:
-    """Text inside of quotes: what is no letter, digit or space is written as a number."""
+    """Text that is never a command: what is no letter, digit or space is written as a number."""
     return "".join(c if c.isalnum() or c in " _.," else f"#{ord(c)};" for c in text)
-
-
-def _plain(text: str) -> str:
-    """Text of a comment: one line."""
-    return " ".join("".join(c if c.isprintable() else " " for c in text).split())

@@ -66,7 +66,11 @@ def lay_out(graph: dict[str, Any]) -> dict[str, Any]:
             worker.start()
         finally:
             stack_size(before)
-        worker.join()
+        try:
+            worker.join()
+        except BaseException:
+            _context.cache_clear()  # that of the thread, which goes on, is not used again
+            raise
     (answer,) = answers
     if isinstance(answer, Exception):
         raise answer
