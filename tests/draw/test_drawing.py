@@ -204,6 +204,14 @@ def test_the_curve_of_a_block_is_its_own_formula() -> None:
     assert all(y == pytest.approx(-x) for x, y in line)
 
 
+def test_a_table_is_drawn_by_its_points() -> None:
+    text = "blocks:\n  y: {type: table, points: [[-2, 0], [0, 0], [2, -4], [4, 8]]}\n"
+    look = node(draw(read_text(text)), "y").look
+    assert look.curve == (((-0.5, 0.0), (0.0, 0.0), (0.5, -0.5), (1.0, 1.0)),)
+    flat = "blocks:\n  y: {type: table, points: [[0, 0], [1, 0]]}\n"
+    assert node(draw(read_text(flat)), "y").look.lines == ("table",)
+
+
 @pytest.mark.parametrize("name", ["hysteresis", "relay", "demux", "collision", "sine"])
 def test_a_block_with_memory_or_without_a_number_has_no_curve(name: str) -> None:
     assert curve_of(LIBRARY[name], {}) == ()

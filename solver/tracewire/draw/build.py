@@ -9,6 +9,7 @@ from tracewire.diagram import (
     BlockUse,
     Diagram,
     Event,
+    Points,
     Wire,
     find_signal,
     find_state,
@@ -162,7 +163,7 @@ class _Builder:
             measured=self.options.measured and not level.path and self.is_measured(use.name),
         )
         if use.subsystem is None:
-            look = shape_of(Drawn(use.type, settings_text(use), given, count, block))
+            look = shape_of(Drawn(use.type, settings_text(use), given, count, block, _points(use)))
             if look.outline in ("box", "pill"):
                 look = replace(look, width=look.width + sum(labels))
             return replace(node, look=look)
@@ -269,6 +270,12 @@ def _block(diagram: Diagram, use: BlockUse) -> Block | None:
     if use.type in diagram.library:
         return diagram.library[use.type]
     return None
+
+
+def _points(use: BlockUse) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """The points of a block that is a table."""
+    tables = [value for value in use.settings.values() if isinstance(value, Points)]
+    return (tables[0].x, tables[0].y) if tables else ((), ())
 
 
 def _short(text: str) -> str:

@@ -45,6 +45,14 @@ def curve_of(
     return _scaled(_sampled(formula, along, known, best, SAMPLES)) if best else ()
 
 
+def table_curve(x: Sequence[float], y: Sequence[float]) -> tuple[Line, ...]:
+    """The points of a table in the same box; () where they have no height or no width."""
+    wide, high = (max(map(abs, values), default=0.0) for values in (x, y))
+    if len(x) < 2 or wide == 0.0 or high == 0.0:
+        return ()
+    return (tuple((a / wide, b / high) for a, b in zip(x, y, strict=True)),)
+
+
 def _sampled(
     formula: Expression, along: str, known: Mapping[str, float], scale: float, count: int
 ) -> list[tuple[float, float]]:

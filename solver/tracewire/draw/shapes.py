@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from tracewire.draw.curves import curve_of
+from tracewire.draw.curves import curve_of, table_curve
 from tracewire.draw.font import SIZE, SMALL, shortened, text_width
 from tracewire.draw.graph import Line, Look
 from tracewire.library import Block
@@ -24,6 +24,7 @@ class Drawn:
     """What a shape is drawn from: the settings of a block as text, and as numbers where they are.
 
     ports: how many wires go in and come out, the larger of both. block: None where it is not known.
+    points: those of a table, x and y.
     """
 
     type: str
@@ -31,6 +32,7 @@ class Drawn:
     numbers: Mapping[str, float]
     ports: int
     block: Block | None = None
+    points: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
 
 
 Shape = Callable[[Drawn], Look]
@@ -42,7 +44,8 @@ def shape_of(drawn: Drawn) -> Look:
         return SHAPES[drawn.type](drawn)
     if drawn.block is None:
         return text_box("?", drawn)
-    curve = curve_of(drawn.block, drawn.numbers, _moving(drawn.block))
+    curve = table_curve(*drawn.points)
+    curve = curve or curve_of(drawn.block, drawn.numbers, _moving(drawn.block))
     if curve:
         return Look("box", AXES, max(AXES - 6, _height(drawn)), curve=curve, axes=True)
     return text_box(drawn.type.replace("_", " "), drawn)
