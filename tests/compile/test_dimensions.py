@@ -58,8 +58,8 @@ def test_the_units_of_each_shipped_diagram_go_together(file: Path) -> None:
         (
             "unit: N/m}",
             "unit: N/m^2}",
-            "<text>:12:3: block 'force': 'spring' (line 9) is in N/m and 'damper' (line 10) is in N: "
-            "they cannot be added or compared. ",
+            "<text>:12:3: block 'force': 'spring' (line 9) is in N/m and 'damper' (line 10) is in "
+            "N: they cannot be added or compared. ",
         ),
         (
             "v: {type: integrator, of: a, unit: m/s}",

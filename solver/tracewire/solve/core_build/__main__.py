@@ -59,7 +59,7 @@ def make_part(processor: str, count: str, number: str, file: str) -> None:
 
 def _end_with_parent() -> None:
     """End this process when the one that began it is no more, which closes the pipe."""
-    sys.stdin.buffer.read()
+    os.read(0, 1)  # without the lock of sys.stdin, which Python needs to end
     os._exit(1)
 
 
