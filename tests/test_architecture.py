@@ -26,7 +26,6 @@ DEEP = {
     "analyse -> compile": 1,
     "analyse -> solve": 3,
     "cli -> analyse": 2,
-    "cli -> compile": 1,
     "cli -> data": 2,
     "cli -> diagram": 2,
     "cli -> paper": 7,

@@ -19,7 +19,7 @@ parameters: {c: 0.5}
 blocks:
   x: {type: integrator, of: v, unit: m}
   v: {type: integrator, of: a}
-  a: {type: expression, formula: F - c*v}
+  a: {type: expression, formula: F/1 - c*v}        # of 1 kg
 measured:
   push: {file: push.csv, time: t, signals: {x: x}, inputs: {F: F}}
   pull: {file: pull.csv, time: t, signals: {x: x}, inputs: {F: F}}
