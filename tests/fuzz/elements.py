@@ -139,7 +139,7 @@ class Switch(Element):
         self.met = True
 
     met: bool = False
-    left: bool = False  # at this instant, after it held
+    left: bool = False  # its surface, at this instant
 
     def begin(self, z: Vector) -> None:
         value = float(self.row @ z)

@@ -58,6 +58,7 @@ class Solution:
         self.events = 0
         self.fired: dict[int, float] = {}  # when each reset has fired the last time
         self.cell = math.inf  # how long the next cell may be
+        self.left_out: list[tuple[float, float]] = []  # the last flights before a body lies
         if shared:
             system.elements = joined(system.elements)
         for element in system.elements:
@@ -75,6 +76,8 @@ class Solution:
         """z at ascending times (N, len z)."""
         found, number = [], 0
         for t in times:
+            if any(begin < t < end for begin, end in self.left_out):
+                raise Unclear("a time in the last flights of a body")
             while number + 1 < len(self.pieces) and self.pieces[number + 1][0] <= t:
                 number += 1
             begin, length, series = self.pieces[number]
@@ -163,6 +166,8 @@ class Solution:
         if len(best) != 1:
             raise Unclear(f"{len(best)} modes fit")
         self.assign(switches, best[0])
+        for switch in switches:
+            switch.left = switch.held is None
 
     def assign(self, switches: Sequence[Switch], modes: Sequence[int]) -> bool:
         """Give switches their modes; whether those that are to hold can."""
@@ -333,20 +338,19 @@ class Solution:
             left = [e for e in self.system.elements if isinstance(e, Switch) and e.left]
             along = [float(switch.row @ (self.field() @ self.z)) for switch in left]
             self.write(writes)
+            moves = self.z - before
+            if any(-CLOSE < float(r.guards()[0].row @ moves) < 0 for r in fired):
+                raise Unclear("a reset that hardly moves its own guard back")
+            self.carry([e for e in self.system.elements if not isinstance(e, Reset)])
             for switch, rate in zip(left, along, strict=True):
                 after = float(switch.row @ (self.field() @ self.z))
                 on_it = abs(float(switch.row @ self.z)) < CLOSE
                 if on_it and abs(after - rate) > CLOSE:  # its load has changed: it may hold again
                     switch.met, switch.left = True, False
-            moves = self.z - before
-            if any(-CLOSE < float(r.guards()[0].row @ moves) < 0 for r in fired):
-                raise Unclear("a reset that hardly moves its own guard back")
-            self.carry([e for e in self.system.elements if not isinstance(e, Reader)])
+            self.hold()  # what a jump carries over zero fires when all modes stand still
+            self.carry([e for e in self.system.elements if isinstance(e, Reset)])
             if not self.due():
-                self.hold()
-                self.carry(self.readers())  # of what holds from now on, or slips
-                if not self.due():
-                    break
+                break
         else:
             raise Unclear("resets without end")
         for element in self.system.elements:
@@ -395,6 +399,8 @@ class Solution:
             if any(self.t - last < LAST_FLIGHTS for last in self.fired.values()):
                 raise Unclear("resets at impacts that come to an end")
             if pressed > 0:
+                rest = 2 * abs(self.z[stop.v]) / pressed / (1 - stop.restitution)
+                self.left_out.append((self.t, self.t + rest))
                 self.z[stop.v], stop.side = 0.0, side
                 self.lie(stop)
 

@@ -64,6 +64,8 @@ def test_elements_on_one_surface(seed: int) -> None:
         2000021644,  # a reset fired again when a sign that follows it moved its guard
         2000023813,  # the same
         2000034726,  # a play was left while a stop held the body that drives it
+        2000072346,  # Dormand-Prince's estimate vanished by accident in a first step
+        2000078858,  # a counter counted a second time when a reset carried its signal on
     ],
 )
 def test_systems_that_were_wrong_once(seed: int) -> None:

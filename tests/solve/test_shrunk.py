@@ -399,3 +399,25 @@ def test_a_guard_that_jumps_with_the_reset_it_fired_fires_once(method: str) -> N
         method=method,
     )
     assert found.final == pytest.approx({"u": -0.9, "x": -1, "c": 1, "n": 1}, abs=1e-9)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_guard_that_stands_where_it_arrived_has_fired_already(method: str) -> None:
+    """The counter turns the rate of x, and then a reset at the same instant carries x on, from the
+    level of the counter to above it. It counted twice."""
+    found = run(
+        """
+        span: [0, 1.5]
+        blocks:
+          x: {type: integrator, of: a, start: -1}
+          a: {type: gain, of: e, k: -1}
+          c: {type: counter, of: x, threshold: 0}
+          i: {type: expression, formula: c - 0.5}
+          e: {type: sign, of: i}
+          g: {type: expression, formula: c + 0.5*x - 0.5}
+        events:
+          - {when: g, crosses: up, set: {x: 0.7}}
+        """,
+        method=method,
+    )
+    assert found.final == pytest.approx({"x": 0.2, "c": 1}, abs=1e-9)

@@ -149,8 +149,8 @@ class Crossings(NamedTuple):
 
     An instant has stages, each of which ends where all modes stand still and something writes
     states anew. `x` (n,), `m` and `bound`: how the last stage began; `known` (1,): 1 where it has
-    begun. `due`, per reset: 1 where the writes of a stage have carried its guard over zero, -1
-    where the guard has crossed on its own.
+    begun. `due`, per reset: 1 where the writes of a stage have carried its guard over zero,
+    CROSSED where the guard has crossed on its own in this stage, ARRIVED where in an earlier one.
     """
 
     how: Ints

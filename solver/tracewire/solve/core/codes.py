@@ -8,6 +8,8 @@ UP, DOWN, BOTH = 1, -1, 0
 DIRECTIONS = {"up": UP, "down": DOWN, "both": BOTH}
 # what reaches a level; PASSED: a guard that is found beyond it where a step begins
 GUARD, FRACTION, FORCE, TIME, PASSED = 0, 1, 2, 3, 4
+# a reset's guard has come to zero on its own: in this stage of an instant, in an earlier one
+CROSSED, ARRIVED = -1, -2
 
 EVENTS = ("crossing", "scheduled", "reset", "impact", "stick", "slip", "rest", "transition")
 CROSSING, SCHEDULED, RESET, IMPACT, STICK, SLIP, REST, TRANSITION = range(8)

@@ -22,9 +22,11 @@ from tracewire.solve.core.arrays import (
     progress_of,
 )
 from tracewire.solve.core.codes import (
+    ARRIVED,
     BAD_RESET,
     BOTH,
     CARRIED,
+    CROSSED,
     DOWN,
     FINISHED,
     IMPACT,
@@ -122,6 +124,12 @@ def begin_stage(core: int, x: Vector) -> None:
     crossings.known[0] = 1
 
 
+@helper
+def later(due: int) -> int:
+    """What is known of a reset, in the stages that follow, where it has fired if it was due."""
+    return ARRIVED if due < 0 else 0
+
+
 @unit
 def next_stage(core: int, t: float, x: Vector) -> int:
     """Before a transition writes states: mark the resets whose guards this stage has carried over
@@ -132,7 +140,9 @@ def next_stage(core: int, t: float, x: Vector) -> int:
     due = crossings.due.copy()
     status = carried(core, t, crossings.x, x, crossings.m, crossings.bound, due)
     for reset in range(len(due)):
-        crossings.due[reset] = max(crossings.due[reset], 0) | due[reset]
+        crossings.due[reset] = (
+            1 if due[reset] or crossings.due[reset] > 0 else later(crossings.due[reset])
+        )
     begin_stage(core, x)
     return status
 
@@ -164,14 +174,15 @@ def carried(
     """Mark in `due` the resets whose guard has jumped over zero since the states `before`, with the
     modes `old` and what was held then, `bound`. A status: CARRIED where a body jumps over a stop.
 
-    Not those of guards that crossed or fired on their own: `due` is -1 there.
+    Not those of guards that crossed on their own in this stage, and not those of guards that have
+    since then stood where they arrived: what goes on from there is the same crossing.
     """
     flow, plan, progress = flow_of(core), plan_of(core), progress_of(core)
     some, modes = False, len(plan.kind)
     for reset in range(len(plan.resets)):
         i, direction = plan.resets[reset, 0], plan.resets[reset, 1]
         was, due[reset] = due[reset], 0
-        if i < 0 or was < 0 or plan.kind[i] != SIGN or plan.is_timed[i]:
+        if i < 0 or was == CROSSED or plan.kind[i] != SIGN or plan.is_timed[i]:
             continue
         if flow.bound[i] != FREE or bound[i] != FREE or flow.m[i] == old[i]:
             continue
@@ -187,7 +198,8 @@ def carried(
         i = plan.resets[reset, 0]
         if due[reset] == 0:
             continue
-        due[reset] = abs(there[i] - here[i]) > JUMP * level[i]
+        stood = crossings_of(core).due[reset] == ARRIVED and abs(here[i]) <= JUMP * level[i]
+        due[reset] = abs(there[i] - here[i]) > JUMP * level[i] and not stood
         if due[reset] and plan.resets[reset, 4] == IMPACT:
             progress.which[0], progress.which[1] = reset, i
             progress.info[0], progress.info[1], progress.info[2] = t, here[i], there[i]

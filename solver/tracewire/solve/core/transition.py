@@ -19,6 +19,7 @@ from tracewire.solve.core.codes import (
     BOTH,
     CHATTER,
     CHATTER_EVENTS,
+    CROSSED,
     CROSSING,
     DOWN,
     ENDLESS,
@@ -49,7 +50,7 @@ from tracewire.solve.core.flow import (
 from tracewire.solve.core.modes import JUMP, levels, margin, mode_value, rate_levels
 from tracewire.solve.core.readings import guard_rates, guard_values
 from tracewire.solve.core.record import log
-from tracewire.solve.core.resets import begin_stage, carried, fire_carried, write
+from tracewire.solve.core.resets import begin_stage, carried, fire_carried, later, write
 from tracewire.solve.core.saltation import enter, leave, reset_sensitivities
 from tracewire.solve.core.settle import KNOWN, LEFT, forget, left_rates, settle
 from tracewire.solve.core.units import helper, unit
@@ -90,7 +91,7 @@ def happen(core: int, t: float, x: Vector) -> int:
     for reset in range(len(done)):
         i = plan.resets[reset, 0]
         own = i >= 0 and (crossings.how[i] >= 0 or fired[i] >= 0)
-        crossings.due[reset] = -1 if own else 0
+        crossings.due[reset] = CROSSED if own else 0
     _cross(core, t, before, x, turned, marks)
     for i in range(modes):
         if turned[i]:
@@ -221,7 +222,7 @@ def _carry_on(core: int, t: float, x: Vector, fired: Ints, marks: Ints) -> int:
         status = carried(core, t, crossings.x, x, crossings.m, crossings.bound, due)
         for reset in range(len(due)):
             due[reset] |= max(crossings.due[reset], 0)
-            crossings.due[reset] = 0
+            crossings.due[reset] = later(crossings.due[reset])
         if status != FINISHED or not np.any(due):
             return status
         fired[:] = -1

@@ -13,6 +13,7 @@ import numpy as np
 from tracewire.solve.core.arrays import Vector, copy, trial_of
 from tracewire.solve.core.flow import rates
 from tracewire.solve.core.methods.method import Method
+from tracewire.solve.core.methods.trial import norm
 from tracewire.solve.core.units import unit
 
 METHOD = Method("dormand_prince", stages=7, inner=3, edge=3.0)
@@ -86,6 +87,23 @@ def step(core: int, t: float, x: Vector, rate: Vector, h: float) -> None:
         inner[0, i] = h * rate[i] - rise
         inner[1, i] = rise - h * k[6, i] - inner[0, i]
         inner[2, i] = h * (rest + D[5] * k[5, i] + D[6] * k[6, i])
+
+
+@unit
+def defect(core: int, rtol: float, atol: Vector) -> float:
+    """The norm of h*(p' - f(t, p)) over the tolerance, p the polynomial of the step, at its middle.
+
+    It does not share the accidents of the estimate, such as those of a first step of the length of
+    a forcing's period. It costs one evaluation.
+    """
+    trial = trial_of(core)
+    inner, rate, at = trial.inner, trial.stages[1], trial.at
+    inside(core, 0.5, at)
+    rates(core, trial.ends[0] + 0.5 * trial.ends[1], at, rate)
+    for i in range(len(at)):
+        slope = trial.x_end[i] - trial.x[i] + 0.25 * inner[1, i]
+        trial.error[i] = slope - trial.ends[1] * rate[i]
+    return norm(trial.error, trial.x, trial.x_end, rtol, atol)
 
 
 @unit
