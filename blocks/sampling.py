@@ -22,7 +22,7 @@ zero_order_hold = Block(
     doc="The value that a signal had at the last of evenly spaced times.",
     inputs=(Input("of"),),
     parameters=(
-        Parameter("period", "s", "between two samples", low=0.0),
+        Parameter("period", "s", "between two samples", above=0.0),
         Parameter("offset", "s", "above zero, the time of the first sample", default=0.0),
         START,
     ),

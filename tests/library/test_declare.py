@@ -117,6 +117,10 @@ COMPLAINTS: dict[str, tuple[dict[str, Any], str]] = {
         parameters(Parameter("c", default=-1.0, low=0)),
         "the default -1 of 'c' is outside 0 to inf.",
     ),
+    "default not above": (
+        parameters(Parameter("c", default=0.0, above=0.0)),
+        "the default 0 of 'c' is not above 0.",
+    ),
     "unit of a port": ({"inputs": (*GOOD["inputs"], Input("u", "foo"))}, "'foo' is not a unit."),
     "unit of a parameter": (parameters(Parameter("c", "N + m")), "'N + m' is not a unit."),
     "unit of an output": ({"outputs": (Output("y", "rate", "foo"),)}, "'foo' is not a unit."),

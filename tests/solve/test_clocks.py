@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from solve.models import kinds, made, run
+from tracewire.errors import DiagramError
 from tracewire.solve import simulate
 
 CLOCK = """
@@ -43,6 +44,13 @@ def test_the_first_tick_is_at_the_offset(offset: float, ticks: list[float]) -> N
     assert set(kinds(result)) <= {"reset"}
     assert result.final["n"] == len(ticks)
     assert result["held"][-1] == pytest.approx(ticks[-1] if ticks else -7, abs=1e-12)
+
+
+@pytest.mark.parametrize("period", [0, -0.5])
+def test_a_clock_that_would_never_tick_is_refused(period: float) -> None:
+    text = CLOCK.replace("period: T", f"period: {period}").replace("OFFSET", "0")
+    with pytest.raises(DiagramError, match=f"'period' must be above 0 s, not {period}"):
+        made(text)
 
 
 @pytest.mark.parametrize(

@@ -144,8 +144,11 @@ def _check_bounds(value: Value, parameter: Parameter, body: Body) -> None:
     if not isinstance(value.formula, Number):
         return
     number = value.formula.value * value.factor
-    low, high = parameter.low, parameter.high
+    low, high, above = parameter.low, parameter.high, parameter.above
     unit = f" {parameter.unit}" if parameter.unit else ""
+    if above is not None and number <= above:
+        what = f"parameter '{parameter.name}' must be above {above:g}{unit}, not {number:g}"
+        body.problems.add(what, value.place)
     if low is not None and number < low:
         what = f"parameter '{parameter.name}' must be at least {low:g}{unit}, not {number:g}"
         body.problems.add(what, value.place)

@@ -99,6 +99,9 @@ def _check_parameters(parameters: Sequence[Parameter], place: Place) -> list[Pro
             problems.append(Problem(what, place, (), "Give the lower one first."))
         if isinstance(p.default, str):
             problems += check_formula(p.default, before, place)
+        elif p.default is not None and p.above is not None and p.default <= p.above:
+            what = f"the default {p.default:g} of '{p.name}' is not above {p.above:g}"
+            problems.append(Problem(what, place))
         elif p.default is not None and not low <= p.default <= high:
             what = f"the default {p.default:g} of '{p.name}' is outside {low:g} to {high:g}"
             problems.append(Problem(what, place))

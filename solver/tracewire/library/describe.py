@@ -109,6 +109,8 @@ def _range(parameter: Parameter) -> str:
     parts = [f"default {value}" if value else "must be given"]
     if parameter.kind != "number":
         parts.append({"points": "a table of points", "formula": "a formula"}[parameter.kind])
+    if parameter.above is not None:
+        parts.append(f"above {parameter.above:g}")
     if parameter.low is not None and parameter.high is not None:
         parts.append(f"{parameter.low:g} to {parameter.high:g}")
     elif parameter.low is not None:

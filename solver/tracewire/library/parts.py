@@ -32,6 +32,7 @@ class Input:
 class Parameter:
     """A parameter of a block: its unit, default (None: must be given) and bounds.
 
+    `low` and `high` are values that it may have, `above` is one that it must exceed.
     Kind `points` is a table of points for interp(); kind `formula` is a formula over the signals
     and parameters of the diagram that uses the block. A default in text is a formula of the
     parameters that stand before this one.
@@ -44,6 +45,7 @@ class Parameter:
     low: float | None = None
     high: float | None = None
     kind: Kind = "number"
+    above: float | None = None
 
 
 @dataclass(frozen=True)
