@@ -7,6 +7,7 @@ from collections.abc import Callable, Collection
 from tracewire.compile.differentiate import differentiate, linear_in_t
 from tracewire.compile.flat import Flat
 from tracewire.compile.holding import holding, modes_read
+from tracewire.compile.kept import kept_states
 from tracewire.compile.linear import solve_linear, work
 from tracewire.compile.lowered import Lowered, Mode, ModeKind
 from tracewire.compile.tape import BINARY, UNARY, Entry
@@ -34,6 +35,7 @@ class Lowering:
         self.by_guard: dict[tuple[str, int], int] = {}
         self.by_multiple: dict[int, tuple[int, float]] = {}  # of an entry: a relay, and its factor
         self.index = {state.name: number for number, state in enumerate(flat.states)}
+        self.kept = kept_states(flat)
         self.signal = ""
 
     def start(self, formula: Expression, name: str, place: Place) -> int:
@@ -46,9 +48,18 @@ class Lowering:
         return entry
 
     def static(self, entry: int) -> bool:
-        """Whether an entry changes only where parameters or modes do, and so needs no guard."""
+        """Whether an entry changes at events alone, and so needs no guard.
+
+        It reads parameters, modes, and states that stand still between events.
+        """
         leaves = self.tape.leaves([entry])
-        return leaves <= {"param", "const", "mode", "hold"} and self.stands_still(entry)
+        if not leaves <= {"param", "const", "mode", "hold", "state"}:
+            return False
+        if "state" in leaves:
+            read = (self.tape.entries[i] for i in self.tape.needed([entry]))
+            if any(e.op == "state" and e.payload not in self.kept for e in read):
+                return False
+        return self.stands_still(entry)
 
     def stands_still(self, entry: int) -> bool:
         """Whether no mode that an entry reads is one that a slide may hold, as far as is known."""
