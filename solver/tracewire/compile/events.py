@@ -37,7 +37,7 @@ def _trigger(lowering: Lowering, event: FlatEvent) -> tuple[int, Direction]:
         guard = lowering.lower(event.when)
         modes[before:] = [replace(mode, jumps="clock") for mode in modes[before:]]
         return lowering.mode("floor", guard, text), "up"
-    leaf = lowering.condition(event.when, strict=False, always=True)
+    leaf = lowering.condition(event.when, strict=False)
     trigger, level = lowering.side(leaf)
     turned: dict[Direction, Direction] = {"up": "down", "down": "up"}
     return trigger, event.crosses if level else turned.get(event.crosses, "both")

@@ -17,22 +17,29 @@ from tracewire.formula import CONSTANTS
 def lower(flat: Flat) -> Lowered:
     """The tape of flat equations.
 
-    What reads only modes is compared on the spot, and needs no guard; not so where a slide may hold
-    one of these modes, which is known when all rates are: then it is lowered again.
+    Two things are known when all rates are, and where they are so all is lowered again. A
+    comparison may move the rate of what it compares: it is part of a law that may slide. What reads
+    only modes is compared on the spot, and needs no guard; not so where a slide may hold one of
+    these modes.
     """
-    first = _lowering(flat)
+    first, laws = _lowering(flat), frozenset[tuple[str, str]]()
+    if first.compared and (laws := first.moving_laws()):
+        first = _lowering(flat, laws=laws)
     found = first.out
     if not first.on_the_spot:
         return found
     held = first.holding() & modes_read(first.tape, first.on_the_spot)
     if not held:
         return found
-    return _lowering(flat, {(found.modes[i].signal, found.modes[i].text) for i in held}).out
+    return _lowering(flat, {(found.modes[i].signal, found.modes[i].text) for i in held}, laws).out
 
 
-def _lowering(flat: Flat, held: Collection[tuple[str, str]] = ()) -> Lowering:
-    """The flat equations on a new tape; `held` are the modes that a slide may hold."""
-    lowering = Lowering(flat, held)
+def _lowering(
+    flat: Flat, held: Collection[tuple[str, str]] = (), laws: Collection[tuple[str, str]] = ()
+) -> Lowering:
+    """The flat equations on a new tape; `held` are the modes that a slide may hold, `laws` the
+    comparisons that move what they compare."""
+    lowering = Lowering(flat, held, laws)
     out, tape = lowering.out, lowering.tape
     out.entries["t"] = lowering.t
     for name, value in CONSTANTS.items():

@@ -20,11 +20,13 @@ class Mode:
     kind `sign`: 1 where guard >= 0, else 0. `floor`: the whole number below the guard. `segment`:
     the piece of table `table` on which the guard lies. `timed`: the guard is a*t + b with these
     entries, so its changes are known times. `holds`: at guard = 0 a `dry` may hold the guard at
-    zero. `at_zero`: the sign mode that the user's comparison gives at exactly zero. `memory`: the
-    number of the mode of a block with memory, by the order of `names`; its guard is the number at
-    the start, and only the model's transitions change it. `jumps`: it is there for an event, and no
-    log shows it: the `side` of zero that a guard is on which only jumps, the memory by which the
-    event fires where that goes `up` or `down`, or the time at which a `clock` begins.
+    zero. `at_zero`: the sign mode that the user's comparison gives at exactly zero. `compares`: the
+    comparison does not move what it compares, and its mode is `at_zero` wherever the guard rests at
+    zero. `memory`: the number of the mode of a block with memory, by the order of `names`; its
+    guard is the number at the start, and only the model's transitions change it. `jumps`: it is
+    there for an event, and no log shows it: the `side` of zero that a guard is on which only jumps,
+    the memory by which the event fires where that goes `up` or `down`, or the time at which a
+    `clock` begins.
     """
 
     kind: ModeKind
@@ -35,6 +37,7 @@ class Mode:
     timed: tuple[int, int] | None = None
     holds: bool = False
     at_zero: int = 1
+    compares: bool = False
     table: int = -1
     names: tuple[str, ...] = ()
     jumps: Literal["", "side", "up", "down", "clock"] = ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
+from dataclasses import replace
 
 from tracewire.compile.differentiate import differentiate, linear_in_t
 from tracewire.compile.flat import Flat
@@ -18,15 +19,37 @@ MOST_FULL = 60  # unknowns of a linear system without zeros
 MOST_WORK = 300_000  # entries of its elimination
 
 
+def comparing(strict: bool) -> str:
+    """What the modes of comparisons are known by."""
+    return ">" if strict else ">="
+
+
+def text_of(guard: Expression) -> str:
+    """A guard in a message and in a log, where 'v - 0' is 'v'."""
+    if isinstance(guard, Call) and guard.arguments[-1:] == (Number(0.0),):
+        return to_text(guard.arguments[0])
+    return to_text(guard)
+
+
 class Lowering:
     """A tape while it is written; what is lowered next belongs to `signal`.
 
     `held` are the modes that a slide may hold, by signal and text, as far as they are known.
+    `laws` are the comparisons, by signal and text, that move the rate of what they compare, such as
+    those of a friction; `compared` has the mode, the signal and the text of each other one.
     `on_the_spot` are the entries that were compared as if their modes changed at events alone.
     """
 
-    def __init__(self, flat: Flat, held: Collection[tuple[str, str]] = ()) -> None:
+    def __init__(
+        self,
+        flat: Flat,
+        held: Collection[tuple[str, str]] = (),
+        laws: Collection[tuple[str, str]] = (),
+    ) -> None:
         self.held = frozenset(held)
+        self.laws = frozenset(laws)
+        self.compared: list[tuple[int, str, str]] = []
+        self.looped = {name for loop in flat.loops for name in loop.names}
         self.on_the_spot: list[int] = []
         self.flat = flat
         self.out = Lowered()
@@ -79,6 +102,28 @@ class Lowering:
         """The modes that a slide may hold; all rates are known."""
         rates = differentiate(self.tape, [mode.guard for mode in self.out.modes], self.flow())
         return holding(self.tape, self.out.modes, rates)
+
+    def moving_laws(self) -> frozenset[tuple[str, str]]:
+        """The comparisons that move the rate of what they compare, as `laws`; all rates are known.
+
+        Such a mode may slide, and the comparisons of one law share it.
+        """
+        tape, modes = self.tape, self.out.modes
+        found = {mode for mode, _, _ in self.compared}
+        rates = differentiate(tape, [modes[i].guard for i in found], self.flow())
+        reached = {
+            mode: needed
+            for mode, rate in zip(found, rates, strict=True)
+            if modes[mode].leaf in (needed := tape.needed([rate]))
+        }
+        roots = self.out.entries | {
+            state.name: rate for state, rate in zip(self.flat.states, self.out.rates, strict=True)
+        }
+        return frozenset(
+            (signal, text)
+            for mode, signal, text in self.compared
+            if roots.get(signal) in reached.get(mode, ())
+        )
 
     def lower(self, node: Expression) -> int:
         if isinstance(node, Number):
@@ -140,24 +185,45 @@ class Lowering:
             for part in parts[1:]:
                 result = push(node.function, result, part)
             return result
-        left, right = node.arguments
-        difference = Call("-", (left, right))
-        match node.function:
-            case ">=":
-                return self.condition(difference, strict=False)
-            case ">":
-                return self.condition(difference, strict=True)
-            case "<":
-                return push("not", self.condition(difference, strict=False))
-            case _:
-                return push("not", self.condition(difference, strict=True))
+        difference = Call("-", node.arguments)
+        above = self.comparison(difference, strict=node.function in (">", "<="))
+        return above if node.function in (">", ">=") else push("not", above)
 
-    def condition(self, guard: Expression, strict: bool, always: bool = False) -> int:
-        """The entry of guard >= 0 (or > 0)."""
-        text = to_text(guard)
-        if isinstance(guard, Call) and guard.arguments[-1:] == (Number(0.0),):
-            text = to_text(guard.arguments[0])
-        return self.positive(self.lower(guard), text, strict, always=always)
+    def comparison(self, difference: Expression, strict: bool) -> int:
+        """The entry of difference >= 0 (or > 0) in a formula."""
+        guard, text = self.lower(difference), text_of(difference)
+        law = (self.signal, text) in self.laws or self.signal in self.looped
+        if law or self.static(guard) or self.passes(guard):
+            return self.positive(guard, text, strict)
+        above = self.compare(guard, text, strict)
+        self.compared.append((self.side(above)[0], self.signal, text))
+        return above
+
+    def passes(self, guard: int) -> bool:
+        """Whether a guard is a number times t and another number: it rests nowhere."""
+        plain = self.tape.leaves([guard]) <= {"t", "param", "const"}
+        return plain and linear_in_t(self.tape, guard, self.t) is not None
+
+    def compare(self, guard: int, text: str, strict: bool) -> int:
+        """As `positive`, for a comparison that does not move what it compares.
+
+        It has a mode of its own, so that it may differ where the guard rests at zero from what
+        slides there, and > from >=.
+        """
+        push, entry = self.tape.push, self.tape.entries[guard]
+        if entry.op == "neg":
+            return push("not", self.compare(entry.operands[0], f"-({text})", not strict))
+        mirrored = (
+            self.tape.known.get(Entry("-", entry.operands[::-1])) if entry.op == "-" else None
+        )
+        if mirrored is not None and (comparing(not strict), mirrored) in self.by_guard:
+            return push("not", self.compare(mirrored, text, not strict))
+        mode = self.mode("sign", guard, text, at_zero=0 if strict else 1, compares=True)
+        return self.out.modes[mode].leaf
+
+    def condition(self, guard: Expression, strict: bool) -> int:
+        """The entry of guard >= 0 (or > 0) for an event: a mode in any case."""
+        return self.positive(self.lower(guard), text_of(guard), strict, always=True)
 
     def positive(
         self,
@@ -223,17 +289,20 @@ class Lowering:
         at_zero: int = 1,
         holds: bool = False,
         table: int = -1,
+        compares: bool = False,
     ) -> int:
-        """The index of the mode of a guard; one guard has one mode, whoever asks."""
+        """The index of the mode of a guard; one guard has one mode, whoever asks.
+
+        But for a mode that `compares`.
+        """
         modes = self.out.modes
-        key = (kind if table < 0 else f"{kind}{table}", guard)
+        name: str = comparing(at_zero == 0) if compares else kind
+        key = (name if table < 0 else f"{kind}{table}", guard)
         found = self.by_guard.get(key)
         if found is not None:
             old = modes[found]
             if holds and not old.holds:
-                modes[found] = Mode(
-                    kind, guard, old.leaf, old.signal, old.text, old.timed, True, old.at_zero, table
-                )
+                modes[found] = replace(old, holds=True)
             return found
         index = self.by_guard[key] = len(modes)
         leaf = self.tape.push("mode", payload=index)
@@ -241,7 +310,9 @@ class Lowering:
         timed = linear_in_t(self.tape, guard, self.t) if reads_t else None
         if timed and not self.stands_still(guard):
             timed = None
-        modes.append(Mode(kind, guard, leaf, self.signal, text, timed, holds, at_zero, table))
+        modes.append(
+            Mode(kind, guard, leaf, self.signal, text, timed, holds, at_zero, compares, table)
+        )
         return index
 
     def memory(self, names: tuple[str, ...]) -> int:

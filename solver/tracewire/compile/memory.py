@@ -85,7 +85,7 @@ def _side(lowering: Lowering, guard: Expression, strict: bool) -> tuple[int, int
     if isinstance(guard, Call) and guard.function == "neg":
         trigger, level = _side(lowering, guard.arguments[0], not strict)
         return trigger, 1 - level
-    return lowering.side(lowering.condition(guard, strict, always=True))
+    return lowering.side(lowering.condition(guard, strict))
 
 
 def as_guard(condition: Expression) -> tuple[Expression, bool]:

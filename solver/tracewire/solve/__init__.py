@@ -41,10 +41,13 @@ A combination is consistent when the first non-zero derivative of each guard alo
 that combination, up to order 4, has the sign of its mode. One: it is taken. None: a slide. Several:
 the stored one, at the start with a warning. All derivatives zero: the stored one; of a guard that
 was seen beyond, the mode there; at the start what the comparison says at zero. On a slide a higher
-derivative is known as far as no lower one differs between the sides. Relations on the
-same signal, up to sign, share one mode; where they differ at exactly zero (x > 0 and x >= 0), the
-first one speaks for both. A floor that stands on a whole number goes to the side to which its guard
-goes.
+derivative is known as far as no lower one differs between the sides. A floor that stands on a whole
+number goes to the side to which its guard goes.
+
+**Comparisons.** Relations on the same signal, up to sign, share one mode where they are a law that
+moves the rate of this signal, such as a friction: they slide together. A comparison of a signal
+that it does not move has a mode of its own. Where the signal rests at zero, exactly or because a
+slide holds it, `x >= 0` is true and `x > 0` is false.
 
 **Zero** is a matter of what a value is made of. A guard counts as zero below 1e-14 of its size, the
 sum of what is added up in it (`compile.sizes`), a derivative below 1e-12 of its size on any side. A

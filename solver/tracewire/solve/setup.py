@@ -95,6 +95,7 @@ def new_plan(model: Model) -> Plan:
     return Plan(
         kind=ints([KINDS.index(mode.kind) for mode in modes]),
         at_zero=ints([mode.at_zero for mode in modes]),
+        compares=ints([int(mode.compares) for mode in modes]),
         can_hold=ints([int(mode.holds) for mode in modes]),
         table=ints([mode.table for mode in modes]),
         is_timed=ints([int(mode.timed is not None) for mode in modes]),

@@ -42,7 +42,8 @@ class Flow(NamedTuple):
 class Plan(NamedTuple):
     """The modes, resets and transitions of a model.
 
-    Per mode: `kind`, `at_zero`, `can_hold`, `table`, `is_timed`; `timed` lists the timed modes.
+    Per mode: `kind`, `at_zero`, `compares`, `can_hold`, `table`, `is_timed`; `timed` lists the
+    timed modes.
     `resets` has rows (trigger mode, direction, first write, number of writes, event kind);
     `writes` the states that they set. `transitions` has rows (memory mode, source, trigger mode,
     target, reset, level of the trigger, at_zero). `direct` is, per
@@ -52,6 +53,7 @@ class Plan(NamedTuple):
 
     kind: Ints
     at_zero: Ints
+    compares: Ints
     can_hold: Ints
     table: Ints
     is_timed: Ints

@@ -32,7 +32,7 @@ from tracewire.solve.core.flow import (
     sizes,
 )
 from tracewire.solve.core.modes import NOTHING, rate_levels
-from tracewire.solve.core.readings import guard_rates
+from tracewire.solve.core.readings import guard_rates, guard_values
 from tracewire.solve.core.units import helper, unit
 
 MOST_TOGETHER = 6
@@ -216,7 +216,13 @@ def _consistent(
         if abs(rate) <= small[i]:
             rate = first_higher(core, t, x, i)
         if rate == 0.0:  # it stays on the surface
-            pinned = np.any(moves[1:, i] != 0.0)  # by what is held there: both its sides are right
+            pinned = bool(
+                np.any(moves[1:, i] != 0.0)
+            )  # by what is held there: both sides are right
+            if compares_at_zero(core, t, x, i, pinned):
+                if value != plan_of(core).at_zero[i]:
+                    return False
+                continue
             if not pinned and stored[n] != HELD and value != stored[n]:
                 return False  # else what was stored goes on
             if pinned and _drives_apart(core, t, x, i):
@@ -224,6 +230,27 @@ def _consistent(
         elif (rate > 0) != (value == 1):
             return False
     return True
+
+
+@unit
+def compares_at_zero(core: int, t: float, x: Vector, i: int, pinned: bool) -> bool:
+    """Whether the mode of a guard that is zero, with a rate of nothing, is what the comparison says
+    at zero: where the guard rests there, exactly or because a slide holds it.
+
+    Elsewhere it may be flat: it goes on where no derivative that is known tells it.
+    """
+    if plan_of(core).compares[i] == 0:
+        return False
+    if pinned:
+        return True
+    modes, n = len(flow_of(core).bound), len(x)
+    later, field, guards = AHEAD * progress_of(core).now[LENGTH], np.empty(n), np.empty(modes)
+    guard_values(core, t, x, guards)
+    if guards[i] != 0.0:
+        return False
+    rates(core, t, x, field)
+    guard_values(core, t + later, x + later * field, guards)
+    return bool(guards[i] == 0.0)
 
 
 @unit
@@ -288,9 +315,12 @@ def note_undetermined(core: int, t: float, x: Vector, zero: Ints) -> None:
     along, beyond, small = np.empty(modes), np.empty(modes), np.empty(modes)
     guard_rates(core, t, x, along)
     rate_levels(core, t, x, small)
+    moves = patterns(core, GUARD_RATES, t, x, modes)
     for i in zero:
         free = flow.bound[i] == FREE and undetermined[i] == np.inf
         if not free or abs(along[i]) > small[i] or first_higher(core, t, x, i) != 0.0:
+            continue
+        if compares_at_zero(core, t, x, i, bool(np.any(moves[1:, i] != 0.0))):
             continue
         here, there, size = np.empty(n), np.empty(n), np.empty(n)
         sizes(core, RATE_SIZES, t, x, size)

@@ -48,7 +48,7 @@ def upcoming(core: int, t: float, x: Vector, to: Vector) -> float:
     Fills `to` with the new value of each timed mode that changes then, else with NaN. A change
     that an event has overtaken by rounding is due now, and so is one of a guard that the jump of
     another mode has carried over its level: the guard of `t - 0.7 + wave/2` is a line between the
-    jumps of the wave.
+    jumps of the wave. Where another mode has it rest at zero, a comparison says what it says there.
     """
     flow, plan = flow_of(core), plan_of(core)
     best = np.inf
@@ -60,7 +60,9 @@ def upcoming(core: int, t: float, x: Vector, to: Vector) -> float:
         if not np.isfinite(slope):
             continue
         size, now = abs(slope * t) + abs(offset), right_limit(core, i, slope, t, offset)
-        if inside(core, i, slope * t + offset) < -CARRIED * size and now != flow.m[i]:
+        rests = slope == 0.0 and offset == 0.0 and plan.compares[i] == 1
+        beyond = inside(core, i, slope * t + offset) < -CARRIED * size
+        if (beyond or rests) and now != flow.m[i]:
             times[row], to[row], best = t, now, t
             continue
         if slope == 0.0:
