@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from fuzz.elements import (
@@ -36,7 +36,8 @@ CELL = 0.5  # of 1/|A|: there a term of the series is below 1e-17 of the first o
 POINTS = np.linspace(0.0, 1.0, 9)
 EXPONENTS = np.arange(ORDER + 1)
 POWERS = POINTS[None, :] ** EXPONENTS[:, None]
-FINE = np.linspace(0.0, 1.0, 129)[None, :] ** EXPONENTS[:, None]
+NEAR = np.linspace(0.0, 1.0, 129)
+FINE = NEAR[None, :] ** EXPONENTS[:, None]
 MOST_EVENTS = 400
 ROUNDING = 1e-11  # of a guard that is held at zero
 SOON = 1e-5  # after a reset: it may be one of a sequence without end
@@ -201,7 +202,7 @@ class Solution:
             below, above = fine < -CLOSE, fine > CLOSE
             if np.any(below.any(axis=1) & (below.argmax(axis=1) < first(above))):
                 raise Unclear("a guard turns where a piece begins")
-            hits = self.hits(samples, armed)
+            hits = self.hits(samples, dict(zip(np.flatnonzero(~armed), fine, strict=True)), armed)
             if hits:
                 self.happen(guards, rows, series, length, hits, armed)
                 return
@@ -221,8 +222,10 @@ class Solution:
                         return True
         return False
 
-    def hits(self, samples: Matrix, armed: NDArray[np.bool_]) -> list[int]:
-        """The guards that are passed in a cell."""
+    def hits(
+        self, samples: Matrix, fine: Mapping[int, Vector], armed: NDArray[np.bool_]
+    ) -> list[int]:
+        """The guards that are passed in a cell; `fine` are samples of those that are not armed."""
         found = []
         near = (
             samples.min(axis=1, initial=np.inf) < 10 * np.ptp(samples, axis=1)
@@ -232,7 +235,7 @@ class Solution:
         for number in np.flatnonzero(near):
             line = samples[number]
             if not armed[number]:  # from where it has left zero
-                line = line[int(np.argmax(line > CLOSE)) :]
+                line = fine[number][int(np.argmax(fine[number] > CLOSE)) :]
             if armed[number] or line[0] > CLOSE:
                 low = int(np.argmin(line))
                 least = line[low]
@@ -278,7 +281,7 @@ class Solution:
 
     def root(self, line: Vector, least: float) -> float:
         """The first root of a polynomial in (0, 1], behind where it is above `least`."""
-        values = line @ POWERS
+        values = line @ FINE
         below = int(np.argmax((values < 0) & (np.maximum.accumulate(values) > least)))
         if values[below] >= 0:  # between two samples
             near = np.linspace(0, 1, 1001)
@@ -288,7 +291,7 @@ class Solution:
                 raise Unclear("a guard is touched")
             low, high = near[below - 1], near[below]
         else:
-            low, high = POINTS[below - 1], POINTS[below]
+            low, high = NEAR[below - 1], NEAR[below]
         for _ in range(60):
             middle = (low + high) / 2
             if float(np.polynomial.polynomial.polyval(middle, line)) > 0:
