@@ -44,7 +44,7 @@ def test_different_guards_are_different_modes(formula: str) -> None:
 )
 def test_known_times_are_recognised(formula: str, timed: bool) -> None:
     model = made(one(formula, 0.0, "  rate2: {type: sine, amplitude: 1, omega: 1}"))
-    assert [mode.timed is not None for mode in model.modes] == [timed]
+    assert {mode.timed is not None for mode in model.modes} == {timed}
 
 
 def test_a_relation_of_parameters_is_no_guard() -> None:

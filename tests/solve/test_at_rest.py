@@ -89,26 +89,52 @@ def test_a_rectified_signal_is_zero_between_its_waves(relation: str, of: str, me
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_comparisons_that_are_a_friction_slide_and_others_beside_them_do_not(method: str) -> None:
-    """A Coulomb friction of 1 forwards and 3 backwards, written by hand, holds against 0.5."""
+def test_comparisons_that_are_a_law_slide_and_others_of_the_same_guard_with_them(
+    method: str,
+) -> None:
+    """A heater without hysteresis, by hand: it is on for the part of the time in which its 5 K/s
+    balance the loss of 2 K/s, and a meter that compares the same is on for that part, too."""
     found = run(
         """
         span: [0, 3]
         blocks:
-          v: {type: integrator, of: a, start: 1}
-          forwards: {type: expression, formula: "-1 if v > 0 else 0"}
-          backwards: {type: expression, formula: "3 if v < 0 else 0"}
-          a: {type: expression, formula: forwards + backwards - 0.5}
-          moves: {type: expression, formula: "1 if v > 0 or v < 0 else 0"}
-          time: {type: integrator, of: moves}
-        record: [v, moves, a]
+          kelvin: {type: integrator, of: rate, start: 20}
+          heats: {type: expression, formula: "5 if kelvin < 23 else 0"}
+          rate: {type: expression, formula: heats - 2}
+          meter: {type: expression, formula: "1 if kelvin < 23 else 0"}
+          on: {type: integrator, of: meter}
+        record: [meter]
         """,
         method=method,
     )
-    assert found["v"][-1] == pytest.approx(0.0, abs=1e-12)
-    assert found["a"][-1] == pytest.approx(0.0, abs=1e-12)
-    assert found["moves"][-1] == 0.0
-    assert found.final["time"] == pytest.approx(1 / 1.5, abs=1e-9)
+    assert found["meter"][-1] == pytest.approx(0.4, abs=1e-12)
+    assert found.final == pytest.approx({"kelvin": 23, "on": 1 + 2 * 0.4}, abs=1e-9)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_the_sign_of_zero_is_zero(method: str) -> None:
+    """A body that friction holds after 1 s, a rectified signal, and what has never moved."""
+    found = run(
+        """
+        span: [0, 3]
+        blocks:
+          v: {type: integrator, of: friction, start: 1}
+          friction: {type: dry_friction, rate: v, slip: 1, stick: 1}
+          way: {type: sign, of: v}
+          off: {type: expression, formula: "sign(max(0, 1 - t))"}
+          x: {type: integrator, of: u}
+          u: {type: integrator, of: a}
+          s: {type: sign, of: x}
+          a: {type: gain, of: s, k: -1}
+          way_sum: {type: integrator, of: way}
+          off_sum: {type: integrator, of: off}
+        record: [way, off, s]
+        """,
+        method=method,
+    )
+    assert [found[name][-1] for name in ("way", "off", "s")] == [0.0, 0.0, 0.0]
+    values = {"v": 0, "x": 0, "u": 0, "way_sum": 1, "off_sum": 1}
+    assert found.final == pytest.approx(values, abs=1e-9)
 
 
 @pytest.mark.parametrize("method", METHODS)

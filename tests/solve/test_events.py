@@ -133,7 +133,7 @@ def test_crossings_at_the_same_time_are_all_logged() -> None:
     more = "  y: {type: expression, formula: sign(x - 0.5) + sign(2*x - 1) + abs(0.5 - x)}"
     result = run(one("1", 0.0, more))
     assert [event.time for event in result.events] == pytest.approx([0.5, 0.5], abs=1e-12)
-    assert [event.guard for event in result.events] == ["x - 0.5", "2*x - 1"]
+    assert {event.guard for event in result.events} == {"0.5 - x", "2*x - 1"}
 
 
 def test_a_crossing_at_a_scheduled_time() -> None:

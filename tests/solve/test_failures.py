@@ -59,7 +59,7 @@ blocks:
   x: {{type: integrator, of: xd}}
   y: {{type: integrator, of: yd}}
   xd: {{type: expression, formula: 0{terms}}}
-  yd: {{type: expression, formula: -sign(y + 2*x) - 2*sign(x)}}
+  yd: {{type: expression, formula: "-sign(y + 2*x) - (2 if x >= 0 else -2)"}}
 """)
     assert "block 'xd': no consistent mode at t = 0 s for the guards '1*x - y' in xd, " in message
     assert "'8*x - y' in xd, 'y + 2*x' in yd, 'x' in yd." in message

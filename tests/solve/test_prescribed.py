@@ -105,21 +105,30 @@ span: [0, 3]
 blocks:
   v: {type: integrator, of: zero, start: START}
   zero: {type: constant, value: 0}
-  friction: {type: coulomb, rate: v, level: 1}
+  friction: {type: BLOCK}
   z: {type: integrator, of: friction}
 events:
   - {every: 1, offset: 1, set: {v: 0}}
 """
 
 
+def held_rate(start: int, block: str) -> str:
+    return HELD_RATE.replace("START", str(start)).replace("BLOCK", block)
+
+
 def test_a_rate_that_is_exactly_zero_and_that_nothing_moves_is_told() -> None:
     told = "'v' of friction rests at exactly zero from t = {} s on, and nothing decides on which"
-    (warning,) = run(HELD_RATE.replace("START", "-1")).warnings
-    assert warning.startswith(told.format(1))
-    (warning,) = run(HELD_RATE.replace("START", "0")).warnings
-    assert warning.startswith(told.format(0))
+    for start, since in ((-1, 1), (0, 0)):
+        (warning,) = run(held_rate(start, "dry_friction, rate: v, slip: 1, stick: 1")).warnings
+        assert warning.startswith(told.format(since))
+
+
+@pytest.mark.parametrize("start", [-1, 0, 1])
+def test_a_sign_of_a_rate_that_rests_at_zero_is_no_force(start: int) -> None:
+    result = run(held_rate(start, "coulomb, rate: v, level: 1"))
+    assert result.warnings == ()
+    assert result.final["z"] == pytest.approx(-start, abs=1e-12)
 
 
 def test_nothing_is_told_where_the_side_makes_no_difference() -> None:
-    text = HELD_RATE.replace("START", "-1").replace("coulomb", "quad_drag").replace("level", "c")
-    assert run(text).warnings == ()
+    assert run(held_rate(-1, "quad_drag, rate: v, c: 1")).warnings == ()

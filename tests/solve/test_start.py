@@ -89,6 +89,6 @@ blocks:
   s: {type: sign, of: x}
 """
     result = run(text, times=[0.5, 1.5])
-    assert result["s"].tolist() == [1.0, -1.0]
+    assert result["s"].tolist() == [0.0, -1.0]
     [event] = result.events
     assert (event.time, event.kind, event.direction) == (1.0, "crossing", "down")

@@ -35,8 +35,9 @@ class Lowering:
     """A tape while it is written; what is lowered next belongs to `signal`.
 
     `held` are the modes that a slide may hold, by signal and text, as far as they are known.
-    `laws` are the comparisons, by signal and text, that move the rate of what they compare, such as
-    those of a friction; `compared` has the mode, the signal and the text of each other one.
+    `laws` are the comparisons and signs, by signal and text, that share the mode of a law that
+    moves the rate of what it compares, such as a friction; `compared` has the mode, the signal and
+    the text of each other one.
     `on_the_spot` are the entries that were compared as if their modes changed at events alone.
     """
 
@@ -106,23 +107,26 @@ class Lowering:
     def moving_laws(self) -> frozenset[tuple[str, str]]:
         """The comparisons that move the rate of what they compare, as `laws`; all rates are known.
 
-        Such a mode may slide, and the comparisons of one law share it.
+        Such a mode may slide. The comparisons of one law share it, and so do others of the same
+        guard, which are true for the same part of the time, but where a friction holds the guard.
         """
         tape, modes = self.tape, self.out.modes
         found = {mode for mode, _, _ in self.compared}
         rates = differentiate(tape, [modes[i].guard for i in found], self.flow())
-        reached = {
-            mode: needed
-            for mode, rate in zip(found, rates, strict=True)
-            if modes[mode].leaf in (needed := tape.needed([rate]))
+        moved = {
+            i: reached
+            for i, rate in zip(found, rates, strict=True)
+            if modes[i].leaf in (reached := tape.needed([rate]))
         }
+        guards = {modes[i].guard for i in moved}
+        guards -= {mode.guard for mode in modes if mode.holds}
         roots = self.out.entries | {
             state.name: rate for state, rate in zip(self.flat.states, self.out.rates, strict=True)
         }
         return frozenset(
             (signal, text)
-            for mode, signal, text in self.compared
-            if roots.get(signal) in reached.get(mode, ())
+            for i, signal, text in self.compared
+            if modes[i].guard in guards or roots.get(signal) in moved.get(i, ())
         )
 
     def lower(self, node: Expression) -> int:
@@ -192,33 +196,34 @@ class Lowering:
     def comparison(self, difference: Expression, strict: bool) -> int:
         """The entry of difference >= 0 (or > 0) in a formula."""
         guard, text = self.lower(difference), text_of(difference)
-        law = (self.signal, text) in self.laws or self.signal in self.looped
-        if law or self.static(guard) or self.passes(guard):
+        if self.static(guard) or self.shares(guard, text):
             return self.positive(guard, text, strict)
-        above = self.compare(guard, text, strict)
-        self.compared.append((self.side(above)[0], self.signal, text))
-        return above
+        return self.compare(guard, text, strict)
 
-    def passes(self, guard: int) -> bool:
-        """Whether a guard is a number times t and another number: it rests nowhere."""
+    def shares(self, guard: int, text: str) -> bool:
+        """Whether a comparison is a law, or has a guard a*t + b, which rests nowhere."""
+        if (self.signal, text) in self.laws or self.signal in self.looped:
+            return True
         plain = self.tape.leaves([guard]) <= {"t", "param", "const"}
         return plain and linear_in_t(self.tape, guard, self.t) is not None
 
-    def compare(self, guard: int, text: str, strict: bool) -> int:
+    def compare(self, guard: int, text: str, strict: bool, shown: str = "") -> int:
         """As `positive`, for a comparison that does not move what it compares.
 
         It has a mode of its own, so that it may differ where the guard rests at zero from what
-        slides there, and > from >=.
+        slides there, and > from >=. The log shows the guard as `shown`.
         """
         push, entry = self.tape.push, self.tape.entries[guard]
         if entry.op == "neg":
-            return push("not", self.compare(entry.operands[0], f"-({text})", not strict))
-        mirrored = (
-            self.tape.known.get(Entry("-", entry.operands[::-1])) if entry.op == "-" else None
-        )
+            inner = f"-({shown or text})"
+            return push("not", self.compare(entry.operands[0], text, not strict, inner))
+        mirrored = None
+        if entry.op == "-":
+            mirrored = self.tape.known.get(Entry("-", entry.operands[::-1]))
         if mirrored is not None and (comparing(not strict), mirrored) in self.by_guard:
             return push("not", self.compare(mirrored, text, not strict))
-        mode = self.mode("sign", guard, text, at_zero=0 if strict else 1, compares=True)
+        mode = self.mode("sign", guard, shown or text, at_zero=0 if strict else 1, compares=True)
+        self.compared.append((mode, self.signal, text))
         return self.out.modes[mode].leaf
 
     def condition(self, guard: Expression, strict: bool) -> int:
@@ -311,7 +316,18 @@ class Lowering:
         if timed and not self.stands_still(guard):
             timed = None
         modes.append(
-            Mode(kind, guard, leaf, self.signal, text, timed, holds, at_zero, compares, table)
+            Mode(
+                kind,
+                guard,
+                leaf,
+                self.signal,
+                text,
+                timed,
+                holds=holds,
+                at_zero=at_zero,
+                compares=compares,
+                table=table,
+            )
         )
         return index
 
@@ -344,6 +360,9 @@ class Lowering:
             zero = tape.constant(0.0)
             above = push("select", push("gt", guard, zero), one, zero)
             return push("select", push("ge", guard, zero), above, tape.constant(-1.0))
+        if not holds and not self.shares(guard, text):  # of zero it is 0
+            reached = self.compare(guard, text, strict=False)
+            return push("-", push("+", reached, self.compare(guard, text, strict=True)), one)
         positive = self.positive(guard, text, holds=True) if holds else self.relay(guard, text)
         return push("-", push("*", tape.constant(2.0), positive), one)
 

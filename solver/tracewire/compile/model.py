@@ -79,6 +79,23 @@ class Model:
         return {}
 
     @cached_property
+    def compared_signals(self) -> dict[int, tuple[int, ...]]:
+        """What tells the signal of each mode of kind sign: its guard, up to sign.
+
+        Empty where no mode compares.
+        """
+        entries, found = self.lowered.tape.entries, {}
+        if not any(mode.compares for mode in self.modes):
+            return {}
+        for number, mode in enumerate(self.modes):
+            entry = entries[guard := mode.guard]
+            while entry.op == "neg":
+                entry = entries[guard := entry.operands[0]]
+            if mode.kind == "sign":
+                found[number] = tuple(sorted(entry.operands)) if entry.op == "-" else (guard,)
+        return found
+
+    @cached_property
     def only_triggers(self) -> frozenset[int]:
         """The numbers of the modes that do nothing but trigger events."""
         low = self.lowered

@@ -227,6 +227,7 @@ def _shown(model: Model, rows: Matrix) -> Matrix:
     silent = np.isin(rows[:, 2], list(model.only_triggers))
     if np.any(silent):
         rows = rows[~(silent & np.isin(rows[:, 1], UNASKED))]
+    rows = _once(model, rows)
     jumps = np.array([mode.jumps for mode in model.modes])
     if not np.any(jumps != ""):
         return rows
@@ -235,6 +236,26 @@ def _shown(model: Model, rows: Matrix) -> Matrix:
     rows[fires, 1] = EVENTS.index("reset")
     rows[of == "down", 3] = -1
     kept: Matrix = rows[(of == "") | fires]
+    return kept
+
+
+def _once(model: Model, rows: Matrix) -> Matrix:
+    """The rows of a log without comparisons of a signal whose crossing another row shows."""
+    signals = model.compared_signals
+    if not signals:
+        return rows
+    of = rows[:, 2].astype(np.int64)
+    own = np.isin(of, [i for i, mode in enumerate(model.modes) if mode.compares])
+    own &= np.isin(rows[:, 1], UNASKED)
+    if not np.any(own):
+        return rows
+    seen = {(rows[n, 0], signals[of[n]]) for n in np.flatnonzero(~own) if of[n] in signals}
+    keep = np.ones(len(rows), dtype=bool)
+    for n in np.flatnonzero(own):
+        key = rows[n, 0], signals[of[n]]
+        keep[n] = key not in seen
+        seen.add(key)
+    kept: Matrix = rows[keep]
     return kept
 
 
