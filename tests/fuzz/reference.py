@@ -22,6 +22,7 @@ Vector = NDArray[np.float64]
 CLOSE = 1e-7  # guards are of the size 1: what is nearer to zero is not told from it
 SAMPLES = 12  # of the guards, in a step
 MOST_EVENTS = 200
+SOON = 1e-5  # after a reset: it may be one of a sequence without end
 SLOWEST = 1e-3  # after a wall: what is slower may be about to come to rest
 FUNCTIONS = {name: getattr(math, name) for name in ("sin", "cos", "tanh", "exp", "sqrt")}
 
@@ -35,6 +36,7 @@ class Reference:
         self.reads = {part.name: _code(part.reads) for part in system.parts}
         self.sets = {p.name: {n: _code(f) for n, f in p.sets.items()} for p in system.parts}
         self.modes: dict[str, int] = {}
+        self.fired: dict[str, float] = {}
         self.pieces: list[tuple[float, Any]] = []
         self.t, self.z = 0.0, start.copy()
         self._begin()
@@ -198,6 +200,9 @@ class Reference:
             case _:
                 self.modes[part.name] = -mode
                 if part.sets and mode < 0:
+                    if 0 < self.t - self.fired.get(part.name, -math.inf) < SOON:
+                        raise Unclear("resets that come ever closer")
+                    self.fired[part.name] = self.t
                     self._write(part)
 
     def _write(self, part: Part) -> None:
