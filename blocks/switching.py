@@ -20,7 +20,9 @@ sign = Block(
     name="sign",
     doc="One above zero, minus one below.",
     inputs=(Input("of"),),
-    outputs=(Output("y", "sign(of)", doc="at zero, any value from -1 to 1 that holds it there"),),
+    outputs=(
+        Output("y", "sign(of)", doc="at zero 0, or any value from -1 to 1 that holds it there"),
+    ),
 )
 
 abs_ = Block(
