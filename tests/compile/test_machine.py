@@ -49,6 +49,10 @@ def test_paper_a_is_the_same_in_both_back_ends() -> None:
     agree(read(PAPER), range(40))
 
 
+LISTS = {"denominator": "[2, 0.3, 1]"}
+"""Parameters that are lists, by their names."""
+
+
 def use(block: Block) -> str:
     """A use of a shipped block that reads the states x and y."""
     parts = [f"type: {block.name}"]
@@ -58,7 +62,8 @@ def use(block: Block) -> str:
     for number, parameter in enumerate(block.parameters):
         if parameter.default is None:
             given = {"points": "[[0, 1], [1, 2], [3, 0.5]]", "formula": "x*y + t"}
-            value = given.get(parameter.kind, f"{0.3 + 0.4 * number:.1f}")
+            number_text = LISTS.get(parameter.name, f"{0.3 + 0.4 * number:.1f}")
+            value = given.get(parameter.kind, number_text)
             parts.append(f"{parameter.name}: {value}")
     return ", ".join(parts)
 

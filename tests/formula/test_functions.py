@@ -56,6 +56,6 @@ def test_a_function_of_the_c_library_has_the_bits_of_python_s() -> None:
 
 
 def test_what_reads_a_port_or_a_table_says_what_to_write_instead() -> None:
-    assert {name for name, one in FUNCTIONS.items() if one.reads} == {
+    assert {name for name, one in FUNCTIONS.items() if one.reads} < {
         name for name, one in FUNCTIONS.items() if one.instead
     }

@@ -5,20 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
+from tracewire.compile.elements import Elements, Mismatch, Shape, shape_text
 from tracewire.compile.flat import Flat, FlatMemory, FlatState, FlatTransition
-from tracewire.compile.vectors import (
-    Elements,
-    Expansion,
-    Mismatch,
-    Shape,
-    element_names,
-    find_shapes,
-    has_vectors,
-    shape_text,
-)
+from tracewire.compile.vectors import Expansion, element_names, find_shapes, has_vectors
 from tracewire.diagram import split_index
 from tracewire.errors import DiagramError, Place, Problem
-from tracewire.formula import Expression, Number, to_text
+from tracewire.formula import Expression, Number, names_of, to_text
 
 
 def expand_vectors(flat: Flat, ports: Mapping[str, Place], recorded: Sequence[Place]) -> Flat:
@@ -49,7 +41,8 @@ class _Expander:
         made: dict[str, Sequence[Expression]]
         made = {state.name: (state.start, state.rate) for state in flat.states}
         made |= {name: (formula,) for name, formula in flat.signals.items()}
-        self.shapes = find_shapes(made)
+        self.failed: set[str] = set()
+        self.shapes = find_shapes(made, self.failed)
         self.expansion = Expansion(self.shapes)
         self.problems: list[Problem] = []
 
@@ -57,7 +50,8 @@ class _Expander:
         flat = self.flat
         signals: dict[str, Expression] = {}
         for name, formula in flat.signals.items():
-            signals |= self.named(name, formula, self.place(name), "it")
+            if name in self.failed or not self.failed.intersection(names_of(formula)):
+                signals |= self.named(name, formula, self.place(name), "it")
         states = [state for old in flat.states for state in self.state(old)]
         events = [
             replace(e, when=self.number(e.when, e.place), set=self.values(e.set, e.place))

@@ -3,7 +3,8 @@
 Every formula works element by element. A single number goes with every element; two vectors must
 have the same length. `stack` (a list in the file) makes a vector of numbers and a matrix of
 vectors, `join` puts numbers and vectors end to end, `[]` takes an element, `dot` multiplies and
-`solve` solves. A name has the shape of its formula; a state that of its start or of its rate.
+`solve` solves; `realise` has what linear systems need. A name has the shape of its formula; a state
+that of its start or of its rate.
 """
 
 from __future__ import annotations
@@ -12,35 +13,18 @@ import math
 from collections import defaultdict, deque
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from itertools import product
 
+from tracewire.compile.elements import Elements, Mismatch, Shape, shape_text
+from tracewire.compile.realise import REALISED
 from tracewire.diagram import element_name
 from tracewire.formula import Call, Expression, Name, Number, names_of, to_text
 
-Shape = tuple[int, ...]
-"""() a number, (n,) a vector, (n, m) a matrix of n rows."""
-SHAPED = ("stack", "join", "[]", "dot", "solve")
-
-
-class Mismatch(Exception):
-    """Shapes that do not go together."""
+SHAPED = ("stack", "join", "[]", "dot", "solve", *REALISED)
 
 
 class Unknown(Exception):
     """A shape that is not known yet."""
-
-
-@dataclass(frozen=True)
-class Elements:
-    """A number, vector or matrix of formulas, row by row."""
-
-    shape: Shape
-    items: tuple[Expression, ...]
-
-    def at(self, position: int) -> Expression:
-        """The formula at a position; a single number stands at every one."""
-        return self.items[position] if self.shape else self.items[0]
 
 
 def _is_list(formula: Expression) -> bool:
@@ -54,26 +38,19 @@ def has_vectors(formula: Expression) -> bool:
     return formula.function in SHAPED or any(map(has_vectors, formula.arguments))
 
 
-def shape_text(shape: Shape) -> str:
-    """A shape in words."""
-    match shape:
-        case ():
-            return "a number"
-        case (length,):
-            return f"a vector of {length}"
-    return f"a {'x'.join(map(str, shape))} matrix"
-
-
 def element_names(name: str, shape: Shape) -> list[str]:
     """The names of the elements of a signal: `q[0]`, `q[1]`, ...; of a number its own name."""
     return [element_name(name, index) for index in product(*map(range, shape))]
 
 
-def find_shapes(formulas: Mapping[str, Sequence[Expression]]) -> dict[str, Shape]:
+def find_shapes(
+    formulas: Mapping[str, Sequence[Expression]], failed: set[str] | None = None
+) -> dict[str, Shape]:
     """The shapes of the names that are vectors or matrices.
 
     formulas: for each name those that give it its shape. Where names only depend on each other, the
-    first of them that is no list is a number.
+    first of them that is no list is a number. Names whose formulas are wrong, and not only what
+    they read, are added to `failed`.
     """
     shapes: dict[str, Shape] = {}
     unknown = dict.fromkeys(sorted(formulas, key=lambda name: any(map(_is_list, formulas[name]))))
@@ -91,7 +68,11 @@ def find_shapes(formulas: Mapping[str, Sequence[Expression]]) -> dict[str, Shape
         try:
             found = expansion.expand(Call("same", tuple(formulas[name]))).shape
         except Mismatch:
-            found = ()
+            right = _by_one(formulas[name], expansion)
+            found = right or ()
+            others = {read for formula in formulas[name] for read in names_of(formula)} - {name}
+            if right is None and failed is not None and not failed & others:
+                failed.add(name)
         except Unknown:
             if not stuck:
                 continue
@@ -101,6 +82,14 @@ def find_shapes(formulas: Mapping[str, Sequence[Expression]]) -> dict[str, Shape
             shapes[name] = found
         due.extend(readers[name])
     return shapes
+
+
+def _by_one(formulas: Sequence[Expression], expansion: Expansion) -> Shape | None:
+    """The shape that the first of several formulas gives that is right by itself."""
+    for formula in formulas:
+        with suppress(Mismatch, Unknown):
+            return expansion.expand(formula).shape
+    return None
 
 
 class Expansion:
@@ -126,6 +115,7 @@ class Expansion:
             return Elements(inner.shape, tuple(Call(function, (i, given[1])) for i in inner.items))
         special: dict[str, Callable[[Sequence[Elements], str], Elements]]
         special = {"stack": _stacked, "join": _joined, "dot": _dotted, "solve": _solved}
+        special |= REALISED
         parts, missing = self.known(given)
         if missing and function in special:
             return self.foreseen(function, given, parts)
@@ -150,6 +140,8 @@ class Expansion:
             shape = (len(given), *parts[0].shape)
         elif function == "solve":
             shape = self.expand(given[0]).shape[:1]
+        elif function == "times":
+            shape = self.expand(given[0]).shape[:-1]
         else:
             raise Unknown
         return Elements(shape, (Number(0.0),) * math.prod(shape))

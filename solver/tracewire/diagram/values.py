@@ -24,8 +24,8 @@ from tracewire.formula import (
 
 FREE = (-math.inf, math.inf)
 UNBOUNDED = {"inf": math.inf, "+inf": math.inf, "-inf": -math.inf}
-OF_BLOCKS = {name: function.instead for name, function in FUNCTIONS.items() if function.reads}
-"""Functions that read a port or a table; a diagram's own formulas have neither."""
+OF_BLOCKS = {name: function.instead for name, function in FUNCTIONS.items() if function.instead}
+"""Functions of ports, tables and polynomials, which a diagram's own formulas do not have."""
 NO_UNIT = Unit("", 1.0)
 
 

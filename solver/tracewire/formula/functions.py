@@ -49,7 +49,8 @@ class Function:
     LLVM, or of the instruction that computes it. None of them: it is made of others.
 
     reads: the last argument is no value, but the name of a port with several `wires` or of a table
-    of `points`. instead: what to write in a formula of a diagram, which has neither.
+    of `points`. instead: what to write in a formula of a diagram, for a function that only the
+    declarations of blocks have.
     """
 
     least: int
@@ -150,6 +151,22 @@ FUNCTIONS = {
         unit="product"),
     "solve": Function(2, 2, "solve(M, f): the x with M x = f, of a square matrix and a vector",
         lambda matrix, right: right / matrix, unit="any"),
+    # what linear systems need of vectors; it is written out by elements before units are compared
+    "scalar": Function(1, 1, "scalar(u): u, which must be one number and no vector", unit="any",
+        instead="Name one element of the vector, such as q[0]."),
+    "times": Function(2, 2, "times(M, u): a matrix, or a row, times a vector that fits it",
+        unit="any", instead="Use a block of type matrix_gain, or write dot(M, u)."),
+    "shift": Function(2, 2, "shift(x, u): the vector x without its first element, and u behind",
+        unit="any", instead="Use a block of type unit_delay for each sample that is kept."),
+    "direct": Function(2, 2, "direct(b, a): b[0]/a[0] of polynomials of one degree, else 0",
+        unit="any", instead="Use a block of type transfer_function."),
+    "coefficients": Function(3, 3,
+        "coefficients(b, a, w): b[k]/(a[0]*w**k), k from 1, with b padded to the length of a",
+        unit="any", instead="Use a block of type transfer_function."),
+    "root_scale": Function(1, 1, "root_scale(a): the size of the largest root of a polynomial",
+        unit="any", instead="Use a block of type transfer_function."),
+    "pick": Function(2, 2, "pick(v, i): the element of v whose number is nearest to i", unit="any",
+        instead="Use a block of type select."),
 }
 # fmt: on
 
