@@ -14,14 +14,14 @@ transfer_function = Block(
     states=(
         State(
             "x",
-            "root_scale(denominator)*(shift(x, 0)"
-            " + coefficients(numerator, denominator, root_scale(denominator))*scalar(of)"
-            " - coefficients(denominator, denominator, root_scale(denominator))"
-            "*(x[0] + direct(numerator, denominator)*scalar(of)))",
-            "0*coefficients(denominator, denominator, 1)",
+            "root_scale(denominator)*(shift_in(x, 0)"
+            " + monic_coefficients(numerator, denominator, root_scale(denominator))*one_number(of)"
+            " - monic_coefficients(denominator, denominator, root_scale(denominator))"
+            "*(x[0] + direct_gain(numerator, denominator)*one_number(of)))",
+            "0*monic_coefficients(denominator, denominator, 1)",
         ),
     ),
-    outputs=(Output("y", "x[0] + direct(numerator, denominator)*scalar(of)"),),
+    outputs=(Output("y", "x[0] + direct_gain(numerator, denominator)*one_number(of)"),),
     source="The observable canonical form: T. Kailath, Linear Systems, 1980, section 2.1.",
 )
 
@@ -36,8 +36,8 @@ state_space = Block(
         Parameter("D", doc="by rows, as C", kind="formula", default=0.0),
         Parameter("start", doc="x at the start of the run", default=0.0),
     ),
-    states=(State("x", "times(A, x) + times(B, of)", "start"),),
-    outputs=(Output("y", "times(C, x) + times(D, of)"),),
+    states=(State("x", "matrix_times(A, x) + matrix_times(B, of)", "start"),),
+    outputs=(Output("y", "matrix_times(C, x) + matrix_times(D, of)"),),
 )
 
 FAR = 1e30  # a limit that nothing reaches: the formulas of a run know no infinity

@@ -49,7 +49,7 @@ def test_paper_a_is_the_same_in_both_back_ends() -> None:
     agree(read(PAPER), range(40))
 
 
-LISTS = {"denominator": "[2, 0.3, 1]"}
+LISTS = {"denominator": "[2, 0.3, 1]", "register": "[1, 0, 0]"}
 """Parameters that are lists, by their names."""
 
 

@@ -36,6 +36,8 @@ FAMILIES = {
     "limited": "limited_integrator reset_integrator rate_limiter",
     "vector": "mux demux dot total matrix_gain solve",
     "contact": "hard_stop bouncing_body collision one_way_clutch",
+    "waves": "pulse sawtooth triangle chirp multisine",
+    "noise": "prbs random_steps noise",
     "control": "transfer_function state_space pid",
     "filters": "first_order lead_lag derivative second_order low_pass high_pass band_pass notch",
 }

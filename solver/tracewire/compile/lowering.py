@@ -6,6 +6,7 @@ from collections.abc import Callable, Collection
 from dataclasses import replace
 
 from tracewire.compile.differentiate import differentiate, linear_in_t
+from tracewire.compile.draws import lower_random
 from tracewire.compile.flat import Flat
 from tracewire.compile.holding import holding, modes_read
 from tracewire.compile.kept import kept_states
@@ -146,6 +147,7 @@ class Lowering:
             "dry": self.dry,
             "is_held": self.is_held,
             "interp": self.interp,
+            "random_number": self.random_number,
         }
         if function in special:
             return special[function](arguments)
@@ -172,12 +174,16 @@ class Lowering:
     def refuse_large(self, matrix: list[int], size: int) -> None:
         """Raise where the equations of a linear system would take minutes to compile."""
         if work(self.tape, matrix, size) > MOST_WORK:
-            block = self.flat.blocks.get(self.signal)
             what = f"the matrix of {size} unknowns has too few zeros to be solved"
             hint = (
                 f"Full ones may have {MOST_FULL} unknowns. Split the system, or write zeros as 0."
             )
-            raise DiagramError([Problem(what, block.place if block else Place(), (), hint)])
+            raise self.refused(what, hint)
+
+    def refused(self, what: str, hint: str) -> DiagramError:
+        """What is wrong with the signal that is being lowered, at the place of its block."""
+        block = self.flat.blocks.get(self.signal)
+        return DiagramError([Problem(what, block.place if block else Place(), (), hint)])
 
     def boolean(self, node: Call) -> int:
         push = self.tape.push
@@ -386,6 +392,15 @@ class Lowering:
         if self.static(value):
             return self.tape.push("floor", value)
         return self.out.modes[self.mode("floor", value, f"floor in {self.signal}")].leaf
+
+    def random_number(self, arguments: tuple[Expression, ...]) -> int:
+        """A random number; its arguments change at events alone, and so it needs no guard."""
+        entries = [self.lower(argument) for argument in arguments]
+        for entry, argument in zip(entries, arguments, strict=True):
+            if not self.static(entry):
+                what = f"'{to_text(argument)}' flows, and a random number needs what only jumps"
+                raise self.refused(what, "Write random_number(seed, floor(t/period)).")
+        return lower_random(self.tape, *entries)
 
     def modulo(self, arguments: tuple[Expression, ...]) -> int:
         push = self.tape.push

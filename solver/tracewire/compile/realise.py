@@ -22,7 +22,7 @@ ZERO, ONE = Number(0.0), Number(1.0)
 
 
 def _scalar(parts: Sequence[Elements], text: str) -> Elements:
-    """scalar(u): u, which must be one number."""
+    """one_number(u): u, which must be one number."""
     if parts[0].shape:
         what = f"its input is {shape_text(parts[0].shape)}, and it takes one number"
         raise Mismatch(f"{what}: name an element, such as [0]")
@@ -30,7 +30,7 @@ def _scalar(parts: Sequence[Elements], text: str) -> Elements:
 
 
 def _times(parts: Sequence[Elements], text: str) -> Elements:
-    """times(M, u): a matrix times a vector; a vector in the place of M is one row."""
+    """matrix_times(M, u): a matrix times a vector; a vector in the place of M is one row."""
     matrix, vector = parts
     if not matrix.shape and matrix.items[0] == ZERO:
         return Elements((), (ZERO,))
@@ -48,19 +48,19 @@ def _times(parts: Sequence[Elements], text: str) -> Elements:
 
 
 def _shift(parts: Sequence[Elements], text: str) -> Elements:
-    """shift(x, u): x without its first element, and u behind."""
+    """shift_in(x, u): x without its first element, and u behind."""
     x, u = parts
     return Elements((len(x.items),), (*x.items[1:], u.items[0]))
 
 
 def _direct(parts: Sequence[Elements], text: str) -> Elements:
-    """direct(b, a): b[0]/a[0] where b/a has equal degrees, else 0."""
+    """direct_gain(b, a): b[0]/a[0] where b/a has equal degrees, else 0."""
     padded, leading = _polynomials(parts)
     return Elements((), (_quotient(padded[0], leading),))
 
 
 def _coefficients(parts: Sequence[Elements], text: str) -> Elements:
-    """coefficients(b, a, w): b[k]/(a[0]*w**k) for k from 1, b padded to the length of a."""
+    """monic_coefficients(b, a, w): b[k]/(a[0]*w**k) for k from 1, b padded to the length of a."""
     padded, leading = _polynomials(parts[:2])
     w = parts[2].items[0]
     powers = (Call("**", (w, Number(float(k)))) for k in range(1, len(padded)))
@@ -104,7 +104,7 @@ def _polynomials(parts: Sequence[Elements]) -> tuple[tuple[Expression, ...], Exp
 
 
 def _pick(parts: Sequence[Elements], text: str) -> Elements:
-    """pick(v, i): the element of v whose number is nearest to i."""
+    """pick_element(v, i): the element of v whose number is nearest to i."""
     vector, index = parts
     chosen = vector.items[0]
     for number, item in enumerate(vector.items[1:]):
@@ -132,12 +132,12 @@ def _sum(terms: Sequence[Expression]) -> Expression:
 
 
 REALISED: Mapping[str, Callable[[Sequence[Elements], str], Elements]] = {
-    "scalar": _scalar,
-    "times": _times,
-    "shift": _shift,
-    "direct": _direct,
-    "coefficients": _coefficients,
+    "one_number": _scalar,
+    "matrix_times": _times,
+    "shift_in": _shift,
+    "direct_gain": _direct,
+    "monic_coefficients": _coefficients,
     "root_scale": _root_scale,
-    "pick": _pick,
+    "pick_element": _pick,
 }
 """The functions of vectors that block declarations may call: {name: elements of the arguments}."""

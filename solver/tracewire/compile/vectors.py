@@ -140,7 +140,7 @@ class Expansion:
             shape = (len(given), *parts[0].shape)
         elif function == "solve":
             shape = self.expand(given[0]).shape[:1]
-        elif function == "times":
+        elif function == "matrix_times":
             shape = self.expand(given[0]).shape[:-1]
         else:
             raise Unknown
