@@ -34,15 +34,15 @@ abs_ = Block(
 
 min_ = Block(
     name="min",
-    doc="The smaller of two signals.",
-    inputs=(Input("of"), Input("other")),
+    doc="The smallest of two signals or more.",
+    inputs=(Input("of"), Input("other", many=True)),
     outputs=(Output("y", "min(of, other)"),),
 )
 
 max_ = Block(
     name="max",
-    doc="The larger of two signals.",
-    inputs=(Input("of"), Input("other")),
+    doc="The largest of two signals or more.",
+    inputs=(Input("of"), Input("other", many=True)),
     outputs=(Output("y", "max(of, other)"),),
 )
 
@@ -60,4 +60,12 @@ dead_zone = Block(
     inputs=(Input("of"),),
     parameters=LIMITS,
     outputs=(Output("y", "of - high if of >= high else (of - low if of <= low else 0)"),),
+)
+
+quantizer = Block(
+    name="quantizer",
+    doc="The nearest whole multiple of an interval, as of a converter or an encoder.",
+    inputs=(Input("of"),),
+    parameters=(Parameter("interval", doc="between two levels", above=0.0),),
+    outputs=(Output("y", "interval*floor(of/interval + 1/2)", doc="jumps; halves go up"),),
 )

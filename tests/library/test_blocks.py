@@ -19,7 +19,7 @@ FAMILIES = {
     "linear": "integrator gain sum product divide",
     "math": "expression sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt"
     " power floor mod",
-    "switching": "switch sign abs min max saturation dead_zone",
+    "switching": "switch sign abs min max saturation dead_zone quantizer",
     "friction": "viscous cubic_damping quad_drag arctan_friction asymmetric_viscous"
     " asymmetric_arctan smoothed_stribeck asym_viscous viscous_drift",
     "dry_friction": "coulomb dry_friction asymmetric_coulomb asym_coulomb stribeck disp_friction"
@@ -38,6 +38,9 @@ FAMILIES = {
     "contact": "hard_stop bouncing_body collision one_way_clutch",
     "waves": "pulse sawtooth triangle chirp multisine",
     "noise": "prbs random_steps noise",
+    "discrete": "unit_delay discrete_integrator discrete_transfer_function discrete_state_space"
+    " discrete_pid",
+    "logic": "compare and or xor not select edge monostable timer jk_flip_flop",
     "control": "transfer_function state_space pid",
     "filters": "first_order lead_lag derivative second_order low_pass high_pass band_pass notch",
 }

@@ -90,7 +90,15 @@ COMPLAINTS: dict[str, tuple[dict[str, Any], str]] = {
         "unknown name 'rat'; there are: c, d, of, points, rate, t, x."
         " Did you mean 'rate'? It stands in '-c*rat'.",
     ),
-    "several wires read as one": (output("2*of"), "'of' is read by sum(), product() or join()."),
+    "several wires read as one": (
+        output("2*of"),
+        "'of' is read by sum(), product(), min(), max() or join().",
+    ),
+    "points compared": (output("max(rate, points)"), "'points' is read as the second argument"),
+    "a port without its clock": (
+        {"inputs": (Input("rate", sampled="tick"), Input("of", many=True))},
+        "unknown clock 'tick'; there is no clock here. It samples the port 'rate'.",
+    ),
     "one wire read as several": (output("sum(rate)"), "'rate' is read by its name alone."),
     "points read as a number": (
         output("points + 1"),

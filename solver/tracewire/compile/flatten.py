@@ -17,9 +17,11 @@ from tracewire.compile.flat import (
 )
 from tracewire.compile.happenings import block_events, block_memory, diagram_events, memory_name
 from tracewire.compile.loops import order_signals
+from tracewire.compile.sampling import SampledPort, sample_ports
 from tracewire.diagram import (
     Array,
     BlockUse,
+    Condition,
     Diagram,
     Points,
     Shown,
@@ -31,7 +33,7 @@ from tracewire.diagram import (
     state_names,
 )
 from tracewire.errors import Place
-from tracewire.formula import CONSTANTS, Call, Expression, Name, Number, rename
+from tracewire.formula import CONSTANTS, FUNCTIONS, Call, Expression, Name, Number, rename
 from tracewire.library import Block, Parameter
 
 LONGEST_FOLD = 100
@@ -85,6 +87,8 @@ class _Flattener:
         self.shown: dict[str, Shown] = {}
         self.guesses: dict[str, Expression] = {}
         self.places: dict[str, Place] = {}  # of the outputs of subsystems
+        self.sampled: list[SampledPort] = []
+        self.clocks: list[Condition] = []  # under which the clocks of blocks are one
 
     def flat(self) -> Flat:
         top = self.top
@@ -94,6 +98,7 @@ class _Flattener:
             self.show(name, name, port.shown)
         self.add_parameters(top, "", {})
         self.add_diagram(top, "", "", inputs)
+        self.add_samples()
         scope = _Scope(top, "", inputs)
         span = top.span or (Value(Number(0.0)), Value(Number(1.0)))
         record = tuple(top.record) or tuple(self.states)
@@ -121,11 +126,27 @@ class _Flattener:
             units=self.units,
             shown=self.shown,
             memories=tuple(self.memories),
-            require=tuple(
-                replace(known, formula=rename(known.formula, scope.resolve))
-                for known in top.require
+            require=(
+                *(
+                    replace(known, formula=rename(known.formula, scope.resolve))
+                    for known in top.require
+                ),
+                *self.clocks,
             ),
         )
+
+    def add_samples(self) -> None:
+        """The ports that a clock samples, when everything is known that they may read."""
+        if self.sampled:
+            self.clocks = sample_ports(
+                self.sampled,
+                self.signals,
+                self.states,
+                self.events,
+                self.memories,
+                self.top.inputs,
+                self.parameters,
+            )
 
     def show(self, name: str, path: str, shown: Shown) -> None:
         """Note how a signal of the block at `path` is shown, if it is not by its name in SI."""
@@ -226,6 +247,12 @@ class _Flattener:
             wires = use.inputs.get(port.name, ())
             if port.many:
                 manies[port.name] = [scope.wire(wire) for wire in wires]
+            elif wires and port.sampled is not None:
+                sample = f"{path}.{port.name}"
+                names[port.name] = Name(sample)
+                self.places[sample] = place
+                event, wire = f"{path}.{port.sampled}", scope.wire(wires[0])
+                self.sampled.append(SampledPort(sample, wire, event, place))
             elif wires:
                 names[port.name] = scope.wire(wires[0])
             else:
@@ -295,7 +322,7 @@ class _Flattener:
 
 
 def _without_manies(formula: Expression, manies: Mapping[str, list[Expression]]) -> Expression:
-    """The formula with sum(port) and product(port) written out."""
+    """The formula with sum(port), product(port), min(..., port) and max(..., port) written out."""
     if not isinstance(formula, Call):
         return formula
     first = formula.arguments[0]
@@ -304,7 +331,18 @@ def _without_manies(formula: Expression, manies: Mapping[str, list[Expression]])
     if formula.function in ("sum", "product") and isinstance(first, Name) and first.name in manies:
         plus = formula.function == "sum"
         return _folded("+" if plus else "*", manies[first.name], 0.0 if plus else 1.0)
+    function = FUNCTIONS.get(formula.function)
+    if function is not None and function.most is None:
+        several = (_wires(argument, manies) for argument in formula.arguments)
+        return Call(formula.function, tuple(wire for wires in several for wire in wires))
     return Call(formula.function, tuple(_without_manies(a, manies) for a in formula.arguments))
+
+
+def _wires(formula: Expression, manies: Mapping[str, list[Expression]]) -> list[Expression]:
+    """The wires of a port that takes several, or any other formula by itself."""
+    if isinstance(formula, Name) and formula.name in manies:
+        return manies[formula.name]
+    return [_without_manies(formula, manies)]
 
 
 def _resolved(local: Mapping[str, str], scope: _Scope) -> dict[str, str]:

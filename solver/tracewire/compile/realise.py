@@ -47,6 +47,11 @@ def _times(parts: Sequence[Elements], text: str) -> Elements:
     return Elements(matrix.shape[:-1], items)
 
 
+def _zeros(parts: Sequence[Elements], text: str) -> Elements:
+    """zeros_like(u): zeros of the shape of u."""
+    return Elements(parts[0].shape, (ZERO,) * len(parts[0].items))
+
+
 def _shift(parts: Sequence[Elements], text: str) -> Elements:
     """shift_in(x, u): x without its first element, and u behind."""
     x, u = parts
@@ -134,6 +139,7 @@ def _sum(terms: Sequence[Expression]) -> Expression:
 REALISED: Mapping[str, Callable[[Sequence[Elements], str], Elements]] = {
     "one_number": _scalar,
     "matrix_times": _times,
+    "zeros_like": _zeros,
     "shift_in": _shift,
     "direct_gain": _direct,
     "monic_coefficients": _coefficients,

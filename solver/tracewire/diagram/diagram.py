@@ -221,10 +221,11 @@ class Series:
 
 @dataclass(frozen=True)
 class Condition:
-    """A comparison of parameters that must hold, or the diagram has no meaning."""
+    """A comparison of parameters that must hold, or the diagram has no meaning; why, as a hint."""
 
     formula: Expression
     place: Place = Place()
+    hint: str = "The diagram requires it: see its section 'require'."
 
 
 @dataclass(frozen=True)

@@ -32,7 +32,8 @@ UnitRule = Literal[
 class Function:
     """A function of the language, or an operator.
 
-    It takes from `least` to `most` arguments (None: any number); `doc` says what it is.
+    It takes from `least` to `most` arguments (None: any number, and a port with several wires for
+    as many); `doc` says what it is.
 
     value: what it is of numbers, such as parameters; None: nothing. numpy: the name of the same in
     numpy, which takes two arguments at a time.
@@ -169,6 +170,8 @@ FUNCTIONS = {
     "monic_coefficients": Function(3, 3,
         "monic_coefficients(b, a, w): b[k]/(a[0]*w**k), k from 1, with b padded to the length of a",
         unit="any", instead="Use a block of type transfer_function."),
+    "zeros_like": Function(1, 1, "zeros_like(u): zero, or the vector of zeros, of the shape of u",
+        unit="any", instead="Write 0, or a list of zeros."),
     "root_scale": Function(1, 1, "root_scale(a): the size of the largest root of a polynomial",
         unit="any", instead="Use a block of type transfer_function."),
     "pick_element": Function(2, 2,

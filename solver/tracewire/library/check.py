@@ -65,8 +65,9 @@ def _check_names(block: Parts, place: Place) -> list[Problem]:
     visible += [state.name for state in block.states]
     visible += ["mode"] if block.modes else []
     outputs = [output.name for output in block.outputs]
-    # a block may be called like a function of the language: its name stands in no formula
-    good = block.name.isascii() and block.name.isidentifier() and not keyword.iskeyword(block.name)
+    # a block may be called like a word of the language: its name stands in no formula
+    reserved = keyword.iskeyword(block.name) and block.name not in ("and", "or", "not")
+    good = block.name.isascii() and block.name.isidentifier() and not reserved
     bad = [] if good else [block.name]
     for name in bad + [name for name in (*visible, *outputs) if not is_name(name)]:
         hint = "Use letters, digits and _, and no word of the formula language."

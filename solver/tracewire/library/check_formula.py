@@ -11,7 +11,7 @@ from tracewire.formula import CONSTANTS, FUNCTIONS, Call, Expression, Name, pars
 Use = Literal["value", "wires", "points"]
 READ_BY: dict[Use, str] = {
     "value": "by its name alone",
-    "wires": "by sum(), product() or join()",
+    "wires": "by sum(), product(), min(), max() or join()",
     "points": "as the second argument of interp()",
 }
 
@@ -25,22 +25,29 @@ def check_formula(
     except FormulaError as error:
         return list(error.problems)
     problems = []
-    for name, use in dict.fromkeys(_uses(formula)):
+    for name, uses in dict.fromkeys(_uses(formula)):
         if name not in visible and name not in CONSTANTS:
             problems.append(unknown("name", name, visible, place, f"It stands in '{text}'."))
-        elif use != visible.get(name, "value"):
+        elif visible.get(name, "value") not in uses:
             right = READ_BY[visible.get(name, "value")]
             problems.append(Problem(f"formula '{text}': '{name}' is read {right}", place))
     return problems
 
 
-def _uses(formula: Expression, use: Use = "value") -> Iterator[tuple[str, Use]]:
-    """Each name in the formula, and how it is read there."""
+def _uses(
+    formula: Expression, uses: tuple[Use, ...] = ("value",)
+) -> Iterator[tuple[str, tuple[Use, ...]]]:
+    """Each name in the formula, and as what it may be read there."""
     if isinstance(formula, Name):
-        yield formula.name, use
+        yield formula.name, uses
     elif isinstance(formula, Call):
         called = FUNCTIONS.get(formula.function)
-        reads = called.reads if called is not None else ""
-        for number, argument in enumerate(formula.arguments, start=1):
-            is_last = number == len(formula.arguments)
-            yield from _uses(argument, (is_last and reads) or "value")
+        each: tuple[Use, ...] = ("value",)
+        last = each
+        if called is not None and called.most is None:
+            each = last = ("value", "wires")
+        elif called is not None and called.reads:
+            last = (called.reads,)
+        for argument in formula.arguments[:-1]:
+            yield from _uses(argument, each)
+        yield from _uses(formula.arguments[-1], last)

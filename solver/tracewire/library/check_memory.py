@@ -36,6 +36,11 @@ def check_memory(
             problems.append(Problem(what, place, (), hint))
     for event in block.events:
         problems += _check_event(block, event, visible, fixed, place)
+    clocks = [event.name for event in block.events if event.every is not None]
+    for port in block.inputs:
+        if port.sampled is not None and port.sampled not in clocks:
+            hint = f"It samples the port '{port.name}'."
+            problems.append(unknown("clock", port.sampled, clocks, place, hint))
     return problems
 
 

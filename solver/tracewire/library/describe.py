@@ -100,6 +100,7 @@ def _at_once(block: Block, output: Output) -> str:
 
 def _wiring(port: Input) -> str:
     text = "one wire or several, each with a sign" if port.many else "a wire"
+    text += "" if port.sampled is None else f", sampled at each {port.sampled}"
     return text if port.default is None else f"{text}; not connected: {port.default}"
 
 

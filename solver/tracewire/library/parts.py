@@ -16,8 +16,11 @@ ByMode = str | Mapping[str, str]
 
 @dataclass(frozen=True)
 class Input:
-    """An input port. `many`: it takes a list of signed wires, read by sum() or product().
+    """An input port. `many`: it takes a list of signed wires, read by sum(), product(), min(),
+    max() or join().
 
+    `sampled` is the event, a clock, at which the port takes a new value: that of its wire just
+    before the tick; where the same clock holds that value already, it passes at once.
     `default` is a formula for the port where nothing is connected; without it a wire is needed.
     """
 
@@ -26,6 +29,7 @@ class Input:
     doc: str = ""
     many: bool = False
     default: str | None = None
+    sampled: str | None = None
 
 
 @dataclass(frozen=True)

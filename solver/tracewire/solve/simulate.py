@@ -228,8 +228,7 @@ def refuse_unmet(model: Model, values: Mapping[str, float]) -> None:
             read = [name for name in names_of(known.formula) if name in values]
             shown = ", ".join(f"{name} = {values[name]:.6g}" for name in read)
             what = f"the parameters do not meet '{to_text(known.formula)}': {shown}"
-            hint = "The diagram requires it: see its section 'require'."
-            problems.append(Problem(what, known.place, (), hint))
+            problems.append(Problem(what, known.place, (), known.hint))
     if problems:
         raise SimulationError(problems)
 
