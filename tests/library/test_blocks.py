@@ -41,6 +41,7 @@ FAMILIES = {
     "discrete": "unit_delay discrete_integrator discrete_transfer_function discrete_state_space"
     " discrete_pid",
     "logic": "compare and or xor not select edge monostable timer jk_flip_flop",
+    "delay": "pade_delay",
     "control": "transfer_function state_space pid",
     "filters": "first_order lead_lag derivative second_order low_pass high_pass band_pass notch",
 }

@@ -143,3 +143,17 @@ def test_pid_at_its_limit_has_an_integral_that_stays_near() -> None:
     assert held["y"][after] == pytest.approx(-1 + integral - (held.t[after] - 2), abs=1e-8)
     free = driven("{type: pid, of: u, kp: 1, ki: 1, high: 1.5, kb: 0}", source)
     assert free["y"][after] == pytest.approx(-1 + 2 - (free.t[after] - 2), abs=1e-8)
+
+
+def test_pade_delay_is_its_transfer_function_and_delays_what_is_slow() -> None:
+    block = "{type: pade_delay, of: u, delay: 0.5}"
+    result = driven(block)
+    p = 0.5
+    exact = exact_step([-(p**3), 12 * p**2, -60 * p, 120], [p**3, 12 * p**2, 60 * p, 120], result.t)
+    assert result["y"] == pytest.approx(exact, rel=1e-7, abs=1e-7)
+    slow = driven(block, "{type: sine, amplitude: 1, omega: 2}")
+    late = slow.t > 1.5
+    exact = np.sin(2 * (slow.t[late] - 0.5))
+    assert slow["y"][late] == pytest.approx(exact, abs=2e-3)
+    settled = driven("{type: pade_delay, of: u, delay: 0.5, start: 1}")
+    assert settled["y"] == pytest.approx(np.ones_like(settled.t), abs=1e-12)

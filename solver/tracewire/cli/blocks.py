@@ -12,7 +12,12 @@ from tracewire.cli.output import print_json, print_text
 
 def blocks(
     name: Annotated[
-        str | None, typer.Argument(metavar="[NAME]", help="A block.", show_default=False)
+        str | None,
+        typer.Argument(
+            metavar="[NAME]",
+            help="A block, or its name in Simulink, Modelica or Xcos.",
+            show_default=False,
+        ),
     ] = None,
     library: Libraries = None,
     as_json: AsJson = False,
@@ -24,6 +29,7 @@ def blocks(
     Examples:
       tracewire blocks
       tracewire blocks dry_friction
+      tracewire blocks INTEGRAL_m
     """
     from tracewire.library import describe, describe_json, load_library, palette
 

@@ -33,7 +33,7 @@ from tracewire.diagram.strict import Entries, Node, Scalar, compose
 from tracewire.diagram.uses import read_blocks
 from tracewire.errors import DiagramError, Place, Problem
 from tracewire.formula import is_name, name_hint
-from tracewire.library import Block, Library, load_library
+from tracewire.library import Block, Library, find_instead, find_synonym, load_library
 
 MOST_LEVELS = 30
 MOST_BLOCKS = 100_000
@@ -239,8 +239,7 @@ class _Reader:
         if definition is None and type_name in self.library:
             return self.library[type_name]
         if definition is None:
-            existing = [*visible, *self.library]
-            self.problems.unknown("block type", type_name, existing, place)
+            self.unknown_type(type_name, visible, place)
             return None
         if definition in self.stack:
             chain = [open_.name for open_ in self.stack[self.stack.index(definition) :]]
@@ -252,6 +251,15 @@ class _Reader:
             self.problems.add(what, place)
             return None
         return self.diagram(definition)
+
+    def unknown_type(self, type_name: str, visible: Iterable[str], place: Place) -> None:
+        """Note a type that is neither block nor subsystem; a name of another tool is explained."""
+        found = find_synonym(type_name, [*self.library])
+        hint = found[1] if found is not None else find_instead(type_name)
+        if hint:
+            self.problems.add(f"unknown block type '{clip(type_name)}'", place, (), hint)
+        else:
+            self.problems.unknown("block type", type_name, [*visible, *self.library], place)
 
     def diagram(self, definition: _Definition) -> Diagram | None:
         """The diagram of a subsystem; None where it is none, or is just being read."""

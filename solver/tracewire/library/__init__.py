@@ -7,6 +7,7 @@ from tracewire.library.effect import SCALES, SYMBOLS, Effect, Scale, Shape, Symb
 from tracewire.library.load import Library, load_library
 from tracewire.library.parts import Event, Input, Mode, Output, Parameter, State, Transition
 from tracewire.library.sensor import SENSOR_TERMS
+from tracewire.library.synonyms import find_instead, find_synonym
 
 __all__ = [
     "SCALES",
@@ -31,6 +32,8 @@ __all__ = [
     "check_effect",
     "describe",
     "describe_json",
+    "find_instead",
+    "find_synonym",
     "load_library",
     "palette",
 ]

@@ -10,12 +10,9 @@ from tracewire.library.declare import Block
 from tracewire.library.effect import SCALES, SYMBOLS, Effect, Shape
 from tracewire.library.load import Library
 from tracewire.library.parts import ByMode, Event, Input, Mode, Output, Parameter, Transition
-from tracewire.library.sensor import SENSOR_TERMS
+from tracewire.library.synonyms import find_instead, find_synonym, other_names
 
 MOST_VALUES = 8
-SENSOR = "It is a number of a measured signal: signals: {{x: {{column: x, {0}: ...}}}}."
-ELSEWHERE = {f"sensor_{name}": SENSOR.format(name) for name in SENSOR_TERMS}
-"""Where names that are no blocks stand in a diagram."""
 
 
 def palette(library: Library) -> str:
@@ -27,10 +24,11 @@ def palette(library: Library) -> str:
 def describe(library: Library, name: str) -> str:
     """One block in full, as plain text: ports, parameters, states, formulas, modes, events, source.
 
-    Raises BlockError: the library has no block of this name.
+    A name of another tool finds the block that it is here. Raises BlockError: there is none.
     """
-    block = _find(library, name)
-    lines = [f"{block.name}: {block.doc}", ""]
+    block, same = _find(library, name)
+    lines = [same, ""] if same else []
+    lines += [f"{block.name}: {block.doc}", ""]
     lines += _section("inputs", [(p.name, p.unit, _wiring(p), p.doc) for p in block.inputs])
     lines += _section("parameters", [(p.name, p.unit, _range(p), p.doc) for p in block.parameters])
     lines += _section(
@@ -47,6 +45,8 @@ def describe(library: Library, name: str) -> str:
     lines += ["formulas", *(f"  {o.name} = {_told(o.formula)}" for o in block.outputs), ""]
     if block.effect is not None:
         lines.append(_effect(block))
+    if others := other_names(block.name):
+        lines.append(f"Also known as {'; '.join(others)}.")
     if block.source:
         lines.append(f"Source: {block.source}")
     lines.append(f"Declared in {block.place}.")
@@ -56,9 +56,9 @@ def describe(library: Library, name: str) -> str:
 def describe_json(library: Library, name: str) -> dict[str, object]:
     """One block in full, in lists and dictionaries that `json` can write.
 
-    Raises BlockError: the library has no block of this name.
+    A name of another tool finds the block that it is here. Raises BlockError: there is none.
     """
-    block = _find(library, name)
+    block, _ = _find(library, name)
     feedthrough = {o.name: _feedthrough(block, o.name) for o in block.outputs}
     return {
         "name": block.name,
@@ -72,18 +72,22 @@ def describe_json(library: Library, name: str) -> dict[str, object]:
         "events": [asdict(event) | {"when": list(event.guards)} for event in block.events],
         "outputs": [asdict(o) | {"feedthrough": feedthrough[o.name]} for o in block.outputs],
         "effect": None if block.effect is None else _effect_json(block.effect),
+        "also_known_as": other_names(block.name),
         "source": block.source,
         "place": {"file": block.place.file, "line": block.place.line},
     }
 
 
-def _find(library: Library, name: str) -> Block:
-    if name not in library:
-        problem = unknown("block", name, library)
-        if name in ELSEWHERE:
-            problem = Problem(f"'{name}' is no block", hint=ELSEWHERE[name])
-        raise BlockError([problem])
-    return library[name]
+def _find(library: Library, name: str) -> tuple[Block, str]:
+    """The block of a name, and where it has another name here, a sentence that says so."""
+    if name in library:
+        return library[name], ""
+    found = find_synonym(name, [*library])
+    if found is not None:
+        return library[found[0]], found[1]
+    instead = find_instead(name)
+    problem = Problem(f"'{name}' is no block", hint=instead)
+    raise BlockError([problem if instead else unknown("block", name, library)])
 
 
 def _feedthrough(block: Block, output: str) -> list[str]:

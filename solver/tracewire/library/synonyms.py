@@ -1,0 +1,274 @@
+"""The names that other tools have for blocks: a table, and how a name is looked up in it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import Literal
+
+from tracewire.library.sensor import SENSOR_TERMS
+
+Tool = Literal["Simulink", "Modelica", "Xcos", ""]
+"""Whose name it is; empty: a word that many use."""
+
+NAMES: dict[str, dict[Tool, str]] = {
+    "abs": {"Simulink": "Abs", "Xcos": "ABS_VALUE"},
+    "and": {"Modelica": "And", "": "AND gate"},
+    "band_pass": {"": "bandpass, band pass filter"},
+    "bouncing_body": {"": "bouncing ball, restitution"},
+    "compare": {
+        "Simulink": "Relational Operator, Compare To Constant, Compare To Zero",
+        "Modelica": "GreaterEqual, Greater, GreaterThreshold, Less, LessThreshold",
+        "Xcos": "RELATIONALOP",
+        "": "comparator, threshold, greater_than, less_than",
+    },
+    "chirp": {"Simulink": "Chirp Signal", "": "sweep, swept sine, sine sweep"},
+    "constant": {"Modelica": "Const", "Xcos": "CONST, CONST_m, CONST_f"},
+    "counter": {"Xcos": "Counter", "": "count, edge counter"},
+    "coulomb": {"": "coulomb friction"},
+    "dead_zone": {"Simulink": "Dead Zone", "Xcos": "DEADBAND", "": "deadband"},
+    "demux": {"Simulink": "Selector", "Modelica": "Extractor, DeMultiplex", "Xcos": "EXTRACTOR"},
+    "derivative": {
+        "Modelica": "Der",
+        "Xcos": "DERIV",
+        "": "differentiator, filtered derivative, washout, du/dt",
+    },
+    "discrete_integrator": {"Simulink": "Discrete-Time Integrator", "": "accumulator"},
+    "discrete_pid": {"Simulink": "Discrete PID Controller", "": "digital PID, sampled PID"},
+    "discrete_state_space": {"Modelica": "Discrete.StateSpace", "Xcos": "DLSS"},
+    "discrete_transfer_function": {
+        "Simulink": "Discrete Transfer Fcn, Discrete Filter, Discrete Zero-Pole",
+        "Xcos": "DLR",
+        "": "digital filter, IIR filter, FIR filter, z transfer function",
+    },
+    "divide": {"Simulink": "Divide", "Modelica": "Division", "Xcos": "INVBLK"},
+    "dot": {"Simulink": "Dot Product", "": "inner product, scalar product"},
+    "edge": {
+        "Simulink": "Detect Rise Positive, Detect Increase",
+        "Modelica": "RisingEdge",
+        "Xcos": "EDGE_TRIGGER",
+        "": "edge detector, rising edge",
+    },
+    "expression": {
+        "Simulink": "Fcn, MATLAB Function, Interpreted MATLAB Function",
+        "Modelica": "RealExpression",
+        "Xcos": "EXPRESSION",
+        "": "formula, function, fcn",
+    },
+    "first_order": {"Modelica": "FirstOrder", "": "lag, PT1, first order lag, time constant"},
+    "gain": {"Modelica": "Gain", "Xcos": "GAINBLK, GAINBLK_f, GAIN_f", "": "amplifier, multiply"},
+    "hard_stop": {"": "end stop, mechanical stop"},
+    "high_pass": {"": "highpass, high pass filter"},
+    "integrator": {
+        "Simulink": "Integrator",
+        "Modelica": "Integrator",
+        "Xcos": "INTEGRAL_m, INTEGRAL_f",
+        "": "integral, integrate, 1/s",
+    },
+    "jk_flip_flop": {"Simulink": "J-K Flip-Flop", "Xcos": "JKFLIPFLOP"},
+    "latch": {
+        "Simulink": "S-R Flip-Flop, D Latch",
+        "Modelica": "RSFlipFlop",
+        "Xcos": "SRFLIPFLOP, DLATCH",
+        "": "sr_flip_flop, rs_flip_flop, flip flop",
+    },
+    "lead_lag": {"Simulink": "Lead-Lag", "": "lead compensator, lag compensator, lead, PDT1"},
+    "limited_integrator": {
+        "Simulink": "Integrator Limited",
+        "Modelica": "LimIntegrator",
+        "": "saturated integrator",
+    },
+    "low_pass": {"Modelica": "Filter, LowpassButterworth", "": "lowpass, butterworth, filter"},
+    "matrix_gain": {"Simulink": "Matrix Gain", "Modelica": "MatrixGain", "Xcos": "MATMUL"},
+    "max": {"Modelica": "Max", "Xcos": "MAX_f", "": "maximum"},
+    "min": {"Modelica": "Min", "Xcos": "MIN_f", "": "minimum"},
+    "mod": {"": "modulo, remainder"},
+    "monostable": {"Simulink": "Monostable", "": "one shot, monoflop, pulse on edge"},
+    "multisine": {"": "sum of sines, schroeder, harmonics"},
+    "mux": {"Simulink": "Vector Concatenate", "Modelica": "Multiplex", "Xcos": "MUX, MUX_f"},
+    "noise": {
+        "Simulink": "Band-Limited White Noise, Random Number",
+        "Modelica": "NormalNoise, BandLimitedWhiteNoise",
+        "Xcos": "RAND_m",
+        "": "white noise, gaussian noise, normal noise, random, randn",
+    },
+    "not": {"Modelica": "Not", "": "NOT gate, inverter, negation"},
+    "notch": {"": "notch filter, band stop, bandstop"},
+    "or": {"Modelica": "Or", "": "OR gate"},
+    "pid": {
+        "Simulink": "PID Controller",
+        "Modelica": "LimPID, PI, PD",
+        "Xcos": "PID",
+        "": "pid_controller, controller, pi controller, pd controller",
+    },
+    "pade_delay": {"Modelica": "PadeDelay", "": "pade"},
+    "play_operator": {"": "gear play, hysteresis play"},
+    "power": {"Xcos": "POWBLK", "": "pow, exponent"},
+    "prbs": {"Simulink": "PN Sequence", "": "pseudo random binary sequence, random binary"},
+    "product": {"Simulink": "Product", "Modelica": "Product", "Xcos": "PRODUCT, PROD_f"},
+    "pulse": {
+        "Simulink": "Pulse Generator",
+        "Modelica": "Pulse",
+        "Xcos": "PULSE_SC",
+        "": "pulse train, PWM, rectangle",
+    },
+    "quantizer": {
+        "Simulink": "Quantizer",
+        "Xcos": "QUANT_f",
+        "": "quantiser, quantise, round, ADC",
+    },
+    "ramp": {"Modelica": "Ramp", "Xcos": "RAMP"},
+    "random_steps": {
+        "Simulink": "Uniform Random Number",
+        "Modelica": "UniformNoise",
+        "": "uniform random, uniform noise, APRBS",
+    },
+    "rate_limiter": {
+        "Simulink": "Rate Limiter",
+        "Modelica": "SlewRateLimiter",
+        "Xcos": "RATELIMITER",
+        "": "slew rate, slew",
+    },
+    "relay": {
+        "Modelica": "OnOffController",
+        "Xcos": "HYSTHERESIS",
+        "": "schmitt trigger, two point controller, thermostat, bang bang",
+    },
+    "reset_integrator": {"": "integrator with reset, resettable integrator"},
+    "sample_and_hold": {
+        "Simulink": "Sample and Hold, D Flip-Flop",
+        "Modelica": "TriggeredSampler",
+        "Xcos": "SAMPHOLD_m, DFLIPFLOP",
+        "": "d_flip_flop, track and hold",
+    },
+    "saturation": {
+        "Modelica": "Limiter, VariableLimiter",
+        "Xcos": "SATURATION, SAT_f",
+        "": "limit, limiter, clip, clamp, saturate",
+    },
+    "sawtooth": {
+        "Simulink": "Repeating Sequence",
+        "Modelica": "SawTooth",
+        "Xcos": "SAWTOOTH_f",
+    },
+    "second_order": {"Modelica": "SecondOrder", "": "PT2, oscillator"},
+    "select": {
+        "Simulink": "Multiport Switch, Index Vector",
+        "Xcos": "M_SWITCH, SELECT_m",
+        "": "multiplexer, choose",
+    },
+    "sign": {"Modelica": "Sign", "Xcos": "SIGNUM", "": "signum, sgn"},
+    "sine": {
+        "Simulink": "Sine Wave, Signal Generator",
+        "Modelica": "Sine",
+        "Xcos": "GENSIN_f, GENSIN",
+        "": "sinus, sin wave, cosine",
+    },
+    "solve": {"": "mass matrix, linear solve"},
+    "square": {"Xcos": "GENSQR_f", "": "square wave"},
+    "state_space": {
+        "Simulink": "State-Space",
+        "Modelica": "StateSpace",
+        "Xcos": "CLSS",
+        "": "ss, abcd",
+    },
+    "step": {"Xcos": "STEP_FUNCTION, STEP", "": "heaviside, jump"},
+    "sum": {
+        "Simulink": "Add, Subtract, Sum of Elements",
+        "Modelica": "Add, Add3, Feedback, MultiSum",
+        "Xcos": "SUMMATION, BIGSOM_f, SUM_f",
+        "": "summer, adder, difference, plus, minus",
+    },
+    "switch": {"Xcos": "SWITCH2_m, SWITCH_f", "": "if, conditional"},
+    "table": {
+        "Simulink": "1-D Lookup Table, Signal Builder, Signal Editor, From Workspace",
+        "Modelica": "CombiTable1D, CombiTable1Ds, TimeTable, CombiTimeTable",
+        "Xcos": "INTRPLBLK_f, LOOKUP_f, Sigbuilder, FROMWSB",
+        "": "lookup_table, lookup, signal_builder, interpolation, piecewise_linear, time_table",
+    },
+    "time": {"Simulink": "Digital Clock", "Xcos": "TIME_f", "": "clock"},
+    "timer": {"Modelica": "Timer", "": "stopwatch"},
+    "toggle": {"Simulink": "T Flip-Flop", "": "t_flip_flop"},
+    "total": {"": "sum of a vector"},
+    "transfer_function": {
+        "Simulink": "Transfer Fcn, Zero-Pole",
+        "Modelica": "TransferFunction",
+        "Xcos": "CLR",
+        "": "tf, transfer, laplace, G(s)",
+    },
+    "triangle": {"": "triangular, triangle wave"},
+    "unit_delay": {
+        "Simulink": "Unit Delay",
+        "Modelica": "UnitDelay",
+        "Xcos": "DOLLAR_m, DOLLAR, REGISTER",
+        "": "z^-1, 1/z, one sample delay, delay_line",
+    },
+    "viscous": {"Modelica": "Damper", "": "damper, viscous friction, damping"},
+    "stiffness": {"Modelica": "Spring", "": "spring"},
+    "xor": {"Modelica": "Xor", "": "exclusive or, XOR gate"},
+    "zero_order_hold": {
+        "Modelica": "Sampler, ZeroOrderHold",
+        "Xcos": "SAMPLEHOLD_m",
+        "": "ZOH, sample, sampler, hold, DAC",
+    },
+}
+"""The names of blocks in other tools, and other words for them, divided by commas.
+
+Sources: the block libraries of Simulink R2023, of Modelica.Blocks 4.0 and of Xcos 2023.
+"""
+
+SENSOR = "It is a number of a measured signal: signals: {{x: {{column: x, {0}: ...}}}}."
+INSTEAD: dict[str, str] = {
+    "delay, transport delay, time delay, dead time, fixed delay, variable delay, TIME_DELAY": (
+        "There is no exact delay of flowing signals: 'pade_delay' approximates one up to a"
+        " frequency, and 'unit_delay' delays samples by their period."
+    ),
+    "logical operator, LOGICAL_OP, LOGIC, logic": "Use 'and', 'or', 'xor' or 'not'.",
+    "MinMax, MAXMIN": "Use 'min' or 'max', which take two signals or more.",
+    "scope, CSCOPE, CMSCOPE, display, to workspace, plot, sink": (
+        "A run keeps the signals that the section 'record' names; --figure draws them."
+    ),
+    "from file, inport, in, input": (
+        "Signals from outside stand in the section 'inputs', and a measured series binds them."
+    ),
+    "subsystem, superblock, SUPER_f": (
+        "Define it in the section 'subsystems', and use its name as the type."
+    ),
+    "terminator, ground": "A signal that nothing reads needs no block.",
+    **{f"sensor_{name}": SENSOR.format(name) for name in SENSOR_TERMS},
+}
+"""What to do instead of what is no block here: its names, divided by commas, and a sentence."""
+
+
+def find_synonym(name: str, known: Collection[str]) -> tuple[str, str] | None:
+    """The block that another tool calls so, and a sentence that says it; None where there is none.
+
+    known: the blocks that there are. Upper case, blanks and signs between words do not count.
+    """
+    wanted = plain(name)
+    for block, tools in NAMES.items():
+        for tool, names in tools.items():
+            for other in names.split(", "):
+                if plain(other) == wanted and block in known:
+                    whose = f"{tool}'s {other}" if tool else f"'{other}'"
+                    return block, f"{whose} is '{block}' here."
+    same = next((block for block in known if plain(block) == wanted), None)
+    return None if same is None else (same, f"'{name}' is '{same}' here.")
+
+
+def find_instead(name: str) -> str:
+    """What to use in the place of what is no block; empty where nothing is known."""
+    wanted = plain(name)
+    return next(
+        (hint for names, hint in INSTEAD.items() if wanted in map(plain, names.split(", "))), ""
+    )
+
+
+def other_names(block: str) -> list[str]:
+    """The names of a block elsewhere, each with the tool whose it is."""
+    return [f"{names} ({tool})" if tool else names for tool, names in NAMES.get(block, {}).items()]
+
+
+def plain(name: str) -> str:
+    """A name without what differs between tools: case, blanks, signs, the word block."""
+    letters = "".join(c for c in name.lower() if c.isalnum() or c in "/^().")
+    return letters.removesuffix("block") or letters

@@ -1,0 +1,105 @@
+"""Names of other tools: each finds the block that it is here, or says what to use instead."""
+
+from __future__ import annotations
+
+import pytest
+from library.values import library
+from tracewire.diagram import read_text
+from tracewire.errors import BlockError, DiagramError
+from tracewire.library import describe, describe_json, find_instead, find_synonym
+from tracewire.library.synonyms import INSTEAD, NAMES, plain
+
+TEACHERS = {
+    "transfer_function": "transfer_function",
+    "pid": "pid",
+    "derivative": "derivative",
+    "state_space": "state_space",
+    "noise": "noise",
+    "quantizer": "quantizer",
+    "lookup_table": "table",
+    "unit_delay": "unit_delay",
+    "and": "and",
+    "pulse": "pulse",
+    "chirp": "chirp",
+    "sawtooth": "sawtooth",
+}
+"""The names that teachers reach for first; of them only `delay` is no block."""
+
+
+@pytest.mark.parametrize("name", TEACHERS)
+def test_the_names_that_teachers_reach_for_first_are_known(name: str) -> None:
+    assert f"\n{TEACHERS[name]}: " in "\n" + describe(library(), name)
+
+
+def test_every_synonym_is_of_a_block_and_of_one_alone() -> None:
+    assert NAMES.keys() <= set(library())
+    several = {
+        block: {plain(n) for names in tools.values() for n in names.split(", ")}
+        for block, tools in NAMES.items()
+    }
+    claimed: dict[str, str] = {}
+    for block, names in several.items():
+        for name in names:
+            assert claimed.setdefault(name, block) == block, name
+            assert name == plain(block) or name not in map(plain, library()), name
+    words = {plain(n) for names in INSTEAD for n in names.split(", ")}
+    assert not words & claimed.keys()
+    assert not words & set(map(plain, library()))
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("INTEGRAL_m", "Xcos's INTEGRAL_m is 'integrator' here.\n\nintegrator: The integral"),
+        ("transfer fcn", "Simulink's Transfer Fcn is 'transfer_function' here.\n\ntransfer_fun"),
+        ("LimPID", "Modelica's LimPID is 'pid' here.\n\npid: "),
+        ("Pulse", "Modelica's Pulse is 'pulse' here.\n\npulse: "),
+        ("ZERO-ORDER HOLD", "Modelica's ZeroOrderHold is 'zero_order_hold' here.\n\nzero_"),
+        ("Dead_Zone", "Simulink's Dead Zone is 'dead_zone' here."),
+        ("bouncing body", "'bouncing body' is 'bouncing_body' here.\n\nbouncing_body: "),
+    ],
+)
+def test_a_block_is_described_by_a_name_of_another_tool(name: str, told: str) -> None:
+    assert describe(library(), name).startswith(told)
+
+
+def test_a_description_names_the_block_in_other_tools() -> None:
+    assert "Also known as Simulink" not in describe(library(), "integrator")
+    assert "INTEGRAL_m, INTEGRAL_f (Xcos)" in describe(library(), "integrator")
+    assert "Transfer Fcn, Zero-Pole (Simulink)" in describe_json(library(), "tf")["also_known_as"]  # type: ignore[operator]
+
+
+def test_what_is_no_block_is_told_what_to_use() -> None:
+    with pytest.raises(BlockError) as caught:
+        describe(library(), "delay")
+    assert str(caught.value) == f"'delay' is no block. {find_instead('delay')}"
+    assert "'pade_delay'" in find_instead("Transport Delay")
+    assert find_instead("nonsense") == ""
+    assert find_synonym("nonsense", [*library()]) is None
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("INTEGRAL_m", "Xcos's INTEGRAL_m is 'integrator' here."),
+        ("delay", "There is no exact delay of flowing signals: 'pade_delay' approximates"),
+        ("Logical Operator", "Use 'and', 'or', 'xor' or 'not'."),
+    ],
+)
+def test_an_unknown_type_of_a_diagram_says_what_it_is_here(name: str, told: str) -> None:
+    text = f"blocks:\n  y: {{type: {name}, of: u}}\n  u: {{type: time}}\n"
+    with pytest.raises(DiagramError) as caught:
+        read_text(text)
+    what = f"<text>:2:13: block 'y': unknown block type '{name}'. {told}"
+    assert str(caught.value).startswith(what)
+
+
+def test_a_subsystem_may_have_the_name_of_a_block_of_another_tool() -> None:
+    text = """
+blocks:
+  u: {type: time}
+  y: {type: PID, of: u}
+subsystems:
+  PID: {inputs: [of], outputs: {y: double}, blocks: {double: {type: gain, of: of, k: 2}}}
+"""
+    assert read_text(text).blocks["y"].subsystem is not None
