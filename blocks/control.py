@@ -46,6 +46,7 @@ RAW = "kp*of + integral + kd*n*(of - smooth)"
 pid = Block(
     name="pid",
     doc="A PID controller kp + ki/s + kd*s/(1 + s/n) with limits, whose integral does not wind up.",
+    require=("low <= high",),
     inputs=(Input("of", doc="the error: reference minus measurement"),),
     parameters=(
         Parameter("kp", doc="the proportional gain"),

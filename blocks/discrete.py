@@ -98,6 +98,7 @@ LIMITED = f"(high if {RAW} >= high else (low if {RAW} <= low else {RAW}))"
 discrete_pid = Block(
     name="discrete_pid",
     doc="A sampled PID controller with limits, whose integral does not wind up.",
+    require=("low <= high",),
     inputs=(Input("of", doc="the error: reference minus measurement", sampled="tick"),),
     parameters=(
         Parameter("kp", doc="the proportional gain"),

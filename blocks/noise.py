@@ -12,6 +12,7 @@ SOURCE = "Random numbers: permutations of the number of the period, tracewire/co
 random_steps = Block(
     name="random_steps",
     doc="Steps to random levels, all equally likely between two limits, at each period.",
+    require=("low <= high",),
     parameters=(
         PERIOD,
         SEED,

@@ -49,6 +49,7 @@ max_ = Block(
 saturation = Block(
     name="saturation",
     doc="A signal that is held at its limits.",
+    require=("low <= high",),
     inputs=(Input("of"),),
     parameters=LIMITS,
     outputs=(Output("y", "high if of >= high else (low if of <= low else of)"),),
@@ -57,6 +58,7 @@ saturation = Block(
 dead_zone = Block(
     name="dead_zone",
     doc="What a signal exceeds its limits by, and zero between them.",
+    require=("low <= high",),
     inputs=(Input("of"),),
     parameters=LIMITS,
     outputs=(Output("y", "of - high if of >= high else (of - low if of <= low else 0)"),),

@@ -204,3 +204,19 @@ jitter = Block(name="jitter", doc="Jitter.", outputs=(Output("y", "random_number
     )
     with pytest.raises(DiagramError, match=re.escape(wanted)):
         compile(read_text(text, library=load_library([tmp_path / "jitter.py"])))
+
+
+def test_a_guard_that_reads_noise_is_seen_to_cross() -> None:
+    """The products inside of the draws are of 15 digits; their rounding is no noise of a guard."""
+    result = run("""
+span: [0, 2]
+every: 0.1
+blocks:
+  u: {type: random_steps, period: 0.5, seed: 7, low: -1, high: 1}
+  e: {type: sum, of: [u, -x]}
+  y: {type: saturation, of: e, low: -0.2, high: 0.2}
+  x: {type: integrator, of: y}
+record: [e, y]
+""")
+    assert result["y"] == pytest.approx(np.clip(result["e"], -0.2, 0.2), abs=1e-12)
+    assert {abs(y) < 0.2 for y in result["y"]} == {True, False}

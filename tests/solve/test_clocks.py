@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from solve.models import kinds, made, run
-from tracewire.errors import DiagramError
+from tracewire.errors import DiagramError, SimulationError
 from tracewire.solve import simulate
 
 CLOCK = """
@@ -51,6 +51,13 @@ def test_a_clock_that_would_never_tick_is_refused(period: float) -> None:
     text = CLOCK.replace("period: T", f"period: {period}").replace("OFFSET", "0")
     with pytest.raises(DiagramError, match=f"'period' must be above 0 s, not {period}"):
         made(text)
+
+
+def test_a_run_that_would_stop_a_clock_is_refused() -> None:
+    model = made(CLOCK.replace("OFFSET", "0"))
+    wanted = "block 'held': the parameters do not meet 'T > 0': T = 0"
+    with pytest.raises(SimulationError, match=wanted):
+        simulate(model, parameters={"T": 0})
 
 
 @pytest.mark.parametrize(

@@ -38,4 +38,6 @@ def lower_random(tape: Tape, seed: int, k: int) -> int:
         x = plus(plus(x, key), tape.constant(constant))
         square = modulo(push("*", x, x))
         x = modulo(push("*", square, x))
-    return push("/", push("+", x, tape.constant(0.5)), prime)
+    # x is whole: its floor says that it is exact, however large the products were (see `sizes`)
+    whole = push("floor", x)
+    return push("/", push("+", whole, tape.constant(0.5)), prime)

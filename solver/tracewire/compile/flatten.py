@@ -17,7 +17,9 @@ from tracewire.compile.flat import (
 )
 from tracewire.compile.happenings import block_events, block_memory, diagram_events, memory_name
 from tracewire.compile.loops import order_signals
+from tracewire.compile.realise import without_zero_products
 from tracewire.compile.sampling import SampledPort, sample_ports
+from tracewire.compile.vectors import has_vectors
 from tracewire.diagram import (
     Array,
     BlockUse,
@@ -33,7 +35,7 @@ from tracewire.diagram import (
     state_names,
 )
 from tracewire.errors import Place
-from tracewire.formula import CONSTANTS, FUNCTIONS, Call, Expression, Name, Number, rename
+from tracewire.formula import CONSTANTS, FUNCTIONS, Call, Expression, Name, Number, names_of, rename
 from tracewire.library import Block, Parameter
 
 LONGEST_FOLD = 100
@@ -88,7 +90,7 @@ class _Flattener:
         self.guesses: dict[str, Expression] = {}
         self.places: dict[str, Place] = {}  # of the outputs of subsystems
         self.sampled: list[SampledPort] = []
-        self.clocks: list[Condition] = []  # under which the clocks of blocks are one
+        self.require: list[Condition] = []  # of blocks
 
     def flat(self) -> Flat:
         top = self.top
@@ -131,14 +133,14 @@ class _Flattener:
                     replace(known, formula=rename(known.formula, scope.resolve))
                     for known in top.require
                 ),
-                *self.clocks,
+                *self.require,
             ),
         )
 
     def add_samples(self) -> None:
         """The ports that a clock samples, when everything is known that they may read."""
         if self.sampled:
-            self.clocks = sample_ports(
+            self.require += sample_ports(
                 self.sampled,
                 self.signals,
                 self.states,
@@ -260,10 +262,20 @@ class _Flattener:
                 names[port.name] = rename(default, lambda name: names.get(name, Name(name)))
 
         def written(formula: Expression) -> Expression:
-            return rename(
+            full = rename(
                 _without_manies(formula, manies), lambda name: names.get(name, Name(name))
             )
+            return without_zero_products(full)
 
+        bounds = [
+            Call(">", (Name(parameter.name), Number(parameter.above)))
+            for parameter in block.parameters
+            if parameter.above is not None
+        ]
+        for condition in (*block.conditions, *bounds):
+            given = written(condition)
+            if names_of(given) and not has_vectors(given):
+                self.require.append(Condition(given, place, f"Its block '{block.name}' needs it."))
         for state in block.states:
             name = states[state.name]
             start = written(block.starts[state.name])

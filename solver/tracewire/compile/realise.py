@@ -118,6 +118,15 @@ def _pick(parts: Sequence[Elements], text: str) -> Elements:
     return Elements((), (chosen,))
 
 
+def without_zero_products(formula: Expression) -> Expression:
+    """The formula without what a matrix of zero is multiplied with: it does not read that."""
+    if not isinstance(formula, Call):
+        return formula
+    if formula.function == "matrix_times" and formula.arguments[0] == ZERO:
+        return ZERO
+    return Call(formula.function, tuple(map(without_zero_products, formula.arguments)))
+
+
 def _quotient(a: Expression, b: Expression) -> Expression:
     return a if b == ONE or a == ZERO else Call("/", (a, b))
 

@@ -13,7 +13,7 @@ from tracewire.diagram.strict import Entries, Node, Scalar
 from tracewire.diagram.values import read_points, read_value, reads_parameters
 from tracewire.diagram.wires import read_wires
 from tracewire.errors import Place
-from tracewire.formula import Expression, Number, is_name
+from tracewire.formula import Expression, Number, evaluate, is_name, names_of, to_text
 from tracewire.library import Block, Input, Parameter
 
 Find = Callable[[str, Place], Block | Diagram | None]
@@ -123,7 +123,31 @@ def _read_settings(
                     _check_bounds(value, parameter, body)
         if given is not None:
             settings[parameter.name] = given
+    if isinstance(kind, Block):
+        _check_conditions(kind, settings, body, place)
     return settings
+
+
+def _check_conditions(
+    block: Block,
+    settings: Mapping[str, Value | Array | Points | Expression],
+    body: Body,
+    place: Place,
+) -> None:
+    """Note each condition of a block that numbers do not meet which its line gives."""
+    known: dict[str, float] = {}
+    for parameter in block.parameters:
+        value = settings.get(parameter.name)
+        if value is None and isinstance(parameter.default, int | float):
+            known[parameter.name] = float(parameter.default)
+        elif isinstance(value, Value) and isinstance(value.formula, Number):
+            known[parameter.name] = value.formula.value * value.factor
+    for condition in block.conditions:
+        read = names_of(condition)
+        if known.keys() >= set(read) and not evaluate(condition, known):
+            shown = ", ".join(f"{name} = {known[name]:g}" for name in read)
+            what = f"the parameters must meet {to_text(condition)}, and {shown}"
+            body.problems.add(what, place)
 
 
 def in_unit_of(given: Value, declared: Value) -> Value:

@@ -44,6 +44,8 @@ def check_block(block: Parts, place: Place) -> list[Problem]:
             read_unit(item.unit, place)
         except FormulaError as error:
             problems += error.problems
+    for condition in block.require:
+        problems += check_formula(condition, numbers, place, condition=True)
     problems += check_memory(block, everything, numbers, place)
     if block.effect is not None:
         problems += check_effect(block.effect, _face(block), place)

@@ -17,13 +17,14 @@ from tracewire.library.parts import ByMode, Parts
 class Block(Parts):
     """A block declaration; it is checked when it is made.
 
-    `doc` is one sentence, `source` the paper and equation it comes from. A block with memory has
-    `modes`, one of which it is in, and `transitions` between them. There a formula of an output, of
-    a rate or of an event's reset may be a mapping: {mode: formula}. Formulas see the number of the
-    mode, from 0 in the order of declaration, as `mode`. Raises BlockError: a name that cannot be
-    used or stands twice, a formula that does not parse or reads what does not exist, a text that is
-    no unit, bounds that exclude the default, an effect that cannot be tried, a mode that does not
-    exist or is never reached, a transition or an event that can do nothing.
+    `doc` is one sentence, `source` the paper and equation it comes from, `require` holds conditions
+    on the parameters, such as low <= high, without which the block has no meaning. A block with
+    memory has `modes`, one of which it is in, and `transitions` between them. There a formula of an
+    output, of a rate or of an event's reset may be a mapping: {mode: formula}. Formulas see the
+    number of the mode, from 0 in the order of declaration, as `mode`. Raises BlockError: a name
+    that cannot be used or stands twice, a formula that does not parse or reads what does not exist,
+    a text that is no unit, bounds that exclude the default, an effect that cannot be tried, a mode
+    that does not exist or is never reached, a transition or an event that can do nothing.
     """
 
     place: Place = field(default_factory=lambda: _caller(), compare=False, repr=False)
@@ -57,6 +58,11 @@ class Block(Parts):
     def port_defaults(self) -> dict[str, Expression]:
         """The parsed formula of each input that need not be connected."""
         return {port.name: parse(port.default) for port in self.inputs if port.default is not None}
+
+    @cached_property
+    def conditions(self) -> tuple[Expression, ...]:
+        """The parsed conditions that the parameters must meet."""
+        return tuple(map(parse_condition, self.require))
 
     @cached_property
     def start_mode(self) -> Expression:

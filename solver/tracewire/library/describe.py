@@ -31,6 +31,7 @@ def describe(library: Library, name: str) -> str:
     lines += [f"{block.name}: {block.doc}", ""]
     lines += _section("inputs", [(p.name, p.unit, _wiring(p), p.doc) for p in block.inputs])
     lines += _section("parameters", [(p.name, p.unit, _range(p), p.doc) for p in block.parameters])
+    lines += _section("conditions", [(condition, "") for condition in block.require])
     lines += _section(
         "states",
         [(s.name, s.unit, f"rate = {_told(s.rate)}", f"start = {s.start}") for s in block.states],
@@ -66,6 +67,7 @@ def describe_json(library: Library, name: str) -> dict[str, object]:
         "doc": block.doc,
         "inputs": [asdict(port) for port in block.inputs],
         "parameters": [asdict(parameter) for parameter in block.parameters],
+        "conditions": list(block.require),
         "states": [asdict(state) for state in block.states],
         "modes": [asdict(mode) for mode in block.modes],
         "transitions": [asdict(transition) for transition in block.transitions],

@@ -143,3 +143,4 @@ class Parts:
     modes: tuple[Mode, ...] = ()
     transitions: tuple[Transition, ...] = ()
     events: tuple[Event, ...] = ()
+    require: tuple[str, ...] = ()

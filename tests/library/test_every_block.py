@@ -1,0 +1,113 @@
+"""Every block of the library of signals and control: refuses what is wrong, and is used somewhere.
+
+A block added to one of these families needs an exact test `test_...NAME...` in a file beside this
+one, a line in `BAD`, and a place in a diagram of diagrams/gallery.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from library.values import library
+from solve.models import LIMITS
+from tracewire.compile import compile
+from tracewire.diagram import read, read_text
+from tracewire.errors import TracewireError
+from tracewire.formula import Number
+from tracewire.solve import simulate
+
+GALLERY = Path(__file__).parents[2] / "diagrams" / "gallery"
+FAMILIES = ("control", "filters", "waves", "noise", "discrete", "logic", "delay")
+BLOCKS = [name for name, family in library().families.items() if family in FAMILIES]
+BLOCKS.append("quantizer")
+
+DEGREE = "the numerator is of degree 2, and the denominator of degree 1: it would be a derivative"
+NOT_ABOVE = "parameter '{}' must be above 0{}, not {}."
+NOT_GIVEN = "parameter '{0}' is not given. Write {0}: ..."
+ROW = "a row of 2 cannot be multiplied with a number in 'matrix_times([0, 1], u)'"
+BAD = {
+    "transfer_function": ("of: u, numerator: [1, 0, 0], denominator: [1, 1]", DEGREE),
+    "state_space": ("of: u, A: [[1, 0], [0, 1]], B: [0, 1], C: [1, 0]", ROW),
+    "pid": ("of: u, kp: 1, low: 2, high: 1", "the parameters must meet low <= high, and low = 2,"),
+    "first_order": ("of: u, lag: 0", NOT_ABOVE.format("lag", " s", 0)),
+    "lead_lag": ("of: u, lead: 1, lag: -1", NOT_ABOVE.format("lag", " s", -1)),
+    "derivative": ("of: u", NOT_GIVEN.format("lag")),
+    "second_order": ("of: u, frequency: 1", NOT_GIVEN.format("damping")),
+    "low_pass": ("of: u, frequency: 0", NOT_ABOVE.format("frequency", " Hz", 0)),
+    "high_pass": ("of: u, frequency: -2", NOT_ABOVE.format("frequency", " Hz", -2)),
+    "band_pass": ("of: u, frequency: 1, damping: -1", "'damping' must be at least 0, not -1."),
+    "notch": ("of: u", NOT_GIVEN.format("frequency")),
+    "pulse": ("amplitude: 1, period: 1, duty: 1.5", "'duty' must be at most 1, not 1.5."),
+    "sawtooth": ("amplitude: 1, period: 0", NOT_ABOVE.format("period", " s", 0)),
+    "triangle": ("amplitude: 1, period: -1", NOT_ABOVE.format("period", " s", -1)),
+    "chirp": (
+        "amplitude: 1, first: 1, last: 2, duration: 0",
+        NOT_ABOVE.format("duration", " s", 0),
+    ),
+    "multisine": (
+        "frequencies: [1, 2], phases: [1, 2, 3]",
+        "a vector of 2 and a vector of 3 do not go together",
+    ),
+    "prbs": ("period: 1, register: [1, 2]", "parameter 'register' must be at most 1, not 2."),
+    "random_steps": ("period: 1, seed: 1, low: 3", "must meet low <= high, and low = 3, high = 1."),
+    "noise": ("period: 1, seed: 1, sigma: -1", "'sigma' must be at least 0, not -1."),
+    "unit_delay": ("of: u, period: 0", NOT_ABOVE.format("period", " s", 0)),
+    "discrete_integrator": ("of: u, period: 1, weight: 2", "'weight' must be at most 1, not 2."),
+    "discrete_transfer_function": (
+        "of: u, period: 1, numerator: [1, 0, 0], denominator: [1, 1]",
+        DEGREE,
+    ),
+    "discrete_state_space": (
+        "of: u, period: 1, A: [[1, 0], [0, 1]], B: [0, 1], C: [1, 0]",
+        "a row of 2",
+    ),
+    "discrete_pid": ("of: u, kp: 1, period: 1, n: 0", NOT_ABOVE.format("n", " rad/s", 0)),
+    "compare": ("of: [u, u]", "input 'of' takes one signal."),
+    "and": ("threshold: 1", "input 'of' is not connected."),
+    "or": ("of: v", "unknown signal 'v'"),
+    "xor": ("of: u, level: 1", "unknown input or parameter of 'xor' 'level'"),
+    "not": ("of: u, threshold: x", "unknown parameter 'x'"),
+    "select": ("index: u", "input 'of' is not connected."),
+    "edge": ("of: u", NOT_GIVEN.format("period")),
+    "monostable": ("of: u, duration: 0", NOT_ABOVE.format("duration", " s", 0)),
+    "timer": ("of: u, threshold: u", "'u' is a signal, and a value is fixed"),
+    "jk_flip_flop": ("j: u, k: u, clock: u, start: 2", "'start' must be at most 1, not 2."),
+    "pade_delay": ("of: u, delay: 0", NOT_ABOVE.format("delay", " s", 0)),
+    "quantizer": ("of: u, interval: 0", NOT_ABOVE.format("interval", "", 0)),
+}
+
+
+@pytest.mark.parametrize("name", BLOCKS)
+def test_a_wrong_setting_is_told_with_its_line_and_block(name: str) -> None:
+    settings, told = BAD[name]
+    text = f"span: [0, 1]\nblocks:\n  u: {{type: time}}\n  y: {{type: {name}, {settings}}}\n"
+    with pytest.raises(TracewireError) as caught:
+        compile(read_text(text))
+    assert re.match(r"<text>:4:\d+: block 'y': ", str(caught.value))
+    assert told in str(caught.value)
+    assert len(caught.value.problems) == 1
+
+
+@pytest.mark.parametrize("name", BLOCKS)
+def test_a_block_has_an_exact_test(name: str) -> None:
+    tests = [
+        p.read_text("utf-8") for p in Path(__file__).parent.glob("test_*.py") if p != Path(__file__)
+    ]
+    assert any(re.search(rf"def test_\w*{name}|^    \"{name}\": \(", text, re.M) for text in tests)
+
+
+@pytest.mark.parametrize("name", BLOCKS)
+def test_a_block_is_used_in_the_gallery(name: str) -> None:
+    diagrams = [path.read_text("utf-8") for path in GALLERY.glob("*.yaml")]
+    assert any(re.search(rf"type: {name}\b", text) for text in diagrams)
+
+
+@pytest.mark.parametrize("file", sorted(GALLERY.glob("*.yaml")), ids=lambda path: path.stem)
+def test_a_diagram_of_the_gallery_runs(file: Path) -> None:
+    diagram = read(file)
+    result = simulate(compile(diagram), limits=LIMITS)
+    assert diagram.span is not None
+    assert Number(result.t[-1]) == diagram.span[1].formula
+    assert not result.warnings
