@@ -13,7 +13,7 @@ CLOCK = (
     Parameter("offset", "s", "the time of a sample", default=0.0),
 )
 START = Parameter("start", doc="the state at the first sample", default=0.0)
-BEGUN = State("begun", rate="0", start="0")
+BEGUN = State("begun", rate="0", start="0", hidden=True)
 
 
 def tick(**new: str) -> tuple[Event]:

@@ -190,6 +190,16 @@ record: [b]
     assert "one parameter of the diagram" in str(caught.value)
 
 
+def test_a_run_keeps_no_state_that_only_serves_a_clock() -> None:
+    result = run("""
+span: [0, 1]
+blocks:
+  u: {type: time}
+  y: {type: unit_delay, of: u, period: 0.1}
+""")
+    assert [*result.signals] == ["y.y"]
+
+
 def test_quantizer_rounds_to_the_nearest_level() -> None:
     result = sampled("  y: {type: quantizer, of: u, interval: 0.25}", every=0.037)
     exact = 0.25 * np.floor(u_at(result.t) / 0.25 + 0.5)

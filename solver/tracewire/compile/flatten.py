@@ -90,6 +90,7 @@ class _Flattener:
         self.guesses: dict[str, Expression] = {}
         self.places: dict[str, Place] = {}  # of the outputs of subsystems
         self.sampled: list[SampledPort] = []
+        self.told: list[str] = []  # the states that a run keeps where nothing says which
         self.require: list[Condition] = []  # of blocks
 
     def flat(self) -> Flat:
@@ -103,7 +104,7 @@ class _Flattener:
         self.add_samples()
         scope = _Scope(top, "", inputs)
         span = top.span or (Value(Number(0.0)), Value(Number(1.0)))
-        record = tuple(top.record) or tuple(self.states)
+        record = tuple(top.record) or tuple(self.told) or tuple(self.states)
         return Flat(
             title=top.title or top.file.stem,
             states=tuple(self.states.values()),
@@ -282,6 +283,7 @@ class _Flattener:
             rate = written(block.rates[state.name])
             unit = use.unit or state.unit
             self.states[name] = FlatState(name, rate, start, unit, place)
+            self.told += [] if state.hidden else [name]
             self.units[name] = unit
             self.show(name, path, use.shown)
         for output in block.outputs:

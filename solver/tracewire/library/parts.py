@@ -64,12 +64,16 @@ class Output:
 
 @dataclass(frozen=True)
 class State:
-    """A state, the formula of its rate, and the formula of its start over the parameters."""
+    """A state, the formula of its rate, and the formula of its start over the parameters.
+
+    A `hidden` one is of no interest outside: a run keeps it only where `record` names it.
+    """
 
     name: str
     rate: ByMode = field(hash=False)
     start: str
     unit: str = ""
+    hidden: bool = False
 
 
 @dataclass(frozen=True)
