@@ -94,10 +94,31 @@ ramp = Block(
     outputs=(Output("y", "offset + (slope*(t - at) if t >= at else 0)"),),
 )
 
+READ_AT = Input("of", doc="where the table is read: the time, unless wired", default="t")
+POINTS = Parameter("points", doc="pairs [x, y], x ascending", kind="points")
+
 table = Block(
     name="table",
     doc="Straight lines through points, held before the first and after the last.",
-    inputs=(Input("of", doc="where the table is read: the time, unless wired", default="t"),),
-    parameters=(Parameter("points", doc="pairs [x, y], x ascending", kind="points"),),
+    inputs=(READ_AT,),
+    parameters=(POINTS,),
     outputs=(Output("y", "interp(of, points)"),),
+)
+
+spline_table = Block(
+    name="spline_table",
+    doc="The natural cubic spline through points, whose ends are held.",
+    inputs=(READ_AT,),
+    parameters=(POINTS,),
+    outputs=(Output("y", "cubic_spline(of, points)"),),
+    source="C. de Boor, A Practical Guide to Splines, chapter IV; at the ends y'' = 0.",
+)
+
+monotone_table = Block(
+    name="monotone_table",
+    doc="A smooth curve through points that rises and falls with them, whose ends are held.",
+    inputs=(READ_AT,),
+    parameters=(POINTS,),
+    outputs=(Output("y", "monotone_cubic(of, points)"),),
+    source="PCHIP: F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5, 1984.",
 )

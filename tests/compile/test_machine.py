@@ -49,8 +49,8 @@ def test_paper_a_is_the_same_in_both_back_ends() -> None:
     agree(read(PAPER), range(40))
 
 
-LISTS = {"denominator": "[2, 0.3, 1]", "register": "[1, 0, 0]"}
-"""Parameters that are lists, by their names."""
+GIVEN = {"denominator": "[2, 0.3, 1]", "register": "[1, 0, 0]", "off_at": "0.2"}
+"""Parameters that are lists, or that another one bounds, by their names."""
 
 
 def use(block: Block) -> str:
@@ -62,7 +62,7 @@ def use(block: Block) -> str:
     for number, parameter in enumerate(block.parameters):
         if parameter.default is None:
             given = {"points": "[[0, 1], [1, 2], [3, 0.5]]", "formula": "x*y + t"}
-            number_text = LISTS.get(parameter.name, f"{0.3 + 0.4 * number:.1f}")
+            number_text = GIVEN.get(parameter.name, f"{0.3 + 0.4 * number:.1f}")
             value = given.get(parameter.kind, number_text)
             parts.append(f"{parameter.name}: {value}")
     return ", ".join(parts)

@@ -10,7 +10,8 @@ from tracewire.formula.functions import FUNCTIONS
 
 NUMBERS = st.floats(allow_nan=False, allow_infinity=False).map(Number)
 NAMES = st.sampled_from(["x", "phi1_dot", "bearing.torque", "t", "pi"]).map(Name)
-PLAIN = [name for name in FUNCTIONS if name not in ("sum", "product", "join", "interp")]
+PLAIN = [name for name, one in FUNCTIONS.items() if not one.reads]
+BY_NAME = [name for name, one in FUNCTIONS.items() if one.reads]
 Draw = st.DrawFn
 
 
@@ -30,9 +31,9 @@ def formulas(draw: Draw, depth: int = 4) -> Expression:
     if kind == "choice":
         return Call("if", (draw(conditions(depth - 1)), draw(terms), draw(terms)))
     if kind == "by name":
-        name = draw(st.sampled_from(["sum", "product", "join", "interp"]))
-        port = Name("of")
-        return Call(name, (draw(terms), port) if name == "interp" else (port,))
+        name = draw(st.sampled_from(BY_NAME))
+        before = [draw(terms) for _ in range(FUNCTIONS[name].least - 1)]
+        return Call(name, (*before, Name("of")))
     if kind == "element":
         index = st.integers(0, 99).map(lambda number: Number(float(number)))
         return Call("[]", (draw(NAMES), *draw(st.lists(index, min_size=1, max_size=2))))

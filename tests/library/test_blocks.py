@@ -15,7 +15,8 @@ REAL = st.floats(-1e3, 1e3)
 SIZE = st.floats(0.0, 1e3)
 
 FAMILIES = {
-    "sources": "constant bias harmonic time sine square step ramp table",
+    "sources": "constant bias harmonic time sine square step ramp table"
+    " spline_table monotone_table",
     "linear": "integrator gain sum product divide",
     "math": "expression sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt"
     " power floor mod",

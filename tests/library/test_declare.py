@@ -94,7 +94,7 @@ COMPLAINTS: dict[str, tuple[dict[str, Any], str]] = {
         output("2*of"),
         "'of' is read by sum(), product(), min(), max() or join().",
     ),
-    "points compared": (output("max(rate, points)"), "'points' is read as the second argument"),
+    "points compared": (output("max(rate, points)"), "'points' is read by interp(), cubic"),
     "a port without its clock": (
         {"inputs": (Input("rate", sampled="tick"), Input("of", many=True))},
         "unknown clock 'tick'; there is no clock here. It samples the port 'rate'.",
@@ -102,10 +102,10 @@ COMPLAINTS: dict[str, tuple[dict[str, Any], str]] = {
     "one wire read as several": (output("sum(rate)"), "'rate' is read by its name alone."),
     "points read as a number": (
         output("points + 1"),
-        "formula 'points + 1': 'points' is read as the second argument of interp().",
+        "formula 'points + 1': 'points' is read by interp(), cubic_spline() or monotone_cubic().",
     ),
     "a number read as points": (output("interp(rate, c)"), "'c' is read by its name alone."),
-    "points of points": (output("interp(points, points)"), "'points' is read as the second"),
+    "points of points": (output("interp(points, points)"), "'points' is read by interp(), cubic"),
     "rate of a state": ({"states": (State("x", "y", "0"),)}, "unknown name 'y'"),
     "start of a state": (
         {"states": (State("x", "0", "rate"),)},

@@ -21,7 +21,7 @@ from tracewire.solve import simulate
 GALLERY = Path(__file__).parents[2] / "diagrams" / "gallery"
 FAMILIES = ("control", "filters", "waves", "noise", "discrete", "logic", "delay")
 BLOCKS = [name for name, family in library().families.items() if family in FAMILIES]
-BLOCKS.append("quantizer")
+BLOCKS += ["quantizer", "spline_table", "monotone_table"]
 
 DEGREE = "the numerator is of degree 2, and the denominator of degree 1: it would be a derivative"
 NOT_ABOVE = "parameter '{}' must be above 0{}, not {}."
@@ -75,6 +75,8 @@ BAD = {
     "timer": ("of: u, threshold: u", "'u' is a signal, and a value is fixed"),
     "jk_flip_flop": ("j: u, k: u, clock: u, start: 2", "'start' must be at most 1, not 2."),
     "pade_delay": ("of: u, delay: 0", NOT_ABOVE.format("delay", " s", 0)),
+    "spline_table": ("points: [[0, 1], [0, 2]]", "the points must ascend in x, and 0 is not"),
+    "monotone_table": ("points: [[0, 1]]", "a table needs at least two points"),
     "quantizer": ("of: u, interval: 0", NOT_ABOVE.format("interval", "", 0)),
 }
 

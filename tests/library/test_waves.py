@@ -13,13 +13,14 @@ from hypothesis import strategies as st
 from library.values import output
 from numpy.typing import NDArray
 from scipy import signal
-from solve.models import run
+from scipy.interpolate import CubicSpline, PchipInterpolator
+from solve.models import made, run
 from tracewire.compile import compile
 from tracewire.compile.draws import BLOCK, ROUNDS, STRIDE, P
 from tracewire.diagram import read_text
 from tracewire.errors import DiagramError
 from tracewire.library import load_library
-from tracewire.solve import Run
+from tracewire.solve import Run, simulate
 
 Vector = NDArray[np.float64]
 TIME = st.floats(-50, 50)
@@ -111,6 +112,42 @@ def test_multisine_is_the_sum_of_its_sines() -> None:
     assert result["y"] == pytest.approx(exact, abs=1e-12)
     one = source("{type: multisine, frequencies: 2}")
     assert one["y"] == pytest.approx(np.sin(4 * np.pi * one.t), abs=1e-12)
+
+
+CURVES = {
+    "spline_table": lambda x, y: CubicSpline(x, y, bc_type="natural"),
+    "monotone_table": PchipInterpolator,
+}
+
+
+@pytest.mark.parametrize("name", CURVES)
+@pytest.mark.parametrize("count", [2, 3, 7])
+def test_spline_table_and_monotone_table_are_those_of_scipy(name: str, count: int) -> None:
+    x = np.array([0.2, 0.5, 1.1, 1.3, 2.0, 2.2, 2.9])[:count]
+    y = np.array([1.0, 3.0, 2.5, 2.5, -1.0, 4.0, 4.5])[:count]
+    points = [[float(a), float(b)] for a, b in zip(x, y, strict=True)]
+    result = source(f"{{type: {name}, points: {points}}}")
+    curve = CURVES[name](x, y)
+    inside = np.clip(result.t, x[0], x[-1])
+    assert result["y"] == pytest.approx(curve(inside), abs=1e-12)
+    area = np.array([curve.integrate(x[0], end) for end in inside])
+    area += y[0] * np.minimum(result.t, x[0]) + y[-1] * np.maximum(result.t - x[-1], 0)
+    assert result["x"] == pytest.approx(area, abs=1e-7)
+
+
+def test_the_slope_of_a_spline_table_is_followed_by_sensitivities() -> None:
+    text = """
+span: [0, 1]
+parameters: {a: 0.7}
+blocks:
+  u: {type: expression, formula: a}
+  y: {type: spline_table, of: u, points: [[0, 0], [0.5, 1], [1, 0], [2, 3]]}
+record: [y]
+"""
+    result = simulate(made(text), sensitivities=["a"])
+    curve = CubicSpline([0, 0.5, 1, 2], [0, 1, 0, 3], bc_type="natural")
+    assert result["y"][-1] == pytest.approx(curve(0.7))
+    assert result.sensitivities["a"]["y"][-1] == pytest.approx(curve(0.7, 1))
 
 
 # noise

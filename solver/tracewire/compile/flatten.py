@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import reduce
 
+from tracewire.compile.curves import curve_tables
 from tracewire.compile.expand import expand_vectors
 from tracewire.compile.flat import (
     Flat,
@@ -266,6 +267,7 @@ class _Flattener:
             full = rename(
                 _without_manies(formula, manies), lambda name: names.get(name, Name(name))
             )
+            curve_tables(full, self.tables)
             return without_zero_products(full)
 
         bounds = [

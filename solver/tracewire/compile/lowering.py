@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 from dataclasses import replace
 
+from tracewire.compile.curves import PARTS, lower_curve
 from tracewire.compile.differentiate import differentiate, linear_in_t
 from tracewire.compile.draws import lower_random
 from tracewire.compile.flat import Flat
@@ -147,6 +148,8 @@ class Lowering:
             "dry": self.dry,
             "is_held": self.is_held,
             "interp": self.interp,
+            "cubic_spline": self.curve,
+            "monotone_cubic": self.curve,
             "random_number": self.random_number,
         }
         if function in special:
@@ -429,13 +432,25 @@ class Lowering:
         return self.tape.push("hold", payload=mode)
 
     def interp(self, arguments: tuple[Expression, ...]) -> int:
-        table = arguments[1]
-        if not isinstance(table, Name):
-            raise AssertionError("interp reads a table by its name")
-        return self.interpolated(self.lower(arguments[0]), table.name)
+        return self.interpolated(self.lower(arguments[0]), _table(arguments))
 
     def interpolated(self, value: int, name: str) -> int:
-        push, table = self.tape.push, self.out.tables.index(name)
-        leaf = push("table", payload=table)
+        table = self.out.tables.index(name)
         mode = self.mode("segment", value, f"breakpoint of {name}", table=table)
-        return push("segment", leaf, value, self.out.modes[mode].leaf)
+        return self.tape.push("segment", self.table(name), value, self.out.modes[mode].leaf)
+
+    def curve(self, arguments: tuple[Expression, ...]) -> int:
+        value, name = self.lower(arguments[0]), _table(arguments)
+        parts = {part: self.table(f"{name}.{part}") for part in PARTS}
+        return lower_curve(self.tape, value, self.interpolated(value, name), parts)
+
+    def table(self, name: str) -> int:
+        return self.tape.push("table", payload=self.out.tables.index(name))
+
+
+def _table(arguments: tuple[Expression, ...]) -> str:
+    """The name of the table that a function of points reads."""
+    table = arguments[-1]
+    if not isinstance(table, Name):
+        raise AssertionError("a function of points reads a table by its name")
+    return table.name

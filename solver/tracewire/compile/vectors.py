@@ -18,7 +18,7 @@ from itertools import product
 from tracewire.compile.elements import Elements, Mismatch, Shape, shape_text
 from tracewire.compile.realise import REALISED
 from tracewire.diagram import element_name
-from tracewire.formula import Call, Expression, Name, Number, names_of, to_text
+from tracewire.formula import FUNCTIONS, Call, Expression, Name, Number, names_of, to_text
 
 SHAPED = ("stack", "join", "[]", "dot", "solve", *REALISED)
 
@@ -110,7 +110,7 @@ class Expansion:
         function, given = formula.function, formula.arguments
         if function == "[]":
             return _element(formula, self.expand(given[0]), given[1:])
-        if function == "interp":
+        if function in FUNCTIONS and FUNCTIONS[function].reads == "points":
             inner = self.expand(given[0])
             return Elements(inner.shape, tuple(Call(function, (i, given[1])) for i in inner.items))
         special: dict[str, Callable[[Sequence[Elements], str], Elements]]

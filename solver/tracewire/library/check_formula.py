@@ -12,7 +12,7 @@ Use = Literal["value", "wires", "points"]
 READ_BY: dict[Use, str] = {
     "value": "by its name alone",
     "wires": "by sum(), product(), min(), max() or join()",
-    "points": "as the second argument of interp()",
+    "points": "by interp(), cubic_spline() or monotone_cubic()",
 }
 
 

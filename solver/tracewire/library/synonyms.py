@@ -164,6 +164,8 @@ NAMES: dict[str, dict[Tool, str]] = {
         "": "sinus, sin wave, cosine",
     },
     "solve": {"": "mass matrix, linear solve"},
+    "spline_table": {"": "spline, cubic spline, spline interpolation"},
+    "monotone_table": {"": "pchip, akima, monotone interpolation, smooth table"},
     "square": {"Xcos": "GENSQR_f", "": "square wave"},
     "state_space": {
         "Simulink": "State-Space",
