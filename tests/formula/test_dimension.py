@@ -40,6 +40,9 @@ def test_the_text_of_a_dimension_is_one_of_its_units(dimension: dict[str, int]) 
         ("rad", "1"),
         ("m s^-2", "m/s^2"),
         ("N s/m", "N s/m"),
+        ("V s/(rad A)", "H"),
+        ("N/(m/s)", "N s/m"),
+        ("ohm", "Ohm"),
     ],
 )
 def test_a_dimension_is_told_by_a_unit_of_the_field(text: str, shown: str) -> None:
@@ -48,6 +51,8 @@ def test_a_dimension_is_told_by_a_unit_of_the_field(text: str, shown: str) -> No
     assert dimension_text(dimension) == shown
 
 
-@pytest.mark.parametrize("text", ["", " ", "N/(m/s)", "deg", "furlong", "m^^2"])
+@pytest.mark.parametrize(
+    "text", ["", " ", "N/(m", "N/m)", "N/(m (s))", "N/(m)^2", "deg", "furlong", "m^^2"]
+)
 def test_another_text_has_no_dimension(text: str) -> None:
     assert dimension_of(text) is None

@@ -16,28 +16,39 @@ POWERS: dict[str, Term] = {
     "N": {"kg": 1, "m": 1, "s": -2}, "Pa": {"kg": 1, "m": -1, "s": -2},
     "J": {"kg": 1, "m": 2, "s": -2}, "W": {"kg": 1, "m": 2, "s": -3}, "C": {"A": 1, "s": 1},
     "V": {"kg": 1, "m": 2, "s": -3, "A": -1}, "F": {"kg": -1, "m": -2, "s": 4, "A": 2},
-    "Ohm": {"kg": 1, "m": 2, "s": -3, "A": -2}, "S": {"kg": -1, "m": -2, "s": 3, "A": 2},
+    "Ohm": {"kg": 1, "m": 2, "s": -3, "A": -2}, "ohm": {"kg": 1, "m": 2, "s": -3, "A": -2},
+    "S": {"kg": -1, "m": -2, "s": 3, "A": 2},
     "Wb": {"kg": 1, "m": 2, "s": -2, "A": -1}, "T": {"kg": 1, "s": -2, "A": -1},
     "H": {"kg": 1, "m": 2, "s": -2, "A": -2},
 }
 # fmt: on
 SHOWN = ("N", "N m", "N/m", "N s/m", "N m s", "Pa", "W", "V", "Ohm", "H", "F", "C", "T", "Wb")
 """Derived units by which a dimension is told."""
-PART = re.compile(r"\s*([*/])?\s*([A-Za-z]+|1)\s*(?:(?:\^|\*\*)\s*([+-]?\d+(?:\.\d+)?))?")
+PART = re.compile(
+    r"\s*([*/])?\s*(\()?\s*([A-Za-z]+|1)\s*(?:(?:\^|\*\*)\s*([+-]?\d+(?:\.\d+)?))?\s*(\))?"
+)
+"""A sign, what opens, a unit, its power, what closes."""
 
 
 @lru_cache(maxsize=1024)
 def dimension_of(text: str) -> Term | None:
     """The dimension of a coherent SI unit such as `N m s/rad`; None for '' and for other texts."""
     at, end, found = 0, len(text.rstrip()), Term()
+    outer = 0  # the sign before an open parenthesis; 0 where none is open
     while at < end:
         part = PART.match(text, at)
-        if part is None or part[2] not in POWERS:
+        if part is None or part[3] not in POWERS or (part[2] and outer):
             return None
-        power = float(part[3] or 1) * (-1 if part[1] == "/" else 1)
-        found = times(found, POWERS[part[2]], power)
+        sign = -1 if part[1] == "/" else 1
+        if part[2]:
+            outer, sign = sign, 1
+        found = times(found, POWERS[part[3]], float(part[4] or 1) * sign * (outer or 1))
+        if part[5]:
+            if not outer:
+                return None
+            outer = 0
         at = part.end()
-    return found if end else None
+    return found if end and not outer else None
 
 
 def dimension_text(dimension: Mapping[str, float]) -> str:
