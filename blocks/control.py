@@ -59,7 +59,7 @@ pid = Block(
             "kb",
             "1/s",
             "how fast the integral follows the limited output",
-            default="ki/kp if ki*kp > 0 else abs(ki)",
+            default="ki/kp if ki*kp > 0 else (n if abs(ki) > 0 else 0)",
         ),
         Parameter("start", doc="the integral at the start of the run", default=0.0),
     ),

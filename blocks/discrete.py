@@ -13,7 +13,7 @@ CLOCK = (
     Parameter("offset", "s", "the time of a sample", default=0.0),
 )
 START = Parameter("start", doc="the state at the first sample", default=0.0)
-BEGUN = State("begun", rate="0", start="0", hidden=True)
+BEGUN = State("begun", rate="0", start="0", unit="1", hidden=True)
 
 
 def tick(**new: str) -> tuple[Event]:
@@ -112,7 +112,7 @@ discrete_pid = Block(
             "kb",
             "1/s",
             "how fast the integral follows the limited output",
-            default="ki/kp if ki*kp > 0 else abs(ki)",
+            default="ki/kp if ki*kp > 0 else (n/(1 + n*period) if abs(ki) > 0 else 0)",
         ),
         Parameter("start", doc="the integral at the first sample", default=0.0),
     ),

@@ -71,7 +71,7 @@ edge = Block(
         THRESHOLD,
     ),
     # the first tick only takes a sample
-    states=(State("before", "zeros_like(of)", "1"), State("begun", "0", "0", hidden=True)),
+    states=(State("before", "zeros_like(of)", "1"), State("begun", "0", "0", "1", hidden=True)),
     events=(
         Event(
             "tick",

@@ -108,6 +108,19 @@ def test_what_contradicts_is_told_with_both_ends(old: str, new: str, message: st
     assert HINT in first
 
 
+def test_what_is_left_open_is_told_by_its_name() -> None:
+    more = """
+  nothing: {type: constant, value: 0}
+  z: {type: integrator, of: nothing}
+  odd: {type: expression, formula: z**2*x + z**2*v}
+"""
+    wanted = (
+        "'z**2*x' is in s^2 m times the unit of 'nothing'^2 and "
+        "'z**2*v' is in s m times the unit of 'nothing'^2: they cannot be added or compared."
+    )
+    assert wanted in told(BODY + more)[0]
+
+
 @pytest.mark.parametrize(
     ("old", "new"),
     [

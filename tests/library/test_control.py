@@ -145,6 +145,15 @@ def test_pid_at_its_limit_has_an_integral_that_stays_near() -> None:
     assert free["y"][after] == pytest.approx(-1 + 2 - (free.t[after] - 2), abs=1e-8)
 
 
+def test_an_integral_controller_leaves_its_limit_at_once() -> None:
+    """e = 1 for 2 s, then -1: at the limit I' = e + n*(1 - I), so that I is 1 + 1/n at t = 2."""
+    source = "{type: step, height: -2, at: 2, offset: 1}"
+    result = driven("{type: pid, of: u, kp: 0, ki: 1, n: 100, low: 0, high: 1}", source)
+    left = 2 + np.log(2) / 100  # there is (1 + 1/n) - 2/n*(1 - exp(-n*(t - 2))) = 1
+    exact = np.where(result.t < left, np.minimum(result.t, 1), 1 - (result.t - left))
+    assert result["y"] == pytest.approx(exact, abs=1e-8)
+
+
 def test_pade_delay_is_its_transfer_function_and_delays_what_is_slow() -> None:
     block = "{type: pade_delay, of: u, delay: 0.5}"
     result = driven(block)

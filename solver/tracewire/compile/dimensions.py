@@ -140,7 +140,17 @@ class _Units:
         if isinstance(formula, Name):
             parameter = self.flat.parameters.get(formula.name)
             written = parameter.unit if parameter else self.flat.units.get(formula.name, "")
-        return written or dimension_text(self.resolved(term))
+        if written:
+            return written
+        known = self.resolved(term)
+        rest = {name: power for name, power in known.items() if not name.startswith(OPEN)}
+        still_open = [
+            f"the unit of '{name.removeprefix(OPEN)}'" + ("" if power == 1 else f"^{power:g}")
+            for name, power in known.items()
+            if name not in rest
+        ]
+        told = [dimension_text(rest)] if rest or not still_open else []
+        return " times ".join(told + still_open)
 
     def said(self, formula: Expression, term: Term) -> str:
         """A part of a formula, its line and its unit: `'phi' (line 12) is in rad`."""

@@ -279,18 +279,20 @@ class _Flattener:
             given = written(condition)
             if names_of(given) and not has_vectors(given):
                 self.require.append(Condition(given, place, f"Its block '{block.name}' needs it."))
+        one = len(block.outputs) == 1
+        outputs = {path if one else f"{path}.{output.name}": output for output in block.outputs}
         for state in block.states:
             name = states[state.name]
             start = written(block.starts[state.name])
             rate = written(block.rates[state.name])
-            unit = use.unit or state.unit
+            # the unit that a use gives is that of its outputs, not of what is inside
+            unit = (use.unit if name in outputs else "") or state.unit
             self.states[name] = FlatState(name, rate, start, unit, place)
             self.told += [] if state.hidden else [name]
             self.units[name] = unit
-            self.show(name, path, use.shown)
-        for output in block.outputs:
+            self.show(name, path, use.shown if name in outputs else Shown(use.shown.label))
+        for name, output in outputs.items():
             formula = written(block.formulas[output.name])
-            name = path if len(block.outputs) == 1 else f"{path}.{output.name}"
             self.blocks[name] = FlatBlock(
                 name, use.type, definition + use.name, _resolved(use.local, scope), place
             )

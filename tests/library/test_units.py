@@ -1,0 +1,80 @@
+"""Units go through the blocks of signals and control, and a wrong one is told."""
+
+from __future__ import annotations
+
+import pytest
+from tracewire.compile import compile, unit_problems
+from tracewire.diagram import read_text
+
+GIVEN = """
+span: [0, 1]
+parameters:
+  T: {value: 5, unit: ms}
+  F: {value: 2, unit: N}
+  V: {value: 12, unit: V}
+  b: {value: 2, unit: m/(s^2 rad)}
+  k: {value: 2, unit: V/rad}
+  ki: {value: 2, unit: V/(rad s)}
+  kd: {value: 2, unit: V s/rad}
+  L: {value: 2, unit: H}
+  R: {value: 2, unit: ohm}
+  kt: {value: 2, unit: N m/A}
+  rate: {value: 3, unit: 1/s}
+blocks:
+  turned: {type: sine, amplitude: {value: 1, unit: rad}, omega: 3, unit: rad}
+  volts: {type: constant, value: V, unit: V}
+"""
+UNITS = {
+    "pulse": ("amplitude: F, period: T", "N"),
+    "sawtooth": ("amplitude: F, period: T", "N"),
+    "triangle": ("amplitude: F, period: T", "N"),
+    "chirp": ("amplitude: F, first: 1, last: 2, duration: 1", "N"),
+    "multisine": ("frequencies: [1, 2], amplitudes: F", "N"),
+    "noise": ("period: T, seed: 1, sigma: F", "N"),
+    "random_steps": ("period: T, seed: 1, low: -F, high: F", "N"),
+    "prbs": ("period: T, register: [1, 0, 0], low: -F, high: F", "N"),
+    "first_order": ("of: turned, k: k, lag: T", "V"),
+    "lead_lag": ("of: turned, k: k, lead: T, lag: 2*T", "V"),
+    "derivative": ("of: volts, k: k, lag: T", "V^2/(rad s)"),
+    "second_order": ("of: turned, k: k, frequency: 2, damping: 0.1", "V"),
+    "low_pass": ("of: volts, frequency: 2", "V"),
+    "high_pass": ("of: volts, frequency: 2", "V"),
+    "band_pass": ("of: volts, frequency: 2", "V"),
+    "notch": ("of: volts, frequency: 2", "V"),
+    "pade_delay": ("of: volts, delay: T", "V"),
+    "pid": ("of: turned, kp: k, ki: ki, kd: kd, low: -V, high: V", "V"),
+    "transfer_function": ("of: volts, numerator: kt, denominator: [L, R]", "N m"),
+    "state_space": ("of: turned, A: [[0, 1], [-4, -1]], B: [[0], [b]], C: [1, 0]", "m"),
+    "unit_delay": ("of: volts, period: T", "V"),
+    "discrete_integrator": ("of: volts, gain: rate, period: T", "V"),
+    "discrete_pid": ("of: turned, period: T, kp: k, ki: ki, kd: kd, low: -V, high: V", "V"),
+    "discrete_transfer_function": ("of: volts, period: T, denominator: [1, -0.5]", "V"),
+    "quantizer": ("of: volts, interval: V", "V"),
+    "select": ("index: turned, of: [volts, volts]", "V"),
+    "timer": ("of: volts", "s"),
+}
+"""What a block is given, and the unit of its output."""
+
+
+FREE = {
+    "pulse",
+    "sawtooth",
+    "triangle",
+    "noise",
+    "band_pass",
+    "discrete_transfer_function",
+    "timer",
+}
+"""Blocks with a number or the time as a factor, which may have any unit."""
+
+
+def told(type_name: str, settings: str, unit: str) -> list[str]:
+    text = f"{GIVEN}  y: {{type: {type_name}, {settings}, unit: {unit}}}\n"
+    return [str(problem) for problem in unit_problems(compile(read_text(text)).flat)]
+
+
+@pytest.mark.parametrize("name", UNITS)
+def test_the_unit_of_an_output_is_that_of_what_it_is_made_of(name: str) -> None:
+    settings, unit = UNITS[name]
+    assert told(name, settings, unit) == []
+    assert bool(told(name, settings, "kg")) == (name not in FREE)
