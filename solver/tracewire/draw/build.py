@@ -28,9 +28,9 @@ from tracewire.library import Block
 
 SIGNED = {"sum"}
 """Types whose inputs carry their sign inside, a plus as well; elsewhere only a minus is written."""
-ORDERED = {"mux", "solve", "divide", "switch", "atan2"}
+ORDERED = {"mux", "solve", "divide", "switch", "atan2", "compare", "select", "jk_flip_flop"}
 """Types of which the ports stay in the order of their declaration."""
-UNNAMED = {"sum", "product", "mux", "max", "min", "dot"}
+UNNAMED = {"sum", "product", "mux", "max", "min", "dot", "and", "or", "xor"}
 """Types whose inputs need no names inside: they are alike, or their order says what they are."""
 MOST_PORT_NAME = 90.0  # px
 MOST_NAME = 150.0

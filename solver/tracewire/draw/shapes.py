@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from tracewire.draw import icons
 from tracewire.draw.curves import curve_of, table_curve
 from tracewire.draw.font import SIZE, SMALL, shortened, text_width
+from tracewire.draw.fractions import items_of, polynomial, raised, times
 from tracewire.draw.graph import Line, Look
 from tracewire.library import Block
 
@@ -75,8 +76,72 @@ def _gain(drawn: Drawn) -> Look:
     return Look("triangle", round(max(46.0, text_width(text) / 0.62 + 10)), 40.0, lines=(text,))
 
 
+def _fraction(above: str, below: str, drawn: Drawn, short: tuple[str, str] = ("", "")) -> Look:
+    """A fraction; `short` is written where it would be too wide."""
+    lines = (above, below)
+    if any(text_width(line) > MOST_TEXT for line in lines) and all(short):
+        lines = short
+    lines = (shortened(lines[0], MOST_TEXT), shortened(lines[1], MOST_TEXT))
+    width = max(40.0, *(text_width(line) + 16 for line in lines))
+    return Look("box", round(width), _height(drawn), lines=lines, fraction=True)
+
+
 def _integrator(drawn: Drawn) -> Look:
-    return Look("box", 40.0, 40.0, lines=("1", "s"), fraction=True)
+    return _fraction("1", "s", drawn)
+
+
+def _transfer_function(letter: str) -> Shape:
+    def shape(drawn: Drawn) -> Look:
+        above, below = (
+            polynomial(items_of(drawn.settings.get(name, "1")), letter)
+            for name in ("numerator", "denominator")
+        )
+        return _fraction(above, below, drawn, (f"b({letter})", f"a({letter})"))
+
+    return shape
+
+
+def _first_order(drawn: Drawn) -> Look:
+    return _fraction(drawn.settings.get("k", "1"), _lagging(drawn), drawn, ("k", "T s + 1"))
+
+
+def _lead_lag(drawn: Drawn) -> Look:
+    leading = polynomial([drawn.settings.get("lead", "lead"), "1"], "s")
+    k = drawn.settings.get("k", "1")
+    above = leading if k == "1" else times(k, f"({leading})")
+    return _fraction(above, _lagging(drawn), drawn, ("lead s + 1", "lag s + 1"))
+
+
+def _derivative(drawn: Drawn) -> Look:
+    above = times(drawn.settings.get("k", "1"), "s")
+    return _fraction(above, _lagging(drawn), drawn, ("k s", "T s + 1"))
+
+
+def _lagging(drawn: Drawn) -> str:
+    return polynomial([drawn.settings.get("lag", "lag"), "1"], "s")
+
+
+EULER_TO_EULER = {0.0: ("T", "z − 1"), 0.5: ("T (z + 1)", "2 (z − 1)"), 1.0: ("T z", "z − 1")}
+"""Discrete integrators by their weight: forward Euler, trapezoidal, backward Euler."""
+
+
+def _discrete_integrator(drawn: Drawn) -> Look:
+    weight = drawn.numbers.get("weight")
+    if weight not in EULER_TO_EULER:
+        return text_box("discrete integrator", drawn)
+    above, below = EULER_TO_EULER[weight]
+    return _fraction(times(drawn.settings.get("gain", "1"), above), below, drawn, (above, below))
+
+
+def _compare(drawn: Drawn) -> Look:
+    return text_box("≥" if drawn.ports > 1 else f"≥ {drawn.settings.get('level', '0')}", drawn)
+
+
+def _lines(*lines: str) -> Shape:
+    width = round(max(map(text_width, lines)) + 16)
+    return lambda drawn: Look(
+        "box", width, max(_height(drawn), LINE * len(lines) + 12), lines=lines
+    )
 
 
 def _sum(drawn: Drawn) -> Look:
@@ -112,26 +177,6 @@ def _power(drawn: Drawn) -> Look:
     return text_box(f"u^{drawn.settings.get('exponent', 'n')}", drawn)
 
 
-SINE: Line = tuple((n / 12 - 1, 0.85 * math.sin(math.pi * (n / 12 - 1))) for n in range(25))
-SQUARE: Line = ((-1, -0.7), (-0.5, -0.7), (-0.5, 0.7), (0, 0.7), (0, -0.7), (0.5, -0.7), (0.5, 0.7),
-                (1, 0.7))  # fmt: skip
-STEP: Line = ((-1, -0.6), (-0.2, -0.6), (-0.2, 0.7), (1, 0.7))
-RAMP: Line = ((-1, -0.6), (-0.4, -0.6), (1, 0.8))
-STAIRS: Line = ((-1, -0.8), (-0.6, -0.8), (-0.6, -0.2), (-0.2, -0.2), (-0.2, 0.5), (0.3, 0.5),
-                (0.3, 0.8), (1, 0.8))  # fmt: skip
-UP: Line = ((-1, -0.7), (0.45, -0.7), (0.45, 0.7), (1, 0.7))
-DOWN: Line = ((1, 0.7), (-0.45, 0.7), (-0.45, -0.7), (-1, -0.7))
-PLAY_UP: Line = ((-0.4, -0.8), (0.9, 0.8), (0.4, 0.8))
-PLAY_DOWN: Line = ((0.4, 0.8), (-0.9, -0.8), (-0.4, -0.8))
-ARM: Line = ((-1, 0.55), (-0.5, 0.55), (0.45, 0.05))
-CONTACTS: tuple[Line, ...] = (((-1, -0.55), (-0.5, -0.55)), ((0.5, 0), (1, 0)))
-BOUND: tuple[Line, ...] = (((-1, -0.8), (-0.5, -0.8), (0.5, 0.8), (1, 0.8)),)
-FALL: Line = ((-1, 0.9), (-0.75, 0.3), (-0.55, -0.8), (-0.2, 0.2), (0.1, -0.8), (0.35, -0.3),
-              (0.6, -0.8), (1, -0.8))  # fmt: skip
-LOOP: Line = tuple(
-    (math.cos(math.pi * n / 12), 0.8 * math.sin(math.pi * n / 12 + 0.9)) for n in range(25)
-)
-
 SHAPES: dict[str, Shape] = {
     "gain": _gain,
     "matrix_gain": _gain,
@@ -146,22 +191,58 @@ SHAPES: dict[str, Shape] = {
     "expression": _setting("formula"),
     "time": _function("t"),
     "power": _power,
-    "sine": _icon(SINE),
-    "harmonic": _icon(SINE),
-    "square": _icon(SQUARE),
-    "step": _icon(STEP),
-    "ramp": _icon(RAMP),
-    "relay": _icon(UP, DOWN),
-    "play_operator": _icon(PLAY_UP, PLAY_DOWN),
-    "switch": _icon(ARM, *CONTACTS, axes=False),
-    "zero_order_hold": _icon(STAIRS),
-    "sample_and_hold": _icon(STAIRS),
-    "limited_integrator": _icon(*BOUND),
-    "bouncing_body": _icon(FALL, axes=False),
-    "hysteresis": _icon(LOOP),
-    "dahl": _icon(LOOP),
-    "bouc_wen": _icon(LOOP),
-    "lugre": _icon(LOOP),
+    "sine": _icon(icons.SINE),
+    "harmonic": _icon(icons.SINE),
+    "square": _icon(icons.SQUARE),
+    "step": _icon(icons.STEP),
+    "ramp": _icon(icons.RAMP),
+    "relay": _icon(icons.UP, icons.DOWN),
+    "play_operator": _icon(icons.PLAY_UP, icons.PLAY_DOWN),
+    "switch": _icon(icons.ARM, *icons.CONTACTS, axes=False),
+    "zero_order_hold": _icon(icons.STAIRS),
+    "sample_and_hold": _icon(icons.STAIRS),
+    "limited_integrator": _icon(icons.BOUND),
+    "bouncing_body": _icon(icons.FALL, axes=False),
+    "hysteresis": _icon(icons.LOOP),
+    "dahl": _icon(icons.LOOP),
+    "bouc_wen": _icon(icons.LOOP),
+    "lugre": _icon(icons.LOOP),
+    "pulse": _icon(icons.PULSES),
+    "sawtooth": _icon(icons.SAWTOOTH),
+    "triangle": _icon(icons.TRIANGLE),
+    "chirp": _icon(icons.CHIRP),
+    "multisine": _icon(icons.MULTISINE),
+    "noise": _icon(icons.NOISE),
+    "random_steps": _icon(icons.LEVELS),
+    "prbs": _icon(icons.BITS),
+    "transfer_function": _transfer_function("s"),
+    "discrete_transfer_function": _transfer_function("z"),
+    "first_order": _first_order,
+    "lead_lag": _lead_lag,
+    "derivative": _derivative,
+    "second_order": _icon(icons.RINGING),
+    "low_pass": _icon(icons.LOW_PASS),
+    "high_pass": _icon(icons.HIGH_PASS),
+    "band_pass": _icon(icons.BAND_PASS),
+    "notch": _icon(icons.NOTCH),
+    "state_space": _lines("x′ = A x + B u", "y = C x + D u"),
+    "discrete_state_space": _lines("x⁺ = A x + B u", "y = C x + D u"),
+    "pid": _function("PID(s)"),
+    "discrete_pid": _function("PID(z)"),
+    "unit_delay": _function(raised("z", -1)),
+    "discrete_integrator": _discrete_integrator,
+    "pade_delay": _function("≈ exp(−T s)"),
+    "quantizer": _icon(icons.LADDER),
+    "compare": _compare,
+    "and": _function("AND"),
+    "or": _function("OR"),
+    "xor": _function("XOR"),
+    "not": _function("NOT"),
+    "jk_flip_flop": _function("JK"),
+    "select": _icon(icons.ARM, *icons.WAYS, axes=False),
+    "edge": _icon(icons.RISE, icons.RISE_HEAD, axes=False),
+    "monostable": _icon(icons.ONE_PULSE, axes=False),
+    "timer": _icon(icons.COUNTED),
     "mux": _bar,
     "demux": _bar,
     **{

@@ -159,7 +159,9 @@ def _inside(node: Node, place: Rectangle) -> Iterator[str]:
         yield _write(look.lines[0], place.x + 10, place.y + 16)
     elif look.fraction:
         yield _write(look.lines[0], x, y - 4, "", "middle")
-        yield f'<path class="axis" style="stroke:#1f2933" d="{path([(x - 6, y), (x + 6, y)])}"/>'
+        half = max(6.0, *(text_width(line) / 2 + 2 for line in look.lines))
+        bar = path([(x - half, y), (x + half, y)])
+        yield f'<path class="axis" style="stroke:#1f2933" d="{bar}"/>'
         yield _write(look.lines[1], x, y + 12, "", "middle")
     elif look.curve:
         west, east = node.labels
