@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import re
+import subprocess
+import sys
+from pathlib import Path
+
 import pytest
 from library.values import library
 from tracewire.diagram import read_text
@@ -103,3 +108,12 @@ subsystems:
   PID: {inputs: [of], outputs: {y: double}, blocks: {double: {type: gain, of: of, k: 2}}}
 """
     assert read_text(text).blocks["y"].subsystem is not None
+
+
+def test_the_page_of_names_is_made_of_the_table_and_the_declarations() -> None:
+    page = Path(__file__).parents[2] / "blocks" / "README.md"
+    made = subprocess.run(
+        [sys.executable, "-m", "tracewire.library"], capture_output=True, check=True
+    ).stdout.decode()
+    assert page.read_text(encoding="utf-8").splitlines() == made.splitlines()
+    assert re.search(r"\| \[integrator\]\(linear.py\) \|.*\| INTEGRAL_m, INTEGRAL_f \|", made)
