@@ -58,7 +58,7 @@ prbs = Block(
         Parameter("low", doc="the level of a bit of 0", default=-1.0),
         Parameter("high", doc="the level of a bit of 1", default=1.0),
     ),
-    states=(State("bits", rate="0", start="1 if register >= 0.5 else 0"),),
+    states=(State("bits", "zeros_like(bit_register(register))", "bit_register(register)"),),
     events=(
         Event(
             "tick",

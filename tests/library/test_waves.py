@@ -257,3 +257,21 @@ record: [e, y]
 """)
     assert result["y"] == pytest.approx(np.clip(result["e"], -0.2, 0.2), abs=1e-12)
     assert {abs(y) < 0.2 for y in result["y"]} == {True, False}
+
+
+@pytest.mark.parametrize(
+    ("register", "told"),
+    [
+        ("1", "its register is a number, and it takes two bits or more: write a list, such as [1,"),
+        ("[1]", "its register is a vector of 1, and it takes two bits or more: write a list"),
+        ("[0, 0]", "the bits of its register are all 0, and would stay so: write a 1 for one."),
+        ("[1, 0], tap: 3", "'b.bits' is a vector of 2, and has no element [3]: they are counted"),
+    ],
+)
+def test_prbs_says_what_is_wrong_with_its_register(register: str, told: str) -> None:
+    text = f"span: [0, 1]\nblocks:\n  b: {{type: prbs, period: 0.1, register: {register}}}\n"
+    with pytest.raises(DiagramError) as caught:
+        made(text)
+    assert [str(p).removeprefix("<text>:3:3: block 'b': ")[:60] for p in caught.value.problems] == [
+        told[:60]
+    ]

@@ -50,8 +50,7 @@ class _Expander:
         flat = self.flat
         signals: dict[str, Expression] = {}
         for name, formula in flat.signals.items():
-            if name in self.failed or not self.failed.intersection(names_of(formula)):
-                signals |= self.named(name, formula, self.place(name), "it")
+            signals |= self.named(name, formula, self.place(name), "it", own=name)
         states = [state for old in flat.states for state in self.state(old)]
         events = [
             replace(e, when=self.number(e.when, e.place), set=self.values(e.set, e.place))
@@ -102,22 +101,26 @@ class _Expander:
         if problem not in self.problems:
             self.problems.append(problem)
 
-    def expand(self, formula: Expression, place: Place) -> Elements:
-        """The elements of a formula; a zero with a problem noted where its shapes are wrong."""
+    def expand(self, formula: Expression, place: Place, own: str = "") -> Elements:
+        """The elements of a formula; a zero with a problem noted where its shapes are wrong.
+
+        What reads a name that is wrong itself is not told, but in the formula of that name, `own`.
+        """
         try:
             return self.expansion.expand(formula)
         except Mismatch as mismatch:
-            self.problem(str(mismatch), place)
+            if self.failed.isdisjoint({*names_of(formula)} - {own}):
+                self.problem(str(mismatch), place)
             return Elements((), (Number(0.0),))
 
     def named(
-        self, name: str, formula: Expression, place: Place, what: str
+        self, name: str, formula: Expression, place: Place, what: str, own: str = ""
     ) -> dict[str, Expression]:
         """The formulas of the elements of a name; a number stands for each of them."""
         _, index = split_index(name)
         shape: Shape = () if index else self.shapes.get(name, ())
         names = self.elements(name, place) if index else element_names(name, shape)
-        elements = self.expand(formula, place)
+        elements = self.expand(formula, place, own)
         if elements.shape not in ((), shape):
             shown = f"{shape_text(shape)}, and {what} is {shape_text(elements.shape)}"
             self.problem(f"'{name}' is {shown}", place, "Give both the same length.")
@@ -125,8 +128,8 @@ class _Expander:
         return {element: elements.at(i) for i, element in enumerate(names)}
 
     def state(self, state: FlatState) -> Iterator[FlatState]:
-        starts = self.named(state.name, state.start, state.place, "its start")
-        rates = self.named(state.name, state.rate, state.place, "its rate")
+        starts = self.named(state.name, state.start, state.place, "its start", own=state.name)
+        rates = self.named(state.name, state.rate, state.place, "its rate", own=state.name)
         for name in element_names(state.name, self.shapes.get(state.name, ())):
             start, rate = starts.get(name, Number(0.0)), rates.get(name, Number(0.0))
             yield replace(state, name=name, start=start, rate=rate)

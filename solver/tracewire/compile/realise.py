@@ -58,6 +58,18 @@ def _shift(parts: Sequence[Elements], text: str) -> Elements:
     return Elements((len(x.items),), (*x.items[1:], u.items[0]))
 
 
+def _register(parts: Sequence[Elements], text: str) -> Elements:
+    """bit_register(r): 1 for each element of r that is at least 1/2, and 0 for the others."""
+    bits = parts[0]
+    if len(bits.shape) != 1 or bits.shape[0] < 2:
+        what = f"its register is {shape_text(bits.shape)}, and it takes two bits or more"
+        raise Mismatch(f"{what}: write a list, such as [1, 0, 0]")
+    if all(isinstance(bit, Number) and bit.value < 0.5 for bit in bits.items):
+        raise Mismatch("the bits of its register are all 0, and would stay so: write a 1 for one")
+    items = tuple(Call("if", (Call(">=", (bit, Number(0.5))), ONE, ZERO)) for bit in bits.items)
+    return Elements(bits.shape, items)
+
+
 def _direct(parts: Sequence[Elements], text: str) -> Elements:
     """direct_gain(b, a): b[0]/a[0] where b/a has equal degrees, else 0."""
     padded, leading = _polynomials(parts)
@@ -150,6 +162,7 @@ REALISED: Mapping[str, Callable[[Sequence[Elements], str], Elements]] = {
     "matrix_times": _times,
     "zeros_like": _zeros,
     "shift_in": _shift,
+    "bit_register": _register,
     "direct_gain": _direct,
     "monic_coefficients": _coefficients,
     "root_scale": _root_scale,
