@@ -4,11 +4,12 @@ from tracewire.library import Block, Input, Output, Parameter, State
 
 transfer_function = Block(
     name="transfer_function",
-    doc="A linear system b(s)/a(s) of one signal, at rest at the start.",
+    doc="A linear system b(s)/a(s) of one signal.",
     inputs=(Input("of", doc="one number"),),
     parameters=(
         Parameter("numerator", doc="b: coefficients, the highest power first", default=1.0),
         Parameter("denominator", doc="a: of as high a degree or higher, such as [m, c, k]"),
+        Parameter("start", doc="the output before the start, to which it has settled", default=0.0),
     ),
     # the observable canonical form: x[0] is the output, and all states are of its size
     states=(
@@ -18,7 +19,7 @@ transfer_function = Block(
             " + monic_coefficients(numerator, denominator, root_scale(denominator))*one_number(of)"
             " - monic_coefficients(denominator, denominator, root_scale(denominator))"
             "*(x[0] + direct_gain(numerator, denominator)*one_number(of)))",
-            "0*monic_coefficients(denominator, denominator, 1)",
+            "start*settled_states(numerator, denominator, root_scale(denominator))",
         ),
     ),
     outputs=(Output("y", "x[0] + direct_gain(numerator, denominator)*one_number(of)"),),

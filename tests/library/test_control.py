@@ -114,6 +114,34 @@ def test_first_order_second_order_and_other_filters_are_their_transfer_functions
     assert result["y"] == pytest.approx(exact, rel=1e-7, abs=1e-8)
 
 
+@pytest.mark.parametrize(
+    ("numerator", "denominator", "u"),
+    [
+        ([2.0], [0.5, 1.0], 1.5),
+        ([5.0], [2.0, 0.4, 50.0], 30.0),
+        ([1.0, 0.5, 4.0], [4.0, 1.0, 8.0], 6.0),  # direct feedthrough, and zeros
+        ([1.0, 2.0], [1.0, 3.0, 0.0], 0.0),  # it integrates, and rests at any output
+        ([1e-3], [1e-9, 2e-6, 1e-3], 3.0),
+    ],
+)
+def test_transfer_function_may_begin_settled(
+    numerator: list[float], denominator: list[float], u: float
+) -> None:
+    block = f"{{type: transfer_function, of: u, numerator: {numerator}, denominator: {denominator}"
+    result = driven(f"{block}, start: 3}}", f"{{type: constant, value: {u}}}")
+    assert result["y"] == pytest.approx(np.full_like(result.t, 3.0), rel=1e-9)
+
+
+def test_transfer_function_let_go_at_its_start_swings() -> None:
+    """2 x'' + 0.4 x' + 50 x = 0 from x = 3 at rest: an under-damped swing."""
+    block = "{type: transfer_function, of: u, denominator: [2, 0.4, 50], start: 3}"
+    result = driven(block, "{type: constant, value: 0}")
+    decay, omega = 0.1, np.sqrt(25 - 0.01)
+    t = result.t
+    exact = 3 * np.exp(-decay * t) * (np.cos(omega * t) + decay / omega * np.sin(omega * t))
+    assert result["y"] == pytest.approx(exact, abs=1e-7)
+
+
 @pytest.mark.parametrize("name", FILTERS)
 def test_filters_may_begin_settled_to_an_input(name: str) -> None:
     settings, numerator, denominator = FILTERS[name]

@@ -19,6 +19,7 @@ parameters:
   L: {value: 2, unit: H}
   R: {value: 2, unit: ohm}
   kt: {value: 2, unit: N m/A}
+  torque: {value: 3, unit: N m}
   rate: {value: 3, unit: 1/s}
 blocks:
   turned: {type: sine, amplitude: {value: 1, unit: rad}, omega: 3, unit: rad}
@@ -43,7 +44,7 @@ UNITS = {
     "notch": ("of: volts, frequency: 2", "V"),
     "pade_delay": ("of: volts, delay: T", "V"),
     "pid": ("of: turned, kp: k, ki: ki, kd: kd, low: -V, high: V", "V"),
-    "transfer_function": ("of: volts, numerator: kt, denominator: [L, R]", "N m"),
+    "transfer_function": ("of: volts, numerator: kt, denominator: [L, R], start: torque", "N m"),
     "state_space": ("of: turned, A: [[0, 1], [-4, -1]], B: [[0], [b]], C: [1, 0]", "m"),
     "unit_delay": ("of: volts, period: T", "V"),
     "discrete_integrator": ("of: volts, gain: rate, period: T", "V"),

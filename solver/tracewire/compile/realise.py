@@ -7,8 +7,14 @@ A transfer function b(s)/a(s) of degree n is realised in observable canonical fo
 
 where b has zeros in front up to the length of a. The scale w is the size of the largest pole, so
 that all states are of the size of y, whatever the unit of the time; a discrete one has w = 1, and
-x⁺ in the place of x'. Source: T. Kailath, Linear Systems, 1980, section 2.1; the scale is
-Fujiwara's bound of the roots without its factor 2.
+x⁺ in the place of x'. It begins settled, with y = start and a constant input u = a[n]/b[n]*start:
+
+    x[0] = start - b[0]*u,    x[k] = a[k]/w**k*start - b[k]/w**k*u    for k = 1 ... n-1
+
+where u is 0 if one of a[n] and b[n] is: an integrator rests at any y.
+
+Source: T. Kailath, Linear Systems, 1980, section 2.1; the scale is Fujiwara's bound of the roots
+without its factor 2.
 """
 
 from __future__ import annotations
@@ -88,6 +94,18 @@ def _coefficients(parts: Sequence[Elements], text: str) -> Elements:
     return Elements((len(items),), items)
 
 
+def _settled(parts: Sequence[Elements], text: str) -> Elements:
+    """settled_states(b, a, w): the states for an output of 1, to which the system has settled."""
+    b, a = (_coefficients([part, parts[1], parts[2]], text).items for part in parts[:2])
+    last_b, last_a = (_polynomials([part, parts[1]])[0][-1] for part in parts[:2])
+    u = ZERO if ZERO in (last_a, last_b) else _quotient(last_a, last_b)
+    direct = _direct(parts[:2], text).items
+    output = (ONE, *a[:-1])
+    taken = (_product(u, item) for item in (*direct, *b[:-1]))
+    items = [y if x == ZERO else Call("-", (y, x)) for y, x in zip(output, taken, strict=True)]
+    return Elements((len(items),), tuple(items))
+
+
 def _root_scale(parts: Sequence[Elements], text: str) -> Elements:
     """root_scale(a): max over k of |a[k]/a[0]|**(1/k), and 1 where that is 0."""
     padded, leading = _polynomials([parts[0], parts[0]])
@@ -165,6 +183,7 @@ REALISED: Mapping[str, Callable[[Sequence[Elements], str], Elements]] = {
     "bit_register": _register,
     "direct_gain": _direct,
     "monic_coefficients": _coefficients,
+    "settled_states": _settled,
     "root_scale": _root_scale,
     "pick_element": _pick,
 }
