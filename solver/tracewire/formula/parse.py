@@ -38,7 +38,7 @@ ZEROS = re.compile(r"(?<![\w.])0+([1-9]\d*)(?![\w.])")
 BY_NAME = {"wires": "a port", "points": "a table of points"}
 LANGUAGE = (
     "A formula knows + - * / **, < <= > >=, and/or/not, 'a if c else b' and: "
-    + ", ".join(FUNCTIONS)
+    + ", ".join(name for name, function in FUNCTIONS.items() if not function.instead)
     + "."
 )
 
