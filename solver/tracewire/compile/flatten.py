@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import reduce
 
 from tracewire.compile.curves import curve_tables
 from tracewire.compile.expand import expand_vectors
@@ -18,6 +17,7 @@ from tracewire.compile.flat import (
 )
 from tracewire.compile.happenings import block_events, block_memory, diagram_events, memory_name
 from tracewire.compile.loops import order_signals
+from tracewire.compile.many import write_wires
 from tracewire.compile.realise import without_zero_products
 from tracewire.compile.sampling import SampledPort, sample_ports
 from tracewire.compile.vectors import has_vectors
@@ -36,10 +36,8 @@ from tracewire.diagram import (
     state_names,
 )
 from tracewire.errors import Place
-from tracewire.formula import CONSTANTS, FUNCTIONS, Call, Expression, Name, Number, names_of, rename
+from tracewire.formula import CONSTANTS, Call, Expression, Name, Number, names_of, rename
 from tracewire.library import Block, Parameter
-
-LONGEST_FOLD = 100
 
 
 def flatten(diagram: Diagram) -> Flat:
@@ -60,20 +58,6 @@ def _scaled(formula: Expression, factor: float) -> Expression:
     if isinstance(formula, Number):
         return Number(formula.value * factor)
     return Call("*", (formula, Number(factor)))
-
-
-def _folded(sign: str, terms: list[Expression], empty: float) -> Expression:
-    """The sum or product of terms; a sum takes away a term that is negative."""
-
-    def joined(a: Expression, b: Expression) -> Expression:
-        if sign == "+" and isinstance(b, Call) and b.function == "neg":
-            return Call("-", (a, *b.arguments))
-        return Call(sign, (a, b))
-
-    if len(terms) > LONGEST_FOLD:  # by halves: a formula may not nest as deep as that
-        middle = len(terms) // 2
-        return joined(_folded(sign, terms[:middle], empty), _folded(sign, terms[middle:], empty))
-    return reduce(joined, terms) if terms else Number(empty)
 
 
 class _Flattener:
@@ -264,9 +248,7 @@ class _Flattener:
                 names[port.name] = rename(default, lambda name: names.get(name, Name(name)))
 
         def written(formula: Expression) -> Expression:
-            full = rename(
-                _without_manies(formula, manies), lambda name: names.get(name, Name(name))
-            )
+            full = rename(write_wires(formula, manies), lambda name: names.get(name, Name(name)))
             curve_tables(full, self.tables)
             return without_zero_products(full)
 
@@ -337,30 +319,6 @@ class _Flattener:
         if isinstance(value, Array):
             return Call("stack", tuple(self.value(item, scope) for item in value.items))
         return self.value(value, scope)
-
-
-def _without_manies(formula: Expression, manies: Mapping[str, list[Expression]]) -> Expression:
-    """The formula with sum(port), product(port), min(..., port) and max(..., port) written out."""
-    if not isinstance(formula, Call):
-        return formula
-    first = formula.arguments[0]
-    if formula.function == "join" and isinstance(first, Name) and first.name in manies:
-        return Call("join", tuple(manies[first.name]))
-    if formula.function in ("sum", "product") and isinstance(first, Name) and first.name in manies:
-        plus = formula.function == "sum"
-        return _folded("+" if plus else "*", manies[first.name], 0.0 if plus else 1.0)
-    function = FUNCTIONS.get(formula.function)
-    if function is not None and function.most is None:
-        several = (_wires(argument, manies) for argument in formula.arguments)
-        return Call(formula.function, tuple(wire for wires in several for wire in wires))
-    return Call(formula.function, tuple(_without_manies(a, manies) for a in formula.arguments))
-
-
-def _wires(formula: Expression, manies: Mapping[str, list[Expression]]) -> list[Expression]:
-    """The wires of a port that takes several, or any other formula by itself."""
-    if isinstance(formula, Name) and formula.name in manies:
-        return manies[formula.name]
-    return [_without_manies(formula, manies)]
 
 
 def _resolved(local: Mapping[str, str], scope: _Scope) -> dict[str, str]:
