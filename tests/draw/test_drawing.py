@@ -292,3 +292,10 @@ def test_a_missing_layout_engine_is_told(monkeypatch: pytest.MonkeyPatch, tmp_pa
             draw(read(PENDULUM))
     finally:
         engine._context.cache_clear()
+
+
+def test_the_wires_among_which_a_block_selects_have_numbers() -> None:
+    drawing = draw(read(DIAGRAMS / "gallery" / "barrier.yaml"))
+    ports = [port.text for port in node(drawing, "shown").ports if port.side == "west"]
+    assert ports == ["index", "0", "1"]
+    assert [port.text for port in node(drawing, "refused").ports if port.side == "west"] == ["", ""]

@@ -32,6 +32,8 @@ ORDERED = {"mux", "solve", "divide", "switch", "atan2", "compare", "select", "jk
 """Types of which the ports stay in the order of their declaration."""
 UNNAMED = {"sum", "product", "mux", "max", "min", "dot", "and", "or", "xor"}
 """Types whose inputs need no names inside: they are alike, or their order says what they are."""
+NUMBERED = {"select"}
+"""Types that tell the wires of one input by their numbers, which stand inside."""
 MOST_PORT_NAME = 90.0  # px
 MOST_NAME = 150.0
 WRITTEN_BELOW = 150.0
@@ -199,7 +201,8 @@ class _Builder:
         for port, wires in use.inputs.items():
             for number, wire in enumerate(wires):
                 id = f"{full}<{port}" + (f".{number}" if len(wires) > 1 else "")
-                text = self.text_at(use, port, wire, single)
+                numbered = use.type in NUMBERED and len(wires) > 1
+                text = self.text_at(use, str(number) if numbered else port, wire, single)
                 ports.append(Port(id, "west", text))
                 level.wires += self.wire(level, wire, id, id)
         for number, name in enumerate(_signals_in_formulas(level.diagram, use)):
