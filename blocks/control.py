@@ -51,8 +51,8 @@ pid = Block(
     inputs=(Input("of", doc="the error: reference minus measurement"),),
     parameters=(
         Parameter("kp", doc="the proportional gain"),
-        Parameter("ki", "1/s", "the integral gain, kp over the integral time", default=0.0),
-        Parameter("kd", "s", "the derivative gain, kp times the derivative time", default=0.0),
+        Parameter("ki", doc="the integral gain, kp over the integral time", default=0.0),
+        Parameter("kd", doc="the derivative gain, kp times the derivative time", default=0.0),
         Parameter("n", "rad/s", "the bandwidth of the derivative", default=100.0, above=0.0),
         Parameter("low", doc="the lower limit; far unless given", default=-FAR),
         Parameter("high", doc="the upper limit; far unless given", default=FAR),

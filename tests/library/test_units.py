@@ -79,3 +79,9 @@ def test_the_unit_of_an_output_is_that_of_what_it_is_made_of(name: str) -> None:
     settings, unit = UNITS[name]
     assert told(name, settings, unit) == []
     assert bool(told(name, settings, "kg")) == (name not in FREE)
+
+
+def test_the_gains_of_a_controller_have_the_units_of_its_signals() -> None:
+    gains = "kp: {value: 2, fit: free}, ki: {value: 3, fit: free}, kd: {value: 1, fit: free}"
+    assert told("pid", f"of: turned, {gains}", "V") == []
+    assert told("discrete_pid", f"of: turned, {gains}, period: T", "V") == []
