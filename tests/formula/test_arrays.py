@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from tracewire.errors import FormulaError
 from tracewire.formula import evaluate, parse
@@ -18,6 +18,7 @@ FORMULAS = (
 
 
 @pytest.mark.parametrize("text", FORMULAS)
+@example(values=[(-3.5, 0.0)])  # -3.5/0.7 is rounded to -5
 @given(values=st.lists(st.tuples(st.floats(-9, 9), st.floats(-9, 9)), min_size=1, max_size=9))
 def test_samples_are_what_each_number_is(text: str, values: list[tuple[float, float]]) -> None:
     formula, (a, b) = parse(text), np.array(values).T

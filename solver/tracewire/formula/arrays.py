@@ -23,7 +23,11 @@ def _of_numpy(name: str) -> Callable[..., Any]:
 
 
 ALONG = {name: _of_numpy(one.numpy) for name, one in OPERATIONS.items() if one.numpy}
-ALONG |= {"if": np.where, "dry": lambda u, slip, stick: slip * np.sign(u)}
+ALONG |= {
+    "if": np.where,
+    "dry": lambda u, slip, stick: slip * np.sign(u),
+    "mod": lambda a, b: a - b * np.floor(a / b),  # np.mod differs where a/b is rounded to a whole
+}
 """What numpy has for operators and functions, and what it does not have."""
 
 

@@ -132,7 +132,7 @@ FUNCTIONS = {
     "floor": Function(1, 1, "the largest whole number not above; every jump is a guard", math.floor,
         numpy="floor", unit="kept", intrinsic="llvm.floor.f64"),
     "mod": Function(2, 2, "a - b*floor(a/b); every jump is a guard",
-        lambda a, b: a - b * math.floor(a / b), numpy="mod", unit="same"),
+        lambda a, b: a - b * math.floor(a / b), unit="same"),
     "dry": Function(3, 3,
         "dry(u, slip, stick): slip*sign(u); at u = 0 any value within +-stick that holds u there",
         lambda u, slip, stick: slip * ((u > 0) - (u < 0)), unit="levels"),
