@@ -210,3 +210,23 @@ def test_a_run_that_cannot_be_finished_exits_with_1(call: Any, tmp_path: Path) -
     assert told.code == 1
     assert told.data["error"][0]["block"] == "x"
     assert "t = 1" in told.err
+
+
+def test_a_report_of_a_run_opens_with_the_diagram_and_has_the_series(
+    call: Any, swing: Path, tmp_path: Path
+) -> None:
+    file = tmp_path / "run.html"
+    told = call("run", swing, "--series", "run_1", "--report", file)
+    assert (told.code, told.err) == (0, "")
+    assert f"written: {file}" in told.out
+    page = file.read_text(encoding="utf-8")
+    assert page.index("The diagram") < page.index("The run") < page.index("The values")
+    assert "The recorded signals, and the series run_1" in page
+    assert page.count("<img") == 2
+
+
+def test_a_report_is_that_of_one_run(call: Any, swing: Path) -> None:
+    told = call("run", swing, "--over", "slip=1e-4,2e-4", "--report", "run.html")
+    assert told.code == 2
+    assert "--output, --report, --samples and --events are those of one run" in told.err
+    assert "'run.pdf': unknown file ending '.pdf'" in call("run", swing, "--report", "run.pdf").err

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from analyse.models import DUFFING, LORENZ, MATHIEU, OSCILLATOR, PENDULUM, VAN_DER_POL, made
-from show.test_figures import pixels, texts
+from show.test_figures import CART, pixels, texts
 from tracewire import show
 from tracewire.analyse import (
     Plane,
@@ -24,6 +24,8 @@ from tracewire.analyse import (
     stability_chart,
     sweep,
 )
+from tracewire.compile import compile
+from tracewire.diagram import read_text
 from tracewire.errors import OptionError
 from tracewire.solve import simulate
 
@@ -42,6 +44,12 @@ def test_a_portrait_names_its_axes(tmp_path: Path) -> None:
             show.plot_portrait(RUN, x, y, tmp_path / "a.svg")
     with pytest.raises(OptionError, match="there is no sample from 99 s on"):
         show.plot_portrait(RUN, "phi", "w", tmp_path / "a.svg", since=99)
+
+
+def test_a_portrait_shows_what_sticks(tmp_path: Path) -> None:
+    run = simulate(compile(read_text(CART)))
+    assert "sticks" in texts(show.plot_portrait(run, "v", "rub", tmp_path / "a.svg"))
+    assert "sticks" not in texts(show.plot_portrait(run, "v", "rub", tmp_path / "b.svg", since=2))
 
 
 def test_a_polar_orbit_is_seen_from_the_side(tmp_path: Path) -> None:

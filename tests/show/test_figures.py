@@ -15,8 +15,10 @@ from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.errors import OptionError
 from tracewire.show import plot_fit, plot_residual, plot_run
+from tracewire.show.event_rows import struck
 from tracewire.show.figures import group_signals
-from tracewire.show.summary import run_table, stick_intervals
+from tracewire.show.sticking import held_intervals, joined, stick_intervals
+from tracewire.show.summary import run_table
 from tracewire.solve import Event, Run, Statistics, simulate
 
 T = np.linspace(0.0, 4.0, 81)
@@ -146,6 +148,52 @@ blocks:
     found = stick_intervals(simulate(compile(read_text(text))))
     assert list(found) == ["rub"]
     assert found["rub"] == [pytest.approx((5 * np.pi, 20.0), abs=1e-5)]
+
+
+CART = """\
+span: [0, 4]
+record: [x, v, rub, pull]
+blocks:
+  x: {type: integrator, of: v, start: 1}
+  v: {type: integrator, of: force}
+  rub: {type: dry_friction, rate: v, slip: 1, stick: 1.5}
+  pull: {type: expression, formula: t}
+  force: {type: sum, of: [pull, rub]}
+"""
+
+
+def test_a_friction_holds_its_rate_the_position_and_its_own_force() -> None:
+    """Pulled by t from rest, it slips where t is 1.5, and never stops again."""
+    held = held_intervals(simulate(compile(read_text(CART))))
+    assert set(held) == {"x", "v", "rub"}
+    for intervals in held.values():
+        assert intervals == [pytest.approx((0.0, 1.5), abs=1e-6)]
+
+
+def test_a_guard_in_words_holds_the_friction_alone() -> None:
+    held = held_intervals(run_of({"rub": ("N", T), "x": ("m", T)}, SWING.events))  # type: ignore[arg-type]
+    assert held == {"rub": [(0.0, 0.5), (1.0, 2.0), (3.5, 4.0)]}
+
+
+def test_intervals_that_touch_are_one() -> None:
+    assert joined([(2, 3), (0, 1), (1, 1.5), (3.25, 4)]) == [(0, 1.5), (2, 3), (3.25, 4)]
+    assert joined([(2, 3), (0, 1), (3.25, 4)], apart=0.25) == [(0, 1), (2, 4)]
+
+
+def test_an_event_strikes_the_panels_of_the_states_that_it_sets() -> None:
+    bounce = Event(1.0, "impact", "ball", "x", "down", {"x": 0.0, "v": -2.0}, {"x": 0.0, "v": 2.0})
+    stick = Event(2.0, "stick", "rub", "v", "", {"v": 1e-12}, {"v": 0.0})
+    run = run_of({"x": ("m", T), "v": ("m/s", T)}, (bounce, bounce, stick))
+    assert struck(run, ["v"]) == [1.0]
+    assert struck(run, ["x"]) == []
+
+
+def test_hundreds_of_events_are_counted_and_take_few_marks(tmp_path: Path) -> None:
+    dense = [event(2.0 + n * 1e-4, "impact", "stop") for n in range(5000)]
+    few = plot_run(run_of({"x": ("m", T)}, tuple(dense[:1])), tmp_path / "few.svg")
+    many = plot_run(run_of({"x": ("m", T)}, tuple(dense)), tmp_path / "many.svg")
+    assert "stop (5000)" in texts(many)
+    assert len(many.read_bytes()) < 1.2 * len(few.read_bytes())
 
 
 def test_run_table_has_start_end_and_extremes() -> None:

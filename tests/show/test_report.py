@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 from show.fits import MODEL
+from tracewire.compile import compile
+from tracewire.diagram import read_text
 from tracewire.errors import OptionError
 from tracewire.show import Report, report
 from tracewire.show.document import Figure, Section
@@ -187,3 +189,22 @@ def test_a_run_as_a_report(tmp_path: Path) -> None:
     assert text.startswith("# Swing & rest\n")
     assert "From 0 to 2 s, 1001 samples. Events: none." in text
     assert (tmp_path / "run.png").is_file()
+    assert text.index("(run_diagram.svg)") < text.index("(run.png)")
+    assert (tmp_path / "run_diagram.svg").read_text(encoding="utf-8").startswith("<svg")
+
+
+def test_the_report_of_a_run_has_its_values_and_its_first_events() -> None:
+    text = """\
+span: [0, 6]
+parameters: {limit: {value: 1, unit: cm}}
+blocks:
+  x: {type: integrator, of: v, unit: m}
+  v: {type: sine, amplitude: 2, omega: 100}
+events: [{when: x - limit, set: {x: x}}]
+"""
+    run = simulate(compile(read_text(text)))
+    page = report(run).markdown()
+    assert "| limit | 0.01 | m |" in page
+    assert "| start of x | 0 | m |" in page
+    assert f"The first 40 of {len(run.events)}." in page
+    assert page.count("| reset |") <= 40 < len(run.events)

@@ -1,4 +1,4 @@
-"""What `fit` and `trace` write: a report, and the edited diagram."""
+"""What `run`, `fit` and `trace` write: a report, and the edited diagram."""
 
 from __future__ import annotations
 
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from tracewire.compile import Model
     from tracewire.diagram import Diagram
     from tracewire.fit import Fit, Profile
+    from tracewire.residual import Measured
+    from tracewire.solve import Run
     from tracewire.trace import Found
 
 ReportFile = Annotated[
@@ -111,7 +113,10 @@ def check_home(diagram: Diagram, output: str | None) -> None:
 
 
 def write_report(
-    subject: Fit | Found, path: str | None, profiles: Sequence[Profile] = ()
+    subject: Run | Fit | Found,
+    path: str | None,
+    profiles: Sequence[Profile] = (),
+    measured: Measured | None = None,
 ) -> list[str]:
     """Write a report where one is asked for; the paths that were written.
 
@@ -122,7 +127,7 @@ def write_report(
     with working("drawing"):
         from tracewire.show import report
 
-        report(subject, profiles).write(path, note)
+        report(subject, profiles, measured).write(path, note)
     return [path]
 
 

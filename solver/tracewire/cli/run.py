@@ -20,6 +20,7 @@ from tracewire.cli.output import (
     telling,
     working,
 )
+from tracewire.cli.reporting import ReportFile, write_report
 from tracewire.cli.series import SeriesName, read_series
 from tracewire.cli.values import parameter_values_of, start_values_of, units_of
 from tracewire.errors import OptionError, Problem
@@ -103,6 +104,7 @@ def run(
     figure: Annotated[
         str | None, typer.Option(metavar="FILE", help="Draw the run to .png, .svg or .pdf.")
     ] = None,
+    report: ReportFile = None,
     samples: Annotated[
         bool, typer.Option("--samples", help="With --json: print the samples, too.")
     ] = False,
@@ -116,6 +118,7 @@ def run(
     Examples:
       tracewire run pendulum.yaml --preset as_printed --span 0 4
       tracewire run pendulum.yaml --set "phi=13.6 deg" --figure swing.png
+      tracewire run pendulum.yaml --series run_1 --report run.html
       tracewire run pendulum.yaml --over c=0.1,0.2,0.5 --unit phi=deg --figure damping.png
 
     Ctrl-C keeps the run up to there: in the file of --output, or in DIAGRAM.interrupted.npz in this
@@ -127,13 +130,15 @@ def run(
         raise OptionError([Problem(what, hint=hint)])
     check_target(output, OUTPUTS, "output")
     check_target(figure, FIGURES, "figure")
+    check_target(report, (".md", ".html"), "report")
     model = load_model(diagram, library, record)
     parameters = parameter_values_of(model, values or ())
     starts = start_values_of(model, start or ())
     units = units_of(model, unit or ())
     cases = cases_of(model, over or (), preset or ())
-    if len(cases) > 1 and (output or samples or events):
-        what = "--output, --samples and --events are those of one run, and here are several"
+    if len(cases) > 1 and (output or samples or events or report):
+        what = "--output, --report, --samples and --events are those of one run"
+        what += ", and here are several"
         hint = "Leave them out, or run each case by itself."
         raise OptionError([Problem(what, hint=hint)])
     if every is not None:
@@ -143,7 +148,7 @@ def run(
     given = read_series(model, series)
     within = span or given.span
     # a figure of a quick swing needs more points than a table of it
-    finer = figure is not None and model.flat.every is None
+    finer = (figure or report) is not None and model.flat.every is None
     runs = {}
     for case in cases:
         what = f"simulating {diagram}" + (f" with {case.name}" if case.name else "")
@@ -186,7 +191,8 @@ def run(
                 plot_runs(runs, figure, given.measured)
             else:
                 plot_run(result, figure, given.measured)
-    written = [path for path in (output, figure) if path is not None]
+    write_report(result, report, measured=given.measured)
+    written = [path for path in (output, figure, report) if path is not None]
 
     if finer:
         runs = {name: _thinned(one) for name, one in runs.items()}

@@ -2,31 +2,64 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 
 from tracewire.fit import Fit, Profile
+from tracewire.residual import Measured
+from tracewire.show.diagram_picture import diagram_figure
 from tracewire.show.document import Figure, Report, Section
 from tracewire.show.figures import plot_run
 from tracewire.show.fit_report import fit_report
+from tracewire.show.summary import Table, event_counts, events_table, run_table, shown
 from tracewire.show.trace_report import trace_report
 from tracewire.solve import Run
 from tracewire.trace import Found
 
+NUMERIC = frozenset({1})
+MOST_EVENTS = 40
+"""Rows of the log of events in a report."""
 
-def report(subject: Run | Fit | Found, profiles: Sequence[Profile] = ()) -> Report:
+
+def report(
+    subject: Run | Fit | Found,
+    profiles: Sequence[Profile] = (),
+    measured: Measured | None = None,
+) -> Report:
     """The report of a run, a fit or a trace; `report(...).write("report.html")` writes it.
 
-    `profiles` are profile likelihoods of the fit, where they were computed.
+    `profiles` are profile likelihoods of the fit, where they were computed. `measured` is a series
+    whose samples the figure of a run shows, too.
     """
     if isinstance(subject, Run):
-        return _of_run(subject)
+        return _of_run(subject, measured)
     return fit_report(subject, profiles) if isinstance(subject, Fit) else trace_report(subject)
 
 
-def _of_run(run: Run) -> Report:
-    kinds = Counter(event.kind for event in run.events)
-    events = ", ".join(f"{count} {kind}" for kind, count in kinds.items()) or "none"
-    text = f"From {run.t[0]:g} to {run.t[-1]:g} s, {len(run.t)} samples. Events: {events}."
-    figure = Figure("run.png", run.title, lambda path: plot_run(run, path))
-    return Report(run.title, (Section("Run", (text, *run.warnings), figures=(figure,)),))
+def _of_run(run: Run, measured: Measured | None) -> Report:
+    kinds = ", ".join(f"{count} {kind}" for kind, count in event_counts(run).items()) or "none"
+    text = f"From {run.t[0]:g} to {run.t[-1]:g} s, {len(run.t)} samples. Events: {kinds}."
+    caption = "The recorded signals" + (f", and the series {measured.name}" if measured else "")
+    figure = Figure("run.png", caption, lambda path: plot_run(run, path, measured))
+    signals = replace(run_table(run), title="recorded signals")
+    sections = [Section("The run", (text, *run.warnings), (signals,), figures=(figure,))]
+    if run.model is not None:
+        sections.insert(0, Section("The diagram", figures=(diagram_figure(run.model.diagram),)))
+    if run.parameters:
+        sections.append(Section("The values", tables=(_values_table(run),)))
+    if run.events:
+        table = events_table(run)
+        more = len(table.rows) - MOST_EVENTS
+        texts = (f"The first {MOST_EVENTS} of {len(table.rows)}.",) if more > 0 else ()
+        table = replace(table, title="", rows=table.rows[:MOST_EVENTS])
+        sections.append(Section("The events", texts, (table,)))
+    return Report(run.title or "A run", tuple(sections))
+
+
+def _values_table(run: Run) -> Table:
+    """The values of parameters and start states in SI that a run was made with."""
+    known = run.model.flat.parameters if run.model is not None else {}
+    units = run.model.flat.units if run.model is not None else run.units
+    rows = [(n, shown(v), known[n].unit if n in known else "") for n, v in run.parameters.items()]
+    rows += [(f"start of {n}", shown(value), units.get(n, "")) for n, value in run.start.items()]
+    return Table("parameters and start, in SI", ("name", "value", "unit"), tuple(rows), NUMERIC)

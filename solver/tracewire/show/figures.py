@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tracewire.errors import OptionError, Problem
+from tracewire.show.event_rows import draw_events, event_rows, struck
+from tracewire.show.sticking import held_intervals
 from tracewire.show.style import (
     LINES,
     MARK,
-    QUIET,
-    STICK,
     dots,
     fit_time,
     panels,
@@ -21,8 +21,7 @@ from tracewire.show.style import (
     styled,
     with_unit,
 )
-from tracewire.show.summary import stick_intervals
-from tracewire.solve import Event, Run
+from tracewire.solve import Run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,26 +30,27 @@ if TYPE_CHECKING:
 
 MOST_LINES = 4
 MOST_PANELS = 16
-MOST_ROWS = 8
+MOST_STRIKES = 60
+"""More lines than these through a panel would hide what they mark."""
 SCALE_APART = 20.0
 """Signals whose ranges differ by more than this would hide each other in one panel."""
-
-Interval = tuple[float, float]
 
 
 def plot_run(run: Run, path: str | Path, measured: Measured | None = None) -> Path:
     """Draw a run to a .png, .svg or .pdf file, with the samples of a measured series as dots.
 
-    Recorded signals over t in s, one panel for each, or for several of one unit and like range.
-    Under them one row for each block that had events: a bar while it sticks, a tick at each reset,
-    impact or crossing. Raises OptionError: nothing recorded, another ending of the file; OSError.
+    Recorded signals over t in s, one panel for each, or for several of one unit and like range. A
+    panel is shaded while a friction holds one of its signals, and has a thin line where an event
+    sets one of its states. Under them one row for each block that had events: a bar while it
+    sticks, a tick at each reset, impact or crossing. Raises OptionError: nothing recorded, another
+    ending of the file; OSError.
     """
     groups = group_signals(run)
     if not groups:
         hint = "Name signals under `record:` of the diagram."
         raise OptionError([Problem("the run has no recorded signals to draw", hint=hint)])
     shown = groups[:MOST_PANELS]
-    rows = _event_rows(run)
+    rows = event_rows(run)
     title = run.title
     if len(shown) < len(groups):
         title += f" (the first {len(shown)} of {len(groups)} panels)"
@@ -58,13 +58,17 @@ def plot_run(run: Run, path: str | Path, measured: Measured | None = None) -> Pa
     heights = [tall] * len(shown) + ([0.22 * len(rows) + 0.12] if rows else [])
     with styled():
         figure, axes = panels(heights, title)
-        sticks = stick_intervals(run)
+        held = held_intervals(run)
         for panel, names in zip(axes, shown, strict=False):
             _draw_signals(panel, run, names, measured)
-            for interval in _union([i for intervals in sticks.values() for i in intervals]):
-                panel.axvspan(*interval, color=STICK, alpha=0.35, linewidth=0, zorder=0)
+            for name, color in zip(names, LINES, strict=False):
+                for begin, end in held.get(name, ()):
+                    panel.axvspan(begin, end, color=color, alpha=0.13, linewidth=0, zorder=0)
+            times = struck(run, names)
+            for time in times if len(times) <= MOST_STRIKES else ():
+                panel.axvline(time, color=MARK, alpha=0.45, linewidth=0.6, zorder=0.5)
         if rows:
-            _draw_events(axes[-1], run, rows, sticks)
+            draw_events(axes[-1], run, rows, shaded=bool(held))
         for panel in axes[:-1]:
             panel.tick_params(labelbottom=False)
         axes[-1].set_xlabel("t [s]")
@@ -107,63 +111,3 @@ def _draw_signals(panel: Axes, run: Run, names: Sequence[str], measured: Measure
     if len(names) > 1 or dotted:
         # above the panel, where it covers no line
         panel.legend(loc="lower right", bbox_to_anchor=(1, 0.98), ncols=5, borderpad=0)
-
-
-def _event_rows(run: Run) -> list[str]:
-    """The blocks that had events, in the order of the first, and one row for all that are left."""
-    names = list(dict.fromkeys(event.block for event in run.events))
-    if len(names) <= MOST_ROWS:
-        return names
-    return [*names[: MOST_ROWS - 1], f"{len(names) - MOST_ROWS + 1} others"]
-
-
-def _draw_events(
-    panel: Axes, run: Run, rows: Sequence[str], sticks: Mapping[str, Sequence[Interval]]
-) -> None:
-    position = {name: n for n, name in enumerate(rows)}
-    last = len(rows) - 1
-    for block, intervals in sticks.items():
-        spans = [(begin, end - begin) for begin, end in intervals]
-        panel.broken_barh(
-            spans,
-            (position.get(block, last) - 0.3, 0.6),
-            color=STICK,
-            edgecolor=QUIET,
-            linewidth=0.4,
-        )
-    for kinds, color, half in (
-        (("crossing", "scheduled"), QUIET, 0.2),
-        (("impact", "reset", "rest"), MARK, 0.38),
-    ):
-        marks = [event for event in run.events if event.kind in kinds]
-        at = np.array([position.get(event.block, last) for event in marks], dtype=float)
-        panel.vlines([e.time for e in marks], at - half, at + half, color=color, linewidth=0.9)
-    panel.set_yticks(range(len(rows)), rows)
-    panel.set_ylim(last + 0.6, -0.6)
-    panel.grid(False)
-    panel.spines["left"].set_visible(False)
-    panel.tick_params(axis="y", length=0)
-    panel.set_title(_legend(run.events), fontsize=8.5, color="#555555", loc="left", pad=3)
-
-
-def _legend(events: Sequence[Event]) -> str:
-    kinds = {event.kind for event in events}
-    parts = []
-    if kinds & {"stick", "slip"}:
-        parts.append("bar: sticks")
-    if strong := [k for k in ("impact", "reset", "rest") if k in kinds]:
-        parts.append(f"red: {', '.join(strong)}")
-    if weak := [k for k in ("crossing", "scheduled") if k in kinds]:
-        parts.append(f"grey: {', '.join(weak)}")
-    return "events   " + "    ".join(parts)
-
-
-def _union(intervals: Sequence[Interval]) -> list[Interval]:
-    """The intervals, with those that overlap joined."""
-    joined: list[Interval] = []
-    for begin, end in sorted(intervals):
-        if joined and begin <= joined[-1][1]:
-            joined[-1] = (joined[-1][0], max(end, joined[-1][1]))
-        else:
-            joined.append((begin, end))
-    return joined

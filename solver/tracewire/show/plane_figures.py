@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tracewire.analyse import PeriodicOrbit
 from tracewire.errors import OptionError, Problem, unknown
+from tracewire.show.sticking import held_intervals
 from tracewire.show.style import LINES, MARK, QUIET, save, styled, with_unit
 from tracewire.solve import Run
 
@@ -24,23 +25,31 @@ MANY_POINTS = 5000
 
 
 def plot_portrait(run: Run, x: str, y: str, path: str | Path, since: float = -np.inf) -> Path:
-    """Draw one recorded signal of a run over another, a phase portrait; the start is a ring.
+    """Draw one recorded signal of a run over another; the start is a ring.
 
-    Samples before the time `since` in s are left out. Raises OptionError: a signal that is not
-    recorded, another ending of the file; OSError.
+    The state and its rate are a phase portrait, a rate and its friction the friction law. What a
+    friction that sticks holds has a colour of its own. Samples before the time `since` in s are
+    left out. Raises OptionError: a signal that is not recorded, another ending of the file;
+    OSError.
     """
     chosen = _since(run, since)
     with styled():
         figure, panel = square(run.title)
-        points = len(run.t[chosen])
-        panel.plot(
-            run.as_shown(x)[chosen],
-            run.as_shown(y)[chosen],
-            color=LINES[0],
-            linewidth=0.9,
-            rasterized=points > MANY_POINTS,
-        )
-        mark_start(panel, run.as_shown(x)[chosen][0], run.as_shown(y)[chosen][0])
+        many = len(run.t[chosen]) > MANY_POINTS
+        across, up = run.as_shown(x)[chosen], run.as_shown(y)[chosen]
+        panel.plot(across, up, color=LINES[0], linewidth=0.9, rasterized=many)
+        sticks = _sticks(run, x, y)[chosen]
+        if sticks.any():
+            panel.plot(
+                np.where(sticks, across, np.nan),
+                np.where(sticks, up, np.nan),
+                color=LINES[1],
+                linewidth=1.8,
+                rasterized=many,
+                label="sticks",
+            )
+            panel.legend(loc="lower right", bbox_to_anchor=(1, 0.98), borderpad=0)
+        mark_start(panel, across[0], up[0])
         panel.set_xlabel(with_unit(run.look(x).label, run.look(x).unit))
         panel.set_ylabel(with_unit(run.look(y).label, run.look(y).unit))
         return save(figure, path)
@@ -125,6 +134,15 @@ def square(title: str) -> tuple[Figure, Axes]:
 def mark_start(panel: Axes, x: float, y: float) -> None:
     """A ring where something begins."""
     panel.plot(x, y, "o", markerfacecolor="none", markeredgecolor=MARK, markersize=7)
+
+
+def _sticks(run: Run, *names: str) -> NDArray[np.bool_]:
+    """Whether a friction holds one of these signals, at each sample (N,)."""
+    held = held_intervals(run)
+    found = np.zeros(len(run.t), dtype=bool)
+    for begin, end in (interval for name in names for interval in held.get(name, ())):
+        found |= (run.t >= begin) & (run.t < end)
+    return found
 
 
 def _since(run: Run, since: float) -> NDArray[np.bool_]:

@@ -287,28 +287,6 @@ def event_counts(run: Run) -> dict[str, int]:
     return dict(Counter(event.kind for event in run.events))
 
 
-def stick_intervals(run: Run) -> dict[str, list[tuple[float, float]]]:
-    """The times in s during which a block sticks, by block.
-
-    A block whose first event is a slip stuck from the start; one that does not slip again sticks to
-    the end.
-    """
-    begin, end = float(run.t[0]), float(run.t[-1])
-    since: dict[tuple[str, str], float] = {}
-    known: set[tuple[str, str]] = set()
-    found: dict[str, list[tuple[float, float]]] = {}
-    for event in run.events:
-        key = (event.block, event.guard)
-        if event.kind == "stick":
-            since.setdefault(key, event.time)
-        elif event.kind == "slip" and (key in since or key not in known):
-            found.setdefault(event.block, []).append((since.pop(key, begin), event.time))
-        known.add(key)
-    for (block, _), time in since.items():
-        found.setdefault(block, []).append((time, end))
-    return found
-
-
 def extremes(values: NDArray[np.float64]) -> tuple[float, float, float, float]:
     """The first, the last, the least and the greatest of samples (N,)."""
     return float(values[0]), float(values[-1]), float(values.min()), float(values.max())

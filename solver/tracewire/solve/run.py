@@ -11,6 +11,7 @@ from typing import Any, Literal, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.compile import Model
 from tracewire.diagram import Shown
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.files import replacing, write_rows
@@ -117,7 +118,7 @@ class Run:
     A sample at the time of an event is the right limit. `parameters` and `start` are the values
     that were used; `final` holds the states at the end. `sensitivities` holds, by parameter or
     `start.state`, by recorded signal, d signal/d that (N,) in SI, at a fixed time. `shown` has the
-    labels and units of tables and figures.
+    labels and units of tables and figures; `model` is what was simulated.
     """
 
     title: str
@@ -132,6 +133,7 @@ class Run:
     warnings: tuple[str, ...] = ()
     sensitivities: Sensitivities = field(default_factory=Sensitivities)
     shown: Mapping[str, Shown] = field(default_factory=dict)
+    model: Model | None = field(default=None, repr=False)
 
     def as_shown(self, name: str) -> Vector:
         """A signal (N,) in the unit in which tables and figures show it."""

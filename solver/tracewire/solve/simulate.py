@@ -126,6 +126,7 @@ def run_of(execution: Execution, values: Mapping[str, float], x: Vector, t: Vect
         statistics=execution.statistics,
         warnings=execution.warnings,
         shown=model.flat.shown,
+        model=model,
         sensitivities=recorded(model, execution.arrays.sensitivity, execution.asked, len(t)),
     )
 

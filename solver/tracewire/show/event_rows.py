@@ -1,0 +1,92 @@
+"""What happened in a run, as rows of marks over time: one for each block that had events."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from typing import TYPE_CHECKING
+
+from tracewire.show.sticking import Interval, joined, stick_intervals
+from tracewire.show.style import MARK, QUIET, STICK, cut
+from tracewire.solve import Event, Run
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+MOST_ROWS = 8
+STRONG = ("impact", "reset", "rest")
+"""Events that change a state, or end a motion."""
+WEAK = ("crossing", "scheduled", "transition")
+WIDTH = 700
+"""Marks nearer to each other than this part of the span cannot be told apart: they are a bar."""
+
+
+def event_rows(run: Run) -> list[str]:
+    """The blocks that had events, in the order of the first, and one row for all that are left."""
+    names = list(dict.fromkeys(event.block for event in run.events))
+    if len(names) <= MOST_ROWS:
+        return names
+    return [*names[: MOST_ROWS - 1], f"{len(names) - MOST_ROWS + 1} others"]
+
+
+def struck(run: Run, signals: Collection[str]) -> list[float]:
+    """The times in s at which an event gives one of these signals another value."""
+    times = (
+        event.time
+        for event in run.events
+        if event.kind in STRONG
+        and any(n in signals and event.before[n] != after for n, after in event.after.items())
+    )
+    return list(dict.fromkeys(times))
+
+
+def draw_events(panel: Axes, run: Run, rows: Sequence[str], shaded: bool = False) -> None:
+    """Draw the events of a run into a panel; `shaded`: the panels above show what sticks, too."""
+    position = {name: n for n, name in enumerate(rows)}
+    last = len(rows) - 1
+    for block, intervals in stick_intervals(run).items():
+        at = position.get(block, last)
+        _draw_bars(panel, intervals, at, 0.3, facecolor=STICK, edgecolor=QUIET, linewidth=0.4)
+    counts = [0] * len(rows)
+    for event in run.events:
+        counts[position.get(event.block, last)] += 1
+    apart = float(run.t[-1] - run.t[0]) / WIDTH
+    for kinds, color, half in ((WEAK, QUIET, 0.2), (STRONG, MARK, 0.38)):
+        for row in range(len(rows)):
+            times = [
+                event.time
+                for event in run.events
+                if event.kind in kinds and position.get(event.block, last) == row
+            ]
+            groups = joined(((time, time) for time in times), apart)
+            single = [begin for begin, end in groups if begin == end]
+            panel.vlines(single, row - half, row + half, color=color, linewidth=0.9)
+            many = [(begin, end) for begin, end in groups if end > begin]
+            _draw_bars(panel, many, row, half, color=color, linewidth=0.9)
+    labels = (f"{cut(name)} ({count})" for name, count in zip(rows, counts, strict=True))
+    panel.set_yticks(range(len(rows)), list(labels))
+    panel.set_ylim(last + 0.6, -0.6)
+    panel.grid(False)
+    panel.spines["left"].set_visible(False)
+    panel.tick_params(axis="y", length=0)
+    legend = _legend(run.events, shaded)
+    panel.set_title(legend, fontsize=8.5, color="#555555", loc="left", pad=3)
+
+
+def _draw_bars(
+    panel: Axes, intervals: Sequence[Interval], row: int, half: float, **look: object
+) -> None:
+    """Draw intervals of time as bars of a row."""
+    spans = [(begin, end - begin) for begin, end in intervals]
+    panel.broken_barh(spans, (row - half, 2 * half), **look)  # type: ignore[arg-type]
+
+
+def _legend(events: Sequence[Event], shaded: bool) -> str:
+    kinds = {event.kind for event in events}
+    parts = []
+    if kinds & {"stick", "slip"}:
+        parts.append("bar and shade: sticks" if shaded else "bar: sticks")
+    if strong := [kind for kind in STRONG if kind in kinds]:
+        parts.append(f"long, red: {', '.join(strong)}")
+    if weak := [kind for kind in WEAK if kind in kinds]:
+        parts.append(f"short, grey: {', '.join(weak)}")
+    return "events   " + "    ".join(parts)
