@@ -37,7 +37,6 @@ DEEP = {
     "show -> fit": 2,
     "show -> trace": 2,
     "solve -> compile": 1,
-    "trace -> formula": 1,
 }
 FACADE = {"__init__", "__main__"}  # they stand above the rooms and may import each of them
 BLOCKS_MAY_IMPORT = {"__future__", "tracewire.library"}

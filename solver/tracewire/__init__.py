@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from tracewire.fit import Fit, diagnose, fit, fminsearch, optimset, profile
     from tracewire.library import Block, Effect, Input, Output, Parameter, State, load_library
     from tracewire.residual import Measured, Sensor, load_measured
-    from tracewire.show import optimplotfit, optimplotfval, optimplotx, report
+    from tracewire.show import animate, optimplotfit, optimplotfval, optimplotx, report
     from tracewire.solve import (
         Held,
         Interrupted,
@@ -73,6 +73,7 @@ __all__ = [
     "State",
     "TraceOptions",
     "TracewireError",
+    "animate",
     "bifurcation",
     "compile",
     "diagnose",
@@ -119,7 +120,7 @@ ROOM_OF = {
     "fit": "Fit diagnose fit fminsearch optimset profile",
     "library": "Block Effect Input Output Parameter State load_library",
     "residual": "Measured Sensor load_measured",
-    "show": "optimplotfit optimplotfval optimplotx report",
+    "show": "animate optimplotfit optimplotfval optimplotx report",
     "solve": "Held Interrupted Limits Run Runs Section simulate simulate_many",
     "trace": "Found TraceOptions load save trace",
 }

@@ -21,7 +21,7 @@ USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
 """The base of every usage error; typer has its own copy of click or uses the installed one."""
 
 VERBS = (
-    *("check", "show", "draw", "run", "fit", "trace", "report", "sweep"),
+    *("check", "show", "draw", "run", "animate", "fit", "trace", "report", "sweep"),
     *("paper", "blocks", "units", "demo", "analyse", "data"),
 )
 """In the order of the help. Each is a function, or a `typer.Typer` of several, in the file of its
@@ -40,6 +40,7 @@ def tracewire_(
       tracewire draw pendulum.yaml --depth 1
       tracewire run pendulum.yaml --figure swing.png
       tracewire run pendulum.yaml --set "phi=13.6 deg" --output swing.csv
+      tracewire animate pendulum.yaml
       tracewire fit pendulum.yaml --report fit.html
       tracewire trace pendulum.yaml --apply
       tracewire analyse steady pendulum.yaml

@@ -15,8 +15,9 @@ from tracewire.compile.lower import lower
 from tracewire.compile.lowered import Lowered, Mode
 from tracewire.compile.memory import told
 from tracewire.compile.routines import BACKENDS, PREPARE, Backend, Routines, Sizes
+from tracewire.compile.scene import scene_of
 from tracewire.compile.vectors import element_names
-from tracewire.diagram import Diagram, find_recorded
+from tracewire.diagram import Diagram, ScenePart, find_recorded
 from tracewire.errors import OptionError, unknown
 from tracewire.formula import Expression, evaluation_order, names_of, to_text
 
@@ -113,6 +114,16 @@ class Model:
         roots += [low.entries[name] for name in self.recorded]
         read = set(low.tape.needed(roots))
         return frozenset(name for name in self.parameters if low.entries[name] in read)
+
+    @cached_property
+    def scene(self) -> tuple[ScenePart, ...]:
+        """The parts of the scene of the diagram, over the signals by their full names."""
+        return scene_of(self.diagram, self.flat.shapes)[0]
+
+    @cached_property
+    def read_by_scene(self) -> tuple[str, ...]:
+        """The signals that the scene of the diagram reads: `record` of compile takes them."""
+        return scene_of(self.diagram, self.flat.shapes)[1]
 
     @property
     def modes(self) -> Sequence[Mode]:
@@ -236,12 +247,14 @@ def compile(diagram: Diagram, record: Sequence[str] = (), backend: Backend = "ll
     `record` names signals to record beside those of the diagram. `backend` makes the functions:
     "llvm" machine code, "quick" such that takes less time to make and more to run, for a model of a
     few short runs, "python" the readable source. Raises DiagramError: an algebraic loop
-    without a solution, vectors that do not go together, a start value that reads a signal;
+    without a solution, vectors that do not go together, a start value that reads a signal, a scene
+    that reads a vector as a number;
     OptionError: a recorded signal or a back end that does not exist.
     """
     if backend not in BACKENDS:
         raise OptionError([unknown("backend", backend, BACKENDS)])
     flat = flatten(diagram)
+    scene_of(diagram, flat.shapes)
     lowered = lower(flat)
     known = [
         *(state.name for state in flat.states),

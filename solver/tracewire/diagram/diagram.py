@@ -229,12 +229,34 @@ class Condition:
 
 
 @dataclass(frozen=True)
+class ScenePart:
+    """A part of the picture of a mechanism: a rod, a disc, a spring, a box, the ground, a trace.
+
+    `points` are formulas (x, y) by key, y upwards, and `sizes` formulas by key, over signals,
+    parameters and `t` in SI; an angle is in rad and turns to the left. A size that is not here is
+    the usual one of its kind. An empty color is the one of its kind.
+    """
+
+    kind: str
+    points: Mapping[str, tuple[Expression, Expression]]
+    sizes: Mapping[str, Expression]
+    color: str = ""
+    place: Place = Place()
+
+    @property
+    def formulas(self) -> dict[str, Expression]:
+        """All formulas, by the key that they stand under: `from`, `from y`, ..., `radius`."""
+        points = {key: x for key, (x, _) in self.points.items()}
+        return points | {f"{key} y": y for key, (_, y) in self.points.items()} | dict(self.sizes)
+
+
+@dataclass(frozen=True)
 class Diagram:
     """A diagram, or a subsystem of one, with everything that its file says.
 
     `file` and `text` are those of the file the diagram was read from; an edit of the diagram is an
     edit of that text. `library` holds the blocks that it may use. `effect`: a subsystem that may be
-    tried as a missing effect, and how.
+    tried as a missing effect, and how. `scene` says how it is drawn as a mechanism.
     """
 
     name: str
@@ -257,6 +279,7 @@ class Diagram:
     measured: Mapping[str, Series] = field(default_factory=dict)
     place: Place = Place()
     effect: Effect | None = None
+    scene: tuple[ScenePart, ...] = ()
 
     def _repr_svg_(self) -> str:
         """The picture of the diagram, as a notebook shows it."""

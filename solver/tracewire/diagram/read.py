@@ -14,6 +14,7 @@ from tracewire.diagram.loops import check_parameters
 from tracewire.diagram.measured import read_measured
 from tracewire.diagram.problems import Problems, clip
 from tracewire.diagram.read_effect import read_effect
+from tracewire.diagram.read_scene import read_scene
 from tracewire.diagram.sections import (
     read_events,
     read_inputs,
@@ -42,7 +43,7 @@ INSIDE = (
 )
 TOP = (
     *("title", "span", "every", "record", "inputs", "parameters", "blocks", "subsystems"),
-    *("include", "events", "require", "presets", "measured", "max_step"),
+    *("include", "events", "require", "presets", "measured", "max_step", "scene"),
 )
 INCLUDED = ("title", "include", "subsystems")
 
@@ -185,6 +186,8 @@ class _Reader:
             diagram = replace(diagram, presets=read_presets(given["presets"], body, diagram))
         if "measured" in given:
             diagram = replace(diagram, measured=read_measured(given["measured"], body, diagram))
+        if "scene" in given:
+            diagram = replace(diagram, scene=read_scene(given["scene"], body))
         return diagram
 
     def common(

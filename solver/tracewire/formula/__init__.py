@@ -5,6 +5,10 @@ A formula is arithmetic (`+ - * / **`), comparisons (`< <= > >=`), `and / or / n
 bounded, so a formula from a stranger can do nothing but arithmetic. It is never given to `eval`.
 """
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from tracewire.formula.dimension import dimension_of, dimension_text
 from tracewire.formula.evaluate import evaluate
 from tracewire.formula.expression import Call, Expression, Name, Number, names_of, rename
@@ -14,6 +18,9 @@ from tracewire.formula.parse import is_name, name_hint, parse, parse_condition
 from tracewire.formula.text import number_text, to_text
 from tracewire.formula.unit_rules import Term, times, unit_term
 from tracewire.formula.units import Unit, quantity_hint, read_unit, same_quantity
+
+if TYPE_CHECKING:
+    from tracewire.formula.arrays import evaluate_along
 
 __all__ = [
     "CONSTANTS",
@@ -28,6 +35,7 @@ __all__ = [
     "dimension_of",
     "dimension_text",
     "evaluate",
+    "evaluate_along",
     "evaluation_order",
     "is_name",
     "name_hint",
@@ -43,3 +51,12 @@ __all__ = [
     "to_text",
     "unit_term",
 ]
+
+
+def __getattr__(name: str) -> object:
+    """The name that needs numpy, which a look at blocks or units does without."""
+    if name == "evaluate_along":
+        from tracewire.formula.arrays import evaluate_along
+
+        return evaluate_along
+    raise AttributeError(f"module 'tracewire.formula' has no attribute '{name}'")

@@ -9,6 +9,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from tracewire.show.animation import animate, frame_times
     from tracewire.show.any_report import report
     from tracewire.show.bifurcation_figures import plot_bifurcation, plot_section
     from tracewire.show.comparison_figures import plot_comparisons
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
 __all__ = [
     "Report",
     "Table",
+    "animate",
+    "frame_times",
     "optimplotfit",
     "optimplotfval",
     "optimplotx",
@@ -65,6 +68,7 @@ __all__ = [
 ]
 
 FILE_OF = {
+    "animation": "animate frame_times",
     "bifurcation_figures": "plot_bifurcation plot_section",
     "comparison_figures": "plot_comparisons",
     "diagnostic_figures": "plot_diagnostics plot_profiles",

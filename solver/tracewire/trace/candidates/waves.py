@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import TracewireError
-from tracewire.formula.arrays import evaluate_along
+from tracewire.formula import evaluate_along
 from tracewire.residual import Windows
 from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.levels import Trajectory

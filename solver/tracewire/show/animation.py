@@ -1,0 +1,222 @@
+"""`animate`: a run as a moving picture of its mechanism, which the scene of the diagram says."""
+
+from __future__ import annotations
+
+import math
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import Model
+from tracewire.errors import OptionError, Problem, unknown
+from tracewire.files import replacing, write_file
+from tracewire.show.scene import COLORS, add_part, extent_of, moved_parts, scene_of
+from tracewire.show.style import cut, styled
+from tracewire.solve import Run
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+ENDINGS = (".gif", ".mp4")
+MOST_FRAMES = 5000
+WIDTHS = (100, 2000)
+DOTS = 100.0
+"""Pixels per inch: a text of 10 points is 14 pixels high."""
+TICK = 0.01
+"""Seconds: the pause between two pictures of a GIF is a multiple of it."""
+HEAD = 0.45
+"""Inches above the scene, for the title and the time."""
+LEAST_HEIGHT, MOST_HEIGHT = 0.3, 1.5
+"""Of the scene, over its width."""
+SHADES = 16
+"""Of each colour in a GIF: the edge of a shape is mixed with the white around it."""
+LETTER = 6.3
+"""Pixels that a letter of the title is wide."""
+
+Tell = Callable[[float], None]
+
+
+def animate(
+    run: Run,
+    path: str | Path,
+    *,
+    speed: float = 1.0,
+    fps: float = 25.0,
+    width: int = 480,
+    progress: Tell | None = None,
+) -> Path:
+    """Write a run as a moving picture to a .gif file, or to .mp4 where ffmpeg is installed.
+
+    What is drawn is the `scene` of the diagram. `speed` is the time of the run per time of the
+    film: 1 plays it as it is, 0.1 ten times slower. `fps` is the number of pictures in a second, in
+    a GIF rounded to a whole number of 10 ms for each; `width` is in pixels. A picture shows the
+    sample next to its time. `progress` is told the part that is done. The same run gives the same
+    file. Raises OptionError: no scene, a signal of it that was not recorded, another ending, no
+    ffmpeg, a number out of its range; OSError.
+    """
+    path = Path(path)
+    span = float(run.t[0]), float(run.t[-1])
+    times = frame_times(run.model, span, path, speed=speed, fps=fps, width=width)
+    with styled():
+        frames = _frames(run, times, width, progress or (lambda part: None))
+        if path.suffix == ".gif":
+            _write_gif(path, frames, _pause(path, fps))
+        else:
+            _write_mp4(path, frames, fps)
+    return path
+
+
+def frame_times(
+    model: Model | None,
+    span: tuple[float, float],
+    path: str | Path,
+    *,
+    speed: float = 1.0,
+    fps: float = 25.0,
+    width: int = 480,
+) -> NDArray[np.float64]:
+    """The times (F,) in s at which a film of a span of a model has its pictures; see `animate`.
+
+    Raises OptionError for what could not be filmed, before there is a run.
+    """
+    scene_of(model)
+    path = Path(path)
+    if path.suffix not in ENDINGS:
+        raise OptionError([unknown("ending of a film", path.suffix, ENDINGS)])
+    if path.suffix == ".mp4" and shutil.which("ffmpeg") is None:
+        what = "an .mp4 file is made by the program ffmpeg, which is not installed"
+        hint = "Install ffmpeg (on Debian: apt-get install ffmpeg), or write a .gif."
+        raise OptionError([Problem(what, hint=hint)])
+    if not (0 < speed < math.inf and 1 <= fps <= 100):
+        what = f"a film with speed {speed:g} and {fps:g} pictures in a second cannot be made"
+        raise OptionError([Problem(what, hint="Give a speed above 0, and fps from 1 to 100.")])
+    if not WIDTHS[0] <= width <= WIDTHS[1]:
+        what = f"a picture cannot be {width} pixels wide"
+        raise OptionError([Problem(what, hint=f"Give a width from {WIDTHS[0]} to {WIDTHS[1]}.")])
+    begin, end = span
+    step = _pause(path, fps) * speed
+    count = math.floor((end - begin) / step * (1 + 1e-12)) + 1
+    if count > MOST_FRAMES:
+        what = f"a film of {end - begin:g} s with speed {speed:g} has {count} pictures"
+        hint = f"At most {MOST_FRAMES} are made: give a shorter span, a higher speed, or fewer fps."
+        raise OptionError([Problem(what, hint=hint)])
+    return np.asarray(np.minimum(begin + step * np.arange(count), end))
+
+
+def _pause(path: Path, fps: float) -> float:
+    """The time in s from one picture to the next."""
+    return max(round(1 / fps / TICK), 1) * TICK if path.suffix == ".gif" else 1 / fps
+
+
+def _frames(run: Run, times: NDArray[np.float64], width: int, tell: Tell) -> Iterator[Image]:
+    """The pictures of a film. What moves is drawn anew over what does not."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+    from PIL import Image
+
+    parts = moved_parts(run)
+    left, right, bottom, top = extent_of(parts)
+    middle, tall = (bottom + top) / 2, (top - bottom) / (right - left)
+    tall = min(max(tall, LEAST_HEIGHT), MOST_HEIGHT)
+    inches = width / DOTS
+    height = inches * tall + HEAD
+    # ffmpeg wants even numbers of pixels
+    size = (2 * (width // 2) / DOTS, 2 * round(height * DOTS / 2) / DOTS)
+    figure = Figure(figsize=size, dpi=DOTS)
+    canvas: Any = FigureCanvasAgg(figure)  # its methods have no types
+    panel = figure.add_axes((0, 0, 1, 1 - HEAD / height))
+    panel.set_axis_off()
+    across = max(right - left, (top - bottom) / tall)
+    panel.set_xlim((left + right - across) / 2, (left + right + across) / 2)
+    panel.set_ylim(middle - across * tall / 2, middle + across * tall / 2)
+    title = cut(run.title, max(int((width - 110) / LETTER), 3))
+    figure.text(0.02, 0.985, title, va="top", fontsize=10)
+    clock = figure.text(0.98, 0.985, "", va="top", ha="right", fontsize=10, color="#555555")
+    clock.set_fontfamily("monospace")
+    added = [add_part(panel, part, run.t, right - left) for part in parts]
+    artists = [clock, *(artist for own, _ in added for artist in own)]
+    artists.sort(key=lambda artist: artist.zorder)
+    for artist in artists:
+        artist.set_animated(True)
+    canvas.draw()
+    still = canvas.copy_from_bbox(figure.bbox)
+    digits = max(0, 2 - math.floor(math.log10(max(times[-1] - times[0], 1e-9))))
+    nearest = _nearest(run.t, times)
+    for number, (k, time) in enumerate(zip(nearest.tolist(), times.tolist(), strict=True)):
+        canvas.restore_region(still)
+        clock.set_text(f"t = {time:.{min(digits, 4)}f} s")
+        for _, update in added:
+            update(k)
+        for artist in artists:
+            figure.draw_artist(artist)
+        tell((number + 1) / len(times))
+        yield Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
+
+
+def _nearest(t: NDArray[np.float64], times: NDArray[np.float64]) -> NDArray[np.intp]:
+    """The numbers of the samples next to the times."""
+    after = np.searchsorted(t, times).clip(1, len(t) - 1)
+    return np.where(times - t[after - 1] <= t[after] - times, after - 1, after)
+
+
+def _write_gif(path: Path, frames: Iterator[Image], pause: float) -> None:
+    """Write pictures that all have the same colours, so that none flickers."""
+    from PIL import Image
+
+    palette = Image.new("P", (1, 1))
+    palette.putpalette(_palette())
+    pictures = (frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames)
+    start = next(pictures)
+    with replacing(path) as file:
+        start.save(
+            file,
+            format="GIF",
+            save_all=True,
+            append_images=pictures,
+            duration=round(1000 * pause),
+            loop=0,
+        )
+
+
+def _palette() -> list[int]:
+    """The colours of parts with their shades up to white: red, green, blue, red, ..."""
+    colors = np.array([[int(text[n : n + 2], 16) for n in (1, 3, 5)] for text in COLORS.values()])
+    white = np.linspace(0.0, 1.0, SHADES)[:, None, None]
+    shades = colors * (1 - white) + 255.0 * white
+    found: list[int] = np.rint(shades).astype(int).ravel().tolist()
+    return found
+
+
+def _write_mp4(path: Path, frames: Iterator[Image], fps: float) -> None:
+    """Hand pictures to ffmpeg, which needs a file that it can go back in."""
+    with tempfile.TemporaryDirectory() as folder:
+        made = Path(folder) / "film.mp4"
+        first = next(frames)
+        command = [
+            *("ffmpeg", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"),
+            *("-s", f"{first.width}x{first.height}", "-r", f"{fps:g}", "-i", "-", "-an"),
+            *("-pix_fmt", "yuv420p", "-fflags", "+bitexact", "-flags:v", "+bitexact"),
+            *("-movflags", "+faststart", str(made)),
+        ]
+        with tempfile.TemporaryFile() as errors:
+            with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=errors) as ffmpeg:
+                assert ffmpeg.stdin is not None
+                try:
+                    ffmpeg.stdin.write(first.tobytes())
+                    for frame in frames:
+                        ffmpeg.stdin.write(frame.tobytes())
+                    ffmpeg.stdin.close()
+                except BrokenPipeError:  # it has ended, and says why below
+                    pass
+            errors.seek(0)
+            said = errors.read().decode(errors="replace").strip()
+        if ffmpeg.returncode or not made.is_file():
+            what = f"ffmpeg could not make '{path}': {' '.join(said.split())[-200:]}"
+            raise OptionError([Problem(what, hint="Write a .gif, or install another ffmpeg.")])
+        write_file(path, made.read_bytes())
