@@ -15,7 +15,18 @@ PACKAGE = ROOT / "solver" / "tracewire"
 BLOCKS = ROOT / "blocks"
 
 # a room may import itself and the rooms before it
-ROOMS = ["errors", "files", "shipped", "formula", "library", "data", "diagram", "draw", "compile"]
+ROOMS = [
+    "errors",
+    "files",
+    "npm",
+    "shipped",
+    "formula",
+    "library",
+    "data",
+    "diagram",
+    "draw",
+    "compile",
+]
 ROOMS += ["solve", "residual", "fit", "trace", "analyse", "show", "paper", "cli"]
 # the same for the stages of a trace, files and folders of that room
 STAGES = ["thresholds", "options", "found", "candidates", "units", "trials", "check", "screen"]

@@ -15,12 +15,12 @@ from draw.random_diagrams import LIBRARY, text_of
 from tracewire.diagram import BlockUse, read, read_readable, read_text
 from tracewire.draw import Drawing, draw
 from tracewire.draw.curves import curve_of
-from tracewire.draw.elk import __main__ as renewal
 from tracewire.draw.elk import engine
 from tracewire.draw.graph import Node
 from tracewire.draw.layout import all_nodes, all_wires
 from tracewire.draw.shapes import Drawn, shape_of
 from tracewire.errors import InstallationError, OptionError
+from tracewire.npm import integrity
 
 ROOT = Path(__file__).parents[2]
 DIAGRAMS = ROOT / "diagrams"
@@ -263,9 +263,9 @@ def test_a_chain_of_many_blocks_is_drawn() -> None:
 
 def test_the_layout_engine_is_the_one_of_the_lock_file() -> None:
     lock = json.loads((engine.SCRIPT.parent / "elk.lock.json").read_text(encoding="utf-8"))
-    assert renewal.integrity(engine.SCRIPT.read_bytes()) == lock["script"]
+    assert integrity(engine.SCRIPT.read_bytes()) == lock["script"]
     digest = b64encode(hashlib.sha512(b"").digest()).decode()
-    assert renewal.integrity(b"") == f"sha512-{digest}"
+    assert integrity(b"") == f"sha512-{digest}"
 
 
 def test_an_interrupted_picture_leaves_its_engine_alone(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,7 +12,10 @@ from pathlib import Path
 
 from tracewire.errors import OptionError, Problem, TracewireError, unknown
 from tracewire.files import check_writable, write_file, writing
+from tracewire.show.style import saved_figures
 from tracewire.show.summary import Table
+from tracewire.show.uplot import scripts, style
+from tracewire.show.zoom import curves_of
 
 STYLE = """body{font-family:sans-serif;max-width:56rem;margin:2rem auto;padding:0 1rem;color:#222;
 line-height:1.45}
@@ -70,7 +73,8 @@ class Report:
     def write(self, path: str | Path, note: Callable[[str], None] | None = None) -> Path:
         """Write the report as .md, its figures beside it, or as .html, its figures inside it.
 
-        An HTML report is one file that can be mailed. The names of the figures of `trace.md` begin
+        An HTML report is one file that can be mailed. Its curves over time zoom where scripts run,
+        and are pictures elsewhere. The names of the figures of `trace.md` begin
         with `trace`, so that reports in one folder keep their own. A figure that cannot be drawn
         becomes a line of the report with the reason, and `note` gets that line, too. An older
         report stays until the new one is complete.
@@ -143,10 +147,14 @@ class Report:
             if section.code:
                 parts.append(f"<pre>{html.escape(section.code)}</pre>")
             parts += [_html_figure(figure, drawn[figure.name]) for figure in section.figures]
+        zooming = any(isinstance(d, Path) and _curves(d).is_file() for d in drawn.values())
+        if zooming:
+            parts.append(f"<script>{scripts()}</script>")
+        look = STYLE + (style() if zooming else "")
         head = (
             f'<!doctype html><html lang="en"><head><meta charset="utf-8">'
             f'<meta name="viewport" content="width=device-width">'
-            f"<title>{html.escape(self.title)}</title><style>{STYLE}</style></head>"
+            f"<title>{html.escape(self.title)}</title><style>{look}</style></head>"
         )
         return head + "<body>" + "\n".join(parts) + "</body></html>\n"
 
@@ -194,10 +202,20 @@ def _html_figure(figure: Figure, drawn: Path | str) -> str:
     data = base64.b64encode(drawn.read_bytes()).decode("ascii")
     kind = {".svg": "image/svg+xml"}.get(drawn.suffix, "image/png")
     caption = html.escape(figure.caption)
+    opening, curves = "<figure>", ""
+    if _curves(drawn).is_file():
+        opening = '<figure class="curves">'
+        text = _curves(drawn).read_text(encoding="utf-8")
+        curves = f'<script type="application/json" class="curves">{text}</script>'
     return (
-        f'<figure><img src="data:{kind};base64,{data}" alt="{caption}">'
-        f"<figcaption>{caption}</figcaption></figure>"
+        f'{opening}<img src="data:{kind};base64,{data}" alt="{caption}">'
+        f"<figcaption>{caption}</figcaption>{curves}</figure>"
     )
+
+
+def _curves(drawn: Path) -> Path:
+    """The file of the curves of a figure, beside its picture, where it has some that zoom."""
+    return drawn.with_name(f"{drawn.name}.curves")
 
 
 def _draw(figures: Sequence[Figure], folder: Path, note: Callable[[str], None]) -> Drawn:
@@ -210,8 +228,12 @@ def _draw(figures: Sequence[Figure], folder: Path, note: Callable[[str], None]) 
     for figure in figures:
         file = folder / figure.name
         try:
-            figure.draw(file)
+            with saved_figures() as saved:
+                figure.draw(file)
             drawn[figure.name] = file
+            curves = curves_of(saved[-1]) if saved else None
+            if curves is not None:
+                write_file(_curves(file), curves)
         except Exception as error:
             reason = str(error) if isinstance(error, TracewireError) else repr(error)
             text = f"The figure '{figure.caption}' could not be drawn: {reason.rstrip('.')}."

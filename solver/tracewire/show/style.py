@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -55,6 +56,19 @@ STYLE: dict[Any, Any] = {
     "agg.path.chunksize": 10_000,
 }
 
+_SAVED: ContextVar[list[Figure] | None] = ContextVar("_SAVED", default=None)
+
+
+@contextmanager
+def saved_figures() -> Iterator[list[Figure]]:
+    """The figures that are saved meanwhile, for what takes more of them than their picture."""
+    found: list[Figure] = []
+    before = _SAVED.set(found)
+    try:
+        yield found
+    finally:
+        _SAVED.reset(before)
+
 
 @contextmanager
 def styled() -> Iterator[None]:
@@ -90,6 +104,9 @@ def save(figure: Figure, path: str | Path) -> Path:
     dated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
     with replacing(path) as file:
         figure.savefig(file, format=path.suffix[1:], metadata=dated.get(path.suffix))
+    saved = _SAVED.get()
+    if saved is not None:
+        saved.append(figure)
     return path
 
 
