@@ -170,6 +170,37 @@ def test_what_cannot_be_filmed_is_told(
         animate(RUN, tmp_path / "a.gif", **options)  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("coils: 5", "coils: 1e9", "<text>:12:5: a spring with 1e\\+09 coils cannot be drawn"),
+        ("coils: 5", "coils: 0", "Give it 1 to 100"),
+        ("at: [0, 0]", "at: [1e308, 0]", "the scene reaches as far as 1e\\+308 m, and cannot be"),
+        ("length: 0.4", "length: 1e308", "the scene reaches as far as"),
+    ],
+)
+def test_a_size_that_cannot_be_drawn_is_told(
+    tmp_path: Path, old: str, new: str, message: str
+) -> None:
+    with pytest.raises(OptionError, match=message):
+        animate(run_of(SWING.replace(old, new)), tmp_path / "a.gif")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("at", ["[0, 0]", "[1e6, 0]", "[0, 1e-30]"])
+def test_a_point_alone_is_drawn(tmp_path: Path, at: str) -> None:
+    text = "span: [0, 1]\nblocks: {x: {type: integrator, of: x}}\nscene:\n"
+    run = run_of(f"{text}  - disc: {{at: {at}, radius: x}}\n")
+    with Image.open(animate(run, tmp_path / "a.gif", width=100)) as film:
+        assert film.n_frames == 26  # type: ignore[attr-defined]  # the clock goes on
+
+
+def test_a_span_that_is_empty_is_told() -> None:
+    for span in ((3.0, 1.0), (1.0, 1.0), (math.nan, 1.0)):
+        with pytest.raises(OptionError, match=r"the span from .* to 1 s is empty"):
+            frame_times(RUN.model, span, "a.gif")
+
+
 def test_another_ending_is_told(tmp_path: Path) -> None:
     with pytest.raises(OptionError, match=r"ending of a film '\.avi'; there are: \.gif, \.mp4"):
         animate(RUN, tmp_path / "a.avi")

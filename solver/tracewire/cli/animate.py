@@ -16,8 +16,8 @@ from tracewire.cli.values import parameter_values_of, start_values_of
 from tracewire.files import writing
 
 ENDINGS = (".gif", ".mp4")
-TRACED = 2000
-"""Samples at least: with fewer a trace has corners."""
+SAMPLES, FINER = 2000, 4
+"""Samples at least, and for each picture: with fewer a trace has corners."""
 
 
 def animate(
@@ -77,7 +77,7 @@ def animate(
 
     begin, end = (span or given.span) or evenly(model, known, None, 1).tolist()
     times = frame_times(model, (begin, end), target, speed=speed, fps=fps, width=width)
-    finer = max(1, math.ceil(TRACED / len(times)))
+    finer = max(FINER, math.ceil(SAMPLES / len(times)))
     samples = np.interp(
         np.arange((len(times) - 1) * finer + 1) / finer, np.arange(len(times)), times
     )

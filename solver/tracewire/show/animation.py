@@ -100,6 +100,9 @@ def frame_times(
         what = f"a picture cannot be {width} pixels wide"
         raise OptionError([Problem(what, hint=f"Give a width from {WIDTHS[0]} to {WIDTHS[1]}.")])
     begin, end = span
+    if not begin < end:
+        what = f"the span from {begin:g} to {end:g} s is empty"
+        raise OptionError([Problem(what, hint="Give a begin before the end.")])
     step = _pause(path, fps) * speed
     count = math.floor((end - begin) / step * (1 + 1e-12)) + 1
     if count > MOST_FRAMES:
@@ -166,22 +169,35 @@ def _nearest(t: NDArray[np.float64], times: NDArray[np.float64]) -> NDArray[np.i
 
 
 def _write_gif(path: Path, frames: Iterator[Image], pause: float) -> None:
-    """Write pictures that all have the same colours, so that none flickers."""
-    from PIL import Image
+    """Write pictures that all have the same colours, so that none flickers.
+
+    Each one is written at once, as what has changed since the one before it: a film of a minute
+    would else need a gigabyte of memory.
+    """
+    from PIL import GifImagePlugin, Image, ImageChops
 
     palette = Image.new("P", (1, 1))
     palette.putpalette(_palette())
     pictures = (frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames)
-    start = next(pictures)
+    before = waiting = next(pictures)
+    place, duration = (0, 0), 0.0
     with replacing(path) as file:
-        start.save(
-            file,
-            format="GIF",
-            save_all=True,
-            append_images=pictures,
-            duration=round(1000 * pause),
-            loop=0,
-        )
+        header, _ = GifImagePlugin.getheader(before, info={"loop": 0, "duration": 1000 * pause})
+        file.writelines(header)
+        for picture in pictures:
+            duration += pause
+            changed = ImageChops.difference(before, picture).getbbox()
+            if changed is None:  # the one before stays for longer
+                continue
+            file.writelines(GifImagePlugin.getdata(waiting, place, duration=_ms(duration)))
+            before, waiting, place = picture, picture.crop(changed), changed[:2]
+            duration = 0.0
+        file.writelines(GifImagePlugin.getdata(waiting, place, duration=_ms(duration + pause)))
+        file.write(b";")
+
+
+def _ms(seconds: float) -> int:
+    return round(1000 * seconds)
 
 
 def _palette() -> list[int]:

@@ -32,6 +32,9 @@ USUAL = {"rod": "black", "spring": "black", "disc": "blue", "box": "blue", "grou
 TRACED = "orange"
 SPRING = 0.05
 """The usual width of a spring as a part of the extent of the scene."""
+MOST_COILS = 100
+LARGEST = 1e100
+"""In m: a scene beyond cannot be put into pixels."""
 HATCHES = 24
 """Strokes under a piece of ground."""
 
@@ -101,22 +104,34 @@ def _moved(part: ScenePart, values: Mapping[str, float | Vector], count: int) ->
         hint = "Draw from signals that are finite over the whole run."
         what = f"a {part.kind} of the scene cannot be drawn: {error.problems[0].what}"
         raise OptionError([Problem(what, part.place, hint=hint)]) from error
+    coils = sizes.get("coils", np.ones(1))[0]
+    if not 1 <= coils <= MOST_COILS:
+        what = f"a spring with {coils:g} coils cannot be drawn"
+        raise OptionError([Problem(what, part.place, hint=f"Give it 1 to {MOST_COILS}.")])
     usual = TRACED if part.kind == "trace" else USUAL[part.kind]
     return Moved(part.kind, points, sizes, COLORS[part.color or usual])
 
 
 def extent_of(parts: list[Moved]) -> tuple[float, float, float, float]:
-    """What a scene covers over a whole run, (left, right, bottom, top) in m, with a margin."""
+    """What a scene covers over a whole run, (left, right, bottom, top) in m, with a margin.
+
+    Raises OptionError for a scene that is too large for a picture.
+    """
     low, high = [], []
-    for part in parts:
-        around = part.reach
-        for points in part.points.values():
-            low.append((points - around).min(axis=0))
-            high.append((points + around).max(axis=0))
+    with np.errstate(over="ignore"):
+        for part in parts:
+            for points in part.points.values():
+                low.append((points - part.reach).min(axis=0))
+                high.append((points + part.reach).max(axis=0))
     least, most = np.min(low, axis=0), np.max(high, axis=0)
-    size = max(float((most - least).max()), 1e-9)
-    left, bottom = least - 0.08 * size
-    right, top = most + 0.08 * size
+    largest = float(np.abs([least, most]).max())
+    if not largest < LARGEST:
+        what = f"the scene reaches as far as {largest:g} m, and cannot be drawn"
+        raise OptionError([Problem(what, hint="Give a shorter span, or draw what stays near.")])
+    # a point alone, and one far away, have a surrounding, too
+    margin = 0.08 * max(float((most - least).max()), 1e-6 * largest, 1e-9)
+    left, bottom = least - margin
+    right, top = most + margin
     return float(left), float(right), float(bottom), float(top)
 
 
@@ -147,7 +162,7 @@ def _rod(panel: Axes, part: Moved, t: Vector, size: float) -> tuple[list[Artist]
 
 def _spring(panel: Axes, part: Moved, t: Vector, size: float) -> tuple[list[Artist], Update]:
     (wire,) = panel.plot([], [], color=part.color, linewidth=1.3, zorder=2.5)
-    coils = max(1, round(float(part.sizes["coils"][0])))
+    coils = round(float(part.sizes["coils"][0]))
     # a straight piece at each end, and between them from side to side
     along = np.array([0.0, *np.linspace(0.1, 0.9, 4 * coils + 1), 1.0])
     across = np.array([0.0, *np.resize([0.0, 0.5, 0.0, -0.5], 4 * coils + 1), 0.0])
