@@ -18,6 +18,8 @@ STRONG = ("impact", "reset", "rest")
 WEAK = ("crossing", "scheduled", "transition")
 WIDTH = 700
 """Marks nearer to each other than this part of the span cannot be told apart: they are a bar."""
+DENSE = 0.45
+"""The opacity of such a bar, which would be the loudest part of the figure."""
 
 
 def event_rows(run: Run) -> list[str]:
@@ -61,7 +63,7 @@ def draw_events(panel: Axes, run: Run, rows: Sequence[str], shaded: bool = False
             single = [begin for begin, end in groups if begin == end]
             panel.vlines(single, row - half, row + half, color=color, linewidth=0.9)
             many = [(begin, end) for begin, end in groups if end > begin]
-            _draw_bars(panel, many, row, half, color=color, linewidth=0.9)
+            _draw_bars(panel, many, row, half, facecolor=color, alpha=DENSE, linewidth=0)
     labels = (f"{cut(name)} ({count})" for name, count in zip(rows, counts, strict=True))
     panel.set_yticks(range(len(rows)), list(labels))
     panel.set_ylim(last + 0.6, -0.6)

@@ -191,11 +191,12 @@ def _marks(axes: Axes) -> dict[str, list[dict[str, Any]]]:
             places = [[float(p[0, 0]), float(p[0, 1]), float(p[1, 1])] for p in paths]
             marks.append({"color": color, "at": places})
         elif isinstance(collection, PolyCollection):
-            color, _ = _paint(collection.get_facecolor()[0])
+            color, opacity = _paint(collection.get_facecolor()[0])
             ends = [(*path[:, 0][[0, 2]], *path[:, 1][[0, 2]]) for path in paths]
             if any(len(path) != 5 for path in paths):
                 raise _Other
-            bars.append({"color": color, "at": [sorted(e[:2]) + sorted(e[2:]) for e in ends]})
+            places = [sorted(map(float, e[:2])) + sorted(map(float, e[2:])) for e in ends]
+            bars.append({"color": color, "alpha": opacity, "at": places})
         else:
             raise _Other
     return {"marks": marks, "bars": bars}

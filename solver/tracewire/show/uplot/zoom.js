@@ -25,6 +25,11 @@
     return found;
   }
 
+  // without the commas of a locale
+  function plain(u, splits) {
+    return splits.map(function (v) { return v === null ? "" : String(+v.toPrecision(10)); });
+  }
+
   function faded(color, alpha) {
     return color + ("0" + Math.round(255 * alpha).toString(16)).slice(-2);
   }
@@ -66,7 +71,7 @@
       panel.levels.forEach(function (l) { line(c, l, box.left, y(l.at), right, y(l.at)); });
       panel.instants.forEach(function (i) { line(c, i, x(i.at), box.top, x(i.at), low); });
       panel.bars.forEach(function (group) {
-        c.fillStyle = group.color;
+        c.fillStyle = faded(group.color, group.alpha);
         group.at.forEach(function (b) {
           c.fillRect(x(b[0]), Math.min(y(b[2]), y(b[3])), Math.max(x(b[1]) - x(b[0]), 1.5),
                      Math.abs(y(b[3]) - y(b[2])));
@@ -91,13 +96,10 @@
     };
     var yScale = {range: range, dir: panel.down ? -1 : 1};
     if (panel.bend) { yScale.distr = 4; yScale.asinh = panel.bend; }
-    var yAxis = {size: gutter, stroke: "#444", grid: {stroke: "#e6e6e6", width: 1, show: !rows}};
+    var yAxis = {size: gutter, values: plain, stroke: "#444", grid: {stroke: "#e6e6e6", width: 1, show: !rows}};
     if (panel.ticks) {
       yAxis.splits = function (u, axis, least, most) {
         return whole(u) ? panel.ticks : round(least, most);
-      };
-      yAxis.values = function (u, splits) {
-        return splits.map(function (v) { return String(+v.toPrecision(6)); });
       };
       yAxis.filter = yAxis.grid.filter = function (u, splits) { return splits; };
     }
@@ -119,7 +121,7 @@
       legend: {show: !rows, live: true},
       scales: {x: {time: false, range: function (u, a, b) { return [a, b]; }}, y: yScale},
       axes: [
-        {stroke: "#444", grid: {stroke: "#e6e6e6", width: 1}, size: last ? 32 : 26,
+        {stroke: "#444", grid: {stroke: "#e6e6e6", width: 1}, values: plain, size: last ? 32 : 26,
          label: last ? "t [s]" : null, labelSize: 18, labelFont: "12px sans-serif"},
         yAxis
       ],
