@@ -225,6 +225,14 @@ def test_a_report_of_a_run_opens_with_the_diagram_and_has_the_series(
     assert page.count("<img") == 2
 
 
+def test_measured_data_that_could_be_drawn_are_told(call: Any, swing: Path, tmp_path: Path) -> None:
+    file = tmp_path / "run.png"
+    hint = "without measured data; --series runs as one of these and draws it: run_1"
+    assert hint in call("run", swing, "--figure", file).out.splitlines()
+    assert hint not in call("run", swing, "--figure", file, "--series", "run_1").out
+    assert hint not in call("run", swing).out
+
+
 def test_a_report_is_that_of_one_run(call: Any, swing: Path) -> None:
     told = call("run", swing, "--over", "slip=1e-4,2e-4", "--report", "run.html")
     assert told.code == 2

@@ -15,7 +15,7 @@ from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.errors import OptionError
 from tracewire.show import plot_fit, plot_residual, plot_run
-from tracewire.show.event_rows import struck
+from tracewire.show.event_rows import jump_times
 from tracewire.show.figures import group_signals
 from tracewire.show.sticking import held_intervals, joined, stick_intervals
 from tracewire.show.summary import run_table
@@ -184,8 +184,8 @@ def test_an_event_strikes_the_panels_of_the_states_that_it_sets() -> None:
     bounce = Event(1.0, "impact", "ball", "x", "down", {"x": 0.0, "v": -2.0}, {"x": 0.0, "v": 2.0})
     stick = Event(2.0, "stick", "rub", "v", "", {"v": 1e-12}, {"v": 0.0})
     run = run_of({"x": ("m", T), "v": ("m/s", T)}, (bounce, bounce, stick))
-    assert struck(run, ["v"]) == [1.0]
-    assert struck(run, ["x"]) == []
+    assert jump_times(run, ["v"]) == [1.0]
+    assert jump_times(run, ["x"]) == []
 
 
 def test_hundreds_of_events_are_counted_and_take_few_marks(tmp_path: Path) -> None:

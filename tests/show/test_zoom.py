@@ -141,7 +141,7 @@ function limits() {
     return [x.min, x.max, y.min, y.max];
   });
 }
-requestAnimationFrame(function () { setTimeout(function () {
+window.addEventListener("load", function () { setTimeout(function () {
   told.image = getComputedStyle(figure.querySelector("img")).display;
   var labels = Array.from(figure.querySelectorAll(".u-label"));
   told.names = labels.map(function (label) { return label.textContent; });
@@ -190,7 +190,7 @@ def seen(run: Run, folder: Path) -> Any:
     page = folder / "run.html"
     page.write_text(report(run).html().replace("</body>", PROBE), encoding="utf-8")
     command = [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--dump-dom"]
-    command += [f"--user-data-dir={folder / 'profile'}", "--virtual-time-budget=3000"]
+    command += [f"--user-data-dir={folder / 'profile'}", "--virtual-time-budget=20000"]
     done = subprocess.run([*command, page.as_uri()], capture_output=True, text=True, timeout=120)
     found = re.search(r'<pre id="told">(.*?)</pre>', done.stdout, flags=re.DOTALL)
     assert found is not None, done.stderr

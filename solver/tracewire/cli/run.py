@@ -214,6 +214,9 @@ def run(
         print_text(summary.run_text(result))
     for path in written:
         print_text(f"written: {path}")
+    if (figure or report) and model.diagram.measured and not series:
+        names = ", ".join(model.diagram.measured)
+        print_text(f"without measured data; --series runs as one of these and draws it: {names}")
 
 
 def _tell_warnings(case: str, result: Run) -> None:

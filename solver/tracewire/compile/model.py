@@ -15,7 +15,7 @@ from tracewire.compile.lower import lower
 from tracewire.compile.lowered import Lowered, Mode
 from tracewire.compile.memory import told
 from tracewire.compile.routines import BACKENDS, PREPARE, Backend, Routines, Sizes
-from tracewire.compile.scene import scene_of
+from tracewire.compile.scene import resolve_scene
 from tracewire.compile.vectors import element_names
 from tracewire.diagram import Diagram, ScenePart, find_recorded
 from tracewire.errors import OptionError, unknown
@@ -118,12 +118,12 @@ class Model:
     @cached_property
     def scene(self) -> tuple[ScenePart, ...]:
         """The parts of the scene of the diagram, over the signals by their full names."""
-        return scene_of(self.diagram, self.flat.shapes)[0]
+        return resolve_scene(self.diagram, self.flat.shapes)[0]
 
     @cached_property
     def read_by_scene(self) -> tuple[str, ...]:
         """The signals that the scene of the diagram reads: `record` of compile takes them."""
-        return scene_of(self.diagram, self.flat.shapes)[1]
+        return resolve_scene(self.diagram, self.flat.shapes)[1]
 
     @property
     def modes(self) -> Sequence[Mode]:
@@ -254,7 +254,7 @@ def compile(diagram: Diagram, record: Sequence[str] = (), backend: Backend = "ll
     if backend not in BACKENDS:
         raise OptionError([unknown("backend", backend, BACKENDS)])
     flat = flatten(diagram)
-    scene_of(diagram, flat.shapes)
+    resolve_scene(diagram, flat.shapes)
     lowered = lower(flat)
     known = [
         *(state.name for state in flat.states),

@@ -11,7 +11,7 @@ from tracewire.errors import DiagramError, Problem
 from tracewire.formula import CONSTANTS, Call, Expression, Name, Number, names_of, rename
 
 
-def scene_of(
+def resolve_scene(
     diagram: Diagram, shapes: Mapping[str, tuple[int, ...]]
 ) -> tuple[tuple[ScenePart, ...], tuple[str, ...]]:
     """The parts of a diagram's scene with the full names of signals, and the signals they read.

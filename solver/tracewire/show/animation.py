@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.files import replacing, write_file
-from tracewire.show.scene import COLORS, add_part, extent_of, moved_parts, scene_of
+from tracewire.show.scene import COLORS, add_part, extent_of, moved_parts, required_scene
 from tracewire.show.style import cut, styled
 from tracewire.solve import Run
 
@@ -85,7 +85,7 @@ def frame_times(
 
     Raises OptionError for what could not be filmed, before there is a run.
     """
-    scene_of(model)
+    required_scene(model)
     path = Path(path)
     if path.suffix not in ENDINGS:
         raise OptionError([unknown("ending of a film", path.suffix, ENDINGS)])

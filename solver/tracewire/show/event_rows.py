@@ -30,7 +30,7 @@ def event_rows(run: Run) -> list[str]:
     return [*names[: MOST_ROWS - 1], f"{len(names) - MOST_ROWS + 1} others"]
 
 
-def struck(run: Run, signals: Collection[str]) -> list[float]:
+def jump_times(run: Run, signals: Collection[str]) -> list[float]:
     """The times in s at which an event gives one of these signals another value."""
     times = (
         event.time

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tracewire.errors import OptionError, Problem
-from tracewire.show.event_rows import draw_events, event_rows, struck
+from tracewire.show.event_rows import draw_events, event_rows, jump_times
 from tracewire.show.sticking import held_intervals
 from tracewire.show.style import (
     LINES,
@@ -64,7 +64,7 @@ def plot_run(run: Run, path: str | Path, measured: Measured | None = None) -> Pa
             for name, color in zip(names, LINES, strict=False):
                 for begin, end in held.get(name, ()):
                     panel.axvspan(begin, end, color=color, alpha=0.13, linewidth=0, zorder=0)
-            times = struck(run, names)
+            times = jump_times(run, names)
             for time in times if len(times) <= MOST_STRIKES else ():
                 panel.axvline(time, color=MARK, alpha=0.45, linewidth=0.6, zorder=0.5)
         if rows:

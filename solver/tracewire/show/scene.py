@@ -63,7 +63,7 @@ class Moved:
         return np.column_stack([sides, up]) / 2
 
 
-def scene_of(model: Model | None) -> tuple[ScenePart, ...]:
+def required_scene(model: Model | None) -> tuple[ScenePart, ...]:
     """The parts of the scene of a model. Raises OptionError where there is none."""
     if model is not None and model.scene:
         return model.scene
@@ -81,7 +81,7 @@ def moved_parts(run: Run) -> list[Moved]:
 
     Raises OptionError: no scene, a signal that was not recorded, a value that is not finite.
     """
-    scene = scene_of(run.model)
+    scene = required_scene(run.model)
     reads = run.model.read_by_scene if run.model is not None else ()
     missing = [name for name in reads if name not in run.signals]
     if missing:

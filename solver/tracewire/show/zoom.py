@@ -51,7 +51,7 @@ def curves_of(figure: Figure) -> str | None:
 
     try:
         made = [_panel(axes, keep) for axes in panels]
-    except _Other:
+    except NotOverTime:
         return None
     _name_lines(made)
     data = {"panels": made, "arrays": arrays}
@@ -69,15 +69,17 @@ def _name_lines(panels: list[dict[str, Any]]) -> None:
             )
 
 
-class _Other(Exception):
+class NotOverTime(Exception):
     """The figure has something that is no curve over time, no band and no mark."""
 
 
 def _panel(axes: Axes, keep: Any) -> dict[str, Any]:
     if axes.images or axes.get_xscale() != "linear":
-        raise _Other
+        raise NotOverTime
     lines = [line for line in axes.lines if _placed(line, axes) == WHOLE]
     texts = [*(text.get_text() for text in axes.texts), axes.get_title(loc="left")]
+    shades = [str(patch.get_label()) for patch in axes.patches]
+    texts += [f"shade: {label}" for label in shades if label and not label.startswith("_")]
     bottom, top = axes.get_ylim()
     data: dict[str, Any] = {
         "title": "   ".join(text.strip() for text in texts if text.strip()),
@@ -104,14 +106,14 @@ def _panel(axes: Axes, keep: Any) -> dict[str, Any]:
         data["bend"] = float(axes.yaxis.get_transform().linthresh)  # type: ignore[attr-defined]
         data["ticks"] = [float(tick) for tick in axes.get_yticks()]
     elif axes.get_yscale() != "linear":
-        raise _Other
+        raise NotOverTime
     if not lines:  # rows with names
         data["rows"] = [text.get_text() for text in axes.get_yticklabels()]
     return data
 
 
 def _placed(artist: Artist, axes: Axes) -> str:
-    """How an artist is placed in a panel. Raises _Other for another way."""
+    """How an artist is placed in a panel. Raises NotOverTime for another way."""
     given = getattr(artist, "get_data_transform", artist.get_transform)()
     for transform, word in (
         (axes.transData, WHOLE),
@@ -120,14 +122,14 @@ def _placed(artist: Artist, axes: Axes) -> str:
     ):
         if given == transform:
             return word
-    raise _Other
+    raise NotOverTime
 
 
 def _line(line: Line2D, keep: Any) -> dict[str, Any]:
     x = np.asarray(line.get_xdata(), dtype=float)
     y = np.asarray(line.get_ydata(), dtype=float)
     if (np.diff(x) < 0).any():
-        raise _Other
+        raise NotOverTime
     x, y = thinned(x, y)
     label = str(line.get_label())
     return {
@@ -166,7 +168,7 @@ def _bands(axes: Axes) -> list[dict[str, Any]]:
         word = _placed(patch, axes)
         box = patch.get_path().get_extents(patch.get_patch_transform())
         if word == WHOLE:
-            raise _Other
+            raise NotOverTime
         ends = (box.x0, box.x1) if word == ALONG else (box.y0, box.y1)
         color, opacity = _paint(patch.get_facecolor())
         look = {"color": color, "alpha": opacity, "upright": word == ALONG}
@@ -187,18 +189,18 @@ def _marks(axes: Axes) -> dict[str, list[dict[str, Any]]]:
         if isinstance(collection, LineCollection):
             color, _ = _paint(collection.get_edgecolor()[0])
             if any(len(path) != 2 or path[0, 0] != path[1, 0] for path in paths):
-                raise _Other
+                raise NotOverTime
             places = [[float(p[0, 0]), float(p[0, 1]), float(p[1, 1])] for p in paths]
             marks.append({"color": color, "at": places})
         elif isinstance(collection, PolyCollection):
             color, opacity = _paint(collection.get_facecolor()[0])
             ends = [(*path[:, 0][[0, 2]], *path[:, 1][[0, 2]]) for path in paths]
             if any(len(path) != 5 for path in paths):
-                raise _Other
+                raise NotOverTime
             places = [sorted(map(float, e[:2])) + sorted(map(float, e[2:])) for e in ends]
             bars.append({"color": color, "alpha": opacity, "at": places})
         else:
-            raise _Other
+            raise NotOverTime
     return {"marks": marks, "bars": bars}
 
 
