@@ -230,6 +230,7 @@ def test_measured_data_that_could_be_drawn_are_told(call: Any, swing: Path, tmp_
     hint = "without measured data; --series runs as one of these and draws it: run_1"
     assert hint in call("run", swing, "--figure", file).out.splitlines()
     assert hint not in call("run", swing, "--figure", file, "--series", "run_1").out
+    assert hint not in call("run", swing, "--figure", file, "--preset", "free").out
     assert hint not in call("run", swing).out
 
 

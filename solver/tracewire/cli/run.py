@@ -214,7 +214,8 @@ def run(
         print_text(summary.run_text(result))
     for path in written:
         print_text(f"written: {path}")
-    if (figure or report) and model.diagram.measured and not series:
+    own_conditions = series or preset or values or start or over
+    if (figure or report) and model.diagram.measured and not own_conditions:
         names = ", ".join(model.diagram.measured)
         print_text(f"without measured data; --series runs as one of these and draws it: {names}")
 

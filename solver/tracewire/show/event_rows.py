@@ -47,7 +47,7 @@ def draw_events(panel: Axes, run: Run, rows: Sequence[str], shaded: bool = False
     last = len(rows) - 1
     for block, intervals in stick_intervals(run).items():
         at = position.get(block, last)
-        _draw_bars(panel, intervals, at, 0.3, facecolor=STICK, edgecolor=QUIET, linewidth=0.4)
+        _draw_bars(panel, intervals, at, 0.3, facecolor=STICK, edgecolor=QUIET, linewidth=0.8)
     counts = [0] * len(rows)
     for event in run.events:
         counts[position.get(event.block, last)] += 1
