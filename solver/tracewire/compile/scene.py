@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from tracewire.compile.vectors import element_names, shape_text
+from tracewire.compile.elements import shape_text
+from tracewire.compile.vectors import element_names
 from tracewire.diagram import Diagram, ScenePart, element_name, find_signal, split_index
 from tracewire.errors import DiagramError, Problem
 from tracewire.formula import CONSTANTS, Call, Expression, Name, Number, names_of, rename
