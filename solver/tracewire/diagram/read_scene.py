@@ -10,14 +10,12 @@ from tracewire.diagram.diagram import ScenePart
 from tracewire.diagram.problems import clip
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.diagram.values import read_formula
-from tracewire.formula import FUNCTIONS, Call, Expression, Number
+from tracewire.formula import ALONG, FUNCTIONS, Call, Expression, Number
 
 COLORS = ("black", "blue", "orange", "green", "pink", "grey")
 MOST_PARTS = 200
 EXAMPLE = "- rod: {from: [0, 0], to: [l*sin(phi), -l*cos(phi)]}"
-NOT_ALONG = {
-    name: one.instead for name, one in FUNCTIONS.items() if not one.numpy and name != "dry"
-}
+NOT_ALONG = FUNCTIONS.keys() - ALONG.keys()
 """Functions that mean nothing for samples alone."""
 
 
@@ -112,7 +110,7 @@ def _read_size(node: Node, body: Body) -> Expression | None:
     formula = read_formula(node, body, "either")
     if formula is None:
         return None
-    for function in sorted(_functions(formula) & NOT_ALONG.keys()):
+    for function in sorted(_functions(formula) & NOT_ALONG):
         text = node.text if isinstance(node, Scalar) else ""
         what = f"formula '{clip(text)}': a scene cannot work out {function}"
         hint = "Make it an expression block of the diagram, and name that here."

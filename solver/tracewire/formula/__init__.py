@@ -7,6 +7,7 @@ bounded, so a formula from a stranger can do nothing but arithmetic. It is never
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 from tracewire.formula.dimension import dimension_of, dimension_text
@@ -20,9 +21,10 @@ from tracewire.formula.unit_rules import Term, times, unit_term
 from tracewire.formula.units import Unit, quantity_hint, read_unit, same_quantity
 
 if TYPE_CHECKING:
-    from tracewire.formula.arrays import evaluate_along
+    from tracewire.formula.arrays import ALONG, evaluate_along
 
 __all__ = [
+    "ALONG",
     "CONSTANTS",
     "FUNCTIONS",
     "OPERATIONS",
@@ -54,9 +56,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> object:
-    """The name that needs numpy, which a look at blocks or units does without."""
-    if name == "evaluate_along":
-        from tracewire.formula.arrays import evaluate_along
-
-        return evaluate_along
+    """The names that need numpy, which a look at blocks or units does without."""
+    if name in ("ALONG", "evaluate_along"):
+        return getattr(import_module("tracewire.formula.arrays"), name)
     raise AttributeError(f"module 'tracewire.formula' has no attribute '{name}'")
