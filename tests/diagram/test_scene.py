@@ -90,9 +90,9 @@ def test_a_scene_reads_elements_outputs_and_blocks_by_their_full_names() -> None
     [
         (
             "q",
-            "6:5: 'q' is a vector of 2, and a disc is drawn from numbers; there are: q[0], q[1].",
+            "6:5: 'q' has elements, and a disc is drawn from numbers; there are: q[0], q[1].",
         ),
-        ('"q[2]"', "'q[2]' is no element of 'q', which is a vector of 2; there are: q[0], q[1]."),
+        ('"q[2]"', "'q[2]' is no element of 'q'; there are: q[0], q[1]."),
         ('"f[0]"', "'f' is a number, and has no elements; there are: f. Name one of them."),
     ],
 )

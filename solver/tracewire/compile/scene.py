@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from tracewire.compile.elements import shape_text
 from tracewire.compile.vectors import element_names
 from tracewire.diagram import Diagram, ScenePart, element_name, find_signal, split_index
 from tracewire.errors import DiagramError, Problem
@@ -65,9 +64,9 @@ def _wrong(name: str, part: ScenePart, shapes: Mapping[str, Sequence[int]]) -> P
     there = tuple(element_names(signal, shape))
     if name in there:
         return None
-    what = f"'{signal}' is {shape_text(shape)}, and a {part.kind} is drawn from numbers"
+    what = f"'{signal}' has elements, and a {part.kind} is drawn from numbers"
     if index and shape:
-        what = f"'{name}' is no element of '{signal}', which is {shape_text(shape)}"
+        what = f"'{name}' is no element of '{signal}'"
     elif index:
         what = f"'{signal}' is a number, and has no elements"
     return Problem(what, part.place, there, "Name one of them.")
