@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import random
-import time
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -174,19 +173,3 @@ def kind_of(text: str) -> str:
         if words in text:
             return words
     return text
-
-
-def fuzz(
-    count: int, seed: int, method: str = "any", backend: str = "any", kind: str = "linear"
-) -> Tally:
-    """So many systems from a seed on."""
-    tally, began = Tally(), time.perf_counter()
-    for number in range(count):
-        check(CASES[kind](seed + number), seed + number, tally, method, backend)
-        for failed, what in (*tally.wrong[-1:], *tally.refusals[-1:]):
-            if failed == seed + number:
-                print(f"seed {failed}: {what}", flush=True)  # noqa: T201
-        if (number + 1) % 1000 == 0:
-            spent = time.perf_counter() - began
-            print(f"{number + 1} of {count}, {spent:.0f} s: {tally}", flush=True)  # noqa: T201
-    return tally

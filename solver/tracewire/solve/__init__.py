@@ -2,7 +2,8 @@
 
 **Frozen modes.** Every relation of a formula is a mode m and its guard g. Between events all modes
 are frozen and x' = f(x, t, m) is smooth. A crossing of g is on the half-open interval (t0, t1]: a
-zero at a step's start does not fire again. Guards are sampled inside each step, sampled dips are
+zero at a step's start does not fire again. A guard that reaches zero at the known time at which a
+step ends crosses there. Guards are sampled inside each step, sampled dips are
 refined, and a crossing is located on the dense output and then on true steps, to 1e-14 of the
 span. Steps follow the error of the states; where a guard reads what turns faster than that, a sine
 of t, a narrow pulse, the step is bounded by the pace of the guard (`compile.pace`), and by

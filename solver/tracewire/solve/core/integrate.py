@@ -82,6 +82,7 @@ MANY_STIFF = 8
 MANY_CALM = 6
 TOGETHER = 1e-12
 SOON = 1e-9
+NEARLY = 0.01  # of what a margin falls by in the last quarter of a step
 NEAR = 32.0
 PAUSED_INSIDE = 2  # in ints[STAGE]: between two steps of a smooth part
 LARGEST_PART = 0.1  # of the span, for one step
@@ -455,6 +456,31 @@ def _crossed(core: int) -> int:
 
 
 @unit
+def _reached_with(core: int) -> bool:
+    """Let the guards cross that reach their levels at the known time at which a step has ended.
+
+    None of its samples is beyond its level, and the next step would begin with a zero. What would
+    reach it later, however soon, is located by that step.
+    """
+    progress, watched, crossings = progress_of(core), watch_of(core), crossings_of(core)
+    rows, start = watched.rows, watched.start
+    last, some = locate.SAMPLES - 1, False
+    for row in range(locate.watched_count(core)):
+        armed = watched.armed[row] and watched.kind[row] == GUARD
+        some = some or (armed and start[row] <= NEARLY * (rows[last - 1, row] - start[row]))
+    if not some or not locate.reached(core, progress.now[T], progress.x, 0.0, watched.hit):
+        return False
+    some = False
+    for row in range(locate.watched_count(core)):
+        i = watched.mode[row]
+        if watched.hit[row] and watched.armed[row] and crossings.how[i] < 0:
+            crossings.how[i], crossings.to[i] = GUARD, watched.to[row]
+            crossings.up[i] = int(watched.sign[row] < 0)
+            some = True
+    return some
+
+
+@unit
 def _scheduled(core: int, ahead: Vector) -> int:
     """Change timed modes, and settle the others in the new field. A status."""
     flow = flow_of(core)
@@ -467,6 +493,7 @@ def _scheduled(core: int, ahead: Vector) -> int:
             crossings.how[i], crossings.to[i] = TIME, ahead[row]
             crossings.up[i] = ahead[row] > flow.m[i]
             loud = loud or plan.kind[i] != SEGMENT
+    loud = _reached_with(core) or loud
     status = happen(core, progress.now[T], progress.x)
     if loud:
         progress.now[H] = 0.0

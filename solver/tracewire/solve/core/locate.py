@@ -52,6 +52,7 @@ HELD_NOISE = 1e-9  # of a fraction, and of what the force of a contact balances
 ROOT = 1e-14
 CLEARLY = 4.0  # beyond its level, in units of the noise
 MOST_ROUNDS = 200
+SOON = 0.01  # of a step
 POLISH = 3  # corrections of a located instant
 BACK = 1e-4  # of a step: how far back a secant begins
 NOTHING, INSIDE, AT_ONCE = 0, 1, 2
@@ -323,7 +324,11 @@ def _dip(core: int, method: int, count: int, item: int, floor: float) -> float:
 
 @unit
 def reached(core: int, t: float, x: Vector, reach: float, out: Ints) -> int:
-    """Mark the guards whose level is passed, or will be within the time `reach`; how many."""
+    """Mark the guards whose level is passed, or will be within the time `reach`; how many.
+
+    One that has come so near that it counts as zero, and goes on, may take longer, up to a small
+    part of the step: with the modes of this instant it would pass without a word.
+    """
     watched = watch_of(core)
     total, start = watched_count(core), watched.start
     out[:] = 0
@@ -336,8 +341,10 @@ def reached(core: int, t: float, x: Vector, reach: float, out: Ints) -> int:
     for row in range(total):
         if watched.kind[row] != GUARD:
             continue
-        falls = -watched.sign[row] * rates[watched.mode[row]]
-        if start[row] < -level[watched.mode[row]] or (falls > 0 and start[row] <= reach * falls):
+        falls, floor = -watched.sign[row] * rates[watched.mode[row]], level[watched.mode[row]]
+        near = watched.armed[row] and start[row] <= floor
+        soon = max(reach, SOON * trial_of(core).ends[1]) if near else reach
+        if start[row] < -floor or (falls > 0 and start[row] <= soon * falls):
             out[row] = 1
             count += 1
     return count

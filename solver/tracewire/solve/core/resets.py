@@ -172,7 +172,8 @@ def carried(
     core: int, t: float, before: Vector, x: Vector, old: Vector, bound: Ints, due: Ints
 ) -> int:
     """Mark in `due` the resets whose guard has jumped over zero since the states `before`, with the
-    modes `old` and what was held then, `bound`. A status: CARRIED where a body jumps over a stop.
+    modes `old` and what was held then, `bound`, and the impacts of bodies that are so near to a
+    stop that they count as on it, and go on. A status: CARRIED where a body jumps over a stop.
 
     Not those of guards that crossed on their own in this stage, and not those of guards that have
     since then stood where they arrived: what goes on from there is the same crossing.
@@ -198,9 +199,11 @@ def carried(
         i = plan.resets[reset, 0]
         if due[reset] == 0:
             continue
+        jumped = abs(there[i] - here[i]) > JUMP * level[i]
         stood = crossings_of(core).due[reset] == ARRIVED and abs(here[i]) <= JUMP * level[i]
-        due[reset] = abs(there[i] - here[i]) > JUMP * level[i] and not stood
-        if due[reset] and plan.resets[reset, 4] == IMPACT:
+        impact = plan.resets[reset, 4] == IMPACT
+        due[reset] = (jumped or impact) and not stood
+        if jumped and impact and not stood:
             progress.which[0], progress.which[1] = reset, i
             progress.info[0], progress.info[1], progress.info[2] = t, here[i], there[i]
             return CARRIED
