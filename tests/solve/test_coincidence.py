@@ -131,3 +131,19 @@ blocks:
 """
     )
     assert found.final["c"] == 0
+
+
+def test_events_of_one_guard_have_each_their_name_in_the_log() -> None:
+    found = run(
+        f"""
+span: [0, 1.5]
+blocks:
+  one: {{type: constant, value: 1}}
+  x: {{type: integrator, of: one}}
+  c: {{type: counter, of: x, threshold: 1}}
+{TICKED}
+events:
+  - {{when: x - 1, crosses: both, set: {{ticks: ticks + 1}}}}
+"""
+    )
+    assert [event.block for event in found.events] == ["c", "events[0]"]

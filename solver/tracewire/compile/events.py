@@ -27,7 +27,10 @@ def lower_events(lowering: Lowering) -> None:
             out.modes[trigger] = replace(out.modes[trigger], signal=event.block)
         claimed.add(trigger)
         values = values_of(lowering, event.set)
-        out.resets.append(Reset(event.name, event.kind, trigger, direction, values, event.place))
+        owner = event.block or event.name
+        out.resets.append(
+            Reset(event.name, event.kind, trigger, direction, values, event.place, owner)
+        )
 
 
 def _trigger(lowering: Lowering, event: FlatEvent) -> tuple[int, Direction]:

@@ -47,7 +47,8 @@ class Mode:
 class Reset:
     """States that get new values where the mode `trigger` crosses; -1: where a transition says so.
 
-    values: {number of a state: entry of its new value}. `kind` is what the log calls it.
+    values: {number of a state: entry of its new value}. `kind` is what the log calls it, `owner` is
+    the block or the event of the diagram that the log names.
     """
 
     name: str
@@ -56,6 +57,7 @@ class Reset:
     direction: Direction
     values: Mapping[int, int] = field(hash=False)
     place: Place = Place()
+    owner: str = ""
 
 
 @dataclass(frozen=True)

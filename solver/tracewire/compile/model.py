@@ -12,7 +12,7 @@ from tracewire.compile.flat import Flat
 from tracewire.compile.flatten import flatten
 from tracewire.compile.holding import modes_read
 from tracewire.compile.lower import lower
-from tracewire.compile.lowered import Lowered, Mode
+from tracewire.compile.lowered import Lowered, Mode, Reset
 from tracewire.compile.memory import told
 from tracewire.compile.routines import BACKENDS, PREPARE, Backend, Routines, Sizes
 from tracewire.compile.scene import resolve_scene
@@ -95,6 +95,14 @@ class Model:
             if mode.kind == "sign":
                 found[number] = tuple(sorted(entry.operands)) if entry.op == "-" else (guard,)
         return found
+
+    @cached_property
+    def shared_triggers(self) -> dict[int, list[Reset]]:
+        """The resets of each mode that triggers more than one, in their order."""
+        found: dict[int, list[Reset]] = {}
+        for reset in self.lowered.resets:
+            found.setdefault(reset.trigger, []).append(reset)
+        return {mode: resets for mode, resets in found.items() if mode >= 0 and len(resets) > 1}
 
     @cached_property
     def only_triggers(self) -> frozenset[int]:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field, replace
 from typing import cast
 
 import numpy as np
@@ -183,7 +184,8 @@ class Execution:
     @property
     def events(self) -> tuple[Event, ...]:
         """The log, in the order of time."""
-        return tuple(_event(self.model, row, self.asked) for row in self.log)
+        events = (_event(self.model, row, self.asked) for row in self.log)
+        return tuple(_owned(self.model, events, self.log))
 
     @property
     def statistics(self) -> Statistics:
@@ -275,3 +277,16 @@ def _event(model: Model, row: Vector, asked: tuple[str, ...]) -> Event:
         after=dict(zip(model.states, sides[n:], strict=True)),
         sensitivity=dict(zip(asked, moved, strict=True)),
     )
+
+
+def _owned(model: Model, events: Iterable[Event], rows: Matrix) -> Iterator[Event]:
+    """The events; of several with one guard each names its own block, in the order of the model."""
+    shared, seen = model.shared_triggers, Counter[tuple[float, int]]()
+    for event, row in zip(events, rows, strict=True):
+        mode = int(row[2])
+        if mode in shared and event.kind in ("reset", "impact"):
+            fits = [r for r in shared[mode] if r.direction in ("both", event.direction)]
+            yield replace(event, block=fits[seen[event.time, mode] % len(fits)].owner)
+            seen[event.time, mode] += 1
+        else:
+            yield event
