@@ -176,16 +176,20 @@ class Execution:
 
     @property
     def log(self) -> Matrix:
-        """The log as the core writes it, in the order of time: (events, LOG_HEAD + 2n + q)."""
+        """The rows of the core in the order of time, each crossing of a signal once.
+
+        (events, LOG_HEAD + 2n + q)
+        """
         width = self.progress.log.shape[1] + len(self.asked)
         rows = np.concatenate(self.rows) if self.rows else np.empty((0, width))
-        return rows[np.argsort(rows[:, 0], kind="stable")]
+        return _once(self.model, rows[np.argsort(rows[:, 0], kind="stable")])
 
     @property
     def events(self) -> tuple[Event, ...]:
         """The log, in the order of time."""
-        events = (_event(self.model, row, self.asked) for row in self.log)
-        return tuple(_owned(self.model, events, self.log))
+        rows = self.log
+        events = (_event(self.model, row, self.asked) for row in rows)
+        return tuple(_owned(self.model, events, rows))
 
     @property
     def statistics(self) -> Statistics:
@@ -229,7 +233,6 @@ def _shown(model: Model, rows: Matrix) -> Matrix:
     silent = np.isin(rows[:, 2], list(model.only_triggers))
     if np.any(silent):
         rows = rows[~(silent & np.isin(rows[:, 1], UNASKED))]
-    rows = _once(model, rows)
     jumps = np.array([mode.jumps for mode in model.modes])
     if not np.any(jumps != ""):
         return rows

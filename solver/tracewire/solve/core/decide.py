@@ -315,13 +315,14 @@ def note_undetermined(core: int, t: float, x: Vector, zero: Ints) -> None:
     along, beyond, small = np.empty(modes), np.empty(modes), np.empty(modes)
     guard_rates(core, t, x, along)
     rate_levels(core, t, x, small)
-    moves = patterns(core, GUARD_RATES, t, x, modes)
     for i in zero:
         free = flow.bound[i] == FREE and undetermined[i] == np.inf
         if not free or abs(along[i]) > small[i] or first_higher(core, t, x, i) != 0.0:
             continue
-        if compares_at_zero(core, t, x, i, bool(np.any(moves[1:, i] != 0.0))):
-            continue
+        if plan_of(core).compares[i]:
+            moves = patterns(core, GUARD_RATES, t, x, modes)
+            if compares_at_zero(core, t, x, i, bool(np.any(moves[1:, i] != 0.0))):
+                continue
         here, there, size = np.empty(n), np.empty(n), np.empty(n)
         sizes(core, RATE_SIZES, t, x, size)
         rates(core, t, x, here)
