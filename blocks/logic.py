@@ -125,3 +125,24 @@ jk_flip_flop = Block(
     ),
     outputs=(Output("y", "y", doc="0 or 1, jumps"),),
 )
+
+debounce = Block(
+    name="debounce",
+    doc="A switch without its bounces: it follows a signal that has kept its side for a duration.",
+    inputs=(OF,),
+    parameters=(
+        Parameter("duration", "s", "that a signal must keep its side for", above=0.0),
+        THRESHOLD,
+        START,
+    ),
+    # how long the signal has been on the other side than y
+    states=(
+        State("y", "0", "start"),
+        State("passed", "1 - y if of >= threshold else y", "0", "s", hidden=True),
+    ),
+    events=(
+        Event("bounce", when="of - threshold", set={"passed": "0"}),
+        Event("settled", when="passed - duration", crosses="up", set={"y": "1 - y", "passed": "0"}),
+    ),
+    outputs=(Output("y", "y", doc="0 or 1, jumps"),),
+)

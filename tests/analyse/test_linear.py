@@ -22,9 +22,9 @@ INSIDE = """
 span: [0, 1]
 inputs: {u: {default: 0}}
 blocks:
-  body: {type: mass, push: u}
+  body: {type: cart, push: u}
 subsystems:
-  mass:
+  cart:
     inputs: [push]
     outputs: {way: x}
     blocks:

@@ -49,8 +49,17 @@ def test_paper_a_is_the_same_in_both_back_ends() -> None:
     agree(read(PAPER), range(40))
 
 
-GIVEN = {"denominator": "[2, 0.3, 1]", "register": "[1, 0, 0]", "off_at": "0.2"}
-"""Parameters that are lists, or that another one bounds, by their names."""
+GIVEN = {
+    "denominator": "[2, 0.3, 1]",
+    "register": "[1, 0, 0]",
+    "off_at": "0.2",
+    "times": "[0, 1, 1]",
+    "rows": "[0, 1]",
+    "columns": "[0, 1]",
+    "signal_builder.values": "[1, 2, 0]",
+    "lookup_table_2d.values": "[[1, x], [y, 2]]",
+}
+"""Parameters that are lists, or that another one bounds, by their names, or block and name."""
 
 
 def use(block: Block) -> str:
@@ -64,6 +73,7 @@ def use(block: Block) -> str:
             given = {"points": "[[0, 1], [1, 2], [3, 0.5]]", "formula": "x*y + t"}
             number_text = GIVEN.get(parameter.name, f"{0.3 + 0.4 * number:.1f}")
             value = given.get(parameter.kind, number_text)
+            value = GIVEN.get(f"{block.name}.{parameter.name}", value)
             parts.append(f"{parameter.name}: {value}")
     return ", ".join(parts)
 

@@ -85,3 +85,9 @@ FAMILIES = ("control", "filters", "waves", "noise", "discrete", "logic", "delay"
 def test_blocks_of_signals_and_control_have_a_shape_of_their_own() -> None:
     named = {name for name, family in library().families.items() if family in FAMILIES}
     assert named <= SHAPES.keys()
+
+
+def test_a_signal_builder_shows_its_lines_and_jumps() -> None:
+    drawn = look("signal_builder", times="[0, 2, 2, 4]", values="[0, 1, -2, -2]")
+    assert drawn.curve == (((-1, 0), (0, 0.5), (0, -1), (1, -1)),)
+    assert look("signal_builder", times="[0, 2]", values="[0, a]").curve

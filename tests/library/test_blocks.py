@@ -41,9 +41,15 @@ FAMILIES = {
     "noise": "prbs random_steps noise",
     "discrete": "unit_delay discrete_integrator discrete_transfer_function discrete_state_space"
     " discrete_pid",
-    "logic": "compare and or xor not select edge monostable timer jk_flip_flop",
+    "logic": "compare and or xor not select edge monostable timer jk_flip_flop debounce",
     "delay": "pade_delay",
     "control": "transfer_function state_space pid",
+    "bodies": "mass rotating_mass gear",
+    "transmission": "spring_damper rope elastic_gear",
+    "brakes": "brake clutch eddy_brake",
+    "friction_laws": "stribeck_friction friction_table rolling_resistance",
+    "slip": "maxwell_slip",
+    "tables": "signal_builder lookup_table_2d",
     "filters": "first_order lead_lag derivative second_order low_pass high_pass band_pass notch",
 }
 

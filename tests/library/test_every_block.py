@@ -1,4 +1,4 @@
-"""Every block of the library of signals and control: refuses what is wrong, and is used somewhere.
+"""Every block of signals, control and bodies: refuses what is wrong, and is used somewhere.
 
 A block added to one of these families needs an exact test `test_...NAME...` in a file beside this
 one, a line in `BAD`, and a place in a diagram of diagrams/gallery.
@@ -19,7 +19,10 @@ from tracewire.formula import Number
 from tracewire.solve import simulate
 
 GALLERY = Path(__file__).parents[2] / "diagrams" / "gallery"
-FAMILIES = ("control", "filters", "waves", "noise", "discrete", "logic", "delay")
+FAMILIES = (
+    *("control", "filters", "waves", "noise", "discrete", "logic", "delay"),
+    *("bodies", "transmission", "brakes", "friction_laws", "slip", "tables"),
+)
 BLOCKS = [name for name, family in library().families.items() if family in FAMILIES]
 BLOCKS += ["quantizer", "spline_table", "monotone_table"]
 
@@ -77,6 +80,40 @@ BAD = {
     "pade_delay": ("of: u, delay: 0", NOT_ABOVE.format("delay", " s", 0)),
     "spline_table": ("points: [[0, 1], [0, 2]]", "the points must ascend in x, and 0 is not"),
     "monotone_table": ("points: [[0, 1]]", "a table needs at least two points"),
+    "mass": ("mass: 0", NOT_ABOVE.format("mass", " kg", 0)),
+    "rotating_mass": ("inertia: -1", NOT_ABOVE.format("inertia", " kg m^2", -1)),
+    "gear": ("ratio: 0, inertia1: 1, inertia2: 1", NOT_ABOVE.format("ratio", "", 0)),
+    "spring_damper": ("of: u, rate: u, k: 1, c: -2", "'c' must be at least 0, not -2."),
+    "rope": ("of: u, rate: u, k: 1, length: -1", "'length' must be at least 0, not -1."),
+    "elastic_gear": (
+        "angle1: u, rate1: u, angle2: u, rate2: u, k: 1, efficiency: 1.2",
+        "'efficiency' must be at most 1, not 1.2.",
+    ),
+    "brake": (
+        "rate: u, normal: u, friction: 0.4, stick: 0.3",
+        "the parameters must meet friction <= stick, and friction = 0.4, stick = 0.3.",
+    ),
+    "clutch": ("rate: u, normal: u, friction: 0.4", "input 'other_rate' is not connected."),
+    "eddy_brake": ("rate: u, peak: 1, speed: 0", NOT_ABOVE.format("speed", "", 0)),
+    "stribeck_friction": (
+        "rate: u, slip: 3, stick: 2, speed: 1",
+        "the parameters must meet slip <= stick, and slip = 3, stick = 2.",
+    ),
+    "friction_table": (
+        "rate: u, points: [[-1, 2], [0, 1], [1, 2]]",
+        "parameter 'points' must be at least 0, not -1.",
+    ),
+    "rolling_resistance": ("rate: u, load: u, c0: -1", "'c0' must be at least 0, not -1."),
+    "maxwell_slip": (
+        "rate: u, k: [1, 2], level: [1, 2, 3]",
+        "a vector of 3 and a vector of 2 do not go together",
+    ),
+    "signal_builder": ("times: [1, 0], values: [1, 2]", "the times must ascend, and 0 is not"),
+    "lookup_table_2d": (
+        "of: u, other: u, rows: [0, 1], columns: [0, 1], values: [1, 2]",
+        "the values are a vector of 2, and not 2 rows of 2 values",
+    ),
+    "debounce": ("of: u, duration: 0", NOT_ABOVE.format("duration", " s", 0)),
     "quantizer": ("of: u, interval: 0", NOT_ABOVE.format("interval", "", 0)),
 }
 

@@ -25,9 +25,9 @@ def write(file: Path, *lines: str) -> Path:
 
 def test_a_folder_adds_its_blocks_to_the_shipped_ones(tmp_path: Path) -> None:
     write(tmp_path / "bearings.py", block("journal"), block("ball"))
-    write(tmp_path / "ropes.py", block("rope"))
+    write(tmp_path / "chains.py", block("chain"))
     library = load_library([tmp_path])
-    assert {"journal", "ball", "rope", "viscous"} <= set(library)
+    assert {"journal", "ball", "chain", "viscous"} <= set(library)
     assert library.families["ball"] == "bearings"
     assert library["ball"].place.file == "bearings.py"
     assert library["ball"].place.line == 3
@@ -35,20 +35,20 @@ def test_a_folder_adds_its_blocks_to_the_shipped_ones(tmp_path: Path) -> None:
 
 
 def test_a_single_file_is_a_library_and_may_be_given_as_text(tmp_path: Path) -> None:
-    file = write(tmp_path / "ropes.py", block("rope"))
-    assert "rope" in load_library([str(file)])
+    file = write(tmp_path / "chains.py", block("chain"))
+    assert "chain" in load_library([str(file)])
 
 
 def test_two_names_for_one_block_are_one_block(tmp_path: Path) -> None:
-    write(tmp_path / "ropes.py", block("rope"), "cable = rope\n")
-    assert [name for name in load_library([tmp_path]) if name in ("rope", "cable")] == ["rope"]
+    write(tmp_path / "chains.py", block("chain"), "cable = chain\n")
+    assert [name for name in load_library([tmp_path]) if name in ("chain", "cable")] == ["chain"]
 
 
 def test_a_family_called_math_does_not_shadow_the_standard_library(tmp_path: Path) -> None:
-    write(tmp_path / "math.py", block("rope"))
-    write(tmp_path / "ropes.py", "import math\n", block("cable", "{math.floor(2.5)}"))
-    text = (tmp_path / "ropes.py").read_text("utf-8").replace('"{math', 'f"{math')
-    (tmp_path / "ropes.py").write_text(text, encoding="utf-8")
+    write(tmp_path / "math.py", block("chain"))
+    write(tmp_path / "chains.py", "import math\n", block("cable", "{math.floor(2.5)}"))
+    text = (tmp_path / "chains.py").read_text("utf-8").replace('"{math', 'f"{math')
+    (tmp_path / "chains.py").write_text(text, encoding="utf-8")
     assert load_library([tmp_path])["cable"].outputs[0].formula == "2"
     assert sys.modules["math"] is math
     assert "tracewire.blocks.math" not in sys.modules
@@ -56,27 +56,27 @@ def test_a_family_called_math_does_not_shadow_the_standard_library(tmp_path: Pat
 
 def test_files_that_begin_with_an_underscore_hold_no_blocks(tmp_path: Path) -> None:
     (tmp_path / "__init__.py").write_text("raise ValueError", encoding="utf-8")
-    write(tmp_path / "ropes.py", block("rope"))
-    assert "rope" in load_library([tmp_path])
+    write(tmp_path / "chains.py", block("chain"))
+    assert "chain" in load_library([tmp_path])
 
 
 def test_a_file_is_read_again_only_where_it_has_changed(tmp_path: Path) -> None:
-    file = write(tmp_path / "ropes.py", block("rope"))
+    file = write(tmp_path / "chains.py", block("chain"))
     first = load_library([tmp_path])
-    assert load_library([tmp_path])["rope"] is first["rope"]
-    write(file, block("rope", "3"))
+    assert load_library([tmp_path])["chain"] is first["chain"]
+    write(file, block("chain", "3"))
     os.utime(file, ns=(1, 1))  # clocks of file systems are coarse
-    assert load_library([tmp_path])["rope"].outputs[0].formula == "3"
+    assert load_library([tmp_path])["chain"].outputs[0].formula == "3"
     assert load_library()["viscous"] is first["viscous"]
 
 
 def test_a_name_that_is_taken_is_refused_with_both_places(tmp_path: Path) -> None:
-    write(tmp_path / "ropes.py", block("viscous"))
+    write(tmp_path / "chains.py", block("viscous"))
     with pytest.raises(BlockError) as caught:
         load_library([tmp_path])
     shipped = load_library()["viscous"].place
     assert str(caught.value) == (
-        f"ropes.py:2: the block 'viscous' is already declared in {shipped}. Give it another name."
+        f"chains.py:2: the block 'viscous' is already declared in {shipped}. Give it another name."
     )
 
 
@@ -103,14 +103,14 @@ def test_a_file_that_is_not_python_is_refused(tmp_path: Path) -> None:
     [
         ("x = = 1\n", 2, "SyntaxError: invalid syntax"),
         ("import no_such_thing\n", 2, "ModuleNotFoundError: No module named 'no_such_thing'"),
-        ("\nrope = Block('rope', 'A rope.', input=())\n", 3, "TypeError: "),
+        ("\nchain = Block('chain', 'A chain.', input=())\n", 3, "TypeError: "),
         ("def f():\n    return 1/0\nf()\n", 3, "ZeroDivisionError: division by zero"),
     ],
 )
 def test_a_broken_file_is_told_with_its_line(
     tmp_path: Path, code: str, line: int, reason: str
 ) -> None:
-    file = write(tmp_path / "ropes.py", code)
+    file = write(tmp_path / "chains.py", code)
     with pytest.raises(BlockError) as caught:
         load_library([tmp_path])
     message = f"{file}:{line}: the block file cannot be read: {reason}"
@@ -118,7 +118,7 @@ def test_a_broken_file_is_told_with_its_line(
 
 
 def test_the_problems_of_all_files_are_told_at_once(tmp_path: Path) -> None:
-    write(tmp_path / "a.py", block("rope", "x"))
+    write(tmp_path / "a.py", block("chain", "x"))
     write(tmp_path / "b.py", "x = = 1\n")
     write(tmp_path / "c.py", block("gain"))
     with pytest.raises(BlockError) as caught:

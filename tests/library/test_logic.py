@@ -6,6 +6,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from solve.logs import METHODS, TIGHT
 from solve.models import run
 from tracewire.solve import Run
 
@@ -126,3 +127,34 @@ record: [y]
     # rises at 0.75 (keep), 1.75 (set), 2.75 (keep), 3.75 (reset), 4.75, 5.75, 6.75 (turn)
     expected = {0: 0, 1: 0, 2: 1, 3: 1, 4: 0, 5: 1, 6: 0, 7: 1}
     assert result["y"][::2].tolist() == [float(expected[k]) for k in range(8)]
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_debounce_follows_what_keeps_its_side_for_its_duration(method: str) -> None:
+    """A contact that bounces twice at 1 s, closes at 1.25 s, and bounces open at 3 s."""
+    times = [1, 1.05, 1.1, 1.2, 1.25, 3, 3.1]
+    points = [float(t) for t in times for _ in (0, 1)]
+    result = run(
+        f"""
+span: [0, 4]
+every: 0.01
+blocks:
+  of: {{type: signal_builder, times: {points}, values: [0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1]}}
+  y: {{type: debounce, of: of, duration: 0.3}}
+  open: {{type: expression, formula: 1 - of}}
+  late: {{type: debounce, of: open, duration: 0.3, start: 1}}
+  once: {{type: debounce, of: of, duration: 0.08}}
+record: [y, late, once]
+""",
+        method=method,
+        **TIGHT,
+    )
+    t = result.t
+    near = np.min(np.abs(t[:, None] - [1.55, 1.18, 1.33, 3.08, 3.18]), axis=1) < 1e-9
+    y = (t >= 1.55) * 1.0
+    once = ((t >= 1.18) & (t < 3.08) | (t >= 3.18)) * 1.0
+    assert result["y"][~near].tolist() == y[~near].tolist()
+    assert result["late"][~near].tolist() == (1 - y)[~near].tolist()
+    assert result["once"][~near].tolist() == once[~near].tolist()
+    settled = [e.time for e in result.events if e.block == "y" and "settled" in e.guard + e.kind]
+    assert settled in ([], pytest.approx([1.55], abs=1e-9))

@@ -1,4 +1,4 @@
-"""Units go through the blocks of signals and control, and a wrong one is told."""
+"""Units go through the blocks of signals, control and bodies, and a wrong one is told."""
 
 from __future__ import annotations
 
@@ -21,9 +21,18 @@ parameters:
   kt: {value: 2, unit: N m/A}
   torque: {value: 3, unit: N m}
   rate: {value: 3, unit: 1/s}
+  M: {value: 3, unit: kg}
+  J: {value: 3, unit: kg m^2}
+  way: {value: 3, unit: m}
+  pace: {value: 3, unit: m/s}
+  stiff: {value: 3, unit: N/m}
+  damping: {value: 3, unit: N s/m}
 blocks:
   turned: {type: sine, amplitude: {value: 1, unit: rad}, omega: 3, unit: rad}
   volts: {type: constant, value: V, unit: V}
+  moved: {type: integrator, of: moving, unit: m}
+  moving: {type: constant, value: pace, unit: m/s}
+  pressed: {type: constant, value: F, unit: N}
 """
 UNITS = {
     "pulse": ("amplitude: F, period: T", "N"),
@@ -53,6 +62,22 @@ UNITS = {
     "quantizer": ("of: volts, interval: V", "V"),
     "select": ("index: turned, of: [volts, volts]", "V"),
     "timer": ("of: volts", "s"),
+    "spring_damper": ("of: moved, rate: moving, k: stiff, c: damping, length: way", "N"),
+    "rope": ("of: moved, rate: moving, k: stiff, c: damping, length: way", "N"),
+    "brake": ("rate: moving, normal: pressed, friction: 0.3, radius: way", "N m"),
+    "clutch": (
+        "rate: moving, other_rate: moving, normal: pressed, friction: 0.3, radius: way",
+        "N m",
+    ),
+    "eddy_brake": ("rate: moving, peak: F, speed: pace", "N"),
+    "stribeck_friction": ("rate: moving, slip: F, stick: 2*F, speed: pace, c: damping", "N"),
+    "rolling_resistance": ("rate: moving, load: pressed, c0: 0.1", "N"),
+    "maxwell_slip": ("rate: moving, k: [stiff, stiff], level: [F, F]", "N"),
+    "signal_builder": ("times: [0, 1], values: [F, 2*F]", "N"),
+    "lookup_table_2d": (
+        "of: moved, other: moving, rows: [0, 1], columns: [0, 1], values: [[F, F], [F, F]]",
+        "N",
+    ),
 }
 """What a block is given, and the unit of its output."""
 
@@ -65,6 +90,10 @@ FREE = {
     "band_pass",
     "discrete_transfer_function",
     "timer",
+    "brake",
+    "clutch",
+    "eddy_brake",
+    "rolling_resistance",
 }
 """Blocks with a number or the time as a factor, which may have any unit."""
 
@@ -85,3 +114,23 @@ def test_the_gains_of_a_controller_have_the_units_of_its_signals() -> None:
     gains = "kp: {value: 2, fit: free}, ki: {value: 3, fit: free}, kd: {value: 1, fit: free}"
     assert told("pid", f"of: turned, {gains}", "V") == []
     assert told("discrete_pid", f"of: turned, {gains}, period: T", "V") == []
+
+
+@pytest.mark.parametrize(
+    ("blocks", "wrong"),
+    [
+        ("y: {type: mass, force: volts, mass: M}", "it needs a rate in m/s^2"),
+        ("y: {type: rotating_mass, torque: pressed, inertia: J}", "it needs a rate in 1/s^2"),
+        (
+            "y: {type: gear, torque2: pressed, ratio: 2, inertia1: J, inertia2: J}",
+            "it needs a rate in 1/s^2",
+        ),
+        (
+            "y: {type: spring_damper, of: moved, rate: moved, k: stiff, c: damping, unit: N}",
+            "cannot be added",
+        ),
+    ],
+)
+def test_a_wrong_unit_at_a_body_is_told(blocks: str, wrong: str) -> None:
+    problems = unit_problems(compile(read_text(f"{GIVEN}  {blocks}\n")).flat)
+    assert any(wrong in str(problem) for problem in problems)

@@ -21,6 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
+from tracewire.compile.breakpoints import bilinear, straight_lines
 from tracewire.compile.elements import Elements, Mismatch, shape_text
 from tracewire.formula import Call, Expression, Number
 
@@ -186,5 +187,7 @@ REALISED: Mapping[str, Callable[[Sequence[Elements], str], Elements]] = {
     "settled_states": _settled,
     "root_scale": _root_scale,
     "pick_element": _pick,
+    "straight_lines": straight_lines,
+    "bilinear": bilinear,
 }
 """The functions of vectors that block declarations may call: {name: elements of the arguments}."""

@@ -110,6 +110,9 @@ def _read_settings(
         given: Value | Array | Points | Expression | None
         if parameter.kind == "points":
             given = read_points(node, body, name)
+            if given is not None:
+                for number in (min(*given.x, *given.y), max(*given.x, *given.y)):
+                    _check_bounds(Value(Number(number), place=given.place), parameter, body)
         elif parameter.kind == "formula":
             given = read_formulas(node, body, name)
         elif isinstance(kind, Diagram):

@@ -173,6 +173,40 @@ def _icon(*lines: Line, axes: bool = True) -> Shape:
     return lambda drawn: Look("box", AXES, max(AXES - 6, _height(drawn)), curve=lines, axes=axes)
 
 
+def _machine(*lines: Line) -> Shape:
+    """An icon in a square, where circles are round."""
+
+    def shape(drawn: Drawn) -> Look:
+        side = max(AXES - 6, _height(drawn))
+        return Look("box", side, side, curve=lines)
+
+    return shape
+
+
+def _friction_table(drawn: Drawn) -> Look:
+    """The force of both directions, against the rate."""
+    x, y = drawn.points
+    both = ([*(-u for u in reversed(x)), *x], [*reversed(y), *(-u for u in y)])
+    curve = table_curve(*both)
+    return _icon(*curve)(drawn) if curve else text_box("friction table", drawn)
+
+
+def _signal_builder(drawn: Drawn) -> Look:
+    """The lines themselves, where their points are plain numbers."""
+    try:
+        x, y = (
+            [float(item) for item in items_of(drawn.settings.get(name, ""))]
+            for name in ("times", "values")
+        )
+    except ValueError:
+        return _icon(icons.STEP)(drawn)
+    begin, width = x[0], (x[-1] - x[0]) or 1.0
+    curve = (
+        table_curve([2 * (time - begin) / width - 1 for time in x], y) if len(x) == len(y) else ()
+    )
+    return _icon(*(curve or (icons.STEP,)))(drawn)
+
+
 def _power(drawn: Drawn) -> Look:
     return text_box(f"u^{drawn.settings.get('exponent', 'n')}", drawn)
 
@@ -243,6 +277,18 @@ SHAPES: dict[str, Shape] = {
     "edge": _icon(icons.RISE, icons.RISE_HEAD, axes=False),
     "monostable": _icon(icons.ONE_PULSE, axes=False),
     "timer": _icon(icons.COUNTED),
+    "mass": _machine(*icons.BODY),
+    "rotating_mass": _machine(*icons.WHEEL),
+    "gear": _machine(*icons.GEAR),
+    "elastic_gear": _icon(icons.GAP),
+    "spring_damper": _machine(*icons.SPRING_DAMPER),
+    "clutch": _machine(*icons.CLUTCH),
+    "brake": _machine(*icons.BRAKE),
+    "friction_table": _friction_table,
+    "maxwell_slip": _icon(icons.LOOP),
+    "signal_builder": _signal_builder,
+    "lookup_table_2d": _icon(*icons.GRID, axes=False),
+    "debounce": _icon(icons.BOUNCES, axes=False),
     "mux": _bar,
     "demux": _bar,
     **{

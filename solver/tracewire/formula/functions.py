@@ -189,6 +189,12 @@ FUNCTIONS = {
     "pick_element": Function(2, 2,
         "pick_element(v, i): the element of v whose number is nearest to i",
         unit="any", instead="Use a block of type select."),
+    "straight_lines": Function(3, 3,
+        "straight_lines(u, x, y): straight lines through points of two lists, with jumps",
+        unit="any", instead="Use a block of type signal_builder."),
+    "bilinear": Function(5, 5,
+        "bilinear(u, v, rows, columns, values): a table of two signals, held beyond its points",
+        unit="any", instead="Use a block of type lookup_table_2d."),
 }
 # fmt: on
 

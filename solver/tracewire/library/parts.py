@@ -36,7 +36,8 @@ class Input:
 class Parameter:
     """A parameter of a block: its unit, default (None: must be given) and bounds.
 
-    `low` and `high` are values that it may have, `above` is one that it must exceed.
+    `low` and `high` are values that it may have, `above` is one that it must exceed; of a list or
+    a table each number, of its points both.
     Kind `points` is a table of points, which interp(), cubic_spline() or monotone_cubic() reads;
     kind `formula` is a formula over the signals and parameters of the diagram that uses the block.
     A default in text is a formula of the parameters that stand before this one.

@@ -15,6 +15,12 @@ NAMES: dict[str, dict[Tool, str]] = {
     "and": {"Modelica": "And", "": "AND gate"},
     "band_pass": {"": "bandpass, band pass filter"},
     "bouncing_body": {"": "bouncing ball, restitution"},
+    "brake": {"Simulink": "Disk Friction Brake", "Modelica": "Brake", "": "disc brake, drum brake"},
+    "clutch": {
+        "Simulink": "Disk Friction Clutch",
+        "Modelica": "Clutch",
+        "": "friction clutch, coupling",
+    },
     "compare": {
         "Simulink": "Relational Operator, Compare To Constant, Compare To Zero",
         "Modelica": "GreaterEqual, Greater, GreaterThreshold, Less, LessThreshold",
@@ -26,6 +32,7 @@ NAMES: dict[str, dict[Tool, str]] = {
     "counter": {"Xcos": "Counter", "": "count, edge counter"},
     "coulomb": {"": "coulomb friction"},
     "dead_zone": {"Simulink": "Dead Zone", "Xcos": "DEADBAND", "": "deadband"},
+    "debounce": {"": "debouncer, glitch filter, contact bounce"},
     "demux": {"Simulink": "Selector", "Modelica": "Extractor, DeMultiplex", "Xcos": "EXTRACTOR"},
     "derivative": {
         "Modelica": "Der",
@@ -42,6 +49,12 @@ NAMES: dict[str, dict[Tool, str]] = {
     },
     "divide": {"Simulink": "Divide", "Modelica": "Division", "Xcos": "INVBLK"},
     "dot": {"Simulink": "Dot Product", "": "inner product, scalar product"},
+    "eddy_brake": {"": "eddy current brake, retarder"},
+    "elastic_gear": {
+        "Simulink": "Gear Box with Backlash",
+        "Modelica": "ElastoBacklash, ElastoBacklash2, LossyGear, ElasticGear",
+        "": "gear_backlash, gear with play, lossy gear",
+    },
     "edge": {
         "Simulink": "Detect Rise Positive, Detect Increase",
         "Modelica": "RisingEdge",
@@ -55,7 +68,13 @@ NAMES: dict[str, dict[Tool, str]] = {
         "": "formula, function, fcn",
     },
     "first_order": {"Modelica": "FirstOrder", "": "lag, PT1, first order lag, time constant"},
+    "friction_table": {"": "friction map, friction curve, measured friction"},
     "gain": {"Modelica": "Gain", "Xcos": "GAINBLK, GAINBLK_f, GAIN_f", "": "amplifier, multiply"},
+    "gear": {
+        "Simulink": "Gear Box, Simple Gear",
+        "Modelica": "IdealGear, IdealGearR2T",
+        "": "gearbox, transmission, rack, rack and pinion, belt drive",
+    },
     "hard_stop": {"": "end stop, mechanical stop"},
     "high_pass": {"": "highpass, high pass filter"},
     "integrator": {
@@ -78,8 +97,18 @@ NAMES: dict[str, dict[Tool, str]] = {
         "": "saturated integrator",
     },
     "low_pass": {"Modelica": "Filter, LowpassButterworth", "": "lowpass, butterworth, filter"},
+    "lookup_table_2d": {
+        "Simulink": "2-D Lookup Table, n-D Lookup Table",
+        "Modelica": "CombiTable2D, CombiTable2Ds",
+        "Xcos": "LOOKUP2D, INTRP2BLK_f",
+        "": "map, characteristic map, bilinear, 2d table",
+    },
+    "mass": {"": "sliding mass, point mass, translational mass"},
     "matrix_gain": {"Simulink": "Matrix Gain", "Modelica": "MatrixGain", "Xcos": "MATMUL"},
     "max": {"Modelica": "Max", "Xcos": "MAX_f", "": "maximum"},
+    "maxwell_slip": {
+        "": "iwan, masing, prandtl_ishlinskii, generalised_maxwell_slip, elasto-plastic"
+    },
     "min": {"Modelica": "Min", "Xcos": "MIN_f", "": "minimum"},
     "mod": {"": "modulo, remainder"},
     "monostable": {"Simulink": "Monostable", "": "one shot, monoflop, pulse on edge"},
@@ -140,6 +169,9 @@ NAMES: dict[str, dict[Tool, str]] = {
         "Xcos": "SAMPHOLD_m, DFLIPFLOP",
         "": "d_flip_flop, track and hold",
     },
+    "rolling_resistance": {"": "rolling friction, tire resistance"},
+    "rope": {"Simulink": "Rope", "": "cable, string, belt, tension only"},
+    "rotating_mass": {"": "flywheel, rotor, moment of inertia, rotational inertia, rotary load"},
     "saturation": {
         "Modelica": "Limiter, VariableLimiter",
         "Xcos": "SATURATION, SAT_f",
@@ -157,6 +189,12 @@ NAMES: dict[str, dict[Tool, str]] = {
         "": "multiplexer, choose",
     },
     "sign": {"Modelica": "Sign", "Xcos": "SIGNUM", "": "signum, sgn"},
+    "signal_builder": {
+        "Simulink": "Signal Builder, Signal Editor",
+        "Modelica": "TimeTable",
+        "Xcos": "Sigbuilder",
+        "": "piecewise_linear, time_table, profile",
+    },
     "sine": {
         "Simulink": "Sine Wave, Signal Generator",
         "Modelica": "Sine",
@@ -166,6 +204,11 @@ NAMES: dict[str, dict[Tool, str]] = {
     "solve": {"": "mass matrix, linear solve"},
     "spline_table": {"": "spline, cubic spline, spline interpolation"},
     "monotone_table": {"": "pchip, akima, monotone interpolation, smooth table"},
+    "spring_damper": {
+        "Simulink": "Translational Spring and Damper",
+        "Modelica": "SpringDamper",
+        "": "kelvin voigt, spring and damper, shock absorber",
+    },
     "square": {"Xcos": "GENSQR_f", "": "square wave"},
     "state_space": {
         "Simulink": "State-Space",
@@ -174,6 +217,11 @@ NAMES: dict[str, dict[Tool, str]] = {
         "": "ss, abcd",
     },
     "step": {"Xcos": "STEP_FUNCTION, STEP", "": "heaviside, jump"},
+    "stribeck_friction": {
+        "Simulink": "Rotational Friction, Translational Friction",
+        "Modelica": "BearingFriction, MassWithStopAndFriction, SupportFriction",
+        "": "stribeck curve, static friction, stiction",
+    },
     "sum": {
         "Simulink": "Add, Subtract, Sum of Elements",
         "Modelica": "Add, Add3, Feedback, MultiSum",
@@ -182,10 +230,10 @@ NAMES: dict[str, dict[Tool, str]] = {
     },
     "switch": {"Xcos": "SWITCH2_m, SWITCH_f", "": "if, conditional"},
     "table": {
-        "Simulink": "1-D Lookup Table, Signal Builder, Signal Editor, From Workspace",
-        "Modelica": "CombiTable1D, CombiTable1Ds, TimeTable, CombiTimeTable",
-        "Xcos": "INTRPLBLK_f, LOOKUP_f, Sigbuilder, FROMWSB",
-        "": "lookup_table, lookup, signal_builder, interpolation, piecewise_linear, time_table",
+        "Simulink": "1-D Lookup Table, From Workspace",
+        "Modelica": "CombiTable1D, CombiTable1Ds, CombiTimeTable",
+        "Xcos": "INTRPLBLK_f, LOOKUP_f, FROMWSB",
+        "": "lookup_table, lookup, interpolation",
     },
     "time": {"Simulink": "Digital Clock", "Xcos": "TIME_f", "": "clock"},
     "timer": {"Modelica": "Timer", "": "stopwatch"},
@@ -215,7 +263,7 @@ NAMES: dict[str, dict[Tool, str]] = {
 }
 """The names of blocks in other tools, and other words for them, divided by commas.
 
-Sources: the block libraries of Simulink R2023, of Modelica.Blocks 4.0 and of Xcos 2023.
+Sources: the block libraries of Simulink R2023, of Modelica 4.0 and of Xcos 2023.
 """
 
 SENSOR = "It is a number of a measured signal: signals: {{x: {{column: x, {0}: ...}}}}."
@@ -235,6 +283,8 @@ INSTEAD: dict[str, str] = {
     "subsystem, superblock, SUPER_f": (
         "Define it in the section 'subsystems', and use its name as the type."
     ),
+    "lever, ideal lever": "A lever without mass is a 'gain' of its position and one of its force.",
+    "preisach": "It is no block yet: 'maxwell_slip' and 'bouc_wen' have hysteresis with memory.",
     "terminator, ground": "A signal that nothing reads needs no block.",
     **{f"sensor_{name}": SENSOR.format(name) for name in SENSOR_TERMS},
 }

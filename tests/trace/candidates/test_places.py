@@ -175,11 +175,11 @@ def test_a_signal_inside_a_subsystem_counts_where_a_port_carries_it() -> None:
         """
         blocks:
           force: {type: sum, of: [-body.position]}
-          body: {type: mass, force: force}
+          body: {type: cart, force: force}
           hidden: {type: sum, of: [-body.position]}
           other: {type: closed, force: hidden}
         subsystems:
-          mass:
+          cart:
             inputs: [force]
             outputs: {position: x, speed: v}
             blocks: {x: {type: integrator, of: v}, v: {type: integrator, of: force}}
@@ -202,9 +202,9 @@ def test_a_sum_inside_a_subsystem_is_no_place_even_where_it_says_so() -> None:
     found = places(
         """
         blocks:
-          body: {type: mass}
+          body: {type: cart}
         subsystems:
-          mass:
+          cart:
             outputs: {x: x}
             blocks:
               x: {type: integrator, of: v}
