@@ -42,12 +42,13 @@ rotating_mass = Block(
 gear = Block(
     name="gear",
     doc="Two shafts coupled by a gear without play or loss, rate1 = ratio*rate2.",
+    require=("ratio**2 > 0",),
     inputs=(
         Input("torque1", "N m", "the sum of what acts on the first shaft", default="0"),
         Input("torque2", "N m", "the sum of what acts on the second shaft", default="0"),
     ),
     parameters=(
-        Parameter("ratio", doc="rate1 over rate2; 10: the second shaft is slower", above=0.0),
+        Parameter("ratio", doc="rate1 over rate2; below 0: they turn against each other"),
         Parameter("inertia1", "kg m^2", "of what turns with the first shaft", above=0.0),
         Parameter("inertia2", "kg m^2", "of what turns with the second shaft", above=0.0),
         Parameter("start", "rad", "the angle of the second shaft at the start", default=0.0),

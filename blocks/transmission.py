@@ -67,11 +67,12 @@ def _teeth(up: str, down: str) -> str:
 
 # power flows to the second shaft while it is pressed to where the first one turns; without a loss
 # the relation compares a constant, and is no event
-TURNS = "(rate1 if efficiency < 1 else 1) >= 0"
+TURNS = "(rate1/ratio if efficiency < 1 else 1) >= 0"
 
 elastic_gear = Block(
     name="elastic_gear",
     doc="A gear between two shafts whose elastic teeth only push, with play and a loss of power.",
+    require=("ratio**2 > 0",),
     inputs=(
         Input("angle1", "rad", "of the first shaft"),
         Input("rate1", "rad/s", "its rate"),
@@ -82,7 +83,9 @@ elastic_gear = Block(
         Parameter("k", "N m/rad", "stiffness of the teeth, at the second shaft", low=0.0),
         Parameter("c", "N m s/rad", "their damping, at the second shaft", default=0.0, low=0.0),
         Parameter("gap", "rad", "the whole play, at the second shaft", default=0.0, low=0.0),
-        Parameter("ratio", doc="rate1 over rate2 without play", default=1.0, above=0.0),
+        Parameter(
+            "ratio", doc="rate1 over rate2; below 0: they turn against each other", default=1.0
+        ),
         Parameter(
             "efficiency",
             doc="the part of the power that passes, in either direction",

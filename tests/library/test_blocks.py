@@ -48,7 +48,7 @@ FAMILIES = {
     "transmission": "spring_damper rope elastic_gear",
     "brakes": "brake clutch eddy_brake",
     "friction_laws": "stribeck_friction friction_table rolling_resistance",
-    "slip": "maxwell_slip",
+    "slip": "maxwell_slip maxwell_element",
     "tables": "signal_builder lookup_table_2d",
     "filters": "first_order lead_lag derivative second_order low_pass high_pass band_pass notch",
 }

@@ -54,23 +54,24 @@ def test_rotating_mass_on_a_spring_is_a_cosine(method: str) -> None:
 @EACH_METHOD
 @pytest.mark.parametrize("torque1", [-2.0, 0.3])
 @pytest.mark.parametrize("torque2", [-7.0, 0.0])
+@pytest.mark.parametrize("ratio", [5.0, -5.0])
 def test_gear_accelerates_as_the_equations_of_both_shafts_say(
-    torque1: float, torque2: float, method: str
+    torque1: float, torque2: float, ratio: float, method: str
 ) -> None:
     blocks = f"""
   one: {{type: constant, value: {torque1}}}
   two: {{type: constant, value: {torque2}}}
-  g: {{type: gear, torque1: one, torque2: two, ratio: 5, inertia1: 0.1, inertia2: 4, start: 0.5,
-      start_rate: 3}}
+  g: {{type: gear, torque1: one, torque2: two, ratio: {ratio}, inertia1: 0.1, inertia2: 4,
+      start: 0.5, start_rate: 3}}
 """
     result = drawn(blocks, 2, method, "g.angle1, g.rate1, g.angle2, g.rate2")
     # the acceleration of the second shaft and the torque of the teeth on the first
-    a, teeth = np.linalg.solve([[0.1 * 5, 1], [4, -5]], [torque1, torque2])
+    a, teeth = np.linalg.solve([[0.1 * ratio, 1], [4, -ratio]], [torque1, torque2])
     t = result.t
     assert result["g.rate2"] == pytest.approx(3 + a * t, abs=1e-9)
     assert result["g.angle2"] == pytest.approx(0.5 + 3 * t + a * t**2 / 2, abs=1e-9)
-    assert result["g.rate1"] == pytest.approx(15 + (torque1 - teeth) / 0.1 * t, abs=1e-9)
-    assert result["g.angle1"] == pytest.approx(5 * result["g.angle2"], rel=1e-14)
+    assert result["g.rate1"] == pytest.approx(3 * ratio + (torque1 - teeth) / 0.1 * t, abs=1e-9)
+    assert result["g.angle1"] == pytest.approx(ratio * result["g.angle2"], rel=1e-14)
 
 
 @EACH_METHOD
@@ -182,16 +183,19 @@ def test_elastic_gear_is_the_same_in_both_directions() -> None:
 
 
 @EACH_METHOD
-def test_elastic_gear_loses_its_part_of_the_power_in_both_directions(method: str) -> None:
+@pytest.mark.parametrize("ratio", [2, -2])
+def test_elastic_gear_loses_its_part_of_the_power_in_both_directions(
+    method: str, ratio: int
+) -> None:
     """On teeth whose other end is held each half swing has 0.9 of the height of the one before.
 
     A quarter that leaves the middle has the stiffness k/0.9, one that comes back k*0.9.
     """
-    blocks = """
-  wheel: {type: rotating_mass, torque: teeth.torque1, inertia: 0.5, start: 0.4}
-  zero: {type: constant, value: 0}
-  teeth: {type: elastic_gear, angle1: wheel.angle, rate1: wheel.rate, angle2: zero, rate2: zero,
-          k: 200, ratio: 2, efficiency: 0.9}
+    blocks = f"""
+  wheel: {{type: rotating_mass, torque: teeth.torque1, inertia: 0.5, start: 0.4}}
+  zero: {{type: constant, value: 0}}
+  teeth: {{type: elastic_gear, angle1: wheel.angle, rate1: wheel.rate, angle2: zero, rate2: zero,
+          k: 200, ratio: {ratio}, efficiency: 0.9}}
 """
     slow, fast = np.sqrt(100 * 0.9), np.sqrt(100 / 0.9)
     back, away = np.pi / 2 / slow, np.pi / 2 / fast

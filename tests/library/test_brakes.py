@@ -201,3 +201,44 @@ def test_maxwell_slip_follows_the_rule_of_masing(method: str) -> None:
     exact = np.where(t <= 1.5, first(np.maximum(x, 0)), np.where(t <= 4, down, up))
     assert -result["force"] == pytest.approx(exact, abs=1e-8)
     assert -result["force"][-1] == pytest.approx(level.sum(), abs=1e-9)
+
+
+@EACH_METHOD
+@pytest.mark.parametrize("sign", [1, -1])
+def test_maxwell_element_comes_to_its_level_and_sticks_where_the_rate_turns(
+    method: str, sign: int
+) -> None:
+    """At rates of 1, 2 and -2 its levels are 2*(1 + 0.5*exp(-v^2)); it slips with c = 8."""
+    blocks = f"""
+  v: {{type: signal_builder, times: [2, 2, 4, 4], values: [{sign}, {2 * sign}, {2 * sign},
+      {-2 * sign}]}}
+  force: {{type: maxwell_element, rate: v, k: 3, level: 2, peak: 0.5, speed: 1, c: 8}}
+"""
+    result = drawn(blocks, 8, method, "force")
+    slow, fast = 2 + np.exp(-1), 2 + np.exp(-4)
+    t = result.t
+    first = np.minimum(3 * t, slow)
+    second = fast + (slow - fast) * np.exp(-8 / fast * (t - 2))
+    at_turn = fast + (slow - fast) * np.exp(-8 / fast * 2)
+    third = np.maximum(at_turn - 6 * (t - 4), -fast)
+    exact = np.where(t < 2, first, np.where(t < 4, second, third))
+    assert -sign * result["force"] == pytest.approx(exact, abs=1e-8)
+
+
+@EACH_METHOD
+def test_maxwell_slip_takes_the_energy_of_a_body_that_it_brings_to_rest(method: str) -> None:
+    """What it had is in the springs, m*v^2/2 + f^2/(2 k), or went into the way that slipped."""
+    blocks = """
+  body: {type: mass, force: held, mass: 2, start_rate: 3}
+  held: {type: maxwell_slip, rate: body.v, k: [40, 10], level: [2, 3]}
+  power: {type: product, of: [held, body.v]}
+  work: {type: integrator, of: power}
+"""
+    result = drawn(blocks, 12, method, "body.v, held.f, work")
+    kinetic = result["body.v"] ** 2
+    assert kinetic - 9 == pytest.approx(result["work"], abs=1e-7)
+    stored = result["held.f[0]"] ** 2 / 80 + result["held.f[1]"] ** 2 / 20
+    energy = kinetic + stored
+    assert np.all(np.diff(energy) < 1e-9)
+    # it ends in a swing in which no element slips any more
+    assert energy[-1] == pytest.approx(energy[-20], abs=1e-8)

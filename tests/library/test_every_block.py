@@ -82,7 +82,10 @@ BAD = {
     "monotone_table": ("points: [[0, 1]]", "a table needs at least two points"),
     "mass": ("mass: 0", NOT_ABOVE.format("mass", " kg", 0)),
     "rotating_mass": ("inertia: -1", NOT_ABOVE.format("inertia", " kg m^2", -1)),
-    "gear": ("ratio: 0, inertia1: 1, inertia2: 1", NOT_ABOVE.format("ratio", "", 0)),
+    "gear": (
+        "ratio: 0, inertia1: 1, inertia2: 1",
+        "the parameters must meet ratio**2 > 0, and ratio = 0.",
+    ),
     "spring_damper": ("of: u, rate: u, k: 1, c: -2", "'c' must be at least 0, not -2."),
     "rope": ("of: u, rate: u, k: 1, length: -1", "'length' must be at least 0, not -1."),
     "elastic_gear": (
@@ -108,6 +111,7 @@ BAD = {
         "rate: u, k: [1, 2], level: [1, 2, 3]",
         "a vector of 3 and a vector of 2 do not go together",
     ),
+    "maxwell_element": ("rate: u, k: 1, level: 0, c: 1", NOT_ABOVE.format("level", "", 0)),
     "signal_builder": ("times: [1, 0], values: [1, 2]", "the times must ascend, and 0 is not"),
     "lookup_table_2d": (
         "of: u, other: u, rows: [0, 1], columns: [0, 1], values: [1, 2]",

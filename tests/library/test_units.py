@@ -27,6 +27,7 @@ parameters:
   pace: {value: 3, unit: m/s}
   stiff: {value: 3, unit: N/m}
   damping: {value: 3, unit: N s/m}
+  fast: {value: 3, unit: N/s}
 blocks:
   turned: {type: sine, amplitude: {value: 1, unit: rad}, omega: 3, unit: rad}
   volts: {type: constant, value: V, unit: V}
@@ -73,6 +74,7 @@ UNITS = {
     "stribeck_friction": ("rate: moving, slip: F, stick: 2*F, speed: pace, c: damping", "N"),
     "rolling_resistance": ("rate: moving, load: pressed, c0: 0.1", "N"),
     "maxwell_slip": ("rate: moving, k: [stiff, stiff], level: [F, F]", "N"),
+    "maxwell_element": ("rate: moving, k: stiff, level: F, peak: 0.4, speed: pace, c: fast", "N"),
     "signal_builder": ("times: [0, 1], values: [F, 2*F]", "N"),
     "lookup_table_2d": (
         "of: moved, other: moving, rows: [0, 1], columns: [0, 1], values: [[F, F], [F, F]]",

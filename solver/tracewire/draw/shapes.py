@@ -286,6 +286,7 @@ SHAPES: dict[str, Shape] = {
     "brake": _machine(*icons.BRAKE),
     "friction_table": _friction_table,
     "maxwell_slip": _icon(icons.LOOP),
+    "maxwell_element": _icon(icons.LOOP),
     "signal_builder": _signal_builder,
     "lookup_table_2d": _icon(*icons.GRID, axes=False),
     "debounce": _icon(icons.BOUNCES, axes=False),

@@ -106,9 +106,8 @@ NAMES: dict[str, dict[Tool, str]] = {
     "mass": {"": "sliding mass, point mass, translational mass"},
     "matrix_gain": {"Simulink": "Matrix Gain", "Modelica": "MatrixGain", "Xcos": "MATMUL"},
     "max": {"Modelica": "Max", "Xcos": "MAX_f", "": "maximum"},
-    "maxwell_slip": {
-        "": "iwan, masing, prandtl_ishlinskii, generalised_maxwell_slip, elasto-plastic"
-    },
+    "maxwell_element": {"": "generalised_maxwell_slip, GMS, generalized maxwell slip"},
+    "maxwell_slip": {"": "iwan, masing, prandtl_ishlinskii, elasto-plastic"},
     "min": {"Modelica": "Min", "Xcos": "MIN_f", "": "minimum"},
     "mod": {"": "modulo, remainder"},
     "monostable": {"Simulink": "Monostable", "": "one shot, monoflop, pulse on edge"},
