@@ -15,11 +15,15 @@ NAMES: dict[str, dict[Tool, str]] = {
     "and": {"Modelica": "And", "": "AND gate"},
     "band_pass": {"": "bandpass, band pass filter"},
     "bouncing_body": {"": "bouncing ball, restitution"},
-    "brake": {"Simulink": "Disk Friction Brake", "Modelica": "Brake", "": "disc brake, drum brake"},
+    "brake": {
+        "Simulink": "Disc Brake, Drum Brake, Band Brake",
+        "Modelica": "Brake",
+        "": "disk brake, friction brake",
+    },
     "clutch": {
         "Simulink": "Disk Friction Clutch",
         "Modelica": "Clutch",
-        "": "friction clutch, coupling",
+        "": "friction clutch",
     },
     "compare": {
         "Simulink": "Relational Operator, Compare To Constant, Compare To Zero",
@@ -51,8 +55,7 @@ NAMES: dict[str, dict[Tool, str]] = {
     "dot": {"Simulink": "Dot Product", "": "inner product, scalar product"},
     "eddy_brake": {"": "eddy current brake, retarder"},
     "elastic_gear": {
-        "Simulink": "Gear Box with Backlash",
-        "Modelica": "ElastoBacklash, ElastoBacklash2, LossyGear, ElasticGear",
+        "Modelica": "ElastoBacklash, ElastoBacklash2, LossyGear",
         "": "gear_backlash, gear with play, lossy gear",
     },
     "edge": {
@@ -98,9 +101,9 @@ NAMES: dict[str, dict[Tool, str]] = {
     },
     "low_pass": {"Modelica": "Filter, LowpassButterworth", "": "lowpass, butterworth, filter"},
     "lookup_table_2d": {
-        "Simulink": "2-D Lookup Table, n-D Lookup Table",
+        "Simulink": "2-D Lookup Table",
         "Modelica": "CombiTable2D, CombiTable2Ds",
-        "Xcos": "LOOKUP2D, INTRP2BLK_f",
+        "Xcos": "INTRP2BLK_f",
         "": "map, characteristic map, bilinear, 2d table",
     },
     "mass": {"": "sliding mass, point mass, translational mass"},
@@ -169,7 +172,7 @@ NAMES: dict[str, dict[Tool, str]] = {
         "": "d_flip_flop, track and hold",
     },
     "rolling_resistance": {"": "rolling friction, tire resistance"},
-    "rope": {"Simulink": "Rope", "": "cable, string, belt, tension only"},
+    "rope": {"Simulink": "Rope", "": "cable, string, tension only"},
     "rotating_mass": {"": "flywheel, rotor, moment of inertia, rotational inertia, rotary load"},
     "saturation": {
         "Modelica": "Limiter, VariableLimiter",
@@ -204,7 +207,7 @@ NAMES: dict[str, dict[Tool, str]] = {
     "spline_table": {"": "spline, cubic spline, spline interpolation"},
     "monotone_table": {"": "pchip, akima, monotone interpolation, smooth table"},
     "spring_damper": {
-        "Simulink": "Translational Spring and Damper",
+        "Simulink": "Torsional Spring-Damper",
         "Modelica": "SpringDamper",
         "": "kelvin voigt, spring and damper, shock absorber",
     },
@@ -218,7 +221,7 @@ NAMES: dict[str, dict[Tool, str]] = {
     "step": {"Xcos": "STEP_FUNCTION, STEP", "": "heaviside, jump"},
     "stribeck_friction": {
         "Simulink": "Rotational Friction, Translational Friction",
-        "Modelica": "BearingFriction, MassWithStopAndFriction, SupportFriction",
+        "Modelica": "BearingFriction, SupportFriction",
         "": "stribeck curve, static friction, stiction",
     },
     "sum": {
