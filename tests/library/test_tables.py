@@ -53,6 +53,23 @@ record: [y]
     assert result.sensitivities["a"]["y"] == pytest.approx(exact, abs=1e-12)
 
 
+def test_signal_builder_takes_constants_and_as_many_points_as_a_record_has() -> None:
+    times = np.linspace(0, np.pi, 1500)
+    listed = ", ".join(["0", "2*0.5", "pi"])
+    result = run(
+        f"""
+span: [0, 3.2]
+every: 0.1
+blocks:
+  y: {{type: signal_builder, times: {times.tolist()}, values: {np.sin(times).tolist()}}}
+  few: {{type: signal_builder, times: [{listed}], values: [0, 1, 2]}}
+record: [y, few]
+"""
+    )
+    assert result["y"] == pytest.approx(np.interp(result.t, times, np.sin(times)), abs=1e-12)
+    assert result["few"] == pytest.approx(np.interp(result.t, [0, 1, np.pi], [0, 1, 2]), abs=1e-12)
+
+
 def test_lookup_table_2d_is_the_bilinear_one_of_scipy() -> None:
     rows, columns = [-1.0, 0.0, 0.5, 2.0], [0.0, 1.0, 4.0]
     values = [[1.0, 2.0, -1.0], [0.0, 3.0, 3.0], [5.0, -2.0, 1.0], [2.0, 2.0, 8.0]]
@@ -83,6 +100,7 @@ TABLE = "{type: lookup_table_2d, of: u, other: u, rows: [0, 1], columns: [0, 1, 
         (TIMES.replace("[0, 1],", "[1, 0],"), "the times must ascend, and 0 is not above 1"),
         (TIMES.replace("[0, 1],", "[0, 0, 0],"), "a time stands three times: a jump is the same"),
         (TIMES.replace("[0, 1],", "[0, a],"), "the times are not all plain numbers: write them"),
+        (TIMES.replace("[0, 1],", "[0, 1/0],"), "a time is no number: '1/0' cannot be evaluated"),
         (TIMES.replace("[0, 1],", "1,"), "the numbers of its times are a number: write a list"),
         (TIMES.replace("[0, 1]}", "[0, 1, 2]}"), "there are 2 times and 3 values: give one each"),
         (TABLE.replace("V", "[[1, 2], [3, 4]]"), "the values are a 2x2 matrix, and not 2 rows of"),

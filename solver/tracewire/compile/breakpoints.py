@@ -15,7 +15,8 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from tracewire.compile.elements import Elements, Mismatch, shape_text
-from tracewire.formula import Call, Expression, Number
+from tracewire.errors import FormulaError
+from tracewire.formula import CONSTANTS, Call, Expression, Number, evaluate, names_of
 
 ZERO, ONE = Number(0.0), Number(1.0)
 
@@ -52,9 +53,12 @@ def _numbers(given: Elements, what: str, *, jumps: bool) -> list[float]:
     if len(given.shape) != 1 or len(given.items) < 2:
         shape = shape_text(given.shape)
         raise Mismatch(f"the numbers of its {what}s are {shape}: write a list of two or more")
-    numbers = [item.value for item in given.items if isinstance(item, Number)]
-    if len(numbers) < len(given.items):
+    if any(names_of(item) - CONSTANTS.keys() for item in given.items):
         raise Mismatch(f"the {what}s are not all plain numbers: write them down in SI")
+    try:
+        numbers = [evaluate(item, CONSTANTS) for item in given.items]
+    except FormulaError as error:
+        raise Mismatch(f"a {what} is no number: {str(error).removesuffix('.')}") from error
     for before, after in pairwise(numbers):
         if after < before or (after == before and not jumps):
             raise Mismatch(f"the {what}s must ascend, and {after:g} is not above {before:g}")
@@ -77,8 +81,17 @@ def _share(u: Expression, begin: float, end: float) -> Expression:
 
 
 def _through(y: Sequence[Expression], shares: Sequence[Expression]) -> Expression:
-    total = y[0]
-    for (before, after), share in zip(pairwise(y), shares, strict=True):
-        if before != after:
-            total = Call("+", (total, Call("*", (Call("-", (after, before)), share))))
-    return total
+    steps = [
+        Call("*", (Call("-", (after, before)), share))
+        for (before, after), share in zip(pairwise(y), shares, strict=True)
+        if before != after
+    ]
+    return _sum([y[0], *steps])
+
+
+def _sum(terms: Sequence[Expression]) -> Expression:
+    """The sum in halves of halves: a formula of a long table is not deep."""
+    if len(terms) == 1:
+        return terms[0]
+    half = len(terms) // 2
+    return Call("+", (_sum(terms[:half]), _sum(terms[half:])))
