@@ -36,6 +36,26 @@ def test_a_sum_behind_gains_is_a_place_with_its_coordinate_and_rate() -> None:
     assert found == [Place("force", "sum", "force", "x", "v", "a")]
 
 
+@pytest.mark.parametrize(
+    ("body", "x", "v"),
+    [
+        ("mass, force: net, mass: 2", "x", "v"),
+        ("rotating_mass, torque: net, inertia: 2", "angle", "rate"),
+        ("gear, torque2: net, ratio: 3, inertia1: 1, inertia2: 2", "angle2", "rate2"),
+    ],
+)
+def test_a_sum_before_a_body_is_a_place(body: str, x: str, v: str) -> None:
+    (found,) = places(
+        f"""
+        blocks:
+          body: {{type: {body}}}
+          spring: {{type: stiffness, of: body.{x}, k: 1}}
+          net: {{type: sum, of: [spring]}}
+        """
+    )
+    assert (found.name, found.q, found.v) == ("net", f"body.{x}", f"body.{v}")
+
+
 def test_a_sum_that_only_feeds_another_sum_is_left_out() -> None:
     found = places(
         """
