@@ -39,6 +39,7 @@ STYLE = f"""
 .tracewire .outline{{stroke-width:1.2}}
 .tracewire .curve{{fill:none;stroke:#0b63a5;stroke-width:1.6;stroke-linejoin:round}}
 .tracewire .axis{{fill:none;stroke:#c3cad2;stroke-width:.8}}
+.tracewire .axis.ink{{stroke:#1f2933}}
 .tracewire .mistake{{fill:#c62828}}
 .tracewire .measured{{fill:#0b63a5}}
 .tracewire .event{{fill:none;stroke:#b45309;stroke-width:1.3}}
@@ -161,7 +162,7 @@ def _inside(node: Node, place: Rectangle) -> Iterator[str]:
         yield _write(look.lines[0], x, y - 4, "", "middle")
         half = max(6.0, *(text_width(line) / 2 + 2 for line in look.lines))
         bar = path([(x - half, y), (x + half, y)])
-        yield f'<path class="axis" style="stroke:#1f2933" d="{bar}"/>'
+        yield f'<path class="axis ink" d="{bar}"/>'
         yield _write(look.lines[1], x, y + 12, "", "middle")
     elif look.curve:
         west, east = node.labels
