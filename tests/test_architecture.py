@@ -27,7 +27,7 @@ ROOMS = [
     "draw",
     "compile",
 ]
-ROOMS += ["solve", "residual", "fit", "trace", "analyse", "show", "paper", "cli"]
+ROOMS += ["solve", "residual", "fit", "trace", "analyse", "show", "view", "paper", "cli"]
 # the same for the stages of a trace, files and folders of that room
 STAGES = ["thresholds", "options", "found", "candidates", "units", "trials", "check", "screen"]
 STAGES += ["missing", "search", "choose", "experiment", "results", "saved", "trace"]

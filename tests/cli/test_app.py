@@ -152,6 +152,10 @@ def test_the_package_runs_as_a_module(swing: Path) -> None:
 
 
 HEAVY = ("numpy", "scipy", "networkx", "matplotlib", "pint", "llvmlite", "numba", "rich")
+HEAVY += ("http.server", "tracewire.view", "quickjs")
+
+
+VIEWED = ["numpy", "http.server", "tracewire.view", "quickjs"]  # before a page asks
 
 
 @pytest.mark.parametrize(
@@ -160,7 +164,8 @@ HEAVY = ("numpy", "scipy", "networkx", "matplotlib", "pint", "llvmlite", "numba"
         (["--version"], []),
         (["blocks", "gain"], []),
         (["check", "LESSON"], ["numpy"]),
-        (["draw", "LESSON", "--output", "PICTURE"], ["numpy"]),
+        (["draw", "LESSON", "--output", "PICTURE"], ["numpy", "quickjs"]),
+        (["view", "LESSON", "--no-browser", "--for", "0.1"], VIEWED),
         (["run", "LESSON"], ["numpy", "llvmlite", "rich"]),
     ],
 )

@@ -21,7 +21,7 @@ USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
 """The base of every usage error; typer has its own copy of click or uses the installed one."""
 
 VERBS = (
-    *("check", "show", "draw", "run", "animate", "fit", "trace", "report", "sweep"),
+    *("check", "show", "draw", "view", "run", "animate", "fit", "trace", "report", "sweep"),
     *("paper", "blocks", "units", "demo", "analyse", "data"),
 )
 """In the order of the help. Each is a function, or a `typer.Typer` of several, in the file of its
@@ -38,6 +38,7 @@ def tracewire_(
       tracewire check pendulum.yaml
       tracewire show pendulum.yaml --equations
       tracewire draw pendulum.yaml --depth 1
+      tracewire view pendulum.yaml
       tracewire run pendulum.yaml --figure swing.png
       tracewire run pendulum.yaml --set "phi=13.6 deg" --output swing.csv
       tracewire animate pendulum.yaml

@@ -26,6 +26,7 @@ from tracewire.diagram.edit import (
     difference,
     remove_addend,
     set_values,
+    written_units,
 )
 from tracewire.diagram.edit_own import add_own
 from tracewire.diagram.edit_sensors import add_sensor, sensor_numbers, set_sensors
@@ -38,6 +39,7 @@ from tracewire.diagram.edit_series import (
     with_series_of,
 )
 from tracewire.diagram.effects import EffectType, effects_of
+from tracewire.diagram.files import load as load_text
 from tracewire.diagram.loops import cycles, shown_cycle
 from tracewire.diagram.names import (
     element_name,
@@ -50,7 +52,7 @@ from tracewire.diagram.names import (
     state_names,
     states,
 )
-from tracewire.diagram.read import read, read_readable, read_text
+from tracewire.diagram.read import read, read_readable, read_readable_text, read_text
 from tracewire.diagram.rewire import add_to_drive, rewired
 from tracewire.diagram.write import write
 
@@ -87,11 +89,13 @@ __all__ = [
     "find_recorded",
     "find_signal",
     "find_state",
+    "load_text",
     "mapping_text",
     "path_text",
     "quoted",
     "read",
     "read_readable",
+    "read_readable_text",
     "read_text",
     "remove_addend",
     "replace_series",
@@ -107,4 +111,5 @@ __all__ = [
     "states",
     "with_series_of",
     "write",
+    "written_units",
 ]

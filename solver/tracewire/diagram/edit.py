@@ -9,7 +9,7 @@ from __future__ import annotations
 import contextlib
 import difflib
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from tracewire.diagram.diagram import BlockUse, Diagram
 from tracewire.diagram.outline import Outline
@@ -105,6 +105,24 @@ def set_values(diagram: Diagram, values: Mapping[str, float]) -> Diagram:
             scalar = node.values["value"] if isinstance(node, Entries) else node
             changes.append(replaced(scalar, number))
     return reread(diagram, changes)
+
+
+def written_units(diagram: Diagram, paths: Iterable[str]) -> dict[str, str]:
+    """The unit in which the text writes each parameter of a run, by its path.
+
+    Left out are those without a unit there, and those whose text is in another file.
+    """
+    outline = Outline(diagram)
+    found: dict[str, str] = {}
+    for path in paths:
+        try:
+            node = outline.parameter(path).node
+        except OptionError:
+            continue
+        unit = node.values.get("unit") if isinstance(node, Entries) else None
+        if isinstance(unit, Scalar):
+            found[path] = unit.text
+    return found
 
 
 def _copy(text: str, node: Node, number: str) -> str:

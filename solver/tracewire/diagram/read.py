@@ -91,8 +91,18 @@ def read_readable(
     """
     library = load_library(libraries)
     file = Path(path)
+    return read_readable_text(load(file), file, library)
+
+
+def read_readable_text(
+    text: str, file: Path, library: Library
+) -> tuple[Diagram, tuple[Problem, ...]]:
+    """A text as far as it can be read, and what `read_text` would raise.
+
+    Raises DiagramError where nothing can be read.
+    """
     problems = Problems()
-    diagram = _readable(load(file), file, library, problems)
+    diagram = _readable(text, file, library, problems)
     try:
         problems.raise_found(str(file))
     except DiagramError as error:

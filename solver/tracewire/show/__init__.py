@@ -15,11 +15,13 @@ if TYPE_CHECKING:
     from tracewire.show.comparison_figures import plot_comparisons
     from tracewire.show.diagnostic_figures import plot_diagnostics, plot_profiles
     from tracewire.show.document import Report
-    from tracewire.show.figures import plot_run
+    from tracewire.show.event_rows import jump_times
+    from tracewire.show.figures import group_signals, plot_run
     from tracewire.show.fit_figures import plot_fit, plot_residual
     from tracewire.show.live import optimplotfit, optimplotfval, optimplotx
     from tracewire.show.parameter_figures import plot_convergence, plot_correlation, plot_parameters
     from tracewire.show.plane_figures import plot_orbit, plot_polar, plot_portrait
+    from tracewire.show.scene import Moved, extent_of, moved_parts
     from tracewire.show.several_runs import plot_runs
     from tracewire.show.signal_figures import (
         plot_growth,
@@ -28,15 +30,25 @@ if TYPE_CHECKING:
         plot_scalogram,
         plot_spectrum,
     )
+    from tracewire.show.sticking import held_intervals
     from tracewire.show.summary import Table, shown
     from tracewire.show.sweep_figures import plot_chart, plot_sweep
     from tracewire.show.trace_summary import paragraph_of
+    from tracewire.show.uplot import library_script, library_style
 
 __all__ = [
+    "Moved",
     "Report",
     "Table",
     "animate",
+    "extent_of",
     "frame_times",
+    "group_signals",
+    "held_intervals",
+    "jump_times",
+    "library_script",
+    "library_style",
+    "moved_parts",
     "optimplotfit",
     "optimplotfval",
     "optimplotx",
@@ -73,17 +85,21 @@ FILE_OF = {
     "comparison_figures": "plot_comparisons",
     "diagnostic_figures": "plot_diagnostics plot_profiles",
     "document": "Report",
-    "figures": "plot_run",
+    "event_rows": "jump_times",
+    "figures": "group_signals plot_run",
     "fit_figures": "plot_fit plot_residual",
     "live": "optimplotfit optimplotfval optimplotx",
     "parameter_figures": "plot_convergence plot_correlation plot_parameters",
     "plane_figures": "plot_orbit plot_polar plot_portrait",
     "any_report": "report",
+    "scene": "Moved extent_of moved_parts",
     "several_runs": "plot_runs",
     "signal_figures": "plot_growth plot_invariants plot_lyapunov plot_scalogram plot_spectrum",
+    "sticking": "held_intervals",
     "summary": "Table shown",
     "sweep_figures": "plot_chart plot_sweep",
     "trace_summary": "paragraph_of",
+    "uplot": "library_script library_style",
 }
 
 

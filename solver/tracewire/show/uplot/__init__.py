@@ -9,7 +9,7 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
-__all__ = ["scripts", "style"]
+__all__ = ["library_script", "library_style", "scripts", "style"]
 
 HERE = Path(__file__).parent
 
@@ -28,3 +28,15 @@ def scripts() -> str:
     return "\n".join(
         (HERE / name).read_text(encoding="utf-8") for name in ("uPlot.iife.min.js", "zoom.js")
     )
+
+
+@cache
+def library_script() -> str:
+    """uPlot alone, which a page then calls by `uPlot`."""
+    return (HERE / "uPlot.iife.min.js").read_text(encoding="utf-8")
+
+
+@cache
+def library_style() -> str:
+    """The style sheet of uPlot alone."""
+    return (HERE / "uPlot.min.css").read_text(encoding="utf-8")

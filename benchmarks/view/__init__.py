@@ -1,0 +1,1 @@
+"""How fast the live page follows: from a slider to the painted curve, in a real browser."""

@@ -1,0 +1,102 @@
+"""A run as the page draws it: a head in JSON, and behind it all arrays as numbers of 8 bytes."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.errors import TracewireError
+from tracewire.show import Moved, extent_of, group_signals, held_intervals, jump_times, moved_parts
+from tracewire.solve import Run
+
+Vector = NDArray[np.float64]
+MOST_EVENTS = 2000
+"""More of them are counted, and not sent."""
+
+
+class Arrays:
+    """Arrays in a row, each known by its number."""
+
+    def __init__(self) -> None:
+        self.all: list[Vector] = []
+
+    def keep(self, values: Any) -> int:
+        """Put an array at the end of the row; its number."""
+        self.all.append(np.ascontiguousarray(values, dtype="<f8"))
+        return len(self.all) - 1
+
+
+def packed(head: Mapping[str, Any], arrays: Arrays) -> bytes:
+    """The length of the head in 4 bytes, the head, blanks up to a multiple of 8, the arrays.
+
+    The head gets `lengths`, the number of values of each array.
+    """
+    data = dict(head) | {"lengths": [len(array) for array in arrays.all]}
+    text = json.dumps(data, separators=(",", ":"), allow_nan=False).encode()
+    text += b" " * (-(len(text) + 4) % 8)
+    return struct.pack("<I", len(text)) + text + b"".join(a.tobytes() for a in arrays.all)
+
+
+def panels_of(run: Run, shown: Sequence[str]) -> list[list[str]]:
+    """The signals to draw, in panels of one unit and of like range."""
+    kept = [[name for name in group if name in shown] for group in group_signals(run)]
+    return [group for group in kept if group]
+
+
+def frame_of(run: Run, panels: Sequence[Sequence[str]], arrays: Arrays) -> dict[str, Any]:
+    """The head of a run: its panels, events and scene, with the numbers of its arrays."""
+    head: dict[str, Any] = {"t": arrays.keep(run.t)}
+    held = held_intervals(run)
+    head["panels"] = [
+        {
+            "unit": run.look(names[0]).unit,
+            "jumps": jump_times(run, names)[:MOST_EVENTS],
+            "lines": [
+                {
+                    "name": name,
+                    "label": run.look(name).label,
+                    "values": arrays.keep(run.as_shown(name)),
+                    "held": held.get(name, [])[:MOST_EVENTS],
+                }
+                for name in names
+            ],
+        }
+        for names in panels
+    ]
+    head["events"] = [
+        {"t": event.time, "kind": event.kind, "block": event.block}
+        for event in run.events[:MOST_EVENTS]
+    ]
+    head["event_count"] = len(run.events)
+    head["warnings"] = list(run.warnings)
+    head["run_seconds"] = run.statistics.seconds
+    if run.model is not None and run.model.scene:
+        head["scene"] = _scene(run, arrays)
+    return head
+
+
+def _scene(run: Run, arrays: Arrays) -> dict[str, Any]:
+    """The parts of the scene, and what it covers in m; what is wrong where it cannot be drawn."""
+    try:
+        parts = moved_parts(run)
+        extent = extent_of(parts)
+    except TracewireError as error:
+        return {"problem": str(error.problems[0])}
+    return {"parts": [_part(part, arrays) for part in parts], "extent": extent}
+
+
+def _part(part: Moved, arrays: Arrays) -> dict[str, Any]:
+    return {
+        "kind": part.kind,
+        "color": part.color,
+        "points": {
+            key: [arrays.keep(points[:, 0]), arrays.keep(points[:, 1])]
+            for key, points in part.points.items()
+        },
+        "sizes": {key: arrays.keep(values) for key, values in part.sizes.items()},
+    }

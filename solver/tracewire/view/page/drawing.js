@@ -1,0 +1,18 @@
+// The picture of the diagram. It comes from the server as SVG, and is put in as parsed nodes.
+
+import {make, part} from "./page.js";
+
+export function showDrawing(svg, jump) {
+  const parsed = new DOMParser().parseFromString(svg, "image/svg+xml").documentElement;
+  if (parsed.nodeName !== "svg") {
+    part("drawing").replaceChildren(make("p", {textContent: "The picture cannot be shown."}));
+    return;
+  }
+  const picture = document.importNode(parsed, true);
+  picture.setAttribute("role", "img");
+  picture.addEventListener("dblclick", (event) => {
+    const block = event.target.closest("[data-block]");
+    if (block) jump(block.getAttribute("data-block"));
+  });
+  part("drawing").replaceChildren(picture);
+}

@@ -1,0 +1,180 @@
+// The curves of a run, panel below panel, and a row of marks for each block that had events.
+
+import {make, part, shown} from "./page.js";
+
+const COLORS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7"];
+const STRONG = {impact: 1, reset: 1, rest: 1};
+const GUTTER = 64;
+const MOST_ROWS = 8;
+
+const plain = (u, splits) => splits.map((v) => (v === null ? "" : String(+v.toPrecision(10))));
+const large = () => document.body.classList.contains("present");
+const font = () => `${large() ? 15 : 12}px sans-serif`;
+
+export class Plots {
+  constructor() {
+    this.holder = part("plots");
+    this.plots = [];
+    this.form = "";
+    this.now = null;
+    new ResizeObserver(() => this.resize()).observe(this.holder);
+  }
+
+  show(head) {
+    this.head = head;
+    const rows = [...new Set(head.events.map((event) => event.block))].slice(0, MOST_ROWS);
+    const form = JSON.stringify([head.panels.map((p) => [p.unit, p.lines.map((l) => l.label)]), rows]);
+    const t = head.arrays[head.t];
+    this.span = [t[0], t[t.length - 1]];
+    if (form !== this.form) this.build(head, rows);
+    this.form = form;
+    this.rows = rows;
+    head.panels.forEach((panel, n) => {
+      this.plots[n].panel = panel;
+      this.plots[n].setData([t, ...panel.lines.map((line) => head.arrays[line.values])]);
+    });
+    if (rows.length) this.plots[this.plots.length - 1].setData([this.span, [null, null]]);
+    this.point(this.now);
+  }
+
+  build(head, rows) {
+    for (const plot of this.plots) plot.destroy();
+    const count = head.panels.length + (rows.length ? 1 : 0);
+    this.plots = head.panels.map((panel, n) => this.panel(panel, n === count - 1));
+    if (rows.length) this.plots.push(this.strip(rows));
+    for (const plot of this.plots) {
+      plot.line = make("div", {className: "now"});
+      plot.over.append(plot.line);
+    }
+    this.resize();
+  }
+
+  options(height, last, y) {
+    const axis = {stroke: "#444", font: font(), grid: {stroke: "#e6e6e6", width: 1}};
+    return {
+      width: Math.max(this.holder.clientWidth, 200),
+      height,
+      pxAlign: false,
+      cursor: {sync: {key: "run", scales: ["x", null]}, drag: {x: true, y: false}, points: {size: 6}},
+      scales: {x: {time: false}, y: {}},
+      axes: [
+        {...axis, values: plain, size: last ? 34 : 24, label: last ? "t [s]" : null,
+          labelSize: 18, labelFont: font()},
+        {...axis, values: plain, size: GUTTER, labelSize: 20, labelFont: font(), ...y},
+      ],
+      hooks: {},
+    };
+  }
+
+  panel(panel, last) {
+    const names = panel.lines.map((line) => line.label);
+    const unit = panel.unit && panel.unit !== "1" ? ` [${panel.unit}]` : "";
+    const made = this.options(this.tall(last), last, {label: names.length === 1 ? names[0] + unit : unit});
+    const value = (u, v) => (v === null || v === undefined ? "" : shown(v, 5));
+    made.series = [{label: "t", value}, ...panel.lines.map((line, n) => ({
+      label: line.label, stroke: COLORS[n % 4], width: large() ? 2.5 : 1.5, value, points: {show: false},
+    }))];
+    made.legend = {live: true};
+    made.hooks.drawClear = [(u) => backdrop(u, u.panel)];
+    const plot = new uPlot(made, [[0, 1], ...panel.lines.map(() => [null, null])], this.holder);
+    plot.root.setAttribute("role", "img");
+    plot.root.setAttribute("aria-label", `${names.join(", ")} over time`);
+    plot.last = last;
+    return plot;
+  }
+
+  strip(rows) {
+    const splits = rows.map((_, n) => n);
+    const made = this.options(20 * rows.length + 62, true, {
+      splits: () => splits,
+      values: () => rows.map((row) => (row.length > 9 ? `${row.slice(0, 8)}…` : row)),
+      ticks: {show: false}, grid: {show: false},
+    });
+    made.scales.y = {range: () => [-0.6, rows.length - 0.4], dir: -1};
+    made.legend = {show: false};
+    made.series = [{label: "t"}, {label: "", show: false}];
+    made.hooks.drawClear = [(u) => marks(u, rows, this.head.events)];
+    const plot = new uPlot(made, [[0, 1], [null, null]], this.holder);
+    plot.root.setAttribute("role", "img");
+    plot.root.setAttribute("aria-label", "Events over time");
+    plot.strip = true;
+    return plot;
+  }
+
+  tall(last) {
+    const panels = this.head.panels.length;
+    const height = panels > 3 ? 130 : 190;
+    return (large() ? 1.3 * height : height) + (last ? 24 : 0);
+  }
+
+  resize() {
+    const width = Math.max(this.holder.clientWidth, 200);
+    for (const plot of this.plots) {
+      if (plot.width !== width) plot.setSize({width, height: plot.height});
+    }
+    this.point(this.now);
+  }
+
+  // a line at a time in s; none where it is null
+  point(time) {
+    this.now = time;
+    for (const plot of this.plots) {
+      if (!plot.line) continue;
+      plot.line.hidden = time === null || this.span === undefined;
+      if (!plot.line.hidden) plot.line.style.left = `${plot.valToPos(time, "x")}px`;
+    }
+  }
+}
+
+function faded(color, alpha) {
+  return color + ("0" + Math.round(255 * alpha).toString(16)).slice(-2);
+}
+
+function inside(u, work) {
+  const box = u.bbox;
+  u.ctx.save();
+  u.ctx.beginPath();
+  u.ctx.rect(box.left, box.top, box.width, box.height);
+  u.ctx.clip();
+  work(u.ctx, box, (t) => u.valToPos(t, "x", true));
+  u.ctx.restore();
+}
+
+// behind the curves: shades while a friction holds a signal, thin lines where an event sets one
+function backdrop(u, panel) {
+  if (!panel) return;
+  inside(u, (c, box, x) => {
+    panel.lines.forEach((line, n) => {
+      c.fillStyle = faded(COLORS[n % 4], 0.13);
+      for (const [from, to] of line.held) {
+        c.fillRect(x(from), box.top, Math.max(x(to) - x(from), 1), box.height);
+      }
+    });
+    if (panel.jumps.length > 60) return;
+    c.strokeStyle = faded("#B22222", 0.45);
+    c.lineWidth = 0.8 * devicePixelRatio;
+    for (const time of panel.jumps) {
+      c.beginPath();
+      c.moveTo(x(time), box.top);
+      c.lineTo(x(time), box.top + box.height);
+      c.stroke();
+    }
+  });
+}
+
+function marks(u, rows, events) {
+  inside(u, (c, box, x) => {
+    c.lineWidth = devicePixelRatio;
+    for (const event of events) {
+      const row = rows.indexOf(event.block);
+      if (row < 0) continue;
+      const strong = STRONG[event.kind];
+      const half = strong ? 0.38 : 0.2;
+      c.strokeStyle = strong ? "#B22222" : "#6b6b6b";
+      c.beginPath();
+      c.moveTo(x(event.t), u.valToPos(row - half, "y", true));
+      c.lineTo(x(event.t), u.valToPos(row + half, "y", true));
+      c.stroke();
+    }
+  });
+}

@@ -1,0 +1,256 @@
+"""What the page asks, and what it gets: each request is a mapping, each answer one or bytes."""
+
+from __future__ import annotations
+
+import hashlib
+from collections import OrderedDict
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import asdict
+from pathlib import Path
+from threading import Lock
+from typing import Any
+
+import numpy as np
+
+from tracewire.diagram import load_text, set_values
+from tracewire.draw import draw
+from tracewire.errors import DiagramError, OptionError, Problem, TracewireError, unknown
+from tracewire.files import write_file, writing
+from tracewire.formula import evaluate
+from tracewire.library import load_library
+from tracewire.solve import Limits, parameter_values, simulate
+from tracewire.view.frame import Arrays, frame_of, packed, panels_of
+from tracewire.view.sliders import in_si, sliders_of
+from tracewire.view.version import Version, read_version, stamp_of
+
+Request = Mapping[str, Any]
+Answer = Mapping[str, Any] | bytes
+POINTS = 1501
+"""Samples of a run, evenly over its span: more than a curve has pixels."""
+MOST_EVENTS = 100_000
+MOST_VERSIONS = 12
+MOST_TABS = 100
+MOST_BYTES = 1_000_000
+"""Of the text of a diagram."""
+PRESENTED = "this page was started with --present, and changes no file"
+
+
+class Superseded(Exception):
+    """A run that nobody waits for any more: its page has asked for a newer one."""
+
+
+class Service:
+    """A diagram file and the versions of its text that pages have, by key.
+
+    `seconds` is the time that a run may take. `present`: the text cannot be changed or saved.
+    Methods are called by several threads. Raises DiagramError where the file cannot be read at the
+    start, BlockError where a library is wrong.
+    """
+
+    def __init__(
+        self,
+        file: str | Path,
+        libraries: Iterable[str | Path] = (),
+        *,
+        present: bool = False,
+        seconds: float = 5.0,
+    ) -> None:
+        self.file, self.present = Path(file), present
+        self.limits = Limits(seconds=seconds, events=MOST_EVENTS)
+        self.library = load_library(libraries)
+        self._versions: OrderedDict[str, Version] = OrderedDict()
+        self._latest: OrderedDict[str, int] = OrderedDict()
+        self._lock = Lock()
+        self.actions: dict[str, Callable[[Request], Answer]] = {
+            "open": self.open,
+            "read": self.read,
+            "draw": self.draw,
+            "run": self.run,
+            "state": self.state,
+            "put": self.put,
+            "save": self.save,
+        }
+        self._text()
+
+    def answer(self, action: str, request: Request) -> Answer:
+        """The answer to a request; what is wrong with it is told as `problems`."""
+        if action not in self.actions:
+            return told([unknown("request", action, self.actions)])
+        try:
+            return self.actions[action](request)
+        except TracewireError as error:
+            return told(error.problems)
+
+    # --- the text ---------------------------------------------------------------------------------
+
+    def open(self, request: Request) -> Answer:
+        """The text of the file as it is now, and what kind of page this is."""
+        text = self._text()
+        return {
+            "name": self.file.name,
+            "path": str(self.file),
+            "text": text,
+            "digest": digest_of(text),
+            "present": self.present,
+        }
+
+    def read(self, request: Request) -> Answer:
+        """Read a text: its key, its mistakes, and where it has none its parameters."""
+        text = _text_in(request)
+        if self.present and text != self._text():
+            raise OptionError.one(PRESENTED)
+        version = self._keep(read_version(text, self.file, self.library))
+        answer: dict[str, Any] = {
+            "key": version.key,
+            "problems": [record_of(problem) for problem in version.problems],
+            "runs": version.model is not None,
+        }
+        if version.model is not None:
+            diagram = version.model.diagram
+            answer |= {
+                "title": diagram.title or self.file.stem,
+                "presets": list(diagram.presets),
+                "parameters": [asdict(s) for s in sliders_of(version.model)],
+                "scene": bool(version.model.scene),
+            }
+        return answer
+
+    def draw(self, request: Request) -> Answer:
+        """The picture of a version as SVG, with its mistakes in red."""
+        version = self._version(request)
+        if version.diagram is None:
+            raise DiagramError(version.problems)
+        picture = draw(version.diagram, measured=True, problems=version.problems)
+        return {"svg": picture.svg}
+
+    def put(self, request: Request) -> Answer:
+        """The text of a version with other values of parameters, in the units of the file."""
+        model = self._version(request).model
+        if model is None:
+            raise OptionError.one("the text has mistakes", hint="Repair them first.")
+        changed = set_values(model.diagram, in_si(request.get("parameters") or {}))
+        return {"text": changed.text}
+
+    def state(self, request: Request) -> Answer:
+        """The digest of the file as it is now, and whether a version's other files have changed."""
+        version = self._versions.get(str(request.get("key")))
+        fresh = version is None or stamp_of(version.diagram) == version.stamp
+        return {"digest": digest_of(self._text()), "fresh": fresh}
+
+    def save(self, request: Request) -> Answer:
+        """Write a text to the file, unless that has changed since the page has read it.
+
+        `digest` is that of the text which the page has read, or `over` is true.
+        """
+        if self.present:
+            raise OptionError.one(PRESENTED)
+        text = _text_in(request)
+        now = digest_of(self._text(missing=""))
+        if request.get("digest") != now and request.get("over") is not True:
+            return {"conflict": True, "digest": now}
+        with writing(self.file):
+            write_file(self.file, text)
+        return {"digest": digest_of(text)}
+
+    # --- runs -------------------------------------------------------------------------------------
+
+    def run(self, request: Request) -> Answer:
+        """A run of a version as `frame_of` has it; a newer one of the same page ends it.
+
+        `tab` names the page, `number` ascends with its requests; `parameters` are in SI.
+        """
+        version = self._version(request)
+        tab, number = str(request.get("tab", ""))[:64], int(request.get("number", 0))
+        with self._lock:
+            self._latest[tab] = max(number, self._latest.get(tab, 0))
+            self._latest.move_to_end(tab)
+            while len(self._latest) > MOST_TABS:
+                self._latest.popitem(last=False)
+
+        def go_on(part: float = 0.0, left: float = 0.0) -> None:
+            if self._latest.get(tab, number) > number:
+                raise Superseded
+
+        if version.model is None:
+            return told(version.problems, number)
+        values, preset = in_si(request.get("parameters") or {}), str(request.get("preset") or "")
+        try:
+            with version.lock:
+                go_on()
+                known = parameter_values(version.model, values, preset)
+                begin, end = (evaluate(f, known) for f in version.model.flat.span)
+                times = np.linspace(begin, end, POINTS) if begin < end else None
+                run = simulate(
+                    version.model,
+                    parameters=values,
+                    preset=preset,
+                    times=times,
+                    limits=self.limits,
+                    progress=go_on,
+                )
+        except Superseded:
+            return {"superseded": True, "number": number}
+        except TracewireError as error:
+            return told(error.problems, number)
+        version.panels = version.panels or panels_of(run, version.shown)
+        arrays = Arrays()
+        head = frame_of(run, version.panels, arrays)
+        followed = {name: known[name] for name in version.model.parameters if name not in values}
+        return packed({"number": number, "followed": followed} | head, arrays)
+
+    # --- what is kept -----------------------------------------------------------------------------
+
+    def _text(self, missing: str | None = None) -> str:
+        """The text of the file. Raises DiagramError unless `missing` stands for one not there."""
+        if missing is not None and not self.file.exists():
+            return missing
+        return load_text(self.file)
+
+    def _keep(self, version: Version) -> Version:
+        with self._lock:
+            version = self._versions.setdefault(version.key, version)
+            self._versions.move_to_end(version.key)
+            while len(self._versions) > MOST_VERSIONS:
+                self._versions.popitem(last=False)
+        return version
+
+    def _version(self, request: Request) -> Version:
+        with self._lock:
+            version = self._versions.get(str(request.get("key")))
+            if version is not None:
+                self._versions.move_to_end(version.key)
+        if version is None:
+            hint = "The page reads the text again by itself; else reload it."
+            raise OptionError.one("this version of the text is not kept any more", hint=hint)
+        return version
+
+
+def told(problems: Iterable[Problem], number: int | None = None) -> dict[str, Any]:
+    """An answer that tells what is wrong."""
+    answer: dict[str, Any] = {"problems": [record_of(problem) for problem in problems]}
+    return answer if number is None else answer | {"number": number}
+
+
+def record_of(problem: Problem) -> dict[str, Any]:
+    """A problem for the page: its place, and all of it in words."""
+    place = problem.place
+    return {
+        "file": place.file,
+        "line": place.line,
+        "column": place.column,
+        "block": place.block,
+        "text": str(problem),
+    }
+
+
+def digest_of(text: str) -> str:
+    """What tells two texts apart."""
+    return hashlib.sha256(text.encode()).hexdigest()[:32]
+
+
+def _text_in(request: Request) -> str:
+    text = request.get("text")
+    if not isinstance(text, str) or len(text.encode(errors="replace")) > MOST_BYTES:
+        what = f"a text of at most {MOST_BYTES // 1_000_000} MB is needed"
+        raise OptionError.one(what, hint="Put subsystems into files of their own.")
+    return text

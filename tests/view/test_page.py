@@ -1,0 +1,194 @@
+"""The live page in a browser without a window: what a user does there, and sees."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from tracewire.view import Service
+from tracewire.view.server import PageServer
+from view.conftest import SPRING, serving
+
+from benchmarks.view.chromium import BROWSER, Chromium
+
+pytestmark = pytest.mark.skipif(not BROWSER, reason="no Chromium here")
+
+LAST = "document.body.dataset.shown"
+HELPERS = """
+window.set = (id, value) => {
+  const one = document.getElementById(id);
+  one.value = value;
+  one.dispatchEvent(new Event("input", {bubbles: true}));
+};
+window.text = (id) => document.getElementById(id).textContent;
+window.shows = (id) => {
+  const one = document.getElementById(id);
+  return one.checkVisibility({visibilityProperty: true});
+};
+window.painted = () =>
+  [...document.querySelectorAll("#plots canvas")].map((one) => one.toDataURL()).join();
+"""
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Chromium]:
+    with Chromium() as running:
+        yield running
+
+
+@pytest.fixture
+def server(spring: Path) -> Iterator[PageServer]:
+    with serving(Service(spring, seconds=1.0)) as running:
+        yield running
+
+
+@pytest.fixture
+def page(browser: Chromium, server: PageServer) -> Iterator[Chromium]:
+    """A page of the spring that has shown its first run, and that has no error in the end."""
+    opened(browser, server)
+    yield browser
+    browser.open("about:blank")  # before its server ends
+    assert browser.errors == []
+
+
+def opened(browser: Chromium, server: PageServer) -> None:
+    browser.errors.clear()
+    browser.open(server.address)
+    browser.wait(f"document.body && {LAST} === '1'")
+    browser.run(HELPERS)
+
+
+def test_the_page_shows_the_diagram_its_parameters_and_a_run(page: Chromium) -> None:
+    assert page.run("document.title") == "A mass on a spring"
+    names = page.run("[...document.querySelectorAll('#sliders label')].map(l => l.textContent)")
+    assert names == ["k", "start", "twice", "force", "c"]
+    assert page.run("document.querySelectorAll('.uplot').length") == 2
+    assert page.run("document.getElementById('source').value") == SPRING
+    page.wait("!!document.querySelector('#drawing svg [data-block=a]')")
+    outline = "document.querySelector('#drawing .wire path')"
+    assert page.run(f"getComputedStyle({outline}).fill") == "none"  # its style sheet is allowed
+    assert page.run("shows('stage')")
+
+
+def test_a_slider_moves_the_curve(page: Chromium) -> None:
+    before = page.run("painted()")
+    page.run("set('p-k', 900)")
+    page.wait(f"{LAST} === '2'")
+    assert page.run("painted()") != before
+    field = "document.querySelector('#sliders input[type=number]')"
+    assert page.run(f"{field}.value") == "8.2"
+    follows = "document.querySelectorAll('#sliders input[type=number]')[2].value"
+    assert page.run(follows) == "16.4"
+    page.run("document.getElementById('reset').click()")
+    page.wait(f"{LAST} === '3'")
+    assert page.run("painted()") == before
+
+
+def test_only_the_newest_of_many_wishes_is_run(page: Chromium) -> None:
+    page.run("for (let n = 0; n <= 50; n++) set('p-k', 500 + n)")
+    page.wait("document.querySelector('#sliders input[type=number]').value === '5.4'")
+    page.wait(f"+{LAST} >= 2")
+    time.sleep(0.5)
+    assert int(page.run(LAST)) <= 4  # not fifty
+
+
+def test_a_run_that_fails_hides_the_old_curves(page: Chromium) -> None:
+    page.run(
+        "set('source', document.getElementById('source').value.replace('-k*x', '-k/(x - 5*t)'))"
+    )
+    page.wait("shows('failure')")
+    assert "t = 0.0" in page.run("text('failure')")
+    assert not page.run("shows('plots')")
+    assert not page.run("shows('stage')")
+    page.run(f"set('source', {SPRING!r})")
+    page.wait("shows('plots') && !shows('failure')")
+
+
+def test_a_mistake_is_told_at_its_line_while_one_types(page: Chromium) -> None:
+    page.run("set('source', document.getElementById('source').value.replace('of: v', 'off: v'))")
+    page.wait("document.querySelectorAll('#problems li').length > 0")
+    wrong = page.run("[...document.querySelectorAll('#gutter .wrong')].map(l => l.textContent)")
+    assert wrong == ["11"]
+    assert "line 11:" in page.run("text('problems')")
+    assert not page.run("shows('plots')")
+    page.run("document.querySelector('#problems button').click()")
+    caret = page.run("document.getElementById('source').selectionStart")
+    assert SPRING[:caret].count("\n") == 10
+
+
+def test_saving_writes_the_file_and_says_so(page: Chromium, spring: Path) -> None:
+    assert page.run("text('saved')") == "saved"
+    page.run("set('p-k', 0)")
+    page.run("document.getElementById('put').click()")
+    page.wait("document.getElementById('source').value.includes('value: 1, unit: N/m')")
+    assert page.run("text('saved')") == "not saved"
+    assert spring.read_text(encoding="utf-8") == SPRING
+    page.run("document.getElementById('save').click()")
+    page.wait("text('saved') === 'saved'")
+    assert "k: {value: 1, unit: N/m" in spring.read_text(encoding="utf-8")
+
+
+def test_a_change_by_another_editor_shows_at_once(page: Chromium, spring: Path) -> None:
+    spring.write_text(SPRING.replace("A mass", "A heavy mass"), encoding="utf-8")
+    page.wait("document.title === 'A heavy mass on a spring'", 10)
+    assert not page.run("shows('notice')")
+
+
+def test_a_change_on_both_sides_is_told_and_nothing_is_lost(page: Chromium, spring: Path) -> None:
+    page.run("set('source', document.getElementById('source').value + '# here\\n')")
+    theirs = SPRING + "# there\n"
+    spring.write_text(theirs, encoding="utf-8")
+    page.wait("shows('notice')", 10)
+    assert "another program" in page.run("text('notice')")
+    assert page.run("document.getElementById('source').value.endsWith('# here\\n')")
+    assert spring.read_text(encoding="utf-8") == theirs
+    page.run("document.querySelector('#notice button').click()")
+    page.wait("document.getElementById('source').value.endsWith('# there\\n')")
+
+
+def test_the_mechanism_is_played(page: Chromium) -> None:
+    still = page.run("document.getElementById('stage').toDataURL()")
+    page.run("document.getElementById('play').click()")
+    page.wait("+document.getElementById('time').value > 20")
+    page.run("document.getElementById('play').click()")
+    assert page.run("document.getElementById('stage').toDataURL()") != still
+    assert re.match(r"t = [\d.]+ s", page.run("text('clock')"))
+
+
+def test_two_pages_do_not_disturb_each_other(
+    browser: Chromium, server: PageServer, page: Chromium
+) -> None:
+    first = page.page
+    page.run("set('p-k', 900)")
+    page.wait(f"{LAST} === '2'")
+    browser.new_page()
+    opened(browser, server)
+    browser.run("set('p-k', 100)")
+    browser.wait(f"{LAST} === '2'")
+    fields = "document.querySelector('#sliders input[type=number]').value"
+    assert browser.run(fields) == "1.8"
+    browser.page = first
+    assert browser.run(fields) == "8.2"
+
+
+def test_text_of_a_diagram_stays_text(browser: Chromium, spring: Path) -> None:
+    bad = "<img src=x onerror=alert(1)><script>window.bad = 1</script>"
+    text = SPRING.replace("A mass on a spring", f"'{bad}'").replace("stiff:", '"<b>stiff</b>":')
+    spring.write_text(text, encoding="utf-8")
+    with serving(Service(spring)) as server:
+        browser.errors.clear()
+        browser.open(server.address)
+        browser.wait("document.title.startsWith('<img')")
+        browser.wait("!!document.querySelector('#drawing svg')")
+        assert browser.run("[window.bad, document.querySelectorAll('img').length]") == [None, 0]
+        assert browser.errors == []
+
+
+def test_a_server_that_has_ended_is_told(browser: Chromium, spring: Path) -> None:
+    with serving(Service(spring)) as server:
+        opened(browser, server)
+    browser.wait("shows('notice')", 10)
+    assert "has ended" in browser.run("text('notice')")
