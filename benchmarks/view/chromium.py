@@ -132,11 +132,15 @@ class Chromium:
         return message
 
     def _notice(self, message: dict[str, Any]) -> None:
-        given = message.get("params", {})
-        if message.get("method") == "Runtime.exceptionThrown":
+        given, here = message.get("params", {}), message.get("sessionId") == self.page
+        if here and message.get("method") == "Runtime.exceptionThrown":
             details = given["exceptionDetails"]
             self.errors.append(str(details.get("exception", {}).get("description", details)))
-        elif message.get("method") == "Log.entryAdded" and given["entry"]["level"] == "error":
+        elif (
+            here
+            and message.get("method") == "Log.entryAdded"
+            and given["entry"]["level"] == "error"
+        ):
             text = f"{given['entry']['text']} {given['entry'].get('url', '')}"
             if "beforeunload" not in text:  # a page that was left unsaved, without a user
                 self.errors.append(text)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,12 +17,17 @@ from benchmarks.view.chromium import BROWSER, Chromium
 
 pytestmark = pytest.mark.skipif(not BROWSER, reason="no Chromium here")
 
+ROOT = Path(__file__).parents[2]
 LAST = "document.body.dataset.shown"
 HELPERS = """
 window.set = (id, value) => {
   const one = document.getElementById(id);
   one.value = value;
   one.dispatchEvent(new Event("input", {bubbles: true}));
+};
+window.choose = (id, value) => {
+  document.getElementById(id).value = value;
+  document.getElementById(id).dispatchEvent(new Event("change"));
 };
 window.text = (id) => document.getElementById(id).textContent;
 window.shows = (id) => {
@@ -55,6 +61,8 @@ def page(browser: Chromium, server: PageServer) -> Iterator[Chromium]:
 
 
 def opened(browser: Chromium, server: PageServer) -> None:
+    browser.open("about:blank")
+    browser.wait("location.href === 'about:blank'")
     browser.errors.clear()
     browser.open(server.address)
     browser.wait(f"document.body && {LAST} === '1'")
@@ -192,3 +200,25 @@ def test_a_server_that_has_ended_is_told(browser: Chromium, spring: Path) -> Non
         opened(browser, server)
     browser.wait("shows('notice')", 10)
     assert "has ended" in browser.run("text('notice')")
+
+
+def test_a_fit_is_proposed_and_taken_by_a_click(browser: Chromium, tmp_path: Path) -> None:
+    for file in (ROOT / "diagrams" / "lessons").glob("pendulum*"):
+        shutil.copy(file, tmp_path)
+    file = tmp_path / "pendulum.yaml"
+    before = file.read_text(encoding="utf-8")
+    with serving(Service(file)) as server:
+        opened(browser, server)
+        browser.run("choose('series', 'swing')")
+        browser.wait("text('criterion').startsWith('Criterion of swing: 291')")
+        assert browser.run("document.querySelectorAll('.uplot').length") == 3
+        browser.run("document.getElementById('fit').click()")
+        browser.wait("shows('proposal')")
+        assert "converged" in browser.run("text('proposal-words')")
+        browser.run("document.getElementById('accept').click()")
+        browser.wait("text('criterion') && !text('criterion').includes(': 291')")
+        assert not browser.run("shows('proposal')")
+        assert browser.run("text('saved')") == "not saved"
+        assert file.read_text(encoding="utf-8") == before
+        browser.open("about:blank")
+    assert browser.errors == []

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from tracewire.show.event_rows import jump_times
     from tracewire.show.figures import group_signals, plot_run
     from tracewire.show.fit_figures import plot_fit, plot_residual
+    from tracewire.show.fit_tables import fit_text, fit_words
     from tracewire.show.live import optimplotfit, optimplotfval, optimplotx
     from tracewire.show.parameter_figures import plot_convergence, plot_correlation, plot_parameters
     from tracewire.show.plane_figures import plot_orbit, plot_polar, plot_portrait
@@ -42,6 +43,8 @@ __all__ = [
     "Table",
     "animate",
     "extent_of",
+    "fit_text",
+    "fit_words",
     "frame_times",
     "group_signals",
     "held_intervals",
@@ -88,6 +91,7 @@ FILE_OF = {
     "event_rows": "jump_times",
     "figures": "group_signals plot_run",
     "fit_figures": "plot_fit plot_residual",
+    "fit_tables": "fit_text fit_words",
     "live": "optimplotfit optimplotfval optimplotx",
     "parameter_figures": "plot_convergence plot_correlation plot_parameters",
     "plane_figures": "plot_orbit plot_polar plot_portrait",

@@ -18,8 +18,11 @@ from tracewire.errors import DiagramError, OptionError, Problem, TracewireError,
 from tracewire.files import write_file, writing
 from tracewire.formula import evaluate
 from tracewire.library import load_library
+from tracewire.show import report
 from tracewire.solve import Limits, parameter_values, simulate
+from tracewire.view.comparison import SeriesConditions, comparison_of, conditions_of
 from tracewire.view.frame import Arrays, frame_of, packed, panels_of
+from tracewire.view.job import Job
 from tracewire.view.sliders import in_si, sliders_of
 from tracewire.view.version import Version, read_version, stamp_of
 
@@ -61,6 +64,7 @@ class Service:
         self._versions: OrderedDict[str, Version] = OrderedDict()
         self._latest: OrderedDict[str, int] = OrderedDict()
         self._lock = Lock()
+        self._job: Job | None = None
         self.actions: dict[str, Callable[[Request], Answer]] = {
             "open": self.open,
             "read": self.read,
@@ -69,6 +73,10 @@ class Service:
             "state": self.state,
             "put": self.put,
             "save": self.save,
+            "start": self.start,
+            "stop": self.stop,
+            "proposal": self.proposal,
+            "report": self.report,
         }
         self._text()
 
@@ -112,6 +120,9 @@ class Service:
                 "presets": list(diagram.presets),
                 "parameters": [asdict(s) for s in sliders_of(version.model)],
                 "scene": bool(version.model.scene),
+                "series": list(diagram.measured),
+                "needs_series": any(port.default is None for port in diagram.inputs.values()),
+                "fits": any(one.channels for one in diagram.measured.values()),
             }
         return answer
 
@@ -135,7 +146,8 @@ class Service:
         """The digest of the file as it is now, and whether a version's other files have changed."""
         version = self._versions.get(str(request.get("key")))
         fresh = version is None or stamp_of(version.diagram) == version.stamp
-        return {"digest": digest_of(self._text()), "fresh": fresh}
+        job = None if self._job is None else self._job.state
+        return {"digest": digest_of(self._text()), "fresh": fresh, "job": job}
 
     def save(self, request: Request) -> Answer:
         """Write a text to the file, unless that has changed since the page has read it.
@@ -157,7 +169,9 @@ class Service:
     def run(self, request: Request) -> Answer:
         """A run of a version as `frame_of` has it; a newer one of the same page ends it.
 
-        `tab` names the page, `number` ascends with its requests; `parameters` are in SI.
+        `tab` names the page, `number` ascends with its requests; `parameters` are in SI. With a
+        measured `series` it is a run under the conditions and the preset of that, and compared
+        with it.
         """
         version = self._version(request)
         tab, number = str(request.get("tab", ""))[:64], int(request.get("number", 0))
@@ -174,29 +188,93 @@ class Service:
         if version.model is None:
             return told(version.problems, number)
         values, preset = in_si(request.get("parameters") or {}), str(request.get("preset") or "")
+        arrays = Arrays()
+        head: dict[str, Any] = {"number": number}
         try:
             with version.lock:
                 go_on()
-                known = parameter_values(version.model, values, preset)
-                begin, end = (evaluate(f, known) for f in version.model.flat.span)
-                times = np.linspace(begin, end, POINTS) if begin < end else None
+                model, known = version.model, self._conditions(version, request)
+                given: dict[str, Any] = {}
+                if known is not None:
+                    measured = known.measured
+                    values, preset = {**measured.parameters, **values}, measured.preset
+                    given = {"start": known.segment.start, "inputs": measured.inputs}
+                used = parameter_values(model, values, preset)
+                begin, end = (evaluate(f, used) for f in model.flat.span)
+                if known is not None and measured.start:
+                    begin, end = known.span
                 run = simulate(
-                    version.model,
+                    model,
                     parameters=values,
                     preset=preset,
-                    times=times,
+                    times=np.linspace(begin, end, POINTS) if begin < end else None,
                     limits=self.limits,
                     progress=go_on,
+                    **given,
                 )
+                if known is not None:
+                    head["measured"] = comparison_of(model, known, values, self.limits, arrays)
         except Superseded:
             return {"superseded": True, "number": number}
         except TracewireError as error:
             return told(error.problems, number)
         version.panels = version.panels or panels_of(run, version.shown)
-        arrays = Arrays()
-        head = frame_of(run, version.panels, arrays)
-        followed = {name: known[name] for name in version.model.parameters if name not in values}
-        return packed({"number": number, "followed": followed} | head, arrays)
+        head["followed"] = {name: used[name] for name in model.parameters if name not in values}
+        return packed(head | frame_of(run, version.panels, arrays), arrays)
+
+    def _conditions(self, version: Version, request: Request) -> SeriesConditions | None:
+        """The measured series that a request names, read when it is first named; None: none."""
+        name = str(request.get("series") or "")
+        if not name or version.model is None:
+            return None
+        if name not in version.series:
+            version.series[name] = conditions_of(version.model, name)
+        return version.series[name]
+
+    # --- fits and traces --------------------------------------------------------------------------
+
+    def start(self, request: Request) -> Answer:
+        """Begin a fit or a trace (`kind`) from these values; only one is done at a time."""
+        if self.present:
+            raise OptionError.one(PRESENTED)
+        version = self._version(request)
+        if version.model is None:
+            return told(version.problems)
+        with self._lock:
+            if self._job is not None and not self._job.done:
+                what = f"a {self._job.kind} is under way"
+                raise OptionError.one(what, hint="Stop it first, or wait for its end.")
+            values = in_si(request.get("parameters") or {})
+            job = Job(str(request.get("kind")), version.model.diagram, values)
+            job.start()
+            self._job = job
+        return job.state
+
+    def stop(self, request: Request) -> Answer:
+        """End the fit or trace with its best so far."""
+        if self._job is not None:
+            self._job.stop()
+        return {}
+
+    def proposal(self, request: Request) -> Answer:
+        """What a fit or trace that is done proposes, with the picture of the diagram by then."""
+        job = self._job
+        if job is None or not job.done or request.get("id") != job.id:
+            raise OptionError.one("there is no such result any more", hint="Begin it again.")
+        if job.proposal is None:
+            return told(job.problems)
+        version = read_version(str(job.proposal["text"]), self.file, self.library)
+        if version.diagram is None:
+            return told(version.problems)
+        picture = draw(version.diagram, measured=True, effects=job.proposal["added"])
+        return dict(job.proposal) | {"svg": picture.svg}
+
+    def report(self, request: Request) -> Answer:
+        """The report of a fit or trace that is done, as the text of one HTML file."""
+        job = self._job
+        if job is None or job.result is None or request.get("id") != job.id:
+            raise OptionError.one("there is no such result any more", hint="Begin it again.")
+        return {"html": report(job.result).html()}
 
     # --- what is kept -----------------------------------------------------------------------------
 

@@ -12,6 +12,7 @@ from tracewire.compile import Model, compile
 from tracewire.diagram import Diagram, read_readable_text
 from tracewire.errors import Problem, TracewireError
 from tracewire.library import Library
+from tracewire.view.comparison import SeriesConditions
 
 
 @dataclass(eq=False)
@@ -20,7 +21,8 @@ class Version:
 
     `shown` names the signals to draw; the model records those that the scene reads, too. `stamp`
     tells the state of the other files that the diagram names. `lock` is held by what runs the
-    model. `panels` is set by the first run: the signals that are drawn together.
+    model. `panels` is set by the first run: the signals that are drawn together; `series` by the
+    first run of each measured series.
     """
 
     key: str
@@ -32,6 +34,7 @@ class Version:
     stamp: str
     lock: Lock = field(default_factory=Lock)
     panels: list[list[str]] = field(default_factory=list)
+    series: dict[str, SeriesConditions] = field(default_factory=dict)
 
 
 def read_version(text: str, file: Path, library: Library) -> Version:
@@ -44,8 +47,9 @@ def read_version(text: str, file: Path, library: Library) -> Version:
         diagram, problems = read_readable_text(text, file, library)
         if not problems:
             plain = compile(diagram)
-            shown = plain.recorded
-            model = compile(diagram, plain.read_by_scene)
+            sensed = [name for one in diagram.measured.values() for name in one.channels]
+            shown = compile(diagram, sensed).recorded
+            model = compile(diagram, [*sensed, *plain.read_by_scene])
     except TracewireError as error:
         problems = tuple(error.problems)
     stamp = stamp_of(diagram)

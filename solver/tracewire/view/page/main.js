@@ -8,6 +8,7 @@ import {Parameters} from "./parameters.js";
 import {Plots} from "./plots.js";
 import {Runner, lost} from "./runner.js";
 import {Scene} from "./scene.js";
+import {Work} from "./work.js";
 
 const TYPING = 200;  // ms without a key before the text is read
 const LOOK = 500;    // ms between two looks at the file
@@ -19,9 +20,17 @@ const runner = new Runner(wanted, ran);
 const parameters = new Parameters(() => runner.wish(), (line) => editor.jump(line));
 const editor = new Editor(() => { tellSaved(); typed(); });
 
+const work = new Work({
+  request: wanted,
+  drawn: (svg) => showDrawing(svg, (block) => editor.find(block)),
+  taken: (text) => { parameters.values.clear(); replaceText(text); },
+  refused: () => picture(reading),
+});
+
 function wanted() {
   if (!state.runs) return null;
-  return {key: state.key, parameters: parameters.inSI, preset: part("preset").value};
+  const [preset, series] = [part("preset").value, part("series").value];
+  return {key: state.key, parameters: parameters.inSI, preset, series};
 }
 
 function tell(text) { part("status").textContent = text; }
@@ -33,7 +42,7 @@ function fail(problems) {
   part("failure").hidden = false;
   part("curves").classList.add("failed");
   part("curves").classList.remove("old");
-  part("events").textContent = "";
+  part("events").textContent = part("criterion").textContent = "";
   part("warnings").replaceChildren();
   scene.hide();
   tell("");
@@ -51,6 +60,7 @@ function ran(answer, milliseconds) {
   scene.show(answer);
   parameters.follow(answer.followed);
   tell(`run: ${shown(1000 * answer.run_seconds, 2)} ms, shown after ${Math.round(milliseconds)} ms`);
+  part("criterion").textContent = criterion(answer.measured);
   part("events").textContent = events(answer);
   part("warnings").replaceChildren(...answer.warnings.map((one) => make("li", {textContent: one})));
   drawn(answer.number);
@@ -58,6 +68,12 @@ function ran(answer, milliseconds) {
 
 // for programs that look at the page: the number of the run that it shows
 function drawn(number) { document.body.dataset.shown = number ?? ""; }
+
+function criterion(measured) {
+  if (!measured || measured.criterion === undefined) return "";
+  const rms = Object.entries(measured.signals).map(([name, one]) => `${name} ${shown(one.rms, 4)}`);
+  return `Criterion of ${measured.name}: ${shown(measured.criterion, 6)}; rms of the residual: ${rms.join(", ")}`;
+}
 
 function events(answer) {
   const counts = new Map();
@@ -106,7 +122,9 @@ async function read() {
       ...answer.problems.slice(0, 3)]);
   } else {
     part("title").textContent = document.title = answer.title;
-    presets(answer.presets);
+    choices("preset", answer.presets);
+    choices("series", answer.series, answer.needs_series);
+    part("work").hidden = state.present || !answer.fits;
     parameters.show(answer.parameters);
     runner.wish();
   }
@@ -122,15 +140,22 @@ async function picture(mine) {
   else part("drawing").replaceChildren(make("p", {textContent: answer.problems[0].text}));
 }
 
-function presets(names) {
-  const before = part("preset").value;
-  part("preset").replaceChildren(make("option", {value: "", textContent: "none"}),
+// needed: the first one is chosen where none was
+function choices(id, names, needed = false) {
+  const before = part(id).value;
+  part(id).replaceChildren(make("option", {value: "", textContent: "none"}),
     ...names.map((name) => make("option", {value: name, textContent: name})));
-  part("preset").value = names.includes(before) ? before : "";
-  part("preset-box").hidden = !names.length;
+  part(id).value = names.includes(before) ? before : (needed && names[0]) || "";
+  part(`${id}-box`).hidden = !names.length;
+  part("preset").disabled = part("series").value !== "";
 }
 
-part("preset").addEventListener("change", () => runner.wish());
+for (const id of ["preset", "series"]) {
+  part(id).addEventListener("change", () => {
+    part("preset").disabled = part("series").value !== "";  // a series has its own
+    runner.wish();
+  });
+}
 
 // --- the file ------------------------------------------------------------------------------------
 
@@ -194,6 +219,7 @@ async function look() {
       else await reopen();
       state.digest = answer.digest;
     } else if (!answer.fresh) await read();
+    work.look(answer.job);
   } catch (error) {
     state.ended = true;
     notice(lost(error));
@@ -205,12 +231,16 @@ part("save").addEventListener("click", () => save());
 part("put").addEventListener("click", async () => {
   const answer = await ask("put", {key: state.key, parameters: parameters.inSI});
   if (answer.problems) notice(answer.problems[0].text, ["Close", () => notice()]);
-  else {
-    editor.text = answer.text.replace(/\r\n?/g, "\n");
-    tellSaved();
-    await read();
-  }
+  else await replaceText(answer.text);
 });
+
+async function replaceText(text) {
+  editor.text = text.replace(/\r\n?/g, "\n");
+  tellSaved();
+  await read();
+}
+
+
 document.addEventListener("keydown", (event) => {
   if ((event.ctrlKey || event.metaKey) && event.key === "s" && !state.present) {
     event.preventDefault();

@@ -4,6 +4,7 @@ import {make, part, shown} from "./page.js";
 
 const COLORS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7"];
 const STRONG = {impact: 1, reset: 1, rest: 1};
+const MEASURED = "#4D4D4D";
 const GUTTER = 64;
 const MOST_ROWS = 8;
 
@@ -15,6 +16,7 @@ export class Plots {
   constructor() {
     this.holder = part("plots");
     this.plots = [];
+    this.residuals = [];
     this.form = "";
     this.now = null;
     new ResizeObserver(() => this.resize()).observe(this.holder);
@@ -23,7 +25,9 @@ export class Plots {
   show(head) {
     this.head = head;
     const rows = [...new Set(head.events.map((event) => event.block))].slice(0, MOST_ROWS);
-    const form = JSON.stringify([head.panels.map((p) => [p.unit, p.lines.map((l) => l.label)]), rows]);
+    const measured = head.measured ? head.measured.signals : {};
+    const panels = head.panels.map((p) => [p.unit, p.lines.map((l) => l.label)]);
+    const form = JSON.stringify([panels, rows, Object.keys(measured)]);
     const t = head.arrays[head.t];
     this.span = [t[0], t[t.length - 1]];
     if (form !== this.form) this.build(head, rows);
@@ -31,7 +35,14 @@ export class Plots {
     this.rows = rows;
     head.panels.forEach((panel, n) => {
       this.plots[n].panel = panel;
+      panel.dots = panel.lines.filter((line) => line.name in measured).map((line) => ({
+        t: head.arrays[measured[line.name].t], values: head.arrays[measured[line.name].values],
+      }));
       this.plots[n].setData([t, ...panel.lines.map((line) => head.arrays[line.values])]);
+    });
+    Object.values(measured).forEach((one, n) => {
+      this.residuals[n].setData([head.arrays[one.t], head.arrays[one.residual]]);
+      this.residuals[n].setScale("x", {min: this.span[0], max: this.span[1]});
     });
     if (rows.length) this.plots[this.plots.length - 1].setData([this.span, [null, null]]);
     this.point(this.now);
@@ -39,8 +50,12 @@ export class Plots {
 
   build(head, rows) {
     for (const plot of this.plots) plot.destroy();
-    const count = head.panels.length + (rows.length ? 1 : 0);
+    const measured = Object.keys(head.measured ? head.measured.signals : {});
+    const count = head.panels.length + measured.length + (rows.length ? 1 : 0);
     this.plots = head.panels.map((panel, n) => this.panel(panel, n === count - 1));
+    this.residuals = measured.map((name, n) =>
+      this.residual(name, head, head.panels.length + n === count - 1));
+    this.plots.push(...this.residuals);
     if (rows.length) this.plots.push(this.strip(rows));
     for (const plot of this.plots) {
       plot.line = make("div", {className: "now"});
@@ -76,10 +91,23 @@ export class Plots {
     }))];
     made.legend = {live: true};
     made.hooks.drawClear = [(u) => backdrop(u, u.panel)];
+    made.scales.y.range = (u, least, most) => around(u.panel, least, most);
     const plot = new uPlot(made, [[0, 1], ...panel.lines.map(() => [null, null])], this.holder);
     plot.root.setAttribute("role", "img");
     plot.root.setAttribute("aria-label", `${names.join(", ")} over time`);
     plot.last = last;
+    return plot;
+  }
+
+  residual(name, head, last) {
+    const panel = head.panels.find((one) => one.lines.some((line) => line.name === name));
+    const unit = panel && panel.unit && panel.unit !== "1" ? ` [${panel.unit}]` : "";
+    const made = this.options((large() ? 120 : 90) + (last ? 24 : 0), last, {label: `residual${unit}`});
+    made.legend = {show: false};
+    made.series = [{label: "t"}, {label: "residual", stroke: MEASURED, width: 1, points: {show: false}}];
+    const plot = new uPlot(made, [[0, 1], [null, null]], this.holder);
+    plot.root.setAttribute("role", "img");
+    plot.root.setAttribute("aria-label", `Residual of ${name} over time: measured minus simulated`);
     return plot;
   }
 
@@ -140,7 +168,19 @@ function inside(u, work) {
   u.ctx.restore();
 }
 
-// behind the curves: shades while a friction holds a signal, thin lines where an event sets one
+// the range of a panel, in which its measured samples are, too
+function around(panel, least, most) {
+  let [low, high] = [least ?? Infinity, most ?? -Infinity];
+  for (const dots of panel ? panel.dots : []) {
+    for (const value of dots.values) {
+      if (value < low) low = value;
+      if (value > high) high = value;
+    }
+  }
+  return Number.isFinite(low) && Number.isFinite(high) ? uPlot.rangeNum(low, high, 0.1, true) : [0, 1];
+}
+
+// behind the curves: measured samples, shades while a friction holds a signal, thin lines where an event sets one
 function backdrop(u, panel) {
   if (!panel) return;
   inside(u, (c, box, x) => {
@@ -150,6 +190,13 @@ function backdrop(u, panel) {
         c.fillRect(x(from), box.top, Math.max(x(to) - x(from), 1), box.height);
       }
     });
+    c.fillStyle = MEASURED;
+    for (const dots of panel.dots) {
+      const size = (dots.t.length > 600 ? 1.5 : 3) * devicePixelRatio;
+      dots.t.forEach((t, n) => {
+        c.fillRect(x(t) - size / 2, u.valToPos(dots.values[n], "y", true) - size / 2, size, size);
+      });
+    }
     if (panel.jumps.length > 60) return;
     c.strokeStyle = faded("#B22222", 0.45);
     c.lineWidth = 0.8 * devicePixelRatio;

@@ -1,0 +1,99 @@
+"""A measured series beside a run: the conditions of the run, the residual, and the criterion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import Model
+from tracewire.errors import OptionError, unknown
+from tracewire.residual import (
+    Criterion,
+    Measured,
+    Segment,
+    half_square,
+    load_measured,
+    whole_segment,
+)
+from tracewire.solve import Limits
+from tracewire.view.frame import Arrays
+
+Vector = NDArray[np.float64]
+MOST_DOTS = 3000
+"""Samples of a series that are drawn; of more, evenly chosen ones."""
+
+
+@dataclass(frozen=True, eq=False)
+class SeriesConditions:
+    """A measured series and the segment that is run for it: its begin, start and inputs."""
+
+    measured: Measured
+    segment: Segment
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """From the begin of the run to the last sample, in s."""
+        return self.segment.begin, float(self.measured.t[-1])
+
+
+def conditions_of(model: Model, series: str) -> SeriesConditions:
+    """The first window of a series of the diagram; a free start is read off its data.
+
+    Raises OptionError: no such series; DataError: a file that cannot be used.
+    """
+    if series not in model.diagram.measured:
+        raise OptionError([unknown("measured series", series, model.diagram.measured)])
+    measured = next(one for one in load_measured(model, driving=True) if one.series == series)
+    return SeriesConditions(measured, whole_segment(model, measured))
+
+
+def comparison_of(
+    model: Model,
+    known: SeriesConditions,
+    values: Mapping[str, float],
+    limits: Limits,
+    arrays: Arrays,
+) -> dict[str, Any]:
+    """The samples of a series, the residual of each signal, and the criterion, as a head of JSON.
+
+    values: those of parameters in SI that are not the file's. The criterion is that of a fit with
+    this series alone. Raises SimulationError, DataError.
+    """
+    measured = known.measured
+    signals = list(measured.values)
+    head: dict[str, Any] = {"name": measured.name, "signals": {}}
+    if not signals:  # a series of inputs alone
+        return head
+    criterion = Criterion(model, [known.segment], (), values, limits=limits)
+    (start,) = criterion.split(criterion.begin())[1]
+    rows = known.segment.rows
+    shown = criterion.outputs(known.segment, {}, start)
+    weighed = criterion.residuals(criterion.begin())
+    if criterion.failure is not None:
+        raise criterion.failure
+    head["criterion"] = half_square(criterion.weigh(weighed))
+    chosen = np.unique(np.linspace(0, len(rows) - 1, min(len(rows), MOST_DOTS)).astype(int))
+    t = arrays.keep(measured.t[rows][chosen])
+    for n, name in enumerate(signals):
+        look = model.flat.shown.get(name)
+        factor = look.factor if look is not None else 1.0
+        samples = measured.values[name][rows]
+        residual = _around(samples - shown[:, n], measured.periods.get(name, 0.0))
+        head["signals"][name] = {
+            "t": t,
+            "values": arrays.keep(samples[chosen] / factor),
+            "residual": arrays.keep(residual[chosen] / factor),
+            "rms": float(np.sqrt(np.mean(residual**2))) / factor,
+        }
+    return head
+
+
+def _around(difference: Vector, period: float) -> Vector:
+    """Differences by the shortest way around a period; 0 is none."""
+    if period > 0:
+        difference = difference - period * np.round(difference / period)
+    return difference

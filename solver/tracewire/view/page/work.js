@@ -1,0 +1,87 @@
+// Fits and traces: begun by a button, told while they run, and what they propose taken or refused.
+
+import {ask} from "./api.js";
+import {make, part} from "./page.js";
+import {lost} from "./runner.js";
+
+export class Work {
+  // request: what a run would ask for now; drawn: shows a picture; taken: gets a text; refused: redraws
+  constructor({request, drawn, taken, refused}) {
+    Object.assign(this, {request, drawn, taken, refused});
+    this.id = null;
+    this.shown = false;
+    for (const kind of ["fit", "trace"]) part(kind).addEventListener("click", () => this.begin(kind));
+    part("stop").addEventListener("click", () => ask("stop").catch(() => null));
+    part("accept").addEventListener("click", () => this.accept());
+    part("refuse").addEventListener("click", () => { this.close(); this.refused(); });
+    part("report").addEventListener("click", () => this.report());
+  }
+
+  async begin(kind) {
+    const request = this.request();
+    if (request === null) return this.tell("Repair the mistakes of the text first.");
+    this.close();
+    const answer = await ask("start", {...request, kind}).catch(failed);
+    if (answer.problems) return this.tell(answer.problems[0].text);
+    this.id = answer.id;
+    this.busy(true);
+    this.look(answer);
+  }
+
+  // job: what the server tells of the newest work, or null
+  look(job) {
+    if (!job || this.shown) return;
+    const own = job.id === this.id;
+    if (!own && job.done) return this.busy(false);
+    const whose = own ? "" : "another page: ";
+    if (!job.done) {
+      this.busy(true);
+      this.tell(`${whose}${job.kind}, ${Math.round(job.seconds)} s: ${job.text}`);
+    } else if (!this.asking) this.finish();
+  }
+
+  async finish() {
+    this.asking = true;
+    const answer = await ask("proposal", {id: this.id}).catch(failed);
+    this.asking = false;
+    this.shown = true;
+    this.busy(false);
+    if (answer.problems) return this.tell(answer.problems.map((one) => one.text).join(" "));
+    this.tell("");
+    this.text = answer.text;
+    part("proposal-words").replaceChildren(...answer.words.map((text) => make("p", {textContent: text})));
+    part("proposal").hidden = false;
+    this.drawn(answer.svg);
+  }
+
+  accept() {
+    const text = this.text;
+    this.close();
+    this.taken(text);
+  }
+
+  close() {
+    this.id = null;
+    this.shown = false;
+    part("proposal").hidden = true;
+    this.tell("");
+  }
+
+  async report() {
+    const answer = await ask("report", {id: this.id}).catch(failed);
+    if (answer.problems) return this.tell(answer.problems[0].text);
+    const address = URL.createObjectURL(new Blob([answer.html], {type: "text/html"}));
+    make("a", {href: address, download: "report.html"}).click();
+    setTimeout(() => URL.revokeObjectURL(address), 10000);
+  }
+
+  busy(on) {
+    part("stop").hidden = !on;
+    part("fit").disabled = part("trace").disabled = on;
+    if (!on && !this.id) this.tell("");
+  }
+
+  tell(text) { part("progress").textContent = text; }
+}
+
+function failed(error) { return {problems: [{text: lost(error)}]}; }
