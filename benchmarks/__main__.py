@@ -30,13 +30,18 @@ def main() -> int:
         from benchmarks.rigs.run import main as rigs
 
         return rigs(sys.argv[2:])
+    if sys.argv[1:2] == ["view"]:
+        from benchmarks.view.run import main as view
+
+        return view(sys.argv[2:])
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks",
         description="Times of tracewire beside other solvers, at equal accuracy. "
         "A time is the least of several runs, taken in turn; ratios are of the same session. "
         "What a trace finds is another bench: python -m benchmarks tracing --help, "
         "on measured records: python -m benchmarks tracing-real --help, "
-        "and on twenty rigs with hidden effects: python -m benchmarks rigs --help.",
+        "and on twenty rigs with hidden effects: python -m benchmarks rigs --help. "
+        "How fast the live page follows: python -m benchmarks view --help.",
     )
     parser.add_argument("case", nargs="*", help=f"of {', '.join(CASES)}; all if none is named")
     parser.add_argument("--quick", action="store_true", help="fewer runs, slow peers left out")

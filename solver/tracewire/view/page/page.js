@@ -6,7 +6,7 @@ export function make(tag, given = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(given)) {
     if (name.startsWith("on")) made.addEventListener(name.slice(2), value);
-    else if (name.startsWith("aria") || name === "role" || name === "for") made.setAttribute(name, value);
+    else if (name === "for") made.setAttribute(name, value);
     else made[name] = value;
   }
   made.append(...children);

@@ -73,7 +73,7 @@ export class Plots {
       cursor: {sync: {key: "run", scales: ["x", null]}, drag: {x: true, y: false}, points: {size: 6}},
       scales: {x: {time: false}, y: {}},
       axes: [
-        {...axis, values: plain, size: last ? 34 : 24, label: last ? "t [s]" : null,
+        {...axis, values: plain, size: (last ? 34 : 24) + (large() ? 8 : 0), label: last ? "t [s]" : null,
           labelSize: 18, labelFont: font()},
         {...axis, values: plain, size: GUTTER, labelSize: 20, labelFont: font(), ...y},
       ],
