@@ -71,10 +71,12 @@ def frame_in(answer: Any) -> tuple[dict[str, Any], list[Any]]:
     (length,) = struct.unpack("<I", answer[:4])
     head = json.loads(answer[4 : 4 + length])
     assert (4 + length) % 8 == 0
-    numbers = np.frombuffer(answer[4 + length :], dtype="<f8")
-    ends = np.cumsum(head["lengths"])
-    assert ends[-1] == len(numbers)
-    return head, np.split(numbers, ends[:-1])
+    arrays, at = [], 4 + length
+    for count, size in head["arrays"]:
+        arrays.append(np.frombuffer(answer, dtype=f"<f{size}", count=count, offset=at))
+        at += -(-count * size // 8) * 8
+    assert at == len(answer)
+    return head, arrays
 
 
 @pytest.fixture

@@ -77,7 +77,7 @@ def comparison_of(
         raise criterion.failure
     head["criterion"] = half_square(criterion.weigh(weighed))
     chosen = np.unique(np.linspace(0, len(rows) - 1, min(len(rows), MOST_DOTS)).astype(int))
-    t = arrays.keep(measured.t[rows][chosen])
+    t = arrays.keep(measured.t[rows][chosen], exact=True)
     for n, name in enumerate(signals):
         look = model.flat.shown.get(name)
         factor = look.factor if look is not None else 1.0

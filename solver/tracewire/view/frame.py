@@ -1,4 +1,4 @@
-"""A run as the page draws it: a head in JSON, and behind it all arrays as numbers of 8 bytes."""
+"""A run as the page draws it: a head in JSON, and behind it all arrays as numbers."""
 
 from __future__ import annotations
 
@@ -20,26 +20,29 @@ MOST_EVENTS = 2000
 
 
 class Arrays:
-    """Arrays in a row, each known by its number."""
+    """Arrays in a row, each known by its number: of 4 bytes, and where they are exact of 8."""
 
     def __init__(self) -> None:
-        self.all: list[Vector] = []
+        self.all: list[NDArray[np.generic]] = []
 
-    def keep(self, values: Any) -> int:
-        """Put an array at the end of the row; its number."""
-        self.all.append(np.ascontiguousarray(values, dtype="<f8"))
+    def keep(self, values: Any, exact: bool = False) -> int:
+        """Put an array at the end of the row; its number. Times are exact."""
+        self.all.append(np.ascontiguousarray(values, dtype="<f8" if exact else "<f4"))
         return len(self.all) - 1
 
 
 def packed(head: Mapping[str, Any], arrays: Arrays) -> bytes:
-    """The length of the head in 4 bytes, the head, blanks up to a multiple of 8, the arrays.
+    """The length of the head in 4 bytes, the head, the arrays; each part fills a multiple of 8.
 
-    The head gets `lengths`, the number of values of each array.
+    The head gets `arrays`, of each the number of its values and their bytes.
     """
-    data = dict(head) | {"lengths": [len(array) for array in arrays.all]}
-    text = json.dumps(data, separators=(",", ":"), allow_nan=False).encode()
-    text += b" " * (-(len(text) + 4) % 8)
-    return struct.pack("<I", len(text)) + text + b"".join(a.tobytes() for a in arrays.all)
+    sizes = [[len(array), array.itemsize] for array in arrays.all]
+    text = json.dumps(dict(head) | {"arrays": sizes}, separators=(",", ":"), allow_nan=False)
+    content = text.encode()
+    content += b" " * (-(len(content) + 4) % 8)
+    parts = (array.tobytes() for array in arrays.all)
+    filled = (part + bytes(-len(part) % 8) for part in parts)
+    return struct.pack("<I", len(content)) + content + b"".join(filled)
 
 
 def panels_of(run: Run, shown: Sequence[str]) -> list[list[str]]:
@@ -50,7 +53,7 @@ def panels_of(run: Run, shown: Sequence[str]) -> list[list[str]]:
 
 def frame_of(run: Run, panels: Sequence[Sequence[str]], arrays: Arrays) -> dict[str, Any]:
     """The head of a run: its panels, events and scene, with the numbers of its arrays."""
-    head: dict[str, Any] = {"t": arrays.keep(run.t)}
+    head: dict[str, Any] = {"t": arrays.keep(run.t, exact=True)}
     held = held_intervals(run)
     head["panels"] = [
         {

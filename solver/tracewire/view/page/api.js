@@ -21,9 +21,9 @@ function unpacked(buffer) {
   const length = new DataView(buffer).getUint32(0, true);
   const head = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
   let at = 4 + length;
-  head.arrays = head.lengths.map((count) => {
-    const array = new Float64Array(buffer, at, count);
-    at += 8 * count;
+  head.arrays = head.arrays.map(([count, bytes]) => {
+    const array = new (bytes === 8 ? Float64Array : Float32Array)(buffer, at, count);
+    at += 8 * Math.ceil(count * bytes / 8);
     return array;
   });
   return head;
