@@ -152,6 +152,9 @@ def test_a_change_on_both_sides_is_told_and_nothing_is_lost(page: Chromium, spri
     page.wait("shows('notice')", 10)
     assert "another program" in page.run("text('notice')")
     assert page.run("document.getElementById('source').value.endsWith('# here\\n')")
+    page.run("document.getElementById('save').click()")
+    time.sleep(0.7)  # a look at the file, too
+    assert page.run("shows('notice')")
     assert spring.read_text(encoding="utf-8") == theirs
     page.run("document.querySelector('#notice button').click()")
     page.wait("document.getElementById('source').value.endsWith('# there\\n')")

@@ -10,26 +10,23 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-import numpy as np
-
 from tracewire.diagram import load_text, set_values
 from tracewire.draw import draw
 from tracewire.errors import DiagramError, OptionError, Problem, TracewireError, unknown
 from tracewire.files import write_file, writing
-from tracewire.formula import evaluate
 from tracewire.library import load_library
 from tracewire.show import report
-from tracewire.solve import Limits, parameter_values, simulate
-from tracewire.view.comparison import SeriesConditions, comparison_of, conditions_of
+from tracewire.solve import Limits
+from tracewire.view.comparison import comparison_of, conditions_of
+from tracewire.view.export import figure_of, script_of
 from tracewire.view.frame import Arrays, frame_of, packed, panels_of
 from tracewire.view.job import Job
+from tracewire.view.setting import Setting, setting_of
 from tracewire.view.sliders import in_si, sliders_of
 from tracewire.view.version import Version, read_version, stamp_of
 
 Request = Mapping[str, Any]
 Answer = Mapping[str, Any] | bytes
-POINTS = 1501
-"""Samples of a run, evenly over its span: more than a curve has pixels."""
 MOST_EVENTS = 100_000
 MOST_VERSIONS = 12
 MOST_TABS = 100
@@ -73,6 +70,7 @@ class Service:
             "state": self.state,
             "put": self.put,
             "save": self.save,
+            "export": self.export,
             "start": self.start,
             "stop": self.stop,
             "proposal": self.proposal,
@@ -187,49 +185,55 @@ class Service:
 
         if version.model is None:
             return told(version.problems, number)
-        values, preset = in_si(request.get("parameters") or {}), str(request.get("preset") or "")
         arrays = Arrays()
         head: dict[str, Any] = {"number": number}
         try:
             with version.lock:
                 go_on()
-                model, known = version.model, self._conditions(version, request)
-                given: dict[str, Any] = {}
-                if known is not None:
-                    measured = known.measured
-                    values, preset = {**measured.parameters, **values}, measured.preset
-                    given = {"start": known.segment.start, "inputs": measured.inputs}
-                used = parameter_values(model, values, preset)
-                begin, end = (evaluate(f, used) for f in model.flat.span)
-                if known is not None and measured.start:
-                    begin, end = known.span
-                run = simulate(
-                    model,
-                    parameters=values,
-                    preset=preset,
-                    times=np.linspace(begin, end, POINTS) if begin < end else None,
-                    limits=self.limits,
-                    progress=go_on,
-                    **given,
-                )
-                if known is not None:
-                    head["measured"] = comparison_of(model, known, values, self.limits, arrays)
+                setting = self._setting(version, request)
+                run = setting.run(self.limits, go_on)
+                if setting.series is not None:
+                    head["measured"] = comparison_of(
+                        version.model, setting.series, setting.given, self.limits, arrays
+                    )
         except Superseded:
             return {"superseded": True, "number": number}
         except TracewireError as error:
             return told(error.problems, number)
         version.panels = version.panels or panels_of(run, version.shown)
-        head["followed"] = {name: used[name] for name in model.parameters if name not in values}
+        head["followed"] = {n: v for n, v in setting.values.items() if n not in setting.given}
         return packed(head | frame_of(run, version.panels, arrays), arrays)
 
-    def _conditions(self, version: Version, request: Request) -> SeriesConditions | None:
-        """The measured series that a request names, read when it is first named; None: none."""
-        name = str(request.get("series") or "")
-        if not name or version.model is None:
-            return None
-        if name not in version.series:
-            version.series[name] = conditions_of(version.model, name)
-        return version.series[name]
+    def export(self, request: Request) -> Answer:
+        """What a page shows as the text of a file: `figure` as SVG, `script`, or `diagram`."""
+        version, kind = self._version(request), str(request.get("kind"))
+        if version.model is None:
+            return told(version.problems)
+        if kind == "diagram":
+            values = in_si(request.get("parameters") or {})
+            changed = set_values(version.model.diagram, values)
+            return {"name": self.file.name, "text": changed.text}
+        if kind == "script" and version.text != self._text():
+            what = "a script reads the diagram from its file, and the text here is another"
+            raise OptionError.one(what, hint="Save the text first.")
+        with version.lock:
+            setting = self._setting(version, request)
+            if kind == "script":
+                return {"name": f"{self.file.stem}.py", "text": script_of(setting, self.file)}
+            if kind == "figure":
+                run = setting.run(self.limits)
+                text = figure_of(setting, run, version.shown)
+                return {"name": f"{self.file.stem}.svg", "text": text}
+        raise OptionError([unknown("export", kind, ("figure", "script", "diagram"))])
+
+    def _setting(self, version: Version, request: Request) -> Setting:
+        """What a request asks to run. A measured series is read when it is first named."""
+        assert version.model is not None
+        series = str(request.get("series") or "")
+        if series and series not in version.series:
+            version.series[series] = conditions_of(version.model, series)
+        values, preset = in_si(request.get("parameters") or {}), str(request.get("preset") or "")
+        return setting_of(version.model, values, preset, version.series.get(series))
 
     # --- fits and traces --------------------------------------------------------------------------
 

@@ -3,7 +3,7 @@
 import {ask} from "./api.js";
 import {showDrawing} from "./drawing.js";
 import {Editor} from "./editor.js";
-import {make, part, shown} from "./page.js";
+import {download, make, part, shown} from "./page.js";
 import {Parameters} from "./parameters.js";
 import {Plots} from "./plots.js";
 import {Runner, lost} from "./runner.js";
@@ -13,7 +13,7 @@ import {Work} from "./work.js";
 const TYPING = 200;  // ms without a key before the text is read
 const LOOK = 500;    // ms between two looks at the file
 
-const state = {key: "", runs: false, path: "", saved: "", digest: "", present: false, ended: false};
+const state = {key: "", runs: false, path: "", saved: "", digest: "", seen: "", present: false, ended: false};
 const plots = new Plots();
 const scene = new Scene((time) => plots.point(time));
 const runner = new Runner(wanted, ran);
@@ -119,7 +119,7 @@ async function read() {
   if (!state.runs) {
     const many = answer.problems.length;
     fail([{text: `The text has ${many === 1 ? "a mistake" : `${many} mistakes`}, and cannot be run.`},
-      ...answer.problems.slice(0, 3)]);
+      ...answer.problems.slice(0, 3).map((one) => ({text: one.text.replace(`${state.path}:`, "line ")}))]);
   } else {
     part("title").textContent = document.title = answer.title;
     choices("preset", answer.presets);
@@ -170,7 +170,7 @@ function tellSaved() {
 function take(text, digest) {
   state.saved = text.replace(/\r\n?/g, "\n");  // as a text area has it
   state.ends = text.includes("\r\n") ? "\r\n" : "\n";
-  state.digest = digest;
+  state.digest = state.seen = digest;
   editor.text = state.saved;
   notice();
   tellSaved();
@@ -190,7 +190,7 @@ async function save(over = false) {
   else if (answer.conflict) conflict();
   else {
     state.saved = text;
-    state.digest = answer.digest;
+    state.digest = state.seen = answer.digest;
     notice();
     tellSaved();
   }
@@ -214,10 +214,11 @@ async function look() {
     if (state.ended) notice();
     state.ended = false;
     if (answer.problems) notice(answer.problems[0].text);
-    else if (answer.digest !== state.digest) {
-      if (changed()) conflict();
+    else if (answer.digest !== state.seen) {
+      state.seen = answer.digest;  // told once; what was read stays what Save compares with
+      if (answer.digest === state.digest) notice();
+      else if (changed()) conflict();
       else await reopen();
-      state.digest = answer.digest;
     } else if (!answer.fresh) await read();
     work.look(answer.job);
   } catch (error) {
@@ -241,6 +242,16 @@ async function replaceText(text) {
 }
 
 
+for (const button of part("exports").children) {
+  button.addEventListener("click", async () => {
+    const request = wanted();
+    if (request === null) return;
+    const answer = await ask("export", {...request, kind: button.dataset.kind})
+      .catch((error) => ({problems: [{text: lost(error)}]}));
+    if (answer.problems) notice(answer.problems[0].text, ["Close", () => notice()]);
+    else download(answer.name, answer.text, "application/octet-stream");
+  });
+}
 document.addEventListener("keydown", (event) => {
   if ((event.ctrlKey || event.metaKey) && event.key === "s" && !state.present) {
     event.preventDefault();

@@ -18,3 +18,10 @@ export function shown(value, digits = 6) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "";
   return String(+value.toPrecision(digits));
 }
+
+// hand a text to the user as a file
+export function download(name, text, type) {
+  const address = URL.createObjectURL(new Blob([text], {type}));
+  make("a", {href: address, download: name}).click();
+  setTimeout(() => URL.revokeObjectURL(address), 10000);
+}

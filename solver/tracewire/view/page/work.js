@@ -1,7 +1,7 @@
 // Fits and traces: begun by a button, told while they run, and what they propose taken or refused.
 
 import {ask} from "./api.js";
-import {make, part} from "./page.js";
+import {download, make, part} from "./page.js";
 import {lost} from "./runner.js";
 
 export class Work {
@@ -70,9 +70,7 @@ export class Work {
   async report() {
     const answer = await ask("report", {id: this.id}).catch(failed);
     if (answer.problems) return this.tell(answer.problems[0].text);
-    const address = URL.createObjectURL(new Blob([answer.html], {type: "text/html"}));
-    make("a", {href: address, download: "report.html"}).click();
-    setTimeout(() => URL.revokeObjectURL(address), 10000);
+    download("report.html", answer.html, "text/html");
   }
 
   busy(on) {
