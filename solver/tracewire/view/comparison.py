@@ -1,26 +1,24 @@
-"""A measured series beside a run: the conditions of the run, the residual, and the criterion."""
+"""A measured series beside a run: the conditions of the run, the residual, and the criterion.
+
+What reads and compares measured data is imported when a page asks for it: a page opens sooner.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import OptionError, unknown
-from tracewire.residual import (
-    Criterion,
-    Measured,
-    Segment,
-    half_square,
-    load_measured,
-    whole_segment,
-)
 from tracewire.solve import Limits
 from tracewire.view.frame import Arrays
+
+if TYPE_CHECKING:
+    from tracewire.residual import Measured, Segment
 
 Vector = NDArray[np.float64]
 MOST_DOTS = 3000
@@ -45,6 +43,8 @@ def conditions_of(model: Model, series: str) -> SeriesConditions:
 
     Raises OptionError: no such series; DataError: a file that cannot be used.
     """
+    from tracewire.residual import load_measured, whole_segment
+
     if series not in model.diagram.measured:
         raise OptionError([unknown("measured series", series, model.diagram.measured)])
     measured = next(one for one in load_measured(model, driving=True) if one.series == series)
@@ -63,6 +63,8 @@ def comparison_of(
     values: those of parameters in SI that are not the file's. The criterion is that of a fit with
     this series alone. Raises SimulationError, DataError.
     """
+    from tracewire.residual import Criterion, half_square
+
     measured = known.measured
     signals = list(measured.values)
     head: dict[str, Any] = {"name": measured.name, "signals": {}}

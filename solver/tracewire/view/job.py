@@ -7,14 +7,15 @@ import threading
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tracewire.compile import compile
 from tracewire.diagram import Diagram, set_sensors, set_values
 from tracewire.errors import OptionError, Problem, TracewireError
-from tracewire.fit import Fit, Progress, fit
-from tracewire.show import fit_text, fit_words, paragraph_of
-from tracewire.trace import Found, trace
+
+if TYPE_CHECKING:
+    from tracewire.fit import Fit, Progress
+    from tracewire.trace import Found
 
 KINDS = ("fit", "trace")
 
@@ -76,6 +77,9 @@ class Job:
             raise KeyboardInterrupt
 
     def _fitted(self) -> dict[str, Any]:
+        from tracewire.fit import fit
+        from tracewire.show import fit_text, fit_words
+
         def progress(now: Progress) -> None:
             stage = f", {now.stage}" if now.stage else ""
             self._tell(f"{now.evaluations} evaluations{stage}, best criterion {now.best:.6g}")
@@ -91,6 +95,9 @@ class Job:
         return {"words": words, "text": edited.text, "added": []}
 
     def _traced(self) -> dict[str, Any]:
+        from tracewire.show import paragraph_of
+        from tracewire.trace import trace
+
         found = trace(compile(self.diagram), progress=self._tell)
         self.result = found
         added = [name for name in found.diagram.blocks if name not in self.diagram.blocks]

@@ -5,7 +5,8 @@ import {make, part, shown} from "./page.js";
 const COLORS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7"];
 const STRONG = {impact: 1, reset: 1, rest: 1};
 const MEASURED = "#4D4D4D";
-const GUTTER = 64;
+const GUTTER = 64;  // pixels, without the label
+const LABEL = 20;
 const MOST_ROWS = 8;
 
 const plain = (u, splits) => splits.map((v) => (v === null ? "" : String(+v.toPrecision(10))));
@@ -75,7 +76,7 @@ export class Plots {
       axes: [
         {...axis, values: plain, size: (last ? 34 : 24) + (large() ? 8 : 0), label: last ? "t [s]" : null,
           labelSize: 18, labelFont: font()},
-        {...axis, values: plain, size: GUTTER, labelSize: 20, labelFont: font(), ...y},
+        {...axis, values: plain, size: GUTTER, labelSize: LABEL, labelFont: font(), ...y},
       ],
       hooks: {},
     };
@@ -116,7 +117,7 @@ export class Plots {
     const made = this.options(20 * rows.length + 62, true, {
       splits: () => splits,
       values: () => rows.map((row) => (row.length > 9 ? `${row.slice(0, 8)}…` : row)),
-      ticks: {show: false}, grid: {show: false},
+      ticks: {show: false}, grid: {show: false}, size: GUTTER + LABEL,
     });
     made.scales.y = {range: () => [-0.6, rows.length - 0.4], dir: -1};
     made.legend = {show: false};
