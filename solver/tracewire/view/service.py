@@ -15,7 +15,6 @@ from tracewire.draw import draw
 from tracewire.errors import DiagramError, OptionError, Problem, TracewireError, unknown
 from tracewire.files import write_file, writing
 from tracewire.library import load_library
-from tracewire.show import report
 from tracewire.solve import Limits
 from tracewire.view.comparison import comparison_of, conditions_of
 from tracewire.view.export import figure_of, script_of
@@ -278,6 +277,8 @@ class Service:
         job = self._job
         if job is None or job.result is None or request.get("id") != job.id:
             raise OptionError.one("there is no such result any more", hint="Begin it again.")
+        from tracewire.show import report  # with all that fits: a page opens sooner without it
+
         return {"html": report(job.result).html()}
 
     # --- what is kept -----------------------------------------------------------------------------
