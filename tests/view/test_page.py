@@ -160,6 +160,14 @@ def test_a_change_on_both_sides_is_told_and_nothing_is_lost(page: Chromium, spri
     page.wait("document.getElementById('source').value.endsWith('# there\\n')")
 
 
+def test_a_file_that_goes_and_comes_back_is_told(page: Chromium, spring: Path) -> None:
+    spring.unlink()
+    page.wait("shows('notice')", 10)
+    assert "spring.yaml" in page.run("text('notice')")
+    spring.write_text(SPRING, encoding="utf-8")
+    page.wait("!shows('notice')", 10)
+
+
 def test_the_mechanism_is_played(page: Chromium) -> None:
     still = page.run("document.getElementById('stage').toDataURL()")
     page.run("document.getElementById('play').click()")

@@ -213,8 +213,10 @@ async function look() {
     const answer = await ask("state", {key: state.key});
     if (state.ended) notice();
     state.ended = false;
-    if (answer.problems) notice(answer.problems[0].text);
-    else if (answer.digest !== state.seen) {
+    if (answer.problems) {
+      state.ended = true;  // the file cannot be read now
+      notice(answer.problems[0].text);
+    } else if (answer.digest !== state.seen) {
       state.seen = answer.digest;  // told once; what was read stays what Save compares with
       if (answer.digest === state.digest) notice();
       else if (changed()) conflict();
