@@ -80,21 +80,22 @@ class Model:
         return {}
 
     @cached_property
-    def compared_signals(self) -> dict[int, tuple[int, ...]]:
-        """What tells the signal of each mode of kind sign: its guard, up to sign.
-
-        Empty where no mode compares.
-        """
-        entries, found = self.lowered.tape.entries, {}
+    def compared_signals(self) -> tuple[int, ...]:
+        """A number for the signal of each mode, its guard up to sign; of no other one for a mode of
+        another kind than sign. Empty where no mode compares."""
+        entries, numbers = self.lowered.tape.entries, dict[tuple[int, ...], int]()
         if not any(mode.compares for mode in self.modes):
-            return {}
-        for number, mode in enumerate(self.modes):
+            return ()
+        found = []
+        for own, mode in enumerate(self.modes):
             entry = entries[guard := mode.guard]
             while entry.op == "neg":
                 entry = entries[guard := entry.operands[0]]
-            if mode.kind == "sign":
-                found[number] = tuple(sorted(entry.operands)) if entry.op == "-" else (guard,)
-        return found
+            signal = tuple(sorted(entry.operands)) if entry.op == "-" else (guard,)
+            if mode.kind != "sign":
+                signal = (-1, own)
+            found.append(numbers.setdefault(signal, len(numbers)))
+        return tuple(found)
 
     @cached_property
     def shared_triggers(self) -> dict[int, list[Reset]]:

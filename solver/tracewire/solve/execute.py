@@ -176,13 +176,10 @@ class Execution:
 
     @property
     def log(self) -> Matrix:
-        """The rows of the core in the order of time, each crossing of a signal once.
-
-        (events, LOG_HEAD + 2n + q)
-        """
+        """The log as the core writes it, in the order of time: (events, LOG_HEAD + 2n + q)."""
         width = self.progress.log.shape[1] + len(self.asked)
         rows = np.concatenate(self.rows) if self.rows else np.empty((0, width))
-        return _once(self.model, rows[np.argsort(rows[:, 0], kind="stable")])
+        return rows[np.argsort(rows[:, 0], kind="stable")]
 
     @property
     def events(self) -> tuple[Event, ...]:
@@ -233,6 +230,7 @@ def _shown(model: Model, rows: Matrix) -> Matrix:
     silent = np.isin(rows[:, 2], list(model.only_triggers))
     if np.any(silent):
         rows = rows[~(silent & np.isin(rows[:, 1], UNASKED))]
+    rows = _once(model, rows)
     jumps = np.array([mode.jumps for mode in model.modes])
     if not np.any(jumps != ""):
         return rows
@@ -246,21 +244,16 @@ def _shown(model: Model, rows: Matrix) -> Matrix:
 
 def _once(model: Model, rows: Matrix) -> Matrix:
     """The rows of a log without comparisons of a signal whose crossing another row shows."""
-    signals = model.compared_signals
-    if not signals:
+    signals = np.array(model.compared_signals)
+    if not len(signals):
         return rows
     of = rows[:, 2].astype(np.int64)
-    own = np.isin(of, [i for i, mode in enumerate(model.modes) if mode.compares])
-    own &= np.isin(rows[:, 1], UNASKED)
-    if not np.any(own):
-        return rows
-    seen = {(rows[n, 0], signals[of[n]]) for n in np.flatnonzero(~own) if of[n] in signals}
-    keep = np.ones(len(rows), dtype=bool)
-    for n in np.flatnonzero(own):
-        key = rows[n, 0], signals[of[n]]
-        keep[n] = key not in seen
-        seen.add(key)
-    kept: Matrix = rows[keep]
+    compares = np.array([mode.compares for mode in model.modes])[of]
+    order = np.lexsort((np.arange(len(rows)), compares, signals[of], rows[:, 0]))
+    again = np.zeros(len(rows), dtype=bool)
+    times, signals = rows[order, 0], signals[of[order]]
+    again[order[1:]] = (times[1:] == times[:-1]) & (signals[1:] == signals[:-1])
+    kept: Matrix = rows[~(again & compares & np.isin(rows[:, 1], UNASKED))]
     return kept
 
 
