@@ -81,8 +81,8 @@ class Model:
 
     @cached_property
     def compared_signals(self) -> tuple[int, ...]:
-        """A number for the signal of each mode, its guard up to sign; of no other one for a mode of
-        another kind than sign. Empty where no mode compares."""
+        """The signal of each mode as a number: modes of kind sign whose guards are the same, up to
+        sign, have one. Empty where no mode compares."""
         entries, numbers = self.lowered.tape.entries, dict[tuple[int, ...], int]()
         if not any(mode.compares for mode in self.modes):
             return ()
