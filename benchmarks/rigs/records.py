@@ -6,7 +6,17 @@ import shutil
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from benchmarks.rigs import benches, drives, labs, machines, plants
+from benchmarks.rigs import (
+    actuators,
+    benches,
+    decays,
+    drives,
+    labs,
+    machines,
+    plants,
+    servos,
+    vibrations,
+)
 from benchmarks.rigs.record import Record
 
 DIAGRAMS = Path(__file__).parent / "diagrams"
@@ -31,6 +41,18 @@ RECORDS: Mapping[str, Callable[[], Record]] = {
     "r18_brake": benches.brake,
     "r19_filter": benches.ladder,
     "r20_basin": plants.basin,
+    "r21_video": decays.video,
+    "r22_speaker": vibrations.loudspeaker,
+    "r23_wheel": vibrations.wheel,
+    "r24_belt": servos.belt,
+    "r25_creeper": servos.creeper,
+    "r26_isolator": vibrations.isolator,
+    "r27_valve": actuators.valve,
+    "r28_flywheel": decays.flywheel,
+    "r29_arm": servos.arm,
+    "r30_magnets": decays.magnets,
+    "r31_roll": decays.ship,
+    "r32_chamber": actuators.chamber,
 }
 
 

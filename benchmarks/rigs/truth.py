@@ -170,4 +170,83 @@ TRUTHS: Mapping[str, Truth] = {
         sizes={"drive_delay.tau": 720.0, "overflow.k": 6.24, "overflow.edge": 1.7},
         words="the banks lean by 7 % of the area in 2 m besides",
     ),
+    "r21_video": Truth(
+        "Filmed pendulum",
+        hidden=("coulomb @ acceleration",),
+        sizes={"coulomb.level": 0.5},
+        words="per inertia, in the mean, as the level follows the load of the bushing; the phone "
+        "looks at it 9 degrees askew besides",
+    ),
+    "r22_speaker": Truth(
+        "Loudspeaker",
+        hidden=("quad_stiffness @ forces", "cubic_stiffness @ forces"),
+        sizes={"quad_stiffness.k": 6.0e4, "cubic_stiffness.k": 2.6e7},
+        words="the surround creeps by 1.6 % and the coil leaves its magnet by 1 % at 3.3 mm "
+        "besides",
+    ),
+    "r23_wheel": Truth(
+        "Quarter of a car on a post",
+        hidden=("asym_viscous @ strut",),
+        sizes={"asym_viscous.c": 560.0},
+        words="half the difference; 2010 N s/m in rebound and 890 in bump; the force of the damper "
+        "comes 2.5 ms late besides",
+    ),
+    "r24_belt": Truth(
+        "Servo with a belt",
+        hidden=("elastic_load @ shaft",),
+        sizes={"elastic_load.m": 5.2e-4, "elastic_load.period": 0.0444},
+        words="the belt gets stiffer with its square besides",
+    ),
+    "r25_creeper": Truth(
+        "Slow geared motor",
+        hidden=("stribeck @ shaft",),
+        sizes={"stribeck.level": 4.4e-3, "stribeck.speed": 0.9},
+        words="beside 6.2 mN m declared; seven magnets of 0.04 mN m besides",
+        equal={"stribeck @ shaft": ("lugre @ shaft",)},  # bristles bend less than the encoder sees
+    ),
+    "r26_isolator": Truth(
+        "Isolators of wire rope",
+        hidden=("bouc_wen @ forces",),
+        sizes={"bouc_wen.level": 42.0, "bouc_wen.deflection": 7.0e-4},
+        words="a corner of exponent 2; the ropes get stiffer by 4 % at the largest deflection "
+        "besides",
+    ),
+    "r27_valve": Truth(
+        "Cylinder behind a valve",
+        hidden=("drive_dead_zone @ drive.u",),
+        sizes={"drive_dead_zone.zone": 0.42},
+        words="all of it is lost; the edges are soft over 0.045 V besides",
+    ),
+    "r28_flywheel": Truth(
+        "Flywheel that runs out",
+        hidden=("quad_drag @ acceleration", "coulomb @ acceleration"),
+        sizes={"quad_drag.c": 3.2e-5, "coulomb.level": 1.15},
+        words="per inertia; the grease gets thinner by 9 % as it warms up besides",
+        equal={"coulomb @ acceleration": ("asym_coulomb @ acceleration",)},  # all turn one way
+    ),
+    "r29_arm": Truth(
+        "Arm of a robot",
+        hidden=("drive_saturation @ drive.i", "stiffness @ joint"),
+        sizes={"drive_saturation.limit": 2.3, "stiffness.k": 0.85},
+        words="the hose is a spring, which gravity that is free tells from a cubic one by a fifth "
+        "power alone; the gear ripples besides",
+        equal={"stiffness @ joint": ("cubic_stiffness @ joint",)},
+    ),
+    "r30_magnets": Truth(
+        "Pendulum above a table",
+        words="a magnet in the table, 13/s^2 at the lowest point and next to nothing beyond 20 "
+        "degrees; currents brake it there besides",
+        law=("acceleration", "theta"),
+    ),
+    "r31_roll": Truth(
+        "Ship that rolls",
+        words="nothing is hidden; a righting lever with a fifth power and waves that come back "
+        "below the noise besides",
+        clean=True,
+    ),
+    "r32_chamber": Truth(
+        "Thermal chamber",
+        words="nothing is hidden; a loss that grows by 0.08 % per K below the noise besides",
+        clean=True,
+    ),
 }
