@@ -233,6 +233,19 @@ def test_a_window_of_another_series_or_without_noise_of_inputs_stays_as_it_is() 
     assert covariance.factor(Segment(measured, 0.0, np.arange(50))) is None
 
 
+def test_a_window_of_which_the_middle_is_left_out_is_whitened_by_its_own_rows() -> None:
+    """As where a block of time is left out of a run: it begins and ends where the whole does."""
+    model, measured = made(CART, ("x",)), cart(1)
+    covariance = InputCovariance({"x": SENSOR_NOISE}, model, [measured], 50)
+    rows = np.arange(1, 60)
+    whole = covariance.factor(Segment(measured, 0.0, rows))
+    kept = np.flatnonzero((rows < 20) | (rows > 40))
+    part = covariance.factor(Segment(measured, 0.0, rows[kept]))
+    assert whole is not None and part is not None
+    expected = (whole @ whole.T)[np.ix_(kept, kept)]
+    assert part @ part.T == pytest.approx(expected, rel=1e-9)
+
+
 def test_a_longer_window_has_more_of_the_noise() -> None:
     model, measured = made(CART, ("x",)), cart(1)
     response = response_in_windows(model, measured, TRUE, 50)

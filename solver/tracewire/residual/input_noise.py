@@ -59,7 +59,7 @@ class InputCovariance:
         self.sigma, self.model, self.length = dict(sigma), model, length
         self.series = {m.name: m for m in series if m.input_sigma}
         self._responses: dict[str, InputResponse] = {}
-        self._known: dict[tuple[str, int, int, int], Matrix] = {}
+        self._known: dict[tuple[str, int, bytes], Matrix] = {}
 
     def factor(self, segment: Segment) -> Matrix | None:
         """The lower factor L (M, M) of the covariance L L' of a window's residuals in sigma, by
@@ -69,7 +69,7 @@ class InputCovariance:
             return None
         measured = self.series[name]
         first = int(np.searchsorted(measured.t, segment.begin))
-        key = name, min(first, int(segment.rows[0])), int(segment.rows[0]), int(segment.rows[-1])
+        key = name, min(first, int(segment.rows[0])), segment.rows.tobytes()
         if key not in self._known:
             if sum(factor.size for factor in self._known.values()) > KEPT:
                 self._known.clear()
