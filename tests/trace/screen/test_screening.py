@@ -100,3 +100,18 @@ def test_a_free_phase_is_fitted_by_sine_and_cosine_together() -> None:
         _, (sine, cosine) = found.columns.score(row.columns)
         assert row.values["phase"] == pytest.approx(np.arctan2(cosine, sine))
         assert row.values["amplitude"] == pytest.approx(0.7 * np.hypot(sine, cosine))
+
+
+def test_a_slim_screen_keeps_all_but_the_other_variants() -> None:
+    """Best and visible effects, pairs, and what tells effects apart, in less memory."""
+    screen = screen_of(lambda x, v: -0.1 * np.tanh(v / 1e-3) + 0.4)
+    slim = screen.slim()
+    assert slim.columns.matrix.shape[1] < screen.columns.matrix.shape[1]
+    for whole, part in ((screen.best(), slim.best()), (screen.pairs(), slim.pairs())):
+        assert [row.gain for row in part] == pytest.approx([row.gain for row in whole])
+    assert list(slim.visible()) == list(screen.visible())
+    one, other = (slim.best()[n] for n in (0, 1))
+    told = {str(row.candidate): row.columns for row in screen.best()}
+    assert slim.columns.likeness(one.columns, other.columns) == pytest.approx(
+        screen.columns.likeness(told[str(one.candidate)], told[str(other.candidate)])
+    )

@@ -18,6 +18,7 @@ from tracewire.residual import (
     opened,
     settled,
 )
+from tracewire.solve import release
 from tracewire.trace.choose.horizons import REST, Horizon, Horizons, restricted
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.trials.bounds import at_bounds
@@ -117,6 +118,7 @@ def errors_held_out(
         if horizons.gate:
             judged = _judged(bench, trial, horizons.gate[at], horizons.count - horizons.fitted)
             predicted = np.concatenate((predicted, np.stack([judged] * len(families))), axis=1)
+        release(trial.model)
         found.append(predicted)
     return np.stack(found)
 

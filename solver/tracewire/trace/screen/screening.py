@@ -123,6 +123,18 @@ class Screen:
                 found[str(row.candidate)] = row
         return found
 
+    def slim(self) -> Screen:
+        """The same with the best variants of each candidate alone: all others are much memory."""
+        best = {*self.best(), *self.visible().values()}
+        rows = [row for row in self.rows if row in best]
+        kept = [number for row in rows for number in row.columns]
+        ends = np.cumsum([len(row.columns) for row in rows]).tolist()
+        moved = [
+            replace(row, columns=tuple(range(end - len(row.columns), end)))
+            for row, end in zip(rows, ends, strict=True)
+        ]
+        return replace(self, columns=self.columns.some(kept), rows=tuple(moved))
+
     def chance(self) -> float:
         """The probability that noise alone looks as good as the best row does."""
         rows = [row for row in self.rows if row.possible]

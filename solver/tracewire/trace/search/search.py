@@ -172,6 +172,7 @@ class Search:
     def step(self, now: Trial) -> Trial | None:
         """One more effect, or a pair: screened, refitted, ranked, and passed by the gate."""
         self.tell("screening effects")
+        self.steps[-1:] = [replace(step, screen=step.screen.slim()) for step in self.steps[-1:]]
         seen = now
         if now.s2 > self.options.search.far and now.count > self.options.most_samples:
             most, together = self.options.most_samples, self.options.windows_together

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -71,6 +71,11 @@ class Columns:
     def rss(self) -> float:
         """The sum of squared residuals."""
         return float(self.residual @ self.residual)
+
+    def some(self, indices: Sequence[int]) -> Columns:
+        """Some of the columns, by number."""
+        chosen = list(indices)
+        return replace(self, matrix=self.matrix[:, chosen], masked=self.masked[chosen])
 
     @cached_property
     def _alone(self) -> tuple[Vector, Vector]:
@@ -194,6 +199,16 @@ class BoundedColumns(Columns):
     def _falls(self) -> float:
         """The fall of the sum of squares where the unknowns move alone."""
         return self._solved(())[0]
+
+    def some(self, indices: Sequence[int]) -> BoundedColumns:
+        """As of columns without bounds."""
+        chosen = list(indices)
+        return replace(
+            self,
+            matrix=self.matrix[:, chosen],
+            masked=self.masked[chosen],
+            whole=self.whole[:, chosen],
+        )
 
     def score(self, indices: Sequence[int]) -> tuple[float, Vector]:
         """As of columns without bounds; the unknowns move with them."""

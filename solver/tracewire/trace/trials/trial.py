@@ -30,7 +30,7 @@ from tracewire.residual import (
     sensor_unknowns,
     settled,
 )
-from tracewire.solve import Limits, parameter_values
+from tracewire.solve import Limits, parameter_values, release
 from tracewire.trace.candidates.candidates import Candidate, extend, unknowns_of, without_defaults
 from tracewire.trace.candidates.tones import Sine, tones_of
 from tracewire.trace.options import TraceOptions
@@ -230,6 +230,8 @@ class Bench:
         _refuse_failed(criterion, windows)
         windows, converged = descended(windows, steps, target, creeps, settling)
         _refuse_failed(criterion, windows)
+        if added:
+            release(model)  # a search keeps hundreds of models
         now = tuple(effect.at(windows.values) for effect in effects)
         return Trial(diagram, model, now, windows, length, converged, self.options.trial)
 
