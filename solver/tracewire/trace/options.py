@@ -65,6 +65,19 @@ class TraceOptions:
     """The part of the error by which a model may be worse than the best and still count as near."""
     sure: float = 3.0
     """Standard errors over blocks by which a model must beat the declared one to be named."""
+    block_counts: float = 0.2
+    """The part of the error by which one block counts at most in such a test: in a decay most of
+    what is missing shows in the first blocks."""
+    material: float = 0.03
+    """The part of the declared model's squared error that each effect must take away beside the
+    others, the mean over horizons. On 23 generated records with a floor, what stood for the floor
+    took at most 0.028, and true second effects 0.11 and more; on a rig a true one took 0.0325."""
+    decisive: float = 0.9
+    """The part of what is left without an effect, at one horizon, from which on it is no stand-in
+    however small it is. On those records stand-ins took at most 0.8, true effects 0.6 to 0.99."""
+    negligible: float = 0.01
+    """The part of the excess squared error that a model may leave at each horizon for no further
+    effect to be looked for."""
     explained: float = 0.6
     """The share of the excess error that named effects explain at least; a wrong single effect had
     a share of about 0, right models had more than 0.74."""
@@ -77,12 +90,15 @@ class TraceOptions:
     law_from: float = 2.0
     """The reduced chi-square of a rest, twice the variance of the noise, from which on it is
     asked whether it is a law that no block has."""
+    informative: float = 2.0
+    """The mean squared residual of a block in the noise's variance, from which on the declared
+    model lacks something there."""
     law_share: float = 0.95
     """The part of a rest that is a smooth function at one place, from which on it is a law. On 20
     generated records with an unmodelled part it was at most 0.83; on 7 with a law that the library
     lacks 0.87 to 1."""
     law_below: float = 0.9
-    """The share explained from which on such a law is a remainder, unless it reaches the noise."""
+    """The share explained from which on such a law is a remainder of what was missing."""
     map_gain: float = 0.05
     """The part of the error that a smooth map of position, rate, time or history must gain on
     unseen data for a rest to be called unexplained."""
@@ -92,6 +108,9 @@ class TraceOptions:
     """The same where there are less than four windows, whose spread says nothing."""
     harm_errors: float = 2.0
     """Standard errors over windows by which a rise of that error is more than chance."""
+    tracked: float = 0.5
+    """The error of a whole run, as a part of the standard deviation of the signals, below which the
+    run has not lost track of the data, so that another one can be compared with it."""
     at_noise: float = 1.3
     """The reduced chi-square below which a residual is at the sensor's noise: there the noise is
     white, likelihood is right, and BIC chooses."""

@@ -119,3 +119,43 @@ def test_a_simpler_effect_takes_the_place_of_one_that_imitates_it() -> None:
     assert chosen([model(), better, stribeck, coulomb], 1.0, 0.0, 0.03, 0.06).taken == 3
     foreign = replace(stribeck, imitated=frozenset())
     assert chosen([model(), better, foreign, coulomb], 1.0, 0.0, 0.03, 0.06).taken == 2
+
+
+def test_an_effect_that_takes_next_to_nothing_of_the_squares_is_dropped() -> None:
+    """The logarithm counts the last per cent as much as the first half."""
+    small = [replace(model(), left=(1.0, 1.0))]
+    small += [replace(model("a"), left=(0.03, 0.05)), replace(model("a", "b"), left=(0.01, 0.03))]
+    assert chosen(small, 2.0, 0.5, 0.0).taken == 1
+    large = [*small[:1], replace(model("a"), left=(0.03, 0.1)), small[2]]
+    assert chosen(large, 2.0, 0.5, 0.0).taken == 2, "in the mean over horizons it takes a part"
+    rest = [*small[:2], replace(model("a", "b"), left=(0.01, 0.004))]
+    assert chosen(rest, 2.0, 0.5, 0.0).taken == 2, "it takes nearly all of what is left without it"
+
+
+def test_effects_that_take_a_part_together_are_not_dropped_one_after_the_other() -> None:
+    parts = [
+        replace(model(), left=(1.0,)),
+        replace(model("a", "b", "c"), left=(0.01,)),
+        replace(model("a", "b"), left=(0.03,)),
+        replace(model("a"), left=(0.05,)),
+    ]
+    assert chosen(parts, 2.0, 0.0, 0.4, 0.8).taken == 2
+
+
+def test_a_wave_gives_way_to_the_common_law_that_it_imitates() -> None:
+    """It has a number more for what little is left."""
+    wave = Entrant(frozenset({"wave"}), 5, 1, imitated=frozenset({"coulomb"}), left=(0.02,))
+    coulomb = Entrant(frozenset({"coulomb"}), 3, left=(0.04,))
+    declared = replace(model(), left=(1.0,))
+    assert chosen([declared, wave, coulomb], 2.0, 0.0, 0.3).taken == 2
+    far = replace(coulomb, left=(0.1,))
+    assert chosen([declared, wave, far], 2.0, 0.0, 0.3).taken == 1
+
+
+def test_a_decay_that_shows_nearly_all_in_its_first_blocks_is_sure() -> None:
+    """That these differ from the later ones is no doubt; one block alone would be."""
+    decay = np.array([3.0, 1.0, 0.5, 0.3, 0.2, 0.1, 0.1, 0.05, 0.02, 0.0])
+    entrants = [model(), model("a")]
+    choice = chosen(entrants, decay, 0.0)
+    assert choice.z < 3 and choice.sure
+    assert not chosen(entrants, np.where(decay > 2, decay, 0.0), 0.0).sure

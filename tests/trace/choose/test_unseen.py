@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from tracewire.trace.choose.choice import Entrant, choose, log_scores
 from tracewire.trace.choose.prediction import Prediction
-from tracewire.trace.choose.unseen import prune_by_other_runs
+from tracewire.trace.choose.unseen import prune_by_other_runs, raises_whole_runs
 from tracewire.trace.options import TraceOptions
 
 BLOCKS = 8
@@ -82,3 +82,36 @@ def test_the_declared_model_is_never_refused() -> None:
     again = prediction().again([frozenset({DRY, DRIFT}), frozenset({DRY}), frozenset()])
     assert again.taken.names == {DRIFT}
     assert np.isfinite(again.choice.gain)
+
+
+WHOLE = 400
+
+
+def run_of(left: dict[tuple[str, ...], float]) -> Any:
+    """A search with one unseen run of a sine of 1000 sigma, in which a model leaves so many."""
+    wave = 1000 * np.sin(np.linspace(0, 20, WHOLE))
+    section = SimpleNamespace(first=0, end=WHOLE, measured=SimpleNamespace(values={"x": wave}))
+    bench = SimpleNamespace(
+        on=lambda names, windows: [np.full(WHOLE, left[names])], sigma={"x": 1.0}
+    )
+    return SimpleNamespace(
+        stretches=SimpleNamespace(unseen=[section]),
+        bench=bench,
+        windows=lambda sections, length: [length],
+        options=TraceOptions(),
+    )
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "words"),
+    [
+        (50.0, 40.0, ""),
+        (50.0, 50.5, ""),  # by chance
+        (50.0, 60.0, "multiplies the error of whole unseen runs by 1.2"),
+        (600.0, 900.0, ""),  # both have lost track of the sine
+    ],
+)
+def test_whole_unseen_runs_refuse_an_approximation(before: float, after: float, words: str) -> None:
+    fewer: Any = ()
+    more: Any = (DRY,)
+    assert raises_whole_runs(run_of({(): before, (DRY,): after}), fewer, more) == words

@@ -10,6 +10,11 @@ error or 5 %, then without each effect that costs as little, and with a simpler 
 of one that imitates it. The logarithm lets a decay be judged by all of its blocks, and not by the
 first alone.
 
+The logarithm has no measure of what matters: it counts the last per cent of the squared error as
+much as the first half of it, and there the rest of laws that are only nearly right looks like some
+effect. So an effect must also take a part of the declared model's squared error away, or nearly all
+of what is left without it.
+
 Source: cross-validation with the one-standard-error rule (Breiman et al. 1984, section 3.4.3;
 Hastie et al., Elements of Statistical Learning, section 7.10).
 """
@@ -32,14 +37,31 @@ Array = NDArray[np.float64]
 class Entrant:
     """What the choice knows of a model: its effects by name, how many numbers it fits, how much
     speaks against it (uncommon effects as waves, drifts or a sensor's gain; values on bounds), how
-    many of its effects may have either sign, so that no physics restricts them, and the effects
-    that its own ones imitate."""
+    many of its effects may have either sign, so that no physics restricts them, the effects that
+    its own ones imitate, and the part of the declared model's squared error on held-out blocks that
+    it leaves, by horizon."""
 
     effects: frozenset[str]
     numbers: int
     uncommon: int = 0
     unsigned: int = 0
     imitated: frozenset[str] = frozenset()
+    left: tuple[float, ...] = ()
+
+    def leaves_more(self, other: Entrant) -> float:
+        """By how much more of the declared model's squared error it leaves, the mean over horizons;
+        infinite where that is not known."""
+        pairs = zip(self.left, other.left, strict=True)
+        return float(np.mean([mine - theirs for mine, theirs in pairs] or [np.inf]))
+
+    def is_as_good(self, other: Entrant, options: TraceOptions) -> bool:
+        """Whether what another model has more may stand for anything: it takes a small part of the
+        declared model's squared error away, and not nearly all of what is left without it."""
+        times = (
+            mine / max(theirs, 1e-300) for mine, theirs in zip(self.left, other.left, strict=True)
+        )
+        nearly_all = max(times, default=np.inf) > 1 / (1 - options.decisive)
+        return self.leaves_more(other) <= options.material and not nearly_all
 
     def simplifies(self, other: Entrant) -> bool:
         """Whether it is another model with one effect in the place of one that imitates it, as
@@ -91,7 +113,7 @@ def choose(
     tolerance = float(np.log1p(options.near))
     totals = scores.mean(axis=(1, 2))
     usable = _usable(totals)
-    surer = [n for n in usable if n and is_sure(totals, 0, n, tolerance, options.sure)]
+    surer = [n for n in usable if n and is_sure(totals, 0, n, options)]
     among = surer or usable
     best = min(among, key=lambda n: totals[n].mean())
     near = [n for n in among if _cost(totals, n, best) <= max(tolerance, _error(totals, n, best))]
@@ -101,7 +123,7 @@ def choose(
         return one.numbers, one.uncommon, one.unsigned, float(totals[n].mean())
 
     taken = min(near, key=simplicity)
-    taken = _pruned(entrants, totals, among, taken, tolerance)
+    taken = _pruned(entrants, totals, among, taken, options)
     return choice_of(taken, entrants, scores, folds, options)
 
 
@@ -115,8 +137,8 @@ def choice_of(
     """A model taken, beside the declared one and those that predict as well; else as `choose`."""
     tolerance = float(np.log1p(options.near))
     totals = scores.mean(axis=(1, 2))
-    gain, z = _cost(totals, 0, taken), _z(totals, 0, taken)
-    sure = taken > 0 and is_sure(totals, 0, taken, tolerance, options.sure)
+    gain, z = _cost(totals, 0, taken), _in_errors(totals[0] - totals[taken])
+    sure = taken > 0 and is_sure(totals, 0, taken, options)
     ties = _ties(entrants, scores, folds, _usable(totals), taken, tolerance)
     return Choice(taken, gain, z, sure, ties)
 
@@ -125,29 +147,45 @@ def _usable(totals: Array) -> list[int]:
     return [n for n in range(len(totals)) if np.isfinite(totals[n]).all()]
 
 
-def is_sure(totals: Array, one: int, other: int, tolerance: float, least: float) -> bool:
-    """Whether one model is worse than another by the tolerance and so many standard errors."""
-    return _cost(totals, one, other) >= tolerance and _z(totals, one, other) >= least
+def is_sure(totals: Array, one: int, other: int, options: TraceOptions) -> bool:
+    """Whether one model is worse than another by the tolerance and so many standard errors, also of
+    differences that are cut: a decay shows nearly all in its first blocks, and that these differ
+    from the later ones is no doubt about the sign."""
+    change, most = totals[one] - totals[other], np.log1p(options.block_counts)
+    errors = max(_in_errors(change), _in_errors(np.clip(change, -most, most)))
+    return bool(np.mean(change) >= np.log1p(options.near) and errors >= options.sure)
 
 
-def _z(totals: Array, one: int, other: int) -> float:
-    """The difference of two models in its standard errors over blocks."""
-    cost, error = _cost(totals, one, other), _error(totals, one, other)
-    return cost / error if error > 0 else float(np.copysign(np.inf, cost)) if cost else 0.0
+def _in_errors(change: Vector) -> float:
+    """The mean of differences by block in its standard errors."""
+    mean = float(np.mean(change))
+    error = float(np.std(change, ddof=1)) / len(change) ** 0.5 if len(change) > 1 else 0.0
+    return mean / error if error > 0 else float(np.copysign(np.inf, mean)) if mean else 0.0
 
 
 def _pruned(
-    entrants: Sequence[Entrant], totals: Array, usable: Sequence[int], taken: int, tolerance: float
+    entrants: Sequence[Entrant],
+    totals: Array,
+    usable: Sequence[int],
+    taken: int,
+    options: TraceOptions,
 ) -> int:
-    """The model without each effect that costs at most the tolerance or two standard errors, and
-    with a simpler effect where that costs at most the tolerance."""
+    """The model without each effect that costs at most the tolerance or two standard errors, or
+    that takes too small a part of the squared error away, and with a simpler effect where that
+    costs at most the tolerance; an uncommon effect gives way where it takes such a small part."""
+    tolerance, first = float(np.log1p(options.near)), entrants[taken]
     while True:
         mine, costs = entrants[taken], []
         for n in usable:
+            one = entrants[n]
             cost, error = _cost(totals, n, taken), _error(totals, n, taken)
-            part = entrants[n].effects < mine.effects and cost <= max(tolerance, 2 * error)
-            if part or (entrants[n].simplifies(mine) and cost <= tolerance):
-                costs.append((entrants[n].numbers, cost, n))
+            if one.effects < mine.effects:
+                accepted = cost <= max(tolerance, 2 * error) or one.is_as_good(first, options)
+            else:
+                commoner = one.uncommon < mine.uncommon and one.is_as_good(mine, options)
+                accepted = one.simplifies(mine) and (cost <= tolerance or commoner)
+            if accepted:
+                costs.append((one.numbers, cost, n))
         if not costs:
             return taken
         taken = min(costs)[2]

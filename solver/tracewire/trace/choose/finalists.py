@@ -20,7 +20,6 @@ from numpy.typing import NDArray
 
 from tracewire.errors import FitError
 from tracewire.residual import Segment
-from tracewire.solve import release
 from tracewire.trace.choose.choice import log_scores
 from tracewire.trace.choose.heldout import Finalist, errors_by_block, errors_in_sample
 from tracewire.trace.choose.horizons import Horizons
@@ -71,10 +70,10 @@ class Pool:
             climbed = self._climbed(trial)
             if climbed is not None:
                 self._keep_better(climbed)
-        for smaller in self.without_terms(declared):
+        for smaller in self.without_terms(declared) if not self._takes_all(1) else ():
             self._extend_without(smaller)
         for size, parents in zip(range(1, options.effects), options.parents, strict=False):
-            if not self._improves(size):
+            if not self._improves(size) or self._takes_all(size):
                 break
             for parent in self.best(size, parents):
                 if self._is_near(parent, size):
@@ -84,6 +83,21 @@ class Pool:
         for size in range(1, options.effects + 1):
             for model in self.best(size, options.exchanged):
                 self.without_terms(model)
+
+    def _takes_all(self, size: int) -> bool:
+        """Whether the best model of a size leaves so little at each horizon that no further effect
+        is worth its time, and has none that is uncommon, for which others may stand."""
+        most, declared = self.options.negligible, self.models[frozenset(), ()].trials
+        return any(
+            all(
+                one.rss - one.freedom <= most * (whole.rss - whole.freedom)
+                for one, whole in zip(model.trials, declared, strict=True)
+            )
+            and not any(
+                e.candidate.effect in self.options.uncommon for e in model.trials[0].effects
+            )
+            for model in self.best(size, 1)
+        )
 
     def worth(self, count: int) -> int:
         """How many refits are worth their time where a long record is worth `count` of them."""
@@ -179,7 +193,7 @@ class Pool:
         search, trial = self.search, self.at(parent, number)
         beside = " and ".join(sorted(parent.names)) or "the declared model"
         search.tell(f"screening effects beside {beside}")
-        return search.screen(trial)
+        return search.screen(trial).slim()
 
     def extend(self, parent: Finalist, number: int, proposals: Iterable[Proposal]) -> None:
         """Refit a model with each of some proposals in few steps, at the horizon whose screen made
@@ -383,8 +397,6 @@ class Pool:
             values=values,
         )
         self.spent += (fitted or now).windows.criterion.steps
-        if fitted is not None:
-            release(fitted.model)  # there are hundreds of them
         return fitted
 
     def _target(self, length: int, size: int) -> float:

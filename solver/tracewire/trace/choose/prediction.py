@@ -131,7 +131,7 @@ def predict(search: Search, begun: Trial) -> Prediction:
             return prediction
         pruned.add(taken.key)
         known = dict(pool.models)
-        for fewer in _parts(pool, taken):
+        for fewer in (*_parts(pool, taken), *_simpler(pool, taken)):
             if fewer.key not in errors or fewer is not known[fewer.key]:
                 errors[fewer.key] = _errors(pool, fewer)
 
@@ -147,6 +147,19 @@ def _parts(pool: Pool, model: Finalist) -> list[Finalist]:
                 for part in _parts(pool, fewer) if len(fewer.names) > 1 else ():
                     found.setdefault(part.key, part)
     return list(found.values())
+
+
+def _simpler(pool: Pool, model: Finalist) -> list[Finalist]:
+    """The fitted models with one effect of a model exchanged for one that it imitates, as Coulomb
+    friction for a friction that waves along the way."""
+    found = []
+    for effect in model.trials[0].effects:
+        others = model.names - {str(effect)}
+        for name in effect.candidate.imitated - model.names:
+            key = others | {name}, model.dropped
+            if key in pool.models:
+                found.append(pool.settled(pool.models[key]))
+    return found
 
 
 def _compare(pool: Pool, declared: Finalist, errors: dict[Key, Array]) -> None:
@@ -192,6 +205,9 @@ def _errors(pool: Pool, model: Finalist) -> Array:
 def _chosen(pool: Pool, errors: dict[Key, Array]) -> Prediction:
     options = pool.options
     models = tuple(pool.models[key] for key in errors)
+    stacked = np.stack([errors[key] for key in errors])
+    squares = stacked[:, :, 0].mean(axis=(2, 3))  # scattered blocks: the others extrapolate
+    left = squares / np.maximum(squares[0], 1e-300)
     entrants = tuple(
         Entrant(
             model.names,
@@ -200,9 +216,9 @@ def _chosen(pool: Pool, errors: dict[Key, Array]) -> Prediction:
             + len(model.at_bounds),
             sum(not e.candidate.sign for e in model.trials[0].effects),
             frozenset().union(*(e.candidate.imitated for e in model.trials[0].effects)),
+            tuple(parts.tolist()),
         )
-        for model in models
+        for model, parts in zip(models, left, strict=True)
     )
-    stacked = np.stack([errors[key] for key in errors])
     choice = choose(entrants, log_scores(stacked), pool.horizons.groups, options)
     return Prediction(pool.horizons, models, stacked, choice, pool.first[-1], entrants, options)

@@ -51,9 +51,13 @@ def _by_block(prediction: Prediction, model: int) -> Array:
 
 def error_left(prediction: Prediction) -> float:
     """The part of the error on held-out blocks that the named effects leave, the geometric mean
-    over horizons and blocks: a block that is far off counts as much as one that is near."""
+    over horizons and blocks: a block that is far off counts as much as one that is near. Blocks
+    where the declared model is at the noise, as late in a decay, say nothing."""
     declared, named = (_by_block(prediction, n) for n in (0, prediction.choice.taken))
-    return float(np.exp(0.5 * np.mean(np.log(np.maximum(named, 1e-300) / declared))))
+    told = declared > prediction.options.informative
+    if not told.any():
+        told = np.ones_like(told)
+    return float(np.exp(0.5 * np.mean(np.log(np.maximum(named, 1e-300) / declared)[told])))
 
 
 def held_out(prediction: Prediction, floors: Sequence[float]) -> tuple[HeldOut, ...]:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from tracewire.trace.check.mistakes import refuse_mistakes
 from tracewire.trace.check.tolerance import is_loose, tightened
-from tracewire.trace.choose.unseen import raises_unseen
+from tracewire.trace.choose.unseen import raises_unseen, raises_whole_runs
 from tracewire.trace.choose.verdict import Judgement, residual_map
 from tracewire.trace.search.finish import Final
 from tracewire.trace.search.search import Search
@@ -33,7 +33,7 @@ def _tighten(search: Search) -> None:
 
 def safeguard(search: Search, judgement: Judgement) -> Judgement:
     """The judgement where the solver is precise enough, and no effect raises the error on unseen
-    data; without the effects where they do."""
+    data, nor an approximation that of whole runs; without the effects where they do."""
     final = judgement.final
     for _ in range(search.options.check.tightened):
         if not (final.best.effects and is_loose(search.bench, final.best)):
@@ -47,6 +47,8 @@ def safeguard(search: Search, judgement: Judgement) -> Judgement:
     if final.best.effects:
         lengths = sorted({min(search.short, final.best.length), final.best.length})
         harm = raises_unseen(search, final.declared, final.best, lengths)
+        if not harm and judgement.verdict == "unexplained":
+            harm = raises_whole_runs(search, final.declared, final.best)
         if harm:
             names = " and ".join(map(str, final.best.effects))
             search.words.append(f"{names} is not named: it {harm}")

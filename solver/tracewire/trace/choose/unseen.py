@@ -43,6 +43,25 @@ def raises_unseen(search: Search, fewer: Trial, more: Trial, lengths: Sequence[i
     return ""
 
 
+def raises_whole_runs(search: Search, fewer: Trial, more: Trial) -> str:
+    """By how much a model raises the error of one with fewer effects in whole unseen runs, in
+    words; empty where it does not.
+
+    An effect that is right may raise that of one run, where long runs depend on everything: this is
+    asked of what only approximates. Runs that have lost track of the data tell nothing.
+    """
+    options, unseen = search.options, search.stretches.unseen
+    whole = max((section.end - section.first for section in unseen), default=0)
+    before, after = (
+        float(squares_on(search, unseen, trial, whole).sum()) for trial in (fewer, more)
+    )
+    if not before < options.tracked**2 * _spread(search, unseen):
+        return ""
+    if after <= (1 + options.harm) ** 2 * before:
+        return ""
+    return f"multiplies the error of whole unseen runs by {(after / before) ** 0.5:.3g}"
+
+
 def prune_by_other_runs(search: Search, prediction: Prediction) -> Prediction:
     """The prediction without effects beside which others do as well alone on other runs.
 
@@ -73,6 +92,17 @@ def squares_on(search: Search, sections: Sequence[Section], trial: Trial, length
     starts are fitted."""
     windows = [w for section in sections for w in search.windows([section], length)]
     return np.array([float(np.sum(r**2)) for r in search.bench.on(trial, windows)])
+
+
+def _spread(search: Search, sections: Sequence[Section]) -> float:
+    """The sum of squares of the measured signals about their means, in sigma."""
+    sigma = search.bench.sigma
+    return sum(
+        float(np.var(values[section.first : section.end])) * (section.end - section.first)
+        / sigma[name] ** 2
+        for section in sections
+        for name, values in section.measured.values.items()
+    )  # fmt: skip
 
 
 def joined(names: Iterable[str]) -> str:

@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tracewire.errors import FitError
+from tracewire.trace.choose.choice import is_sure, log_scores
+from tracewire.trace.choose.heldout import Finalist
 from tracewire.trace.choose.noisy_inputs import noisy_inputs
 from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.choose.remainder import error_left, explained, held_out, remainders
@@ -83,13 +85,16 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
     """The verdict on the model that predicts held-out blocks best.
 
     `effect`: it beats the declared one by three standard errors, explains the greater part of the
-    excess error, and leaves no law behind that no block has. `null`: nothing is sure, and a smooth
-    map of what is left gains next to nothing. Else something is missing that no effect explains:
-    `unexplained`.
+    excess error, and leaves no law behind that no block has. `null`: nothing is sure, or the
+    declared model is at the noise, and a smooth map of what is left gains next to nothing. Else
+    something is missing that no effect explains: `unexplained`.
     """
     options = search.options
     prediction, harmed = _harmless(search, prediction)
-    named = prediction.choice.sure and bool(prediction.taken.names)  # not by dropped terms alone
+    declared = prediction.models[0].trials
+    above = any(trial.s2 > noise_limit(search, trial) for trial in declared)
+    names = bool(prediction.taken.names)  # not by dropped terms alone
+    named = above and prediction.choice.sure and names
     if not named:
         prediction = prediction.without_effects()
     final = final_of(search, prediction)
@@ -112,6 +117,9 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
         dependences, missing = maps[0]
     else:
         enough = _is_enough(prediction, share.share, share.share - error)
+        if _only_uncommon(taken, options):
+            search.words.append(f"{joined(taken.names)} together stand for a law of another form")
+            enough = False
         law = ""
         if search.returns:  # else all that is left is a function of the one way
             law = _law_left(taken.trials[0], maps[0][0], share.share, options)
@@ -149,6 +157,13 @@ def _is_enough(prediction: Prediction, share: float, surely: float) -> bool:
     return share >= options.explained and surely >= options.explained_surely and little
 
 
+def _only_uncommon(model: Finalist, options: TraceOptions) -> bool:
+    """Whether a model has several effects, all of them waves, drifts and their kin: together they
+    follow any smooth law."""
+    names = [effect.candidate.effect for effect in model.trials[0].effects]
+    return len(names) > 1 and all(name in options.uncommon for name in names)
+
+
 def _harmless(search: Search, prediction: Prediction) -> tuple[Prediction, bool]:
     """The prediction with the best choice that raises the error on no unseen data, and whether
     another one was refused for that; what was refused goes into the search's words."""
@@ -178,6 +193,8 @@ def final_of(search: Search, prediction: Prediction) -> Final:
     blocks = prediction.horizons.count
     for number, cost in prediction.choice.ties:
         other = prediction.models[number]
+        if taken.names < other.names:
+            continue  # a refinement, if it is sure
         trial = other.trials[-1]
         here, there = taken.names - other.names, other.names - taken.names
         more = other.numbers - taken.numbers
@@ -194,10 +211,36 @@ def final_of(search: Search, prediction: Prediction) -> Final:
                 f"{joined(other.names)} predicts as well: {_change(cost)} error,"
                 f" {abs(more)} fitted number(s) {'more' if more > 0 else 'less'}"
             )
+    search.words += _refined(prediction)
     own = search.bench.declared.flat.parameters
     dropped = (*taken.dropped, *(name for name in taken.vanished if name in own))
     known = {name: tuple(found) for name, found in rivals.items()}
     return Final(declared, ordered(best), known, dropped)
+
+
+def _refined(prediction: Prediction) -> list[str]:
+    """In words, the model that predicts surely better with more effects, none of which takes enough
+    of what was missing to be named."""
+    taken, mine = prediction.taken, prediction.entrants[prediction.choice.taken]
+    totals = log_scores(prediction.errors).mean(axis=(1, 2))
+    finer = [
+        n
+        for n, one in enumerate(prediction.entrants)
+        if taken.names and taken.names < one.effects and np.isfinite(totals[n]).all()
+        and is_sure(totals, prediction.choice.taken, n, prediction.options)
+        and mine.is_as_good(one, prediction.options)
+    ]  # fmt: skip
+    if not finer:
+        return []
+    best = min(finer, key=lambda n: float(totals[n].mean()))
+    less = -np.expm1(float(np.mean(totals[best] - totals[prediction.choice.taken])))
+    part = mine.leaves_more(prediction.entrants[best])
+    more = joined(prediction.models[best].names - taken.names)
+    return [
+        f"{more} would be a refinement: it lowers the error on held-out blocks by {less:.0%}, but"
+        f" takes only {100 * part:.2g} % of the squared error that was missing, so it may stand for"
+        " anything, and is not named"
+    ]
 
 
 def residual_map(search: Search, trial: Trial) -> tuple[tuple[Dependence, ...], Missing | None]:
@@ -215,16 +258,15 @@ def _left(trial: Trial, shares: Sequence[Dependence]) -> float:
 def _law_left(
     trial: Trial, shares: Sequence[Dependence], explained: float, options: TraceOptions
 ) -> str:
-    """In words, the law that the named effects leave behind: a smooth function at one place that
-    takes the rest down to the noise, or nearly all of it where they explain too little. A function
-    of time alone is no law: gusts, and the air of a room, do not come again."""
+    """In words, the law that the named effects leave behind where they explain too little: a smooth
+    function at one place that takes the rest down to the noise, or nearly all of it. A function of
+    time alone is no law: gusts, and the air of a room, do not come again."""
     laws = [d for d in shares if d.variables != ("t",)]
     best = max(laws, key=lambda d: d.share, default=None)
-    if best is None or trial.s2 < options.law_from:
+    if best is None or trial.s2 < options.law_from or explained >= options.law_below:
         return ""
     left = 1 + (1 - best.share) * (trial.s2 - 1)
-    nearly_all = best.share >= options.law_share and explained < options.law_below
-    if left > options.at_noise and not nearly_all:
+    if left > options.at_noise and best.share < options.law_share:
         return ""
     of = " and ".join(best.variables)
     return f"{best.share:.1%} of the rest is a function of {of} at {best.place}, of no block's form"

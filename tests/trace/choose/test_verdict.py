@@ -1,0 +1,71 @@
+"""What a verdict says of models that predict well for a reason that is no effect."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+import tracewire as tw
+from tracewire.trace.choose.finalists import Pool
+from tracewire.trace.choose.remainder import error_left
+from tracewire.trace.choose.verdict import _only_uncommon
+from tracewire.trace.options import TraceOptions
+
+from benchmarks.rigs.records import generate
+
+
+def model(*names: str, rss: tuple[float, ...] = ()) -> Any:
+    """A fitted model with effects, which leaves so much beyond the noise at each horizon."""
+    effects = [SimpleNamespace(candidate=SimpleNamespace(effect=name)) for name in names]
+    squares = rss or (0.0,)
+    trials = [SimpleNamespace(effects=effects, rss=100.0 + r, freedom=100) for r in squares]
+    return SimpleNamespace(trials=trials)
+
+
+def pool(best: Any, declared: tuple[float, ...]) -> Any:
+    """What of a pool is asked whether its best model takes all."""
+    models = {(frozenset(), ()): model(rss=declared)}
+    return SimpleNamespace(
+        options=TraceOptions(), models=models, best=lambda size, count: [best][:count]
+    )
+
+
+@pytest.mark.parametrize(
+    ("best", "all_taken"),
+    [
+        (model("coulomb", rss=(10.0, 100.0)), True),
+        (model("coulomb", rss=(10.0, 200.0)), False),  # 2 % is left at the longer horizon
+        (model("cogging", rss=(10.0, 100.0)), False),  # a wave may stand for other laws
+    ],
+)
+def test_no_effect_is_looked_for_where_too_little_is_left(best: Any, all_taken: bool) -> None:
+    assert Pool._takes_all(pool(best, (1000.0, 10_000.0)), 1) is all_taken
+
+
+def test_several_waves_or_drifts_and_nothing_else_are_no_effect() -> None:
+    options = TraceOptions()
+    assert _only_uncommon(model("parametric", "stiffness_drift"), options)
+    assert not _only_uncommon(model("parametric"), options)
+    assert not _only_uncommon(model("parametric", "coulomb"), options)
+
+
+def test_blocks_at_the_noise_do_not_count_in_what_an_effect_leaves() -> None:
+    """The later blocks of a decay, where the declared model is right, too."""
+    declared = np.array([400.0, 100.0, 1.0, 1.0, 1.1, 0.9])
+    named = np.array([4.0, 1.0, 1.0, 1.0, 1.1, 0.9])
+    errors = np.stack([declared, named]).reshape(2, 1, 1, -1, 1)
+    prediction: Any = SimpleNamespace(
+        errors=errors, options=TraceOptions(), choice=SimpleNamespace(taken=1)
+    )
+    assert error_left(prediction) == pytest.approx(0.1)
+
+
+def test_nothing_is_named_where_a_whole_run_is_at_the_noise(tmp_path: Path) -> None:
+    """A chamber with nothing hidden, in one horizon and with noise of an input: without its first
+    block, where it warms up, the declared model is not determined and predicts it badly."""
+    found = tw.trace(tw.compile(tw.read(generate("r32_chamber", tmp_path))))
+    assert found.verdict == "null"
+    assert not found.effects
