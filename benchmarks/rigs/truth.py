@@ -236,7 +236,7 @@ TRUTHS: Mapping[str, Truth] = {
         "Pendulum above a table",
         words="a magnet in the table, 13/s^2 at the lowest point and next to nothing beyond 20 "
         "degrees; currents brake it there besides",
-        law=("acceleration", "theta"),
+        law=("acceleration", "q"),
     ),
     "r31_roll": Truth(
         "Ship that rolls",

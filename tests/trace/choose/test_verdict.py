@@ -69,3 +69,29 @@ def test_nothing_is_named_where_a_whole_run_is_at_the_noise(tmp_path: Path) -> N
     found = tw.trace(tw.compile(tw.read(generate("r32_chamber", tmp_path))))
     assert found.verdict == "null"
     assert not found.effects
+
+
+def test_a_term_that_is_left_out_does_not_come_back_as_an_effect() -> None:
+    """Without the declared friction the same friction shows as an effect; another law may."""
+
+    def row(name: str, masked: float) -> Any:
+        return SimpleNamespace(candidate=name, masked=masked)
+
+    def screen(*rows: Any) -> Any:
+        return SimpleNamespace(visible=lambda: {row.candidate: row for row in rows})
+
+    same, other = row("viscous @ force", 0.1), row("coulomb @ force", 0.2)
+    before = screen(row("coulomb @ force", 0.9))  # the declared term hides the same completely
+    asked = [SimpleNamespace(rows=rows) for rows in ((same,), (other,), (same, other))]
+    tried: list[Any] = []
+    there: Any = SimpleNamespace(
+        options=TraceOptions(),
+        horizons=SimpleNamespace(each=[None]),
+        first=[before],
+        screened=lambda smaller, number: screen(same, other),
+        promising=lambda *args: asked,
+        extend=lambda smaller, number, proposals: tried.extend(proposals),
+    )
+    smaller: Any = None
+    Pool._extend_without(there, smaller)
+    assert tried == [asked[1]]

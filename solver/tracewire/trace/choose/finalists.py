@@ -157,14 +157,16 @@ class Pool:
 
     def _extend_without(self, smaller: Finalist) -> None:
         """A model without a declared term with what imitates that term: it shows only where the
-        term is not there."""
+        term is not there. What imitates it completely is that term itself."""
         options, number = self.options, len(self.horizons.each) - 1
         screen = self.screened(smaller, number)
         new = unmasked(screen, self.first[number], options.imitated)
+        others = self.first[number].visible()
         proposals = [
             proposal
             for proposal in self.promising(number, screen, 2 * options.beside, options.beside)
             if any(str(row.candidate) in new for row in proposal.rows)
+            and all(str(row.candidate) in others for row in proposal.rows)
         ]
         self.extend(smaller, number, proposals)
 
