@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -131,7 +131,8 @@ def predict(search: Search, begun: Trial) -> Prediction:
             return prediction
         pruned.add(taken.key)
         known = dict(pool.models)
-        for fewer in (*_parts(pool, taken), *_simpler(pool, taken)):
+        parts = _parts(pool, taken)
+        for fewer in (*parts, *_with_all_terms(pool, [*parts, taken]), *_simpler(pool, taken)):
             if fewer.key not in errors or fewer is not known[fewer.key]:
                 errors[fewer.key] = _errors(pool, fewer)
 
@@ -147,6 +148,12 @@ def _parts(pool: Pool, model: Finalist) -> list[Finalist]:
                 for part in _parts(pool, fewer) if len(fewer.names) > 1 else ():
                     found.setdefault(part.key, part)
     return list(found.values())
+
+
+def _with_all_terms(pool: Pool, models: Sequence[Finalist]) -> list[Finalist]:
+    """The fitted models with the effects of some that lack declared terms, but with all terms."""
+    keys = {(model.names, ()) for model in models if model.dropped and model.names}
+    return [pool.settled(model) for key, model in list(pool.models.items()) if key in keys]
 
 
 def _simpler(pool: Pool, model: Finalist) -> list[Finalist]:

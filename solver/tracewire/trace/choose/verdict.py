@@ -234,7 +234,7 @@ def _refined(prediction: Prediction) -> list[str]:
         return []
     best = min(finer, key=lambda n: float(totals[n].mean()))
     less = -np.expm1(float(np.mean(totals[best] - totals[prediction.choice.taken])))
-    part = mine.leaves_more(prediction.entrants[best])
+    part = max(mine.leaves_more(prediction.entrants[best]), 0.0)
     more = joined(prediction.models[best].names - taken.names)
     return [
         f"{more} would be a refinement: it lowers the error on held-out blocks by {less:.0%}, but"
