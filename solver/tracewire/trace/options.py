@@ -71,7 +71,7 @@ class TraceOptions:
     material: float = 0.03
     """The part of the declared model's squared error that each effect must take away beside the
     others, the mean over horizons. On 23 generated records with a floor, what stood for the floor
-    took at most 0.028, and true second effects 0.11 and more; on a rig a true one took 0.0325."""
+    took at most 0.027, and true second effects 0.2 and more; on a rig a true one took 0.0325."""
     decisive: float = 0.9
     """The part of what is left without an effect, at one horizon, from which on it is no stand-in
     however small it is. On those records stand-ins took at most 0.8, true effects 0.6 to 0.99."""

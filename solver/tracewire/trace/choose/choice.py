@@ -158,8 +158,7 @@ def is_sure(totals: Array, one: int, other: int, options: TraceOptions) -> bool:
 
 def _in_errors(change: Vector) -> float:
     """The mean of differences by block in its standard errors."""
-    mean = float(np.mean(change))
-    error = float(np.std(change, ddof=1)) / len(change) ** 0.5 if len(change) > 1 else 0.0
+    mean, error = float(np.mean(change)), _standard_error(change)
     return mean / error if error > 0 else float(np.copysign(np.inf, mean)) if mean else 0.0
 
 
@@ -226,5 +225,9 @@ def _cost(totals: Array, one: int, other: int) -> float:
 
 def _error(totals: Array, one: int, other: int) -> float:
     """The standard error of that difference over blocks."""
-    change = totals[one] - totals[other]
+    return _standard_error(totals[one] - totals[other])
+
+
+def _standard_error(change: Vector) -> float:
+    """Of the mean of differences by block."""
     return float(np.std(change, ddof=1)) / len(change) ** 0.5 if len(change) > 1 else 0.0
