@@ -105,6 +105,23 @@ def test_models_as_near_with_at_most_one_number_more_are_ties() -> None:
     assert choice.ties[0][1] == pytest.approx(0.02)
 
 
+def test_an_exchange_that_leaves_little_more_is_a_tie() -> None:
+    """The 95 % point of F for ten and ten degrees of freedom is 2.98."""
+    named = replace(model("a", "b"), left=(0.02, 0.02))
+
+    def tied(*effects: str, left: tuple[float, float], numbers: int = 4) -> bool:
+        other = replace(model(*effects, numbers=numbers), left=left)
+        choice = chosen([replace(model(), left=(1.0, 1.0)), named, other], 1.0, 0.0, 0.4)
+        return choice.ties == ((2, pytest.approx(0.4)),)
+
+    assert tied("a", "c", left=(0.03, 0.059))
+    assert not tied("a", "c", left=(0.02, 0.061)), "three times as much at one horizon"
+    assert not tied("a", "c", left=(0.05, 0.055)), "3.25 % of the declared model's error more"
+    assert not tied("d", "c", left=(0.03, 0.03)), "another model altogether"
+    assert not tied("a", "c", left=(0.03, 0.03), numbers=6)
+    assert not tied("a", left=(0.03, 0.03), numbers=3), "the same model without an effect"
+
+
 def test_the_tolerance_is_an_option() -> None:
     entrants = [model(), model("a"), model("a", "b")]
     strict = choose(entrants, scores(1.0, 0.04, 0.0), FOLDS, replace(OPTIONS, near=0.02))

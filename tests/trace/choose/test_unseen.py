@@ -7,9 +7,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tracewire.trace.choose import safeguards
 from tracewire.trace.choose.choice import Entrant, choose, log_scores
 from tracewire.trace.choose.prediction import Prediction
-from tracewire.trace.choose.unseen import prune_by_other_runs, raises_whole_runs
+from tracewire.trace.choose.unseen import (
+    prune_by_other_runs,
+    raises_whole_runs,
+    share_of_whole_runs,
+)
 from tracewire.trace.options import TraceOptions
 
 BLOCKS = 8
@@ -87,6 +92,16 @@ def test_the_declared_model_is_never_refused() -> None:
 WHOLE = 400
 
 
+class Names(tuple[str, ...]):
+    """A model by the names of its effects, fitted to whole runs."""
+
+    length = WHOLE
+
+    @property
+    def effects(self) -> Names:
+        return self
+
+
 def run_of(left: dict[tuple[str, ...], float]) -> Any:
     """A search with one unseen run of a sine of 1000 sigma, in which a model leaves so many."""
     wave = 1000 * np.sin(np.linspace(0, 20, WHOLE))
@@ -115,3 +130,38 @@ def test_whole_unseen_runs_refuse_an_approximation(before: float, after: float, 
     fewer: Any = ()
     more: Any = (DRY,)
     assert raises_whole_runs(run_of({(): before, (DRY,): after}), fewer, more) == words
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "share"),
+    [
+        (50.0, 10.0, 1 - 99 / 2499),
+        (50.0, 49.0, 1 - 2400 / 2499),
+        (50.0, 60.0, 1 - 3599 / 2499),
+        (1.2, 1.2, 1.0),  # at the noise
+        (600.0, 590.0, 1.0),  # both have lost track of the sine
+    ],
+)
+def test_the_part_of_whole_unseen_runs_that_a_model_takes(
+    before: float, after: float, share: float
+) -> None:
+    fewer: Any = ()
+    more: Any = (DRY,)
+    found = share_of_whole_runs(run_of({(): before, (DRY,): after}), fewer, more)
+    assert found == pytest.approx(share)
+
+
+@pytest.mark.parametrize(("after", "verdict"), [(30.0, "effect"), (48.0, "unexplained")])
+def test_effects_that_hardly_help_on_whole_unseen_runs_are_an_approximation(
+    after: float, verdict: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    there = run_of({(): 50.0, (DRY,): after})
+    there.words, there.short = [], WHOLE
+    final: Any = SimpleNamespace(declared=(), best=Names((DRY,)))
+    monkeypatch.setattr(safeguards, "is_loose", lambda bench, trial: False)
+    monkeypatch.setattr(safeguards, "residual_map", lambda search, trial: ((), None))
+    found = safeguards.safeguard(there, safeguards.Judgement("effect", final))
+    assert found.verdict == verdict
+    assert found.final is final
+    told = f"{DRY} takes 8% of the excess squared error of whole unseen runs away"
+    assert [words.split(",")[0] for words in there.words] == [told] * (verdict == "unexplained")

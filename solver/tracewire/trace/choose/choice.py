@@ -13,7 +13,8 @@ first alone.
 The logarithm has no measure of what matters: it counts the last per cent of the squared error as
 much as the first half of it, and there the rest of laws that are only nearly right looks like some
 effect. So an effect must also take a part of the declared model's squared error away, or nearly all
-of what is left without it.
+of what is left without it. Another effect in its place that leaves less than such a part more, and
+no more than a few times as much, is a tie.
 
 Source: cross-validation with the one-standard-error rule (Breiman et al. 1984, section 3.4.3;
 Hastie et al., Elements of Statistical Learning, section 7.10).
@@ -26,6 +27,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import special
 
 from tracewire.trace.options import TraceOptions
 
@@ -57,17 +59,33 @@ class Entrant:
     def is_as_good(self, other: Entrant, options: TraceOptions) -> bool:
         """Whether what another model has more may stand for anything: it takes a small part of the
         declared model's squared error away, and not nearly all of what is left without it."""
-        times = (
-            mine / max(theirs, 1e-300) for mine, theirs in zip(self.left, other.left, strict=True)
-        )
-        nearly_all = max(times, default=np.inf) > 1 / (1 - options.decisive)
+        nearly_all = self.times(other) > 1 / (1 - options.decisive)
         return self.leaves_more(other) <= options.material and not nearly_all
+
+    def is_close(self, other: Entrant, blocks: int, options: TraceOptions) -> bool:
+        """Whether it is another model with one effect exchanged, at most one number more, and too
+        little more squared error on so many blocks to be excluded: a small part of the declared
+        model's, and not significantly more than the other one leaves by an F-test."""
+        if not self.exchanges(other) or self.numbers > other.numbers + 1:
+            return False
+        times = float(special.fdtri(blocks, blocks, options.tied))
+        return self.leaves_more(other) <= options.material and self.times(other) <= times
+
+    def times(self, other: Entrant) -> float:
+        """How many times the squared error of another model it leaves, the most of all horizons;
+        infinite where that is not known."""
+        pairs = zip(self.left, other.left, strict=True)
+        return max((mine / max(theirs, 1e-300) for mine, theirs in pairs), default=np.inf)
+
+    def exchanges(self, other: Entrant) -> bool:
+        """Whether it is another model with one effect in the place of one of its own."""
+        return len(self.effects - other.effects) == len(other.effects - self.effects) == 1
 
     def simplifies(self, other: Entrant) -> bool:
         """Whether it is another model with one effect in the place of one that imitates it, as
         Coulomb friction for a Stribeck curve, and fewer numbers."""
-        new, old = self.effects - other.effects, other.effects - self.effects
-        return len(new) == len(old) == 1 and new <= other.imitated and self.numbers < other.numbers
+        imitated = self.effects - other.effects <= other.imitated
+        return self.exchanges(other) and imitated and self.numbers < other.numbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,11 +153,10 @@ def choice_of(
     options: TraceOptions,
 ) -> Choice:
     """A model taken, beside the declared one and those that predict as well; else as `choose`."""
-    tolerance = float(np.log1p(options.near))
     totals = scores.mean(axis=(1, 2))
     gain, z = _cost(totals, 0, taken), _in_errors(totals[0] - totals[taken])
     sure = taken > 0 and is_sure(totals, 0, taken, options)
-    ties = _ties(entrants, scores, folds, _usable(totals), taken, tolerance)
+    ties = _ties(entrants, scores, folds, taken, options)
     return Choice(taken, gain, z, sure, ties)
 
 
@@ -194,18 +211,19 @@ def _ties(
     entrants: Sequence[Entrant],
     scores: Array,
     folds: Sequence[Sequence[Sequence[int]]],
-    usable: Sequence[int],
     taken: int,
-    tolerance: float,
+    options: TraceOptions,
 ) -> tuple[tuple[int, float], ...]:
     """Models as near as the tolerance or one standard error, with at most one number more. Here the
-    spread of the folds counts, too: errors inside a fold are common to its blocks."""
+    spread of the folds counts, too: errors inside a fold are common to its blocks. A model with one
+    effect exchanged is also a tie where it leaves too little more to exclude it."""
     totals, by_family = scores.mean(axis=(1, 2)), scores.mean(axis=1)
-    found = []
-    for n in usable:
-        if n == taken or entrants[n].numbers > entrants[taken].numbers + 1:
+    tolerance, mine, found = float(np.log1p(options.near)), entrants[taken], []
+    for n in _usable(totals):
+        one = entrants[n]
+        if n == taken or one.numbers > mine.numbers + 1:
             continue
-        if entrants[n].effects == entrants[taken].effects or not entrants[n].effects:
+        if one.effects == mine.effects or not one.effects:
             continue
         change = by_family[n] - by_family[taken]
         means = [
@@ -213,7 +231,8 @@ def _ties(
         ]
         spread = float(np.std(means, ddof=1)) / len(means) ** 0.5 if len(means) > 1 else 0.0
         cost = _cost(totals, n, taken)
-        if cost <= max(tolerance, _error(totals, n, taken), spread):
+        near = cost <= max(tolerance, _error(totals, n, taken), spread)
+        if near or one.is_close(mine, scores.shape[-1], options):
             found.append((n, cost))
     return tuple(sorted(found, key=lambda tie: tie[1]))
 

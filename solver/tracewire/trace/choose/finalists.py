@@ -216,14 +216,15 @@ class Pool:
             trial = self._refitted(now, first, (), options.first_steps, target, proposal.values)
             if trial is not None:
                 begun.append(trial)
-        for trial in self._hopeful(begun, number):
+        for trial in self._hopeful(now, begun, number):
             new = trial.effects[len(parent.names) :]
             fitted = self.fitted(parent, new, begun=(number, trial))
             if fitted is not None:
                 self._kept(fitted)
 
-    def _hopeful(self, begun: Sequence[Trial], number: int) -> list[Trial]:
-        """The best of what was begun at a horizon, by the squares and by the scores of blocks."""
+    def _hopeful(self, now: Trial, begun: Sequence[Trial], number: int) -> list[Trial]:
+        """The best of what was begun at a horizon beside a model, by the scores of blocks, and what
+        leaves too little more of that model's squared error to be told from the best."""
         if not begun:
             return []
         blocks = [self.horizons.each[number].blocks[n] for n in self.sparse[number]]
@@ -239,8 +240,9 @@ class Pool:
         scores = scores + self._price * np.array([len(trial.windows.values) for trial in begun])
         most = self.worth(self.options.begun) // len(self.horizons.each)
         best = np.argsort(scores, kind="stable")[:most]
-        near = 0.5 * np.log(self.options.hopeful)
-        return [begun[n] for n in best.tolist() if scores[n] <= scores[best[0]] + near]
+        near = scores[best[0]] + 0.5 * np.log(self.options.hopeful)
+        close = min(trial.rss for trial in begun) + self.options.material * now.rss
+        return [begun[n] for n in best.tolist() if scores[n] <= near or begun[n].rss <= close]
 
     def fitted(
         self,

@@ -132,9 +132,10 @@ def predict(search: Search, begun: Trial) -> Prediction:
         pruned.add(taken.key)
         known = dict(pool.models)
         parts = _parts(pool, taken)
-        for fewer in (*parts, *_with_all_terms(pool, [*parts, taken]), *_simpler(pool, taken)):
-            if fewer.key not in errors or fewer is not known[fewer.key]:
-                errors[fewer.key] = _errors(pool, fewer)
+        whole, others = _with_all_terms(pool, [*parts, taken]), _exchanged(pool, taken, errors)
+        for other in (*parts, *whole, *_simpler(pool, taken), *others):
+            if other.key not in errors or other is not known[other.key]:
+                errors[other.key] = _errors(pool, other)
 
 
 def _parts(pool: Pool, model: Finalist) -> list[Finalist]:
@@ -167,6 +168,29 @@ def _simpler(pool: Pool, model: Finalist) -> list[Finalist]:
             if key in pool.models:
                 found.append(pool.settled(pool.models[key]))
     return found
+
+
+def _exchanged(pool: Pool, model: Finalist, known: Collection[Key]) -> list[Finalist]:
+    """Further models with one effect of a model exchanged that are close to it in their fits, and
+    so may be ties."""
+
+    def squares(one: Finalist) -> Array:
+        return np.asarray(errors_in_sample(one, pool.horizons).mean(axis=(1, 2, 3)))
+
+    declared = np.maximum(squares(pool.models[frozenset(), ()]), 1e-300)
+
+    def entrant(one: Finalist) -> Entrant:
+        left = tuple((squares(one) / declared).tolist())
+        return Entrant(one.names, one.numbers, left=left)
+
+    mine, found = entrant(model), []
+    for key, one in pool.models.items():
+        other = entrant(one)
+        new = key not in known and one.dropped == model.dropped
+        if new and other.is_close(mine, pool.horizons.count, pool.options):
+            found.append((other.leaves_more(mine), one))
+    nearest = sorted(found, key=lambda pair: pair[0])[: pool.options.alike]
+    return [pool.settled(one) for _, one in nearest]
 
 
 def _compare(pool: Pool, declared: Finalist, errors: dict[Key, Array]) -> None:

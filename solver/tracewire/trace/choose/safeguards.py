@@ -6,7 +6,12 @@ from dataclasses import replace
 
 from tracewire.trace.check.mistakes import refuse_mistakes
 from tracewire.trace.check.tolerance import is_loose, tightened
-from tracewire.trace.choose.unseen import raises_unseen, raises_whole_runs
+from tracewire.trace.choose.unseen import (
+    joined,
+    raises_unseen,
+    raises_whole_runs,
+    share_of_whole_runs,
+)
 from tracewire.trace.choose.verdict import Judgement, residual_map
 from tracewire.trace.search.finish import Final
 from tracewire.trace.search.search import Search
@@ -33,7 +38,8 @@ def _tighten(search: Search) -> None:
 
 def safeguard(search: Search, judgement: Judgement) -> Judgement:
     """The judgement where the solver is precise enough, and no effect raises the error on unseen
-    data, nor an approximation that of whole runs; without the effects where they do."""
+    data, nor an approximation that of whole runs; without the effects where they do. Effects that
+    hardly lower the error of whole unseen runs are an approximation."""
     final = judgement.final
     for _ in range(search.options.check.tightened):
         if not (final.best.effects and is_loose(search.bench, final.best)):
@@ -47,15 +53,31 @@ def safeguard(search: Search, judgement: Judgement) -> Judgement:
     if final.best.effects:
         lengths = sorted({min(search.short, final.best.length), final.best.length})
         harm = raises_unseen(search, final.declared, final.best, lengths)
+        if not harm and judgement.verdict == "effect":
+            judgement = _of_whole_runs(search, judgement, final)
         if not harm and judgement.verdict == "unexplained":
             harm = raises_whole_runs(search, final.declared, final.best)
         if harm:
-            names = " and ".join(map(str, final.best.effects))
+            names = joined(map(str, final.best.effects))
             search.words.append(f"{names} is not named: it {harm}")
             final = Final(final.declared, final.declared, {}, ())
             dependences, missing = residual_map(search, final.declared)
             return Judgement("unexplained", final, dependences, missing)
     return replace(judgement, final=final)
+
+
+def _of_whole_runs(search: Search, judgement: Judgement, final: Final) -> Judgement:
+    """The judgement, or `unexplained` where the effects hardly lower the error of whole unseen
+    runs: what follows a rest of no block's form on windows does not carry over to them."""
+    share = share_of_whole_runs(search, final.declared, final.best)
+    if share >= search.options.whole_runs:
+        return judgement
+    search.words.append(
+        f"{joined(map(str, final.best.effects))} takes {max(share, 0):.0%} of the excess squared"
+        " error of whole unseen runs away, which is too little"
+    )
+    dependences, missing = residual_map(search, final.declared)
+    return replace(judgement, verdict="unexplained", dependences=dependences, missing=missing)
 
 
 def refuse_mistaken(search: Search, declared: Trial, judgement: Judgement) -> None:

@@ -45,21 +45,36 @@ def raises_unseen(search: Search, fewer: Trial, more: Trial, lengths: Sequence[i
 
 def raises_whole_runs(search: Search, fewer: Trial, more: Trial) -> str:
     """By how much a model raises the error of one with fewer effects in whole unseen runs, in
-    words; empty where it does not.
+    words; empty where it does not, or where these runs tell nothing.
 
     An effect that is right may raise that of one run, where long runs depend on everything: this is
-    asked of what only approximates. Runs that have lost track of the data tell nothing.
+    asked of what only approximates.
     """
-    options, unseen = search.options, search.stretches.unseen
-    whole = max((section.end - section.first for section in unseen), default=0)
-    before, after = (
-        float(squares_on(search, unseen, trial, whole).sum()) for trial in (fewer, more)
-    )
-    if not before < options.tracked**2 * _spread(search, unseen):
-        return ""
-    if after <= (1 + options.harm) ** 2 * before:
+    before, after, _ = _whole_runs(search, fewer, more)
+    if not before or after <= (1 + search.options.harm) ** 2 * before:
         return ""
     return f"multiplies the error of whole unseen runs by {(after / before) ** 0.5:.3g}"
+
+
+def share_of_whole_runs(search: Search, fewer: Trial, more: Trial) -> float:
+    """The part that a model takes of the excess squared error which one with fewer effects has in
+    whole unseen runs; 1 where that is at the noise, or where these runs tell nothing."""
+    before, after, count = _whole_runs(search, fewer, more)
+    if before <= search.options.informative * count:
+        return 1.0
+    return 1 - (after - count) / (before - count)
+
+
+def _whole_runs(search: Search, fewer: Trial, more: Trial) -> tuple[float, float, int]:
+    """The sums of squares of two models in whole unseen runs, in sigma^2, and of how many
+    residuals; nothing where the first has lost track of the data."""
+    unseen = search.stretches.unseen
+    whole = max((section.end - section.first for section in unseen), default=0)
+    before, after = (squares_on(search, unseen, trial, whole) for trial in (fewer, more))
+    if not before.sum() < search.options.tracked**2 * _spread(search, unseen):
+        return 0.0, 0.0, 0
+    count = sum((s.end - s.first) * len(s.measured.values) for s in unseen)
+    return float(before.sum()), float(after.sum()), count
 
 
 def prune_by_other_runs(search: Search, prediction: Prediction) -> Prediction:
