@@ -17,6 +17,7 @@ BLOCKS = ROOT / "blocks"
 # a room may import itself and the rooms before it
 ROOMS = [
     "errors",
+    "extras",
     "files",
     "npm",
     "shipped",

@@ -80,9 +80,9 @@ def test_a_comma_that_may_stand_between_thousands_is_asked_about(write: Write) -
         ("t,x\n0,1\n1,\u22122\n", "Its minus is another character than '-': replace it in the"),
         ("t,x\n0,1\n1,2.5 V\n", "'2.5 V', which is not a number. A cell holds a number alone"),
         ("t,x\n12:00:01.5,1\n12:00:02.0,2\n", "column 't' is '12:00:01.5', which is not a number. "
-         "It is a clock time or a date: write the time in seconds from the begin."),
-        ("t,x\n2024-03-12 12:00:01,1\n", "It is a clock time or a date: write the time"),
-        ("t,x\n12.03.2024,1\n", "It is a date: write the time in seconds."),
+         "A column of time has seconds, or dates as ISO 8601 writes them: 2024-03-12T12:00:01.5+"),
+        ("t,x\n12.03.2024 12:00:01,1\n", "A column of time has seconds, or dates as ISO 8601"),
+        ("t,x\n12.03.2024,1\n", "A column of time has seconds, or dates as ISO 8601 writes"),
         ("t,x\n0,1\n1,2\nt,x\n2,3\n", "lab.csv:4: the header stands here once more. "
          "Where a second record begins, split the file; else remove this line."),
         ("t,x\n0,1\n1,2\nend of file\n", "lab.csv:4: 1 cell, and 2 in the first row. Repair or"),

@@ -33,7 +33,6 @@ ODS = "mimetypeapplication/vnd.oasis.opendocument.spreadsheet"
 @pytest.mark.parametrize(
     ("content", "name", "hint"),
     [
-        (zipped("[Content_Types].xml", "xl/workbook.xml"), "an Excel workbook (.xlsx)", "as CSV"),
         (zipped(ODS, "content.xml"), "a spreadsheet of OpenDocument (.ods)", "as CSV"),
         (zipped("run.csv"), "a zip archive", "Unpack it"),
         (saved(x=np.arange(3)), "an archive of numpy (.npz)", "numpy.savetxt"),
@@ -68,13 +67,3 @@ def test_a_pickle_is_not_opened(tmp_path: Path) -> None:
     with pytest.raises(DataError, match="pickle"):
         read_columns(path, {"x": "x"})
     assert not (tmp_path / "sprung").exists()
-
-
-def test_hdf5_is_told_apart_from_older_matlab_files(tmp_path: Path) -> None:
-    for content in (b"\x89HDF\r\n\x1a\n", b"MATLAB 7.3 MAT-file, Platform: GLNXA64"):
-        path = tmp_path / "run.mat"
-        path.write_bytes(content)
-        with pytest.raises(
-            DataError, match=r"version 7\.3 or another HDF5 .*save\(\.\.\., '-v7'\)"
-        ):
-            read_columns(path, {"x": "x"}, "t")

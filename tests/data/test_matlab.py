@@ -101,8 +101,8 @@ def test_numbers_of_rows_stand_for_lines(tmp_path: Path) -> None:
     savemat(path, {"t": np.array([0, 0.2, 0.1, 0.3]), "x": np.array([1, np.nan, 1, 1])})
     assert told(path, "x") == (
         "run.mat: 'x' is not finite in this row (row 2). Leave out the rows without a value.\n"
-        "run.mat: time goes back to 0.1, from 0.2 in row 2 (row 3). Sort the rows, split the "
-        "file here, or choose rows with `where`."
+        "run.mat: time goes back to 0.1, from 0.2 in row 2 (row 3). Sort the rows, in a "
+        "series by clean: [sort]; or split the file, or choose rows by `where`."
     )
 
 

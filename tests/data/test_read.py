@@ -11,7 +11,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
-from tracewire.data import Columns, read_columns
+from tracewire.data import Columns, read_columns, read_record
 from tracewire.errors import DataError, Place
 
 patient = settings(deadline=None)  # the first run may load scipy
@@ -264,13 +264,71 @@ def test_numbers_that_are_not_finite(write: Write) -> None:
 
 def test_time_that_does_not_increase(write: Write) -> None:
     path = write("t,x\n0,1\n0.1,1\n0.1,1\n0.05,1\n1,1\nnan,1\n0.5,1\n")
-    hint = "Sort the rows, split the file here, or choose rows with `where`."
+    sort = "Sort the rows, in a series by clean: [sort]; or split the file, or choose rows by"
+    once = "Keep one row for each time, in a series by clean: [{sort: {duplicates: first}}]."
     assert problems(path, {"x": "x"}, time="t") == [
-        (4, "time 0.1 stands twice, also in line 3. Keep one row for each time."),
-        (5, f"time goes back to 0.05, from 0.1 in line 4. {hint}"),
+        (4, f"time 0.1 stands twice, also in line 3. {once}"),
+        (5, "time goes back to 0.05, from 0.1 in line 4; the same in 1 more rows: line 8. "
+            f"{sort} `where`."),
         (7, "column 't' is not finite in this row. Leave out the rows without a value."),
-        (8, f"time goes back to 0.5, from 1.0 in line 6. {hint}"),
+    ]  # fmt: skip
+
+
+def test_hundreds_of_rows_out_of_order_are_two_problems(write: Write) -> None:
+    rows = [f"{t % 7},{t}" for t in range(700)] + ["6,0"] * 300
+    told = problems(write("t,x\n" + "\n".join(rows)), {"x": "x"}, time="t")
+    assert [line for line, _ in told] == [9, 702]
+    assert "the same in 98 more rows: line 16, 23, 30 and so on" in told[0][1]
+    assert "the same in 299 more rows: line 703, 704, 705 and so on" in told[1][1]
+
+
+@pytest.mark.parametrize(
+    ("cells", "times", "since"),
+    [
+        ("2024-03-12T12:00:00 2024-03-12T12:00:01.5", [0, 1.5], "2024-03-12T12:00:00"),
+        ("2024-02-28T23:59:59,25 2024-03-01", [0, 86400.75], "2024-02-28T23:59:59.250000"),
+        ("2024-03-12T13:00:00+01:00 2024-03-12T12:00:00.000000123Z", [0, 123e-9],
+         "2024-03-12T12:00:00Z"),
+        ("2024-03-12T12:00-0330 2024-03-12T15:31Z", [0, 60], "2024-03-12T15:30:00Z"),
+    ],
+)  # fmt: skip
+def test_dates_are_seconds_from_the_earliest(
+    cells: str, times: list[float], since: str, write: Write
+) -> None:
+    path = write("when;x\n" + "\n".join(f"{cell};1" for cell in cells.split()))
+    found = read_columns(path, {"x": "x"}, "when")
+    assert found.time.tolist() == pytest.approx(times, abs=1e-12)
+    assert found.since == since
+
+
+def test_dates_that_cannot_be_times(write: Write) -> None:
+    mixed = write("t,x\n2024-03-12T12:00:00,1\n1.5,2\n")
+    assert problems(mixed, {"x": "x"}) == [
+        (2, "column 't' has dates in some rows, and numbers in others. Write all times alike."),
     ]
+    zones = write("t,x\n2024-03-12T12:00:00Z,1\n2024-03-12T12:00:01,2\n")
+    assert problems(zones, {"x": "x"}) == [
+        (2, "column 't' has dates with a zone, and others without. Write all times alike."),
+    ]
+    wrong = write("t,x\n2024-02-28,1\n2024-02-30,2\n")
+    assert "'2024-02-30', which is not a number. A column of time has" in problems(
+        wrong, {"x": "x"}
+    )[0][1]  # fmt: skip
+    back = write("t,x\n2024-03-12T12:00:02,1\n2024-03-12T12:00:01,2\n")
+    assert "time goes back to 0, from 1 in line 2" in problems(back, {"x": "x"})[0][1]
+
+
+def test_a_date_is_a_number_of_no_signal(write: Write) -> None:
+    path = write("t,x\n0,2024-03-12\n1,2024-03-13\n")
+    assert "column 'x' is '2024-03-12', which is not a number" in problems(path, {"x": "x"})[0][1]
+
+
+def test_a_date_has_no_unit(write: Write) -> None:
+    path = write("when,x\n2024-03-12T12:00:00Z,1\n2024-03-12T12:00:01Z,2\n")
+    record = read_record(path, {"x": "x"}, "when")
+    assert record.steps == ("time: t = 0 is 2024-03-12T12:00:00Z, the earliest of the file",)
+    with pytest.raises(DataError, match="are dates, and the time is said to be in ms"):
+        read_record(path, {"x": "x"}, "when", time_unit="ms")
 
 
 def test_too_few_rows(write: Write) -> None:

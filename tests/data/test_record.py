@@ -76,11 +76,11 @@ def test_a_torque_in_newton_metres_is_no_number_of_metres(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("header", "options", "said"),
     [
-        ("t,angle [deg]", {"units": {"theta": "rad"}}, "'theta' is in 'rad' by the diagram, and in "
+        ("t,angle [deg]", {"units": {"theta": "rad"}}, "'theta' is declared in 'rad', and in "
          "'deg' by its header in 'run.csv'. Correct the one that is wrong."),
-        ("t,angle [m]", {"units": {"theta": "rad"}}, "'theta' is in 'rad' by the diagram, and in "
+        ("t,angle [m]", {"units": {"theta": "rad"}}, "'theta' is declared in 'rad', and in "
          "'m' by its header"),
-        ("t [s],angle", {"time_unit": "ms"}, "the time is in 'ms' by the diagram, and in 's' by"),
+        ("t [s],angle", {"time_unit": "ms"}, "the time is declared in 'ms', and in 's' by"),
         ("t [V],angle", {}, "the time of 'run.csv' is in 'V', which is no unit of time. Name the"),
     ],
 )  # fmt: skip
@@ -287,3 +287,35 @@ def test_a_filter_asks_for_equal_intervals_and_enough_samples() -> None:
     assert "a spline takes at least 5 samples" in refused(
         "differentiate", Record(T[:4], {"a": T[:4]}), signal="a", to="b"
     )
+
+
+# --- order --------------------------------------------------------------------------------------
+
+MIXED = Record(np.array([0.0, 2.0, 1.0, 2.0, 3.0]), {"a": np.array([1.0, 2.0, 3.0, 4.0, 5.0])})
+
+
+@pytest.mark.parametrize(
+    ("duplicates", "values"),
+    [("first", [1, 3, 2, 5]), ("last", [1, 3, 4, 5]), ("mean", [1, 3, 3, 5])],
+)
+def test_sort(duplicates: str, values: list[float]) -> None:
+    made = MIXED.clean("sort", {"duplicates": duplicates})
+    assert made.t.tolist() == [0, 1, 2, 3]
+    assert made.columns["a"].tolist() == values
+    assert made.steps == (
+        "sorted by time: 1 of 5 rows stood behind a later one",
+        f"1 of 5 rows repeat a time: of each the {duplicates} is kept, at t = 2 s",
+    )
+
+
+def test_rows_of_one_time_are_one_message() -> None:
+    assert "1 of 5 rows repeat a time of another row: t = 2 s. Say which row" in refused(
+        "sort", MIXED
+    )
+    many = Record(np.repeat(np.arange(100.0), 2), {"a": np.arange(200.0)})
+    assert "100 of 200 rows repeat a time of another row: t = 0, 1, 2, ... s." in refused(
+        "sort", many
+    )
+    same = Record(np.zeros(3), {"a": np.arange(3.0)})
+    assert "all rows have the same time" in refused("sort", same, duplicates="first")
+    assert "unknown word for 'duplicates' 'any'" in refused("sort", MIXED, duplicates="any")

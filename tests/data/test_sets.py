@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import gc
 import hashlib
-import importlib
+import sys
 import threading
 import warnings
 from collections.abc import Iterator
 from functools import partial
 from http.server import HTTPServer, SimpleHTTPRequestHandler
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
@@ -106,14 +105,7 @@ def test_no_network_is_told_with_what_to_do(
 def test_a_missing_package_is_named(
     package: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    find = importlib.import_module
-
-    def missing(name: str, *more: str) -> ModuleType:
-        if name == package:
-            raise ImportError(name)
-        return find(name, *more)
-
-    monkeypatch.setattr(importlib, "import_module", missing)
+    monkeypatch.setitem(sys.modules, package, None)
     needed = {
         "pooch": lambda: fetch(SMALL, SMALL.files[0], tmp_path),
         "openpyxl": lambda: SETS["falling_balls"].made["drops.csv"](tmp_path),

@@ -190,6 +190,21 @@ def test_every_key_of_a_series(file: Path) -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("clean", "options"),
+    [
+        ("sort", {}),
+        ("[sort]", {}),
+        ("[{sort: mean}]", {"duplicates": "mean"}),
+        ("[{sort: {duplicates: last}}]", {"duplicates": "last"}),
+    ],
+)
+def test_rows_may_be_sorted(clean: str, options: dict[str, str], file: Path) -> None:
+    text = f"  run: {{file: run.csv, time: t, signals: {{theta: angle}}, clean: {clean}}}"
+    (step,) = series_of(text, file).clean
+    assert (step.step, step.options) == ("sort", options)
+
+
 def test_a_file_without_a_column_of_time(file: Path) -> None:
     text = "  run: {file: run.csv, time: {every: {value: 10, unit: ms}}, signals: {theta: angle}}"
     assert series_of(text, file).time.every == pytest.approx(0.01)
@@ -270,6 +285,8 @@ def test_messages_on_channels(file: Path, given: str, message: str) -> None:
         ("{detrend: theta}", "'clean' must be a list of steps. Write it like [{resample:"),
         ("[detrend]", "a step of 'clean' has one name. Write a list like [{resample:"),
         ("[{detrend: theta, trim: 2}]", "a step of 'clean' has one name"),
+        ("[{detrend: theta}, sort]", "'sort' comes before all other steps. Write it as the first"),
+        ("[{sort: {duplicates: any}}]", "unknown word for 'duplicates' of 'sort' 'any'; there are"),
         ("[{detrnd: theta}]", "unknown step of 'clean' 'detrnd'; there are: calibrate, detrend,"),
         ("[{detrend: thet}]", "unknown measured signal 'thet'; there are: drive, theta. Did you"),
         ("[{detrend: omega}]", "unknown measured signal 'omega'; there are: drive, theta."),

@@ -328,6 +328,26 @@ def test_a_step_that_cannot_be_done_is_told_at_its_place(file: Path) -> None:
     )
 
 
+def test_rows_in_any_order_are_sorted(file: Path) -> None:
+    rows = CSV.splitlines()
+    mixed = "\n".join([rows[0], rows[3], rows[1], rows[4], rows[2]])
+    (file.parent / "run.csv").write_text(mixed, encoding="utf-8")
+    assert "run.csv:3: time goes back to 0, from 1 in line 2; the same in 1 more rows: line 5" in (
+        message(model_of(file, PLAIN))
+    )
+    (run,) = load_measured(model_of(file, PLAIN.replace("time: t", "clean: sort, time: t")))
+    assert run.t.tolist() == [0.0, 0.5, 1.0, 1.5]
+    assert run.values["theta"] == pytest.approx([0, math.pi / 2, math.pi, -math.pi / 2])
+    assert "sorted by time: 2 of 4 rows stood behind a later one" in run.steps
+
+
+def test_rows_of_one_time_are_refused_at_the_step(file: Path) -> None:
+    (file.parent / "run.csv").write_text(CSV + "1.0,170,3\n", encoding="utf-8")
+    said = message(model_of(file, PLAIN.replace("time: t", "clean: sort, time: t")))
+    assert "'sort' of series 'run': 1 of 5 rows repeat a time of another row: t = 1 s" in said
+    assert "Say which row of a time counts: sort: {duplicates: first}" in said
+
+
 @pytest.mark.parametrize(
     ("header", "theta", "text"),
     [
@@ -340,7 +360,7 @@ def test_a_step_that_cannot_be_done_is_told_at_its_place(file: Path) -> None:
         (
             "t,angle [rad],u",
             "{column: angle, unit: deg}",
-            "'theta' is in 'deg' by the diagram, and",
+            "'theta' is declared in 'deg', and",
         ),
     ],
 )

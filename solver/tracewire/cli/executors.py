@@ -10,6 +10,7 @@ from typing import Annotated, cast
 import typer
 
 from tracewire.errors import OptionError, Problem
+from tracewire.extras import import_extra
 
 SCHEME = "dask://"
 WAIT = 10  # s for the scheduler to answer
@@ -34,14 +35,9 @@ def executor_at(address: str) -> Iterator[Executor | None]:
         return
     if not address.startswith(SCHEME):
         raise OptionError([Problem(f"'{address}' is no executor", hint=ADDRESS)])
+    distributed = import_extra("distributed", "scale", "for dask", error=OptionError)
     try:
-        from distributed import Client
-    except ImportError as error:
-        what = "the package 'distributed' is not installed"
-        hint = "Install it: pip install 'tracewire[scale]'."
-        raise OptionError([Problem(what, hint=hint)]) from error
-    try:
-        client = Client("tcp://" + address.removeprefix(SCHEME), timeout=WAIT)
+        client = distributed.Client("tcp://" + address.removeprefix(SCHEME), timeout=WAIT)
     except (OSError, ValueError) as error:
         what = f"no dask scheduler answers at '{address}' ({error})"
         raise OptionError([Problem(what, hint=ADDRESS)]) from error

@@ -6,7 +6,6 @@ import os
 import stat
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Literal
 
 from tracewire.errors import DataError, Place, Problem, unknown
 
@@ -26,20 +25,17 @@ KINDS: tuple[tuple[bytes, str, str], ...] = (
     (b"Rar!", "a RAR archive", UNPACK),
     (b"\x93NUMPY", "an array of numpy (.npy)", "Write it with numpy.savetxt."),
     (b"SQLite format 3", "an SQLite database", "Export the table as CSV."),
-    (b"PAR1", "a Parquet table", "Export it as CSV."),
-    (b"TDSm", "a TDMS file of LabVIEW", "Export it as text."),
     (b"\x89PNG", "a picture", "Give the numbers as CSV."),
     (b"\xff\xd8\xff", "a picture", "Give the numbers as CSV."),
     (b"{\\rtf", "a text document (.rtf)", "Save it as plain text."),
 )
 IN_ZIP = (
-    (b"xl/", "an Excel workbook (.xlsx)", AS_CSV),
     (b"opendocument.spreadsheet", "a spreadsheet of OpenDocument (.ods)", AS_CSV),
     (b"word/", "a Word document (.docx)", "Give the numbers as CSV."),
     (b".npy", "an archive of numpy (.npz)", "Write the arrays with numpy.savetxt."),
 )
 MARKUP = (b"<html", b"<!doctype html", b"<?xml")
-HDF5, MATLAB = b"\x89HDF", b"MATLAB 5.0 MAT-file"
+ZIP, WORKBOOK = b"PK\x03\x04", b"xl/"
 
 
 def content_of(path: Path, place: Place) -> bytes:
@@ -65,16 +61,16 @@ def content_of(path: Path, place: Place) -> bytes:
     return content
 
 
-def kind_of(content: bytes, path: Path, place: Place) -> Literal["text", "matlab"]:
-    """Text or a .mat file; DataError with its name where the file is of another known kind."""
-    if content.startswith(MATLAB):
-        return "matlab"
+def is_workbook(content: bytes) -> bool:
+    """Whether a file is an Excel workbook (.xlsx)."""
+    return content.startswith(ZIP) and _in_zip(content, WORKBOOK)
+
+
+def refuse_other_kinds(content: bytes, path: Path, place: Place) -> None:
+    """Raise DataError with its name where the file is of a known kind that is not read."""
     head = content[:4096]
-    if content.startswith((HDF5, b"MATLAB 7.3")):
-        what = "is a MATLAB file of version 7.3 or another HDF5 file, which is not read"
-        raise _refused(place, path, what, "Save it in MATLAB with save(..., '-v7').")
-    if content.startswith(b"PK\x03\x04"):
-        known = (kind for kind in IN_ZIP if kind[0] in head or kind[0] in content[-65536:])
+    if content.startswith(ZIP):
+        known = (kind for kind in IN_ZIP if _in_zip(content, kind[0]))
         _, name, hint = next(known, (b"", "a zip archive", UNPACK))
         raise _other(place, path, name, hint)
     for mark, name, hint in KINDS:
@@ -85,7 +81,10 @@ def kind_of(content: bytes, path: Path, place: Place) -> Literal["text", "matlab
         raise _other(place, path, "a pickle of Python", hint)
     if head.lstrip(b"\xef\xbb\xbf \t\r\n").lower().startswith(MARKUP):
         raise _other(place, path, "a web page or XML, whatever its name says", AS_CSV)
-    return "matlab" if path.suffix.lower() == ".mat" and b"\0" in content else "text"
+
+
+def _in_zip(content: bytes, mark: bytes) -> bool:
+    return mark in content[:4096] or mark in content[-65536:]
 
 
 def text_of(content: bytes, path: Path) -> tuple[list[str], tuple[str, ...]]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import math
 from pathlib import Path
 
@@ -10,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.data.read import read_columns
-from tracewire.errors import DownloadError, Problem
+from tracewire.errors import DownloadError
+from tracewire.extras import import_extra
 
 SEGMENTS = (*(f"id[{n}]" for n in (1, 2, 3, 4)), *(f"vad[{n}]" for n in (1, 2)))
 LARGE, SMALL = 5, 50  # every fifth of 1 kHz, every fiftieth of 10 kHz: 200 Hz
@@ -52,12 +52,8 @@ def balls_dropped(folder: Path) -> str:
 
     The file ends in .xls and is an .xlsx. Raises DownloadError where openpyxl is missing.
     """
-    try:
-        openpyxl = importlib.import_module("openpyxl")
-    except ImportError as error:
-        what = "the package openpyxl is needed to read the workbook of the falling balls"
-        hint = "Install tracewire with it: pip install 'tracewire[data]'."
-        raise DownloadError([Problem(what, hint=hint)]) from error
+    purpose = "to read the workbook of the falling balls"
+    openpyxl = import_extra("openpyxl", "data", purpose, error=DownloadError)
     lines = [",".join(DROPS)]
     with (folder / "Ball_drops_data.xls").open("rb") as file:  # by its name it would be refused
         book = openpyxl.load_workbook(file, read_only=True, data_only=True)

@@ -1,4 +1,4 @@
-"""The columns of a MATLAB file (.mat, up to version 7): vectors, matrices, structs, cells."""
+"""The columns of a MATLAB file (.mat, of any version): vectors, matrices, structs, cells."""
 
 from __future__ import annotations
 
@@ -12,15 +12,9 @@ from typing import Any
 import numpy as np
 
 from tracewire.data.matfile import Cells, Damaged, Other, Structs, Value, variables_of
-from tracewire.data.request import (
-    Found,
-    Request,
-    Vector,
-    none_left,
-    problems_of,
-    raise_first,
-    too_few,
-)
+from tracewire.data.matlab_hdf5 import is_matlab_hdf5, variables_of_hdf5
+from tracewire.data.request import Found, Request, Vector
+from tracewire.data.vectors import found_of
 from tracewire.errors import DataError, Place, Problem, unknown
 
 MOST_LISTED = 200
@@ -45,27 +39,7 @@ def columns_of_matlab(content: bytes, path: Path, request: Request, place: Place
     if problems:
         raise DataError(list(dict.fromkeys(problems)))
     vectors = [column for column in columns if not isinstance(column, Problem)]
-    lengths = {name: len(v) for name, v in zip(request.names, vectors, strict=True)}
-    if len(set(lengths.values())) > 1:
-        what = f"the columns of '{file}' have different lengths"
-        exists = tuple(f"{name} ({count})" for name, count in lengths.items())
-        raise DataError.one(what, place, exists, "Name columns of one record.")
-    count = len(request.wanted)
-    rows = np.ones(len(vectors[0]), dtype=bool)
-    seen: list[list[str]] = []
-    for vector, wanted in zip(vectors[count:], request.where.values(), strict=True):
-        seen.append([f"{value:g}" for value in np.unique(vector[rows])])
-        rows &= vector == (wanted if isinstance(wanted, float) else np.nan)
-    if request.where and not rows.any():
-        raise none_left(request.where, seen, file, place)
-    if rows.sum() < 2:
-        raise too_few(int(rows.sum()), file)
-    chosen = [vector[rows] for vector in vectors[:count]]
-    names = [f"'{name}'" for name in request.wanted]
-    found = Found(chosen, [""] * count, names, np.zeros(int(rows.sum()), dtype=np.int64))
-    problems = problems_of(found, request.clock, file)
-    raise_first(problems, len(problems), file)
-    return found
+    return found_of(vectors, [""] * len(vectors), request, file, place)
 
 
 def names_in_matlab(content: bytes, path: Path, place: Place) -> list[str]:
@@ -76,6 +50,8 @@ def names_in_matlab(content: bytes, path: Path, place: Place) -> list[str]:
 def _variables(content: bytes, path: Path, place: Place) -> Mapping[str, Value]:
     """Every variable of the file by name."""
     try:
+        if is_matlab_hdf5(content):
+            return variables_of_hdf5(content, path, place)
         return _of_version_4(content) if 0 in content[:4] else variables_of(content)
     except Damaged as error:
         what = f"'{path}' cannot be read as a MATLAB file: {error}"

@@ -1,4 +1,4 @@
-"""Columns of a file, whatever its format: text (CSV and its relatives), or MATLAB's .mat."""
+"""Columns of a file, whatever its format, and the record in SI that they are."""
 
 from __future__ import annotations
 
@@ -11,11 +11,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.data.content import content_of, kind_of
-from tracewire.data.matlab import columns_of_matlab
+from tracewire.data.formats import opened
 from tracewire.data.record import Record
-from tracewire.data.request import Request, Vector
-from tracewire.data.text import columns_of_text
+from tracewire.data.request import Found, Request, Vector
 from tracewire.errors import DataError, FormulaError, OptionError, Place, Problem
 from tracewire.formula import Unit, read_unit, same_quantity
 
@@ -27,7 +25,8 @@ class Columns:
     time (N,), strictly increasing; values: name -> (N,); lines (N,), the line of each row in the
     file, from 1 (0 in a file without lines); file: the path as it was given. `units` has the text
     of the unit that the header gives to a series, `time_unit` that of time; `remarks` tell what is
-    odd about the file. The arrays are read-only.
+    odd about the file; `since` is the date at which the time is 0, where the file has dates. The
+    arrays are read-only.
     """
 
     time: Vector
@@ -37,6 +36,7 @@ class Columns:
     units: Mapping[str, str] = field(default_factory=dict)
     time_unit: str = ""
     remarks: tuple[str, ...] = ()
+    since: str = ""
 
 
 def read_columns(
@@ -50,12 +50,15 @@ def read_columns(
     decimal: str | None = None,
     every: float | None = None,
     where: Mapping[str, str | float] | None = None,
+    in_any_order: bool = False,
 ) -> Columns:
     """Read the named columns of a file.
 
     columns: name of the series -> the column's header, or its number from 1; in a .mat file the
-        name of a vector: `theta`, `data.theta`, `x_F[2]` (the second column of a matrix).
-    time: header or number of the column of time; the first column where None (of text).
+        name of a vector: `theta`, `data.theta`, `x_F[2]` (the second column of a matrix); in a file
+        with groups or sheets `group/theta`.
+    time: header or number of the column of time; the first column where None (of a table). Its
+        values are numbers, or dates as ISO 8601 writes them, which become s from the earliest on.
     delimiter, decimal: one character, " " for any blanks, and "." or ","; found from the first rows
         where None.
     comment: what a line to be left out starts with; "" for none. A comment right above the first
@@ -63,6 +66,7 @@ def read_columns(
     place: where the file is named, for the problems of the file as a whole.
     every: the interval between rows, of a file without a column of time; the first row is at 0.
     where: column -> the text or number that a row must have there; other rows are left out.
+    in_any_order: the time need not increase from row to row.
 
     A header is found exactly, or without a unit in brackets: "t" finds "t [s]" and "t (s)". Lines
     before the header that are no part of the table are left out, with a remark. Every number in the
@@ -74,9 +78,8 @@ def read_columns(
     file = str(path)
     place = place if str(place) else Place(file)
     _check_arguments(delimiter, decimal, every, place)
-    content = content_of(path, place)
-    is_text = kind_of(content, path, place) == "text"
-    if every is None and time is None and not is_text:
+    known, content = opened(path, place)
+    if every is None and time is None and not known.is_table:
         what = f"'{file}' has no first column that could be the time"
         raise DataError.one(what, place, hint="Name the column of time, or the interval of rows.")
     names = list(columns.values())
@@ -87,9 +90,16 @@ def read_columns(
         for name, wanted in (where or {}).items()
     }
     clock = len(names) - 1 if every is None else None
-    request = Request(tuple(names), clock, conditions, (delimiter, decimal), comment)
-    found = (columns_of_text if is_text else columns_of_matlab)(content, path, request, place)
-    series = dict(zip(columns, found.series, strict=False))  # the time may stand behind them
+    request = Request(tuple(names), clock, conditions, (delimiter, decimal), comment, in_any_order)
+    found = known.columns(content, path, request, place)
+    return columns_of(found, columns, file, every)
+
+
+def columns_of(
+    found: Found, columns: Mapping[str, str], file: str, every: float | None = None
+) -> Columns:
+    """What was found as the columns of a file; the time stands behind the others."""
+    series = dict(zip(columns, found.series, strict=False))
     return Columns(
         _fixed(np.arange(len(found.lines)) * every if every else found.series[-1]),
         {name: _fixed(values) for name, values in series.items()},
@@ -98,6 +108,7 @@ def read_columns(
         dict(zip(columns, found.units, strict=False)),
         "" if every else found.units[-1],
         found.remarks,
+        found.since,
     )
 
 
@@ -166,31 +177,54 @@ def read_record(
     comment: str = "#",
     every: float | None = None,
     where: Mapping[str, str | float] | None = None,
+    in_any_order: bool = False,
     place: Place = Place(),
 ) -> Record:
     """Read the named columns of a file as a record in SI.
+
+    units, time_unit, raw: see `record_of`. For the other arguments see `read_columns`; `every` is
+    in s. Raises DataError and FormulaError as these do.
+    """
+    read = read_columns(
+        path,
+        columns,
+        time,
+        delimiter,
+        comment,
+        place,
+        decimal=decimal,
+        every=every,
+        where=where,
+        in_any_order=in_any_order,
+    )
+    unit = "s" if every is not None else time_unit
+    return record_of(read, units or {}, unit, raw, place)
+
+
+def record_of(
+    read: Columns,
+    units: Mapping[str, str],
+    time_unit: str | None = None,
+    raw: Collection[str] = (),
+    place: Place = Place(),
+) -> Record:
+    """Columns as a record in SI.
 
     units: the unit of a column, by the name of its series. For the others, a unit that the header
         has in brackets counts, and this is told as a step; brackets that hold no unit are told as
         a remark.
     time_unit: the unit of time; without it that of the header, else s.
     raw: series whose numbers are taken as they are, without a unit: to be calibrated.
-    For the other arguments see `read_columns`; `every` is in s.
 
-    Raises DataError as `read_columns` does, and where a header says another unit than `units`;
-    FormulaError where what is given is no unit.
+    Raises DataError where a header says another unit than `units`, FormulaError where what is given
+    is no unit.
     """
-    read = read_columns(
-        path, columns, time, delimiter, comment, place, decimal=decimal, every=every, where=where
-    )
     place = place if str(place) else Place(read.file)
     said = _Said(read.file, place)
-    clock = Unit("s", 1.0)
-    if every is None:
-        clock = said.unit("the time", time_unit, read.time_unit, "s")
+    clock = said.clock(time_unit, read)
     used = {
-        name: said.unit(f"'{name}'", (units or {}).get(name), read.units[name])
-        for name in columns
+        name: said.unit(f"'{name}'", units.get(name), read.units[name])
+        for name in read.values
         if name not in raw
     }
     if said.problems:
@@ -214,6 +248,16 @@ class _Said:
         self.remarks: list[str] = []
         self.problems: list[Problem] = []
 
+    def clock(self, declared: str | None, read: Columns) -> Unit:
+        """The unit of the time; of dates it is s, from the earliest one on."""
+        if not read.since:
+            return self.unit("the time", declared, read.time_unit, "s")
+        self.steps.append(f"time: t = 0 is {read.since}, the earliest of the file")
+        if declared not in (None, "s"):
+            what = f"the times of '{read.file}' are dates, and the time is said to be in {declared}"
+            self.problems.append(Problem(what, self.place, hint="Leave out its unit."))
+        return Unit("s", 1.0)
+
     def unit(self, what: str, declared: str | None, header: str, default: str = "") -> Unit:
         """The unit of a column: as declared, else as its header says, else the default."""
         by_header = _unit_or_none(header) if header else None
@@ -231,7 +275,7 @@ class _Said:
         if by_header is not None and (
             by_header.factor != unit.factor or not same_quantity(header, text)
         ):
-            problem = f"{what} is in '{text}' by the diagram, and in '{header}' by its header"
+            problem = f"{what} is declared in '{text}', and in '{header}' by its header"
             hint = "Correct the one that is wrong."
             self.problems.append(Problem(f"{problem} in '{self.file}'", self.place, hint=hint))
         elif default and not same_quantity(text, default):

@@ -21,6 +21,7 @@ MOST_SAMPLES = 20_000_000
 UNIFORM = 0.01
 LEAST_FOR_SPLINE = 5
 MOST_ORDER = 20
+MOST_TOLD = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +64,36 @@ class Record:
         named = {known[name].argument or name: value for name, value in options.items()}
         made: Record = getattr(self, step)(**named)
         return made
+
+    def sort(self, duplicates: str = "") -> Record:
+        """The rows in the order of time.
+
+        duplicates: of rows of one time the `first` in the file is kept, the `last`, or their
+        `mean`. Without it, rows of one time raise OptionError.
+        """
+        if duplicates not in ("", *(words := STEPS["sort"]["duplicates"].words)):
+            raise OptionError([unknown("word for 'duplicates'", duplicates, words)])
+        order = np.argsort(self.t, kind="stable")
+        behind = int(np.sum(self.t < np.maximum.accumulate(self.t)))
+        moved = f"sorted by time: {behind} of {len(self.t)} rows stood behind a later one"
+        times, begins, counts = np.unique(self.t[order], return_index=True, return_counts=True)
+        record = self._rows(order)
+        if len(times) == len(order):
+            return record._told(moved)
+        twice = ", ".join(f"{t:.9g}" for t in times[counts > 1][:MOST_TOLD])
+        twice += ", ..." if np.sum(counts > 1) > MOST_TOLD else ""
+        some = f"{len(order) - len(times)} of {len(order)} rows repeat a time"
+        if not duplicates:
+            hint = "Say which row of a time counts: sort: {duplicates: first}, or last, or mean."
+            raise OptionError.one(f"{some} of another row: t = {twice} s", hint=hint)
+        if len(times) < 2:
+            raise OptionError.one("all rows have the same time", hint="Name the column of time.")
+        if duplicates == "mean":
+            means = {n: np.add.reduceat(y, begins) / counts for n, y in record.columns.items()}
+            kept = replace(record, t=times, columns=means)
+        else:
+            kept = record._rows(begins if duplicates == "first" else begins + counts - 1)
+        return kept._told(moved, f"{some}: of each the {duplicates} is kept, at t = {twice} s")
 
     def trim(self, begin: float = -math.inf, end: float = math.inf) -> Record:
         """Only the samples with begin <= t <= end (s)."""

@@ -13,19 +13,22 @@ from tracewire.errors import DataError, Place, Problem
 Vector = NDArray[np.float64]
 MOST_PROBLEMS = 10
 NO_ROWS = "A series needs at least two rows of numbers."
-SORT = "Sort the rows, split the file here, or choose rows with `where`."
+SORT = "Sort the rows, in a series by clean: [sort]; or split the file, or choose rows by `where`."
+ONCE = "Keep one row for each time, in a series by clean: [{sort: {duplicates: first}}]."
+MOST_SHOWN = 3
 NO_VALUE = "Leave out the rows without a value."
 
 
 class Request(NamedTuple):
     """The wanted columns, which of them is the time, the values that other columns of a row must
-    have, and the dialect."""
+    have, the dialect, and whether the rows may stand in any order."""
 
     wanted: tuple[str, ...]
     clock: int | None
     where: Mapping[str, str | float]
     dialect: tuple[str | None, str | None] = (None, None)
     comment: str = "#"
+    in_any_order: bool = False
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -35,23 +38,25 @@ class Request(NamedTuple):
 
 class Found(NamedTuple):
     """The wanted columns (N,), units and names as the file gives them; lines (N,), 0: a row's
-    number is all there is to say where it stands; and what is odd about the file."""
+    number is all there is to say where it stands; what is odd about the file; and the date at
+    which the time is 0, where the times are dates."""
 
     series: Sequence[Vector]
     units: Sequence[str]
     names: Sequence[str]
     lines: NDArray[np.int64]
     remarks: tuple[str, ...] = ()
+    since: str = ""
 
 
-def problems_of(found: Found, clock: int | None, file: str) -> list[Problem]:
-    """What is wrong: numbers that are not finite, a time (column `clock`) that goes back."""
+def problems_of(found: Found, request: Request, file: str) -> list[Problem]:
+    """What is wrong: numbers that are not finite, a time that goes back or stands twice."""
     problems: list[Problem] = []
 
-    def note(row: int, what: str, hint: str) -> None:
+    def note(row: int, what: str, hint: str, more: str = "") -> None:
         line = int(found.lines[row])
         where = "" if line else f" (row {row + 1})"
-        problems.append(Problem(what + where, Place(file, line), hint=hint))
+        problems.append(Problem(what + where + more, Place(file, line), hint=hint))
 
     told = set()
     for name, series in zip(found.names, found.series, strict=True):
@@ -60,8 +65,8 @@ def problems_of(found: Found, clock: int | None, file: str) -> list[Problem]:
             told.add(name)
             rows = f"{bad.size} rows, first here" if bad.size > 1 else "this row"
             note(int(bad[0]), f"{name} is not finite in {rows}", NO_VALUE)
-    if clock is not None:
-        _check_time(found, clock, note)
+    if request.clock is not None and not request.in_any_order:
+        _check_time(found, request.clock, note)
     return problems
 
 
@@ -74,19 +79,34 @@ def raise_first(problems: Sequence[Problem], count: int, file: str) -> None:
         raise DataError(told)
 
 
-def _check_time(found: Found, clock: int, note: Callable[[int, str, str], None]) -> None:
+def _check_time(found: Found, clock: int, note: Callable[[int, str, str, str], None]) -> None:
+    """Note the rows that go back in time, and those whose time stands twice: a problem each."""
     time = found.series[clock]
     rows = np.flatnonzero(np.isfinite(time))
     time = time[rows]
-    for i in np.flatnonzero(time[1:] <= time[:-1]):
-        before, now, line = float(time[i]), float(time[i + 1]), int(found.lines[rows[i]])
-        where = f"line {line}" if line else f"row {rows[i] + 1}"
-        if now == before:
-            what = f"time {now} stands twice, also in {where}"
-            note(int(rows[i + 1]), what, "Keep one row for each time.")
-        else:
-            what = f"time goes back to {now}, from {before} in {where}"
-            note(int(rows[i + 1]), what, SORT)
+
+    def where(at: int) -> str:
+        line = int(found.lines[rows[at]])
+        return f"line {line}" if line else f"row {rows[at] + 1}"
+
+    def others(at: NDArray[np.intp]) -> str:
+        if len(at) < 2:
+            return ""
+        kind = where(at[1]).partition(" ")[0]
+        shown = ", ".join(where(i).partition(" ")[2] for i in at[1 : 1 + MOST_SHOWN])
+        more = " and so on" if len(at) > 1 + MOST_SHOWN else ""
+        return f"; the same in {len(at) - 1} more rows: {kind} {shown}{more}"
+
+    back = np.flatnonzero(time[1:] < time[:-1])
+    if len(back):
+        i = int(back[0])
+        what = f"time goes back to {time[i + 1]:.12g}, from {time[i]:.12g} in {where(i)}"
+        note(int(rows[i + 1]), what, SORT, others(back + 1))
+    twice = np.flatnonzero(time[1:] == time[:-1])
+    if len(twice):
+        i = int(twice[0])
+        what = f"time {time[i]:.12g} stands twice, also in {where(i)}"
+        note(int(rows[i + 1]), what, ONCE, others(twice + 1))
 
 
 def too_few(count: int, file: str) -> DataError:

@@ -6,12 +6,12 @@
 from __future__ import annotations
 
 import hashlib
-import importlib
 from collections.abc import Callable
 from pathlib import Path
 
 from tracewire.data.index import RAW, SETS, DataSet, Upstream
 from tracewire.errors import DownloadError, OptionError, Place, Problem, unknown
+from tracewire.extras import import_extra
 from tracewire.files import write_file
 from tracewire.shipped import shipped
 
@@ -68,12 +68,9 @@ def fetch(
         return
     address = chosen.address(file, base)
     tell(f"fetching {address}")
-    try:
-        pooch = importlib.import_module("pooch")
-    except ImportError as error:
-        what = "the package pooch is needed to fetch files"
-        hint = f"Install tracewire with it: pip install 'tracewire[data]'. {_by_hand(path)}"
-        raise DownloadError([Problem(what, exists=(), hint=hint)]) from error
+    pooch = import_extra(
+        "pooch", "data", "to fetch files", error=DownloadError, otherwise=_by_hand(path)
+    )
     pooch.get_logger().setLevel("ERROR")  # what is fetched has been told
     try:
         pooch.retrieve(address, f"sha256:{file.sha256}", fname=file.name, path=folder)

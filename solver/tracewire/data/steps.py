@@ -1,4 +1,7 @@
-"""The steps of cleaning by name, and the options that each takes in a diagram."""
+"""The steps of cleaning by name, and the options that each takes in a diagram.
+
+`sort` is the first of a list, where it is one: every other step takes rows in the order of time.
+"""
 
 from __future__ import annotations
 
@@ -27,6 +30,7 @@ class Option:
 SIGNAL, SIGNALS = Option("signal", required=True), Option("signals", required=True)
 NUMBER, COUNT = Option("number"), Option("count")
 STEPS: Mapping[str, Mapping[str, Option]] = {
+    "sort": {"duplicates": Option("word", words=("first", "last", "mean"))},
     "trim": {"from": Option("time", argument="begin"), "to": Option("time", argument="end")},
     "outliers": {"signals": SIGNALS, "width": COUNT, "limit": NUMBER},
     "resample": {

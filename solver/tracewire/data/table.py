@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import csv
+import difflib
 import itertools
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence, Set
 from typing import NamedTuple
 
-from tracewire.errors import FormulaError
+from tracewire.data.dates import read_date
+from tracewire.errors import FormulaError, Place, Problem, unknown
 from tracewire.formula import read_unit
 
 SAMPLE = 200
@@ -60,6 +62,11 @@ def number(cell: str, decimal: str = ".") -> float | None:
         return None
 
 
+def is_value(cell: str, decimal: str = ".") -> bool:
+    """Whether a cell holds a number or a date, and so is no name of a column."""
+    return number(cell, decimal) is not None or read_date(cell) is not None
+
+
 def rows_of(lines: Sequence[str], delimiter: str, comment: str, first: int = 1) -> Iterator[Row]:
     """The rows from line `first` on, without empty lines and those that start with `comment`.
 
@@ -94,7 +101,7 @@ def sniff(
         sample = itertools.islice(rows_of(lines, dialect.delimiter, comment), SAMPLE)
         shapes: dict[int, list[int]] = {}
         for row in sample:
-            count = sum(number(cell, dialect.decimal) is not None for cell in row.cells)
+            count = sum(is_value(cell, dialect.decimal) for cell in row.cells)
             if len(row.cells) > 1:
                 shapes.setdefault(len(row.cells), []).append(count)
         return max(
@@ -119,7 +126,7 @@ def layout_of(
     is not taken for names. A row of units may follow it.
     """
     head = list(itertools.islice(rows_of(lines, dialect.delimiter, comment), SAMPLE))
-    numeric = [[number(cell, dialect.decimal) is not None for cell in row.cells] for row in head]
+    numeric = [[is_value(cell, dialect.decimal) for cell in row.cells] for row in head]
     full = [
         any(found) and all(found[i] or not cell for i, cell in enumerate(row.cells))
         for row, found in zip(head, numeric, strict=True)
@@ -228,6 +235,17 @@ def matches(name: str, header: Sequence[str]) -> list[int]:
     """The columns (from 0) of this name: exactly, or else without a unit in brackets."""
     exact = [i for i, cell in enumerate(header) if cell == name]
     return exact or [i for i, cell in enumerate(header) if split_unit(cell)[0] == name]
+
+
+def unknown_column(want: str, names: Sequence[str], place: Place, file: str) -> Problem:
+    """The problem of a column that is not there; the names are `theta [deg]`, `run 1/theta`."""
+    problem = unknown("column", want, names, place)
+    hint = problem.hint
+    if not hint:  # the name itself may be near, without its unit and the group that it is in
+        bare = {split_unit(name)[0].rpartition("/")[2]: split_unit(name)[0] for name in names}
+        near = difflib.get_close_matches(want.rpartition("/")[2], bare, n=1)
+        hint = f"Did you mean '{bare[near[0]]}'?" if near else ""
+    return Problem(f"{problem.what} in '{file}'", place, problem.exists, hint)
 
 
 def split_unit(name: str) -> tuple[str, str]:

@@ -11,6 +11,7 @@ from typing import cast
 import numpy as np
 
 from tracewire.data.content import text_of
+from tracewire.data.dates import Instant, read_date, seconds_since_first
 from tracewire.data.request import (
     MOST_PROBLEMS,
     NO_ROWS,
@@ -32,12 +33,16 @@ from tracewire.data.table import (
     rows_of,
     sniff,
     split_unit,
+    unknown_column,
 )
-from tracewire.errors import DataError, Place, Problem, unknown
+from tracewire.errors import DataError, Place, Problem
 
 DECIMAL_COMMA = "Is it a decimal comma? Write 1.5, and not 1,5."
 REPAIR = "Repair or remove this line."
 THOUSANDS = "Write large numbers without marks between the thousands, as in 1234.5."
+CLOCK_TIME = (
+    "A column of time has seconds, or dates as ISO 8601 writes them: 2024-03-12T12:00:01.5+01:00."
+)
 HINTS = (
     (r"", NO_VALUE),
     (r"[+-]?\d+,\d+(e[+-]?\d+)?", DECIMAL_COMMA),
@@ -45,10 +50,10 @@ HINTS = (
     (r"[+-]?\d*\.?\d*[dD][+-]?\d+", "Write exponents with e, as in 1e-3."),
     (
         r"(\d{1,4}[-./]\d{1,2}[-./]\d{1,4})?[ T]?\d{1,2}:\d{2}(:\d{2}([.,]\d*)?)?( ?[AaPp][Mm])?Z?",
-        "It is a clock time or a date: write the time in seconds from the begin.",
+        CLOCK_TIME,
     ),
     (r"[\u2212\u2013].*", "Its minus is another character than '-': replace it in the file."),
-    (r"\d{1,4}[-./]\d{1,2}[-./]\d{1,4}", "It is a date: write the time in seconds."),
+    (r"\d{1,4}[-./]\d{1,2}[-./]\d{1,4}", CLOCK_TIME),
     (
         r"-+|\*+|#+.*|\?+|[+-]?(OVLD|OVFL|OVERFLOW|OVER|OVL|OL|OFL|UNDER|ERR(OR)?|N/?A|NULL|NONE)",
         f"It marks a value that the instrument did not have. {NO_VALUE}",
@@ -63,8 +68,13 @@ AMBIGUOUS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")
 
 def columns_of_text(content: bytes, path: Path, request: Request, place: Place) -> Found:
     """The wanted columns of a text file; DataError with up to ten problems, each with its line."""
-    file = str(path)
     lines, odd = text_of(content, path)
+    found = columns_of_lines(lines, str(path), request, place)
+    return found._replace(remarks=(*odd, *found.remarks))
+
+
+def columns_of_lines(lines: Sequence[str], file: str, request: Request, place: Place) -> Found:
+    """The wanted columns of the lines of a table; raises as `columns_of_text` does."""
     given = request.dialect
     dialect = sniff(lines, request.comment, *given) if None in given else Dialect(*map(str, given))
     if next(rows_of(lines, dialect.delimiter, request.comment), None) is None:
@@ -78,20 +88,23 @@ def columns_of_text(content: bytes, path: Path, request: Request, place: Place) 
     reading = _Reading(file, dialect, layout, sorted(set(found[: len(request.wanted)])))
     reading.conditions = dict(zip(filters, request.where.values(), strict=True))
     reading.guess = request.dialect[1] is None
+    reading.clock = None if request.clock is None else found[request.clock]
     reading.take(rows_of(lines, dialect.delimiter, request.comment, layout.first))
     columns = found[: len(request.wanted)]
+    since = reading.from_dates()
     read = Found(
         [np.array(reading.series[column]) for column in columns],
         [_unit_of(layout, column) for column in columns],
         [reading.name(column) for column in columns],
         np.array(reading.lines, dtype=np.int64),
+        since=since,
     )
-    reading.finish(problems_of(read, request.clock, file))
+    reading.finish(problems_of(read, request, file))
     if request.where and not reading.lines:
         raise none_left(request.where, reading.seen, file, place)
     if len(reading.lines) < 2:
         raise too_few(len(reading.lines), file)
-    remarks = list(odd)
+    remarks = []
     if layout.left_out:
         some = "one line" if layout.left_out == 1 else f"{layout.left_out} lines"
         remarks.append(f"{some} before the table left out, as no part of it")
@@ -131,8 +144,7 @@ def _find(want: str, layout: Layout, place: Place, file: str) -> int | Problem:
     if not names:
         what = f"'{file}' has no header, so there is no column '{want}'"
         return Problem(what, place, hint=f"Give a number from 1 to {width}.")
-    problem = unknown("column", want, names, place)
-    return Problem(f"{problem.what} in '{file}'", place, problem.exists, problem.hint)
+    return unknown_column(want, names, place, file)
 
 
 class _Reading:
@@ -142,7 +154,9 @@ class _Reading:
         self.file, self.dialect, self.layout = file, dialect, layout
         self.width, self.names = layout.width, layout.names
         self.lines = array("q")
-        self.series = {column: array("d") for column in used}
+        self.series: dict[int, array[float]] = {column: array("d") for column in used}
+        self.clock: int | None = None
+        self.dates: list[Instant] = []
         self.conditions: Mapping[int, str | float] = {}
         self.seen: list[dict[str, None]] = []
         self.guess, self.commas, self.ambiguous = True, 0, ""
@@ -163,14 +177,37 @@ class _Reading:
                 self._note_width(row)
             elif self._is_chosen(cells):
                 numbers = [number(cells[column], decimal) for column in self.series]
+                date = self._date(cells, numbers) if None in numbers else None
                 if None in numbers:
                     self._note_cells(row, numbers)
                     continue
+                if date is not None:
+                    self.dates.append(date)
                 if decimal == ",":
                     self._look_at_commas(row, cells)
                 self.lines.append(row.line)
                 for kept, value in zip(self.series.values(), numbers, strict=True):
                     kept.append(cast(float, value))
+
+    def from_dates(self) -> str:
+        """Put seconds in the place of dates; the date at which they are 0, or ''."""
+        if not self.dates:
+            return ""
+        assert self.clock is not None
+        zones = {date.has_zone for date in self.dates}
+        if len(self.dates) < len(self.lines):
+            what = f"{self.name(self.clock)} has dates in some rows, and numbers in others"
+            self._note(self.lines[0], what, "Write all times alike.")
+        elif len(zones) > 1:
+            what = f"{self.name(self.clock)} has dates with a zone, and others without"
+            self._note(self.lines[0], what, "Write all times alike.")
+        else:
+            instants = np.array([date.nanoseconds for date in self.dates], dtype=np.int64)
+            seconds, since = seconds_since_first(instants, zones.pop())
+            self.series[self.clock] = array("d", seconds)
+            return since
+        self.series[self.clock] = array("d", range(len(self.lines)))  # one problem is enough
+        return ""
 
     def finish(self, problems: Sequence[Problem]) -> None:
         """Raise what was noted and `problems`, in the order of the lines."""
@@ -183,6 +220,16 @@ class _Reading:
 
     def name(self, column: int) -> str:
         return f"column '{self.names[column]}'" if self.names else f"column {column + 1}"
+
+    def _date(self, cells: Sequence[str], numbers: list[float | None]) -> Instant | None:
+        """The date in the column of time, for which 0 is put into its place among the numbers."""
+        at = None if self.clock is None else list(self.series).index(self.clock)
+        if at is None or self.clock is None or numbers[at] is not None:
+            return None
+        date = read_date(cells[self.clock])
+        if date is not None:
+            numbers[at] = 0.0
+        return date
 
     def _is_chosen(self, cells: Sequence[str]) -> bool:
         for seen, (column, wanted) in zip(self.seen, self.conditions.items(), strict=True):

@@ -24,13 +24,23 @@ def read_clean(
     inputs: Mapping[str, Channel],
 ) -> tuple[Cleaning, ...]:
     """The steps in their order. A signal that a step makes is added to the channels."""
-    if not isinstance(node, Items):
+    if not isinstance(node, Items) and not _is_bare(node):
         hint = f"Write it like {EXAMPLE}."
         body.problems.add("'clean' must be a list of steps", body.place(node), (), hint)
         return ()
     reader = _Reader(body, diagram, channels, inputs)
-    found = [reader.step(item) for item in node.items]
-    return tuple(step for step in found if step is not None)
+    items = node.items if isinstance(node, Items) else [node]
+    found = [step for item in items if (step := reader.step(item)) is not None]
+    for step in found[1:]:
+        if step.step == "sort":
+            hint = "Write it as the first step."
+            body.problems.add("'sort' comes before all other steps", step.place, (), hint)
+    return tuple(found)
+
+
+def _is_bare(node: Node) -> bool:
+    """Whether a step is its name alone, which says something of this one only."""
+    return isinstance(node, Scalar) and node.text == "sort"
 
 
 class _Reader:
@@ -47,6 +57,8 @@ class _Reader:
 
     def step(self, node: Node) -> Cleaning | None:
         body = self.body
+        if isinstance(node, Scalar) and _is_bare(node):
+            return Cleaning(node.text, {}, body.place(node))
         if not isinstance(node, Entries) or len(node.keys) != 1:
             hint = f"Write a list like {EXAMPLE}."
             body.problems.add("a step of 'clean' has one name", body.place(node), (), hint)

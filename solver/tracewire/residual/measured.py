@@ -6,17 +6,18 @@ import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model, compile
 from tracewire.data import STEPS, Record, read_record
-from tracewire.diagram import Channel, Diagram, Series
+from tracewire.diagram import Channel, Cleaning, Diagram, Hold, Series, Use
 from tracewire.errors import DataError, OptionError, Place, Problem, TracewireError
 from tracewire.formula import evaluate
 from tracewire.library import SENSOR_TERMS
+from tracewire.residual.arrays import ArrayCheck, fields_of_frame
 from tracewire.residual.inputs import between_samples
 from tracewire.residual.remarks import check_quantities, remarks_on
 from tracewire.residual.sensor import PLAIN, Sensor, read_sensor
@@ -42,6 +43,9 @@ class Measured:
     series, `free` the bounds of those that a fit may change. `series` is its name in the diagram,
     which is not `name` where it has several windows. `steps` tells what was done to the data since
     they were read, `remarks` what is odd about them.
+
+    Arrays may be lists, or columns of a frame. Raises DataError: a length that differs from that of
+    `t`, a value that is not finite, a time that does not increase, an unknown signal.
     """
 
     name: str
@@ -65,6 +69,54 @@ class Measured:
     remarks: tuple[str, ...] = ()
     drift_from: float | None = None
     input_sigma: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        check = ArrayCheck(self.name)
+        t = check.time(self.t)
+        given = {
+            "t": t,
+            "values": check.values(self.values, t),
+            "inputs": check.inputs(self.inputs),
+        }
+        for of in ("sigma", "sensors", "periods", "weights"):
+            check.names(of, "signal", getattr(self, of), self.values)
+        check.names("input_sigma", "input", self.input_sigma, self.inputs)
+        check.finish()
+        for name, value in given.items():
+            object.__setattr__(self, name, value)
+
+    @classmethod
+    def from_frame(
+        cls,
+        frame: Any,
+        signals: Iterable[str] | Mapping[str, str],
+        *,
+        inputs: Iterable[str] | Mapping[str, str] = (),
+        time: str | None = None,
+        units: Mapping[str, str] | None = None,
+        sigma: Mapping[str, float] | None = None,
+        hold: Mapping[str, Hold] | None = None,
+        start: Mapping[str, float | None] | None = None,
+        use: Use = "train",
+        name: str = "frame",
+    ) -> Measured:
+        """A series from a frame of pandas, polars or pyarrow, or a mapping of names to arrays.
+
+        `signals` and `inputs` name columns that are called as in the diagram, or map the name in
+        the diagram to the column: `{"theta": "angle"}` finds `angle` and `angle [deg]`. `time` is
+        the column of time, of numbers or of dates; the first column, or the index, unless given.
+        `units` are those of columns whose name does not say it, by signal; values become SI.
+        `sigma` is the standard deviation of the noise of a signal or an input, in the unit of its
+        column; `hold` how an input acts between its samples: previous, linear or smooth. `start`
+        has start values of states in SI, None where free.
+
+        Raises DataError: a column that does not exist, a value that is missing, rows that are not
+        in the order of time, a unit of another quantity.
+        """
+        fields = fields_of_frame(
+            frame, signals, inputs, time, units or {}, sigma or {}, hold or {}, use, name
+        )
+        return cls(start=start or {}, **fields)
 
     @property
     def zero(self) -> float:
@@ -135,8 +187,9 @@ def load_measured(
 def _load(
     model: Model, series: Series, uses: Collection[str], parameters: Mapping[str, float]
 ) -> list[Measured]:
-    read = _read(series)
-    record = _cleaned(series, read)
+    first = series.clean[: int(_is_sorted(series))]
+    read = _cleaned(series, _read(series), first)
+    record = _cleaned(series, read, series.clean[len(first) :])
     check_quantities(model, series, record)
     _check_size(series, record)
     if not series.windows:
@@ -263,8 +316,14 @@ def _read(series: Series) -> Record:
         comment=form.comment,
         every=clock.every,
         where=series.where,
+        in_any_order=_is_sorted(series),
         place=series.place,
     )
+
+
+def _is_sorted(series: Series) -> bool:
+    """Whether the rows are put in the order of time, which is the first step where it is one."""
+    return any(step.step == "sort" for step in series.clean)
 
 
 def _columns(series: Series) -> dict[str, Channel]:
@@ -273,10 +332,10 @@ def _columns(series: Series) -> dict[str, Channel]:
     return {n: c for n, c in {**series.channels, **inputs}.items() if c.column}
 
 
-def _cleaned(series: Series, record: Record) -> Record:
-    """The record after the steps of `clean`."""
+def _cleaned(series: Series, record: Record, steps: Sequence[Cleaning]) -> Record:
+    """The record after some steps of `clean`."""
     channels = _columns(series)
-    for step in series.clean:
+    for step in steps:
         options: dict[str, object] = dict(step.options)
         try:
             if step.step == "calibrate":

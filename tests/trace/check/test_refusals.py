@@ -76,15 +76,6 @@ def test_constant() -> None:
     assert "noise" not in text
 
 
-def test_all_nan_and_some() -> None:
-    assert "'theta' of 'run' is not finite in all samples. Leave these rows" in refused(
-        theta(np.nan * T)
-    )
-    assert "'theta' of 'run' is not finite in 1 of 600 samples" in refused(
-        theta(np.where(T[7] == T, np.inf, np.cos(T)))
-    )
-
-
 def test_noise_alone() -> None:
     message = "the series 'run' shows nothing above the noise of 'theta'. Nothing moves in it"
     assert message in refused(theta(0.3 + 1e-3 * NOISE[0]))
@@ -109,18 +100,9 @@ def test_a_channel_that_is_noise_in_every_series() -> None:
     )
 
 
-def test_columns_of_other_lengths_and_times_that_go_back() -> None:
-    text = refused(theta(np.cos(T[:-1])), theta(np.cos(T), t=T[::-1]))
-    assert "'theta' of 'run' has 599 samples, and the time 600. Give one value" in text
-    assert "the time of 'run' does not increase. Sort the rows." in text
-
-
 def test_inputs_of_another_time() -> None:
     text = refused(theta(np.cos(3 * T), inputs={"u": (T + 100, np.sin(T))}))
     assert "the input 'u' of 'run' is known from 100 to 105.99 s, and its signals are mea" in text
-    assert "the input 'u' of 'run' is not a finite value for each time" in refused(
-        theta(np.cos(3 * T), inputs={"u": (T, np.nan * T)})
-    )
 
 
 @pytest.mark.parametrize(

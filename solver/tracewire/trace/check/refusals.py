@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,15 +27,15 @@ FACTORS = {
 def check_series(model: Model, measured: Sequence[Measured], options: CheckOptions) -> None:
     """Refuse series that nothing can be traced in.
 
-    Raises DataError with all that is wrong: no series to train on, times or values that are no
-    numbers, series that are too short, constant or nothing but noise, inputs that are not known
+    Raises DataError with all that is wrong: no series to train on, no signals, series that are too
+    short, constant or nothing but noise, inputs that are not known
     over the whole series, a signal and its measured rate in units that do not belong together.
     """
     if not any(m.use == "train" for m in measured):
         given = ", ".join(f"{m.name} ({m.use})" for m in measured)
         what = "no series is for training" + (f": {given}" if given else "")
         raise DataError.one(what, hint="Give one `use: train`, or name one with --train.")
-    problems = [problem for m in measured for problem in _broken(m)]
+    problems = [problem for m in measured for problem in _empty(m)]
     if problems:
         raise DataError(problems)
     for m in measured:
@@ -60,30 +60,9 @@ def remarks(measured: Sequence[Measured], options: CheckOptions) -> tuple[str, .
     return tuple(dict.fromkeys(found))
 
 
-def _broken(m: Measured) -> Iterator[Problem]:
-    """What is no record at all."""
-    columns: Mapping[str, Vector] = {
-        "the time": m.t,
-        **{f"'{name}'": values for name, values in m.values.items()},
-    }
+def _empty(m: Measured) -> Iterator[Problem]:
     if not m.values:
         yield Problem(f"the series '{m.name}' measures nothing", hint="Name a signal.")
-    for name, column in columns.items():
-        if len(column) != len(m.t):
-            what = f"{name} of '{m.name}' has {len(column)} samples, and the time {len(m.t)}"
-            yield Problem(what, hint="Give one value for each time.")
-            continue
-        bad = int(np.sum(~np.isfinite(column)))
-        if bad:
-            some = "all samples" if bad == len(column) else f"{bad} of {len(column)} samples"
-            what = f"{name} of '{m.name}' is not finite in {some}"
-            yield Problem(what, hint="Leave these rows out.")
-    if np.all(np.isfinite(m.t)) and np.any(np.diff(m.t) <= 0):
-        yield Problem(f"the time of '{m.name}' does not increase", hint="Sort the rows.")
-    for name, (t, values) in m.inputs.items():
-        if len(t) != len(values) or not (np.all(np.isfinite(t)) and np.all(np.isfinite(values))):
-            what = f"the input '{name}' of '{m.name}' is not a finite value for each time"
-            yield Problem(what, hint="Leave these rows out.")
 
 
 def _short(m: Measured, least: int) -> Iterator[Problem]:
