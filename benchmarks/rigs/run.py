@@ -93,7 +93,7 @@ def trace_one(file: Path) -> Row:
     row: Row = {"rig": file.stem}
     began = time.perf_counter()
     try:
-        row["answer"] = tw.trace(tw.compile(tw.read(file))).as_json()
+        row["answer"] = tw.trace(tw.compile(tw.read(file))).json()
     except tw.TracewireError as error:
         row["error"] = f"message: {error}"
     except Exception as error:  # a crash is one line of the table, not its end

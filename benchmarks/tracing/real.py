@@ -94,7 +94,7 @@ def trace_one(name: str, shared: Path) -> Row:
         home = lay_out(name.partition("/")[0], Path(folder), shared)
         began = time.perf_counter()
         try:
-            row["answer"] = tw.trace(tw.compile(tw.read(home.parent / name))).as_json()
+            row["answer"] = tw.trace(tw.compile(tw.read(home.parent / name))).json()
         except tw.TracewireError as error:
             row["error"] = f"message: {error}"
         except Exception as error:  # a crash is one line of the table, not its end

@@ -49,7 +49,7 @@ def work(case: Case, folder: Path, other_units: bool = False) -> Row:
     try:
         model = tw.compile(tw.read(path))
         found = tw.trace(model)
-        row["answer"] = found.as_json()
+        row["answer"] = found.json()
     except tw.TracewireError as error:
         row["answer"] = {"verdict": "message", "error": str(error)}
     except Exception as error:
@@ -119,7 +119,7 @@ def _free_runs(
             for name, shown in given["shown"].items():
                 y = np.asarray(run[name])
                 if which == "after":
-                    y = _shown(found.as_json()["effects"], name, t[rows], y)
+                    y = _shown(found.json()["effects"], name, t[rows], y)
                 squares.append(((y - np.array(shown[rows])) / truth["sigma"][name]) ** 2)
         errors[which] = math.sqrt(float(np.mean(squares)) + 1.0)
     return errors

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from tracewire.fit import Fit, diagnose, fit, fminsearch, optimset, profile
     from tracewire.library import Block, Effect, Input, Output, Parameter, State, load_library
     from tracewire.residual import Measured, Sensor, load_measured
-    from tracewire.show import animate, optimplotfit, optimplotfval, optimplotx, report
+    from tracewire.show import animate, optimplotfit, optimplotfval, optimplotx, present, report
     from tracewire.solve import (
         Held,
         Interrupted,
@@ -93,6 +93,7 @@ __all__ = [
     "optimplotx",
     "optimset",
     "periodic_orbit",
+    "present",
     "profile",
     "read",
     "read_text",
@@ -120,7 +121,7 @@ ROOM_OF = {
     "fit": "Fit diagnose fit fminsearch optimset profile",
     "library": "Block Effect Input Output Parameter State load_library",
     "residual": "Measured Sensor load_measured",
-    "show": "animate optimplotfit optimplotfval optimplotx report",
+    "show": "animate optimplotfit optimplotfval optimplotx present report",
     "solve": "Held Interrupted Limits Run Runs Section simulate simulate_many",
     "trace": "Found TraceOptions load save trace",
 }

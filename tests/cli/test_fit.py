@@ -75,8 +75,8 @@ def test_fit_as_json(call: Any, decay: Path) -> None:
     assert list(data) == [
         *("method", "values", "before", "errors", "intervals", "correlation", "not_determined"),
         *("at_bounds", "unmoved", "words", "remarks", "starts", "criterion_before", "criterion"),
-        *("evaluations", "iterations", "exitflag", "message", "seconds", "seed", "profiles"),
-        *("comparisons", "written"),
+        *("evaluations", "iterations", "exitflag", "message", "seconds", "seed"),
+        *("comparisons", "profiles", "written"),
     ]
     assert data["method"] == "fminsearch"
     assert data["before"] == {"rate": 1.0, "x0": 0.1}

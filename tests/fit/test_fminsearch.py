@@ -296,9 +296,17 @@ def test_function_that_returns_no_number(value: Any) -> None:
 
 
 def test_options_that_are_no_options() -> None:
-    options: Any = {"TolX": 1e-3}
-    with pytest.raises(OptionError, match=r"options of fminsearch are \{'TolX'.*optimset\(TolX"):
+    options: Any = [1e-3]
+    with pytest.raises(OptionError, match=r"options of fminsearch are a list. Give a dictionary"):
         fminsearch(parabola, 1, options)
+
+
+def test_options_may_be_a_dictionary() -> None:
+    whole = fminsearch(parabola, 1)
+    loose = fminsearch(parabola, 1, {"TolX": 1.0, "TolFun": 1.0})
+    assert loose.output.funcCount < whole.output.funcCount
+    with pytest.raises(OptionError, match=r"unknown option of fminsearch 'tolx'.*Write 'TolX'"):
+        fminsearch(parabola, 1, {"tolx": 1.0})
 
 
 def test_forms_of_optimset_agree() -> None:

@@ -35,7 +35,7 @@ JUDGED = replace(
 )
 def test_a_saved_trace_is_read_as_it_was(tmp_path: Path, found: Found) -> None:
     again = tw.load(tw.save(found, tmp_path / "trace.json"))
-    assert json.dumps(again.as_json(), default=str) == json.dumps(found.as_json(), default=str)
+    assert json.dumps(again.json(), default=str) == json.dumps(found.json(), default=str)
     assert again.patch == found.patch
     assert again.options == found.options
     for one, other in zip(again.forces, found.forces, strict=True):

@@ -139,7 +139,7 @@ def test_a_diagram_that_changed_since_is_not_edited(tmp_path: Path, found: Found
 
 
 def test_the_json_has_the_agreed_keys(found: Found) -> None:
-    data = json.loads(json.dumps(found.as_json()))
+    data = json.loads(json.dumps(found.json()))
     assert {"verdict", "effects", "rmse_before", "rmse_after", "sigma"} <= set(data)
     assert data["verdict"] == "effect"
     (effect,) = data["effects"]

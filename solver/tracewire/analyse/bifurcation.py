@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,6 +20,8 @@ from tracewire.analyse.turns import units_of
 from tracewire.analyse.work import Progress, Tell, interrupted
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, TracewireError, unknown
+from tracewire.options import options_of
+from tracewire.result import Result
 from tracewire.solve import Halt, Interrupted, Passage, crew, parameter_values, until_interrupted
 
 Vector = NDArray[np.float64]
@@ -67,8 +69,8 @@ class Branch:
         return tuple((float(x[i]), float(x[j - 1])) for i, j in zip(begins, ends, strict=True))
 
 
-@dataclass(frozen=True, eq=False)
-class Bifurcation:
+@dataclass(frozen=True, eq=False, repr=False)
+class Bifurcation(Result):
     """A bifurcation diagram: one branch for each direction in which the parameter goes.
 
     `modulo` holds the turns of states that turn.
@@ -93,7 +95,7 @@ def bifurcation(
     model: Model,
     parameter: str,
     values: ArrayLike,
-    plane: Plane,
+    plane: Plane | Mapping[str, Any],
     *,
     direction: Direction = "up",
     skip: int = 200,
@@ -124,6 +126,7 @@ def bifurcation(
 
     Raises OptionError; the error of the first value where all of them fail.
     """
+    plane = options_of(Plane, plane, "a section")
     plane.check(model)
     if parameter not in model.flat.parameters:
         raise OptionError([unknown("parameter", parameter, model.flat.parameters)])

@@ -16,14 +16,15 @@ from tracewire.analyse.sweep import grid_of
 from tracewire.analyse.work import Tell, work_through
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem
+from tracewire.result import Result
 from tracewire.solve import Halt
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
-class StabilityChart:
+@dataclass(frozen=True, eq=False, repr=False)
+class StabilityChart(Result):
     """The largest |Floquet multiplier| over two parameters, `radius` (ny, nx).
 
     `x_name` and `x` (nx,), `y_name` and `y` (ny,): the parameters in SI. `exponent` (ny, nx) is

@@ -13,6 +13,7 @@ from tracewire.analyse import verdict
 from tracewire.analyse.drive import is_linear, number, period_of
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, Problem
+from tracewire.result import Result
 from tracewire.solve import Passage, parameter_values
 
 Vector = NDArray[np.float64]
@@ -22,8 +23,8 @@ CLOSED = 1e-5  # of the size of the motion
 POINTS = 64  # of the motion, to know its size
 
 
-@dataclass(frozen=True, eq=False)
-class Floquet:
+@dataclass(frozen=True, eq=False, repr=False)
+class Floquet(Result):
     """What one period makes of small deviations: x(T) - x(T)* = M (x(0) - x(0)*).
 
     `monodromy` M (n, n); `period` T in s; `closure` is how far the motion is from closing, as a

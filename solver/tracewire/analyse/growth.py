@@ -11,6 +11,7 @@ from scipy.signal import find_peaks
 
 from tracewire.analyse.signal import signal_of
 from tracewire.errors import AnalysisError, OptionError, Problem, unknown
+from tracewire.result import Result
 from tracewire.solve import Run
 
 Vector = NDArray[np.float64]
@@ -18,8 +19,8 @@ FEWEST_PEAKS = 4
 APART, SEEN = 4.0, 0.1  # standard errors, and part of the rate: two halves have two rates
 
 
-@dataclass(frozen=True, eq=False)
-class GrowthRate:
+@dataclass(frozen=True, eq=False, repr=False)
+class GrowthRate(Result):
     """The envelope of a signal as exp(rate*t): `rate` and its standard `error` in 1/s.
 
     `t` (K,) in s and `size` (K,) in the unit of the signal are the points of the envelope that the

@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.errors import OptionError, Problem, unknown
+from tracewire.result import Result
 from tracewire.solve import Run
 
 Vector = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
-class Drift:
+@dataclass(frozen=True, eq=False, repr=False)
+class Drift(Result):
     """The drift of one invariant I: `largest` max|I - I(0)| and `final` I(T) - I(0), in its unit.
 
     `relative` is the largest over `scale`. `t` (N,) in s and `values` (N,) are I - I(0).

@@ -14,6 +14,7 @@ from tracewire.analyse import verdict
 from tracewire.analyse.equilibrium import is_steady, state_sizes, told_rates
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, OptionError, Problem, unknown
+from tracewire.result import Result
 from tracewire.solve import Passage
 
 Vector = NDArray[np.float64]
@@ -24,8 +25,8 @@ ALIKE = 1e-9
 NOT_STEADY = "not a steady state"
 
 
-@dataclass(frozen=True, eq=False)
-class Linear:
+@dataclass(frozen=True, eq=False, repr=False)
+class Linear(Result):
     """A linear model dx' = A dx + B du, dy = C dx + D du around the states `x` (n,) at the time t.
 
     A (n, n), B (n, p), C (q, n), D (q, p) in SI; `states`, `inputs` (p) and `outputs` (q) name the

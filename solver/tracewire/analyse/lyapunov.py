@@ -13,6 +13,7 @@ from tracewire.analyse.plane import span_of
 from tracewire.analyse.work import Progress, Tell
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, OptionError, Problem
+from tracewire.result import Result
 from tracewire.solve import Passage, parameter_values, until_interrupted
 
 Vector = NDArray[np.float64]
@@ -24,8 +25,8 @@ SMOOTH = {"scheduled"}  # what may happen without a jump of the deviations
 LOST = 1e-13  # of the largest deviation: what rounding leaves of one that is lost
 
 
-@dataclass(frozen=True, eq=False)
-class Lyapunov:
+@dataclass(frozen=True, eq=False, repr=False)
+class Lyapunov(Result):
     """Lyapunov exponents (k,) in 1/s, the largest first, and their standard errors (k,).
 
     `t` (N,) in s and `running` (N, k) are the estimate as it went. `divergence` is the mean of the

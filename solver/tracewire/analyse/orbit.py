@@ -13,6 +13,7 @@ from tracewire.analyse.floquet import Floquet
 from tracewire.analyse.turns import units_of, within_a_turn
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, OptionError, Problem, SimulationError
+from tracewire.result import Result
 from tracewire.solve import Passage, parameter_values
 
 Vector = NDArray[np.float64]
@@ -24,8 +25,8 @@ STILL = 1e-3  # of the motion at the guess: a steady state
 LOOSE = 1e3  # times rtol: the part of its size up to which an orbit closes
 
 
-@dataclass(frozen=True, eq=False)
-class PeriodicOrbit:
+@dataclass(frozen=True, eq=False, repr=False)
+class PeriodicOrbit(Result):
     """A periodic orbit: it is at `x` (n,) in SI at `begin` in s, and there again after `period`.
 
     `t` (N,) and `motion` (N, n) are one period of it. `closure` is what it lacks to close, as a

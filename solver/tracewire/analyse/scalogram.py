@@ -10,6 +10,7 @@ from scipy.fft import fft, ifft, next_fast_len
 
 from tracewire.analyse.signal import signal_of
 from tracewire.errors import OptionError, Problem
+from tracewire.result import Result
 from tracewire.solve import Run
 
 Vector = NDArray[np.float64]
@@ -18,8 +19,8 @@ MOST_NUMBERS = 50_000_000
 REACH = np.sqrt(2.0)  # e-folding time of the wavelet in its scale
 
 
-@dataclass(frozen=True, eq=False)
-class Scalogram:
+@dataclass(frozen=True, eq=False, repr=False)
+class Scalogram(Result):
     """Amplitudes over time and frequency: a*cos(2 pi f t) gives a at f, at all times.
 
     `t` (N,) in s, `frequency` (K,) in Hz, `amplitude` (K, N) in `unit`. `edge` (K,) in s: so near

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +14,8 @@ from tracewire.analyse.plane import Plane, crossings, span_of
 from tracewire.analyse.turns import units_of
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, unknown
+from tracewire.options import options_of
+from tracewire.result import Result
 from tracewire.solve import Passage, parameter_values
 
 Vector = NDArray[np.float64]
@@ -20,8 +23,8 @@ Matrix = NDArray[np.float64]
 AROUND = 4  # periods that tell how far the motion goes
 
 
-@dataclass(frozen=True, eq=False)
-class PoincareSection:
+@dataclass(frozen=True, eq=False, repr=False)
+class PoincareSection(Result):
     """The points of a Poincaré section: times `t` (K,) in s and states `points` (K, n) in SI.
 
     `clusters` counts different points, and `irregular` tells that no short period is there: see
@@ -45,7 +48,7 @@ class PoincareSection:
 
 def section(
     model: Model,
-    plane: Plane,
+    plane: Plane | Mapping[str, Any],
     *,
     skip: int = 0,
     keep: int = 100,
@@ -64,6 +67,7 @@ def section(
     and `modulo` are for the count of clusters: see `bifurcation`. Raises OptionError; AnalysisError
     where a guard does not cross as often; SimulationError.
     """
+    plane = options_of(Plane, plane, "a section")
     plane.check(model)
     if skip < 0 or keep < 1:
         what = f"{skip} points skipped and {keep} kept make no section"

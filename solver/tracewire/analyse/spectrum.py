@@ -11,6 +11,7 @@ from scipy.signal import find_peaks, get_window
 
 from tracewire.analyse.signal import signal_of
 from tracewire.errors import OptionError, Problem, unknown
+from tracewire.result import Result
 from tracewire.solve import Run
 
 Vector = NDArray[np.float64]
@@ -27,8 +28,8 @@ class Line:
     amplitude: float
 
 
-@dataclass(frozen=True, eq=False)
-class Spectrum:
+@dataclass(frozen=True, eq=False, repr=False)
+class Spectrum(Result):
     """Amplitudes over frequencies: a*cos(2 pi f t) gives a line of height a at f.
 
     `frequency` (K,) in Hz, `amplitude` (K,) in `unit`; `resolution` in Hz is the distance of two

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from tracewire.analyse.equilibrium import find_equilibrium
 from tracewire.analyse.linearise import nonsmooth
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, Problem
+from tracewire.result import Result
 from tracewire.solve import Passage
 
 Vector = NDArray[np.float64]
@@ -21,8 +22,8 @@ Matrix = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 
 
-@dataclass(frozen=True, eq=False)
-class SteadyState:
+@dataclass(frozen=True, eq=False, repr=False)
+class SteadyState(Result):
     """States `x` (n,) in SI at which all rates are zero.
 
     `residual` is the largest rate that is left there; `eigenvalues` (n,) in 1/s those of the
@@ -38,6 +39,7 @@ class SteadyState:
     eigenvalues: Complexes
     verdict: str
     guards: tuple[str, ...]
+    units: Mapping[str, str] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> float:
         return float(self.x[self.states.index(name)])
@@ -78,7 +80,8 @@ def steady_state(
     eigenvalues = none if guards else np.linalg.eigvals(jacobian).astype(np.complex128)
     eigenvalues = eigenvalues[np.lexsort((-eigenvalues.imag, -eigenvalues.real))]
     said = "nonsmooth" if guards else verdict.of_eigenvalues(eigenvalues)
-    return SteadyState(model.states, x, left, jacobian, eigenvalues, said, guards)
+    units = {state.name: state.unit for state in model.flat.states}
+    return SteadyState(model.states, x, left, jacobian, eigenvalues, said, guards, units)
 
 
 def _span(model: Model, passage: Passage) -> float:

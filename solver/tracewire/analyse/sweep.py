@@ -18,6 +18,7 @@ from tracewire.analyse.partial import Partial, fingerprint
 from tracewire.analyse.work import Tell, work_through
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, unknown
+from tracewire.result import Result
 from tracewire.solve import Halt, Run, simulate
 from tracewire.solve.task import START, Options
 
@@ -36,8 +37,8 @@ MEASURES: dict[str, Callable[[Vector, Vector], float]] = {
 """What an output may be of a signal, over the samples from `since` on."""
 
 
-@dataclass(frozen=True, eq=False)
-class Sweep:
+@dataclass(frozen=True, eq=False, repr=False)
+class Sweep(Result):
     """Outputs over a grid: `sweep["max(x)"]` has the shape of the grid, in the order of its axes.
 
     `grid` holds the values of each axis in SI, `values` the outputs by name, NaN where a run

@@ -13,10 +13,7 @@ from tracewire.cli.setting import (
     Preset,
     Start,
     Values,
-    complex_text,
-    parts,
     read_setting,
-    shown,
     tell,
 )
 
@@ -45,25 +42,8 @@ def steady(
         from tracewire.analyse import steady_state
 
         found = steady_state(setting.model, guess=setting.start, **setting.options)
-    from tracewire.show import Table
-
-    units = {state.name: state.unit for state in setting.model.flat.states}
-    rows = tuple((name, units[name], shown(x)) for name, x in found.values.items())
-    tables = [Table("steady state", ("state", "unit", "value"), rows, frozenset({2}))]
-    if len(found.eigenvalues):
-        listed = tuple((complex_text(value),) for value in found.eigenvalues.tolist())
-        tables.append(Table("eigenvalues [1/s]", ("eigenvalue",), listed, frozenset({0})))
-    lines = [f"{found.verdict}; the largest rate that is left is {found.residual:.2g}"]
-    lines += [f"no slopes here: {guard}" for guard in found.guards]
-    data = {
-        "states": found.values,
-        "residual": found.residual,
-        "eigenvalues": parts(found.eigenvalues),
-        "verdict": found.verdict,
-        "guards": found.guards,
-    }
     columns = {"state": list(found.states), "value": found.x}
-    tell(data, tables, lines, as_json=as_json, columns=columns, output=output)
+    tell(found, as_json=as_json, columns=columns, output=output)
 
 
 def linearise(
@@ -118,38 +98,7 @@ def linearise(
         found = linearise_model(
             setting.model, at=at, t=time, inputs=inputs or (), outputs=outputs, **setting.options
         )
-    from tracewire.show import Table
-
-    def table(name: str, matrix: list[list[float]], across: tuple[str, ...], down: str) -> Table:
-        names = found.states if down == "state" else found.outputs
-        rows = tuple(
-            (row, *(shown(x) for x in line)) for row, line in zip(names, matrix, strict=True)
-        )
-        head = ("rate of" if down == "state" else "signal", *across)
-        return Table(name, head, rows, frozenset(range(1, 1 + len(across))))
-
-    given = [
-        ("A", found.A, found.states, "state"),
-        ("B", found.B, found.inputs, "state"),
-        ("C", found.C, found.states, "output"),
-        ("D", found.D, found.inputs, "output"),
-    ]
-    tables = [table(n, m.tolist(), across, down) for n, m, across, down in given if m.size]
-    listed = ", ".join(complex_text(value) for value in found.eigenvalues.tolist())
-    data = {
-        "states": found.states,
-        "inputs": found.inputs,
-        "outputs": found.outputs,
-        "t": found.t,
-        "x": found.x,
-        "rates": found.rates,
-        **{name: matrix for name, matrix, _, _ in given},
-        "eigenvalues": parts(found.eigenvalues),
-        "verdict": found.verdict,
-    }
-    columns = {name: matrix for name, matrix, _, _ in given} | {"x": found.x}
+    columns = {"A": found.A, "B": found.B, "C": found.C, "D": found.D, "x": found.x}
     if output is not None and output.endswith(".csv"):
         columns = {name: found.A[:, n] for n, name in enumerate(found.states)}  # A alone
-    verdict = f"{found.verdict}: {found.told}" if found.told else found.verdict
-    lines = [f"eigenvalues [1/s]: {listed}", verdict]
-    tell(data, tables, lines, as_json=as_json, columns=columns, output=output)
+    tell(found, as_json=as_json, columns=columns, output=output)

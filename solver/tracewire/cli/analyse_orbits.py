@@ -22,20 +22,15 @@ from tracewire.cli.setting import (
     TwoStates,
     Values,
     Workers,
-    complex_text,
-    failed_lines,
     number_or_formula,
-    parts,
     read_setting,
-    shown,
     tell,
     values_of,
 )
 from tracewire.errors import OptionError, Problem
 
 if TYPE_CHECKING:
-    from tracewire.analyse import Floquet
-    from tracewire.show import Table
+    pass
 
 
 def orbit(
@@ -83,41 +78,13 @@ def orbit(
             rtol=rtol,
             **setting.options,
         )
-    from tracewire.show import Table
-
-    units = {state.name: state.unit for state in setting.model.flat.states}
-    rows = tuple(
-        (name, units[name], shown(x)) for name, x in zip(found.states, found.x, strict=True)
-    )
-    title = f"orbit at t = {found.begin:.8g} s"
-    tables = [Table(title, ("state", "unit", "value"), rows, frozenset({2}))]
-    data = {
-        "period": found.period,
-        "begin": found.begin,
-        "states": dict(zip(found.states, found.x.tolist(), strict=True)),
-        "closure": found.closure,
-        "steps": found.steps,
-        **_data(found.floquet),
-    }
-    lines = [
-        f"period {found.period:.10g} s; it closes to {found.closure:.1g} of its size after "
-        f"{found.steps} steps",
-        found.floquet.verdict,
-    ]
     columns = {"t": found.t} | {n: found.motion[:, i] for i, n in enumerate(found.states)}
-
-    def draw(path: str) -> object:
-        from tracewire.show import plot_orbit
-
-        return plot_orbit(found, path, *(plane or ("", "")))
-
+    x, y = plane or ("", "")
     tell(
-        data,
-        [*tables, _multipliers(found.floquet)],
-        lines,
+        found,
         as_json=as_json,
-        draw=draw,
         figure=figure,
+        look={"x": x, "y": y},
         columns=columns,
         output=output,
         warnings=found.floquet.warnings,
@@ -160,16 +127,7 @@ def floquet(
             **setting.options,
         )
     columns = {"re": found.multipliers.real, "im": found.multipliers.imag}
-    lines = [f"period {found.period:.10g} s", found.verdict]
-    tell(
-        _data(found) | {"period": found.period, "closure": found.closure},
-        [_multipliers(found)],
-        lines,
-        as_json=as_json,
-        columns=columns,
-        output=output,
-        warnings=found.warnings,
-    )
+    tell(found, as_json=as_json, columns=columns, output=output, warnings=found.warnings)
 
 
 def chart(
@@ -227,53 +185,8 @@ def chart(
             progress=telling("charting", show),
             **setting.options,
         )
-    unstable = int(found.unstable.sum())
-    lines = [f"{unstable} of {found.radius.size} points are unstable"]
-    lines += failed_lines(found.errors)
     import numpy as np
 
     xs, ys = np.meshgrid(found.x, found.y)
     columns = {found.x_name: xs, found.y_name: ys, "radius": found.radius}
-    data = {
-        found.x_name: found.x,
-        found.y_name: found.y,
-        "radius": found.radius,
-        "unstable": unstable,
-        "failed": len(found.errors),
-    }
-
-    def draw(path: str) -> object:
-        from tracewire.show import plot_chart
-
-        return plot_chart(found, path)
-
-    tell(
-        data,
-        [],
-        lines,
-        as_json=as_json,
-        draw=draw,
-        figure=figure,
-        columns=columns,
-        output=output,
-    )
-
-
-def _multipliers(found: Floquet) -> Table:
-    from tracewire.show import Table
-
-    rows = tuple(
-        (complex_text(m), shown(abs(m)), complex_text(e))
-        for m, e in zip(found.multipliers.tolist(), found.exponents.tolist(), strict=True)
-    )
-    header = ("multiplier", "size", "exponent [1/s]")
-    return Table("Floquet multipliers", header, rows, frozenset({0, 1, 2}))
-
-
-def _data(found: Floquet) -> dict[str, object]:
-    return {
-        "multipliers": parts(found.multipliers),
-        "exponents": parts(found.exponents),
-        "verdict": found.verdict,
-        "warnings": found.warnings,
-    }
+    tell(found, as_json=as_json, figure=figure, columns=columns, output=output)

@@ -17,7 +17,7 @@ from tracewire.cli.setting import (
     Start,
     Values,
     read_setting,
-    tell,
+    tell_parts,
 )
 
 if TYPE_CHECKING:
@@ -126,4 +126,4 @@ def _tell_plane(
             if chosen.any()
         },
     }
-    tell(data, [], [], as_json=as_json, draw=draw, figure=figure, columns=columns, output=output)
+    tell_parts(data, [], draw, as_json=as_json, figure=figure, columns=columns, output=output)

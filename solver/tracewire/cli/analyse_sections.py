@@ -20,10 +20,8 @@ from tracewire.cli.setting import (
     TwoStates,
     Values,
     Workers,
-    failed_lines,
     number_or_formula,
     read_setting,
-    shown,
     tell,
     values_of,
 )
@@ -96,32 +94,12 @@ def section(
             rtol=rtol,
             **setting.options,
         )
-    from tracewire.show import Table
-
-    rows = tuple(
-        (name, found.units.get(name, ""), shown(found[name].min()), shown(found[name].max()))
-        for name in found.states
-    )
-    kind = "irregular" if found.irregular else "regular"
-
-    def draw(path: str) -> object:
-        from tracewire.show import plot_section
-
-        return plot_section(found, path, *(plane or ("", "")))
-
+    x, y = plane or ("", "")
     tell(
-        {
-            "points": len(found.t),
-            "clusters": found.clusters,
-            "irregular": found.irregular,
-            "from": float(found.t[0]),
-            "to": float(found.t[-1]),
-        },
-        [Table("points", ("state", "unit", "min", "max"), rows, frozenset({2, 3}))],
-        [f"{len(found.t)} points in {found.clusters} places: {kind}"],
+        found,
         as_json=as_json,
-        draw=draw,
         figure=figure,
+        look={"x": x, "y": y},
         columns={"t": found.t} | {name: found[name] for name in found.states},
         output=output,
     )
@@ -211,26 +189,6 @@ def bifurcation(
         )
     import numpy as np
 
-    from tracewire.show import Table
-
-    rows, lines = [], []
-    for branch in found.branches:
-        lines += failed_lines(branch.errors)
-        for low, high in branch.bands:
-            rows.append((branch.direction, shown(low), shown(high)))
-    unit = f" [{found.unit}]" if found.unit else ""
-    tables = [
-        Table("irregular", ("direction", f"from{unit}", "to"), tuple(rows), frozenset({1, 2}))
-    ]
-    count = int(sum(branch.irregular.sum() for branch in found.branches))
-    total = sum(len(branch.values) for branch in found.branches)
-    lines.append(f"{count} of {total} values are irregular")
-
-    def draw(path: str) -> object:
-        from tracewire.show import plot_bifurcation
-
-        return plot_bifurcation(found, path, states or ())
-
     first = [np.repeat(branch.values, keep) for branch in found.branches]
     columns = {
         "direction": np.concatenate(
@@ -240,23 +198,11 @@ def bifurcation(
     }
     for n, state in enumerate(found.states):
         columns[state] = np.concatenate([b.points[:, :, n].ravel() for b in found.branches])
-    data = {
-        b.direction: {
-            name: b.values,
-            "clusters": b.clusters,
-            "irregular": b.irregular,
-            "bands": b.bands,
-            "failed": len(b.errors),
-        }
-        for b in found.branches
-    }
     tell(
-        {"parameter": name, "branches": data},
-        tables if rows else [],
-        lines,
+        found,
         as_json=as_json,
-        draw=draw,
         figure=figure,
+        look={"states": states or ()},
         columns=columns,
         output=output,
     )
@@ -314,43 +260,11 @@ def lyapunov(
             progress=telling("following deviations", show),
             **setting.options,
         )
-    from tracewire.show import Table
-
-    rows = tuple(
-        (shown(value), f"{error:.2g}")
-        for value, error in zip(found.exponents.tolist(), found.errors.tolist(), strict=True)
-    )
-    lines = [f"positive by three errors: {found.positive}"]
-    if len(found.exponents) == len(found.states):
-        lines.append(f"sum {found.total:.6g} 1/s; Kaplan-Yorke dimension {found.dimension:.4g}")
-    if any(value == -float("inf") for value in found.exponents.tolist()):
-        lines.append(
-            "-inf: lost where something sticks, or shrunk to rounding within an interval, "
-            "which a shorter --interval would show"
-        )
-    if found.divergence is not None:
-        lines.append(f"mean divergence {found.divergence:.6g} 1/s, which the sum should be")
-
-    def draw(path: str) -> object:
-        from tracewire.show import plot_lyapunov
-
-        return plot_lyapunov(found, path, setting.model.flat.title)
-
     tell(
-        {
-            "exponents": found.exponents,
-            "errors": found.errors,
-            "positive": found.positive,
-            "sum": found.total,
-            "divergence": found.divergence,
-            "dimension": found.dimension,
-            "warnings": found.warnings,
-        },
-        [Table("Lyapunov exponents [1/s]", ("exponent", "error"), rows, frozenset({0, 1}))],
-        lines,
+        found,
         as_json=as_json,
-        draw=draw,
         figure=figure,
+        look={"title": setting.model.flat.title},
         columns={"t": found.t}
         | {f"exponent_{k + 1}": found.running[:, k] for k in range(found.running.shape[1])},
         output=output,

@@ -16,8 +16,8 @@ from tracewire.cli.setting import (
     Start,
     Values,
     read_setting,
-    shown,
     tell,
+    tell_parts,
 )
 
 
@@ -54,29 +54,13 @@ def spectrum(
     )
     run = run_of(setting, span, every, rtol)
     from tracewire.analyse import spectrum as spectrum_of
-    from tracewire.show import Table
 
     found = spectrum_of(run, signal, since=since, window=window, lines=lines)
-    rows = tuple((shown(line.frequency), shown(line.amplitude)) for line in found.lines)
-    header = ("frequency [Hz]", f"amplitude [{found.unit}]" if found.unit else "amplitude")
-
-    def draw(path: str) -> object:
-        from tracewire.show import plot_spectrum
-
-        return plot_spectrum(found, path, high)
-
     tell(
-        {
-            "signal": signal,
-            "unit": found.unit,
-            "resolution": found.resolution,
-            "lines": found.lines,
-        },
-        [Table(f"lines of {signal}", header, rows, frozenset({0, 1}))],
-        [f"lines nearer than {found.resolution:.3g} Hz are one"],
+        found,
         as_json=as_json,
-        draw=draw,
         figure=figure,
+        look={"high": high},
         columns={"frequency": found.frequency, "amplitude": found.amplitude},
         output=output,
     )
@@ -117,29 +101,10 @@ def scalogram(
 
     found = scalogram_of(run, signal, low=low, high=high, waves=waves, since=since)
 
-    def draw(path: str) -> object:
-        from tracewire.show import plot_scalogram
-
-        return plot_scalogram(found, path)
-
     columns = {"t": found.t, "ridge": found.ridge}
     if output is not None and output.endswith(".npz"):
         columns |= {"frequency": found.frequency, "amplitude": found.amplitude}
-    tell(
-        {
-            "signal": signal,
-            "unit": found.unit,
-            "frequencies": [float(found.frequency[0]), float(found.frequency[-1])],
-            "largest": float(found.amplitude.max()),
-        },
-        [],
-        [f"largest amplitude {found.amplitude.max():.6g} {found.unit}".rstrip()],
-        as_json=as_json,
-        draw=draw,
-        figure=figure,
-        columns=columns,
-        output=output,
-    )
+    tell(found, as_json=as_json, figure=figure, columns=columns, output=output)
 
 
 def growth(
@@ -177,25 +142,10 @@ def growth(
 
     found = growth_rate(run, signal, by=by, since=since, period=beat)  # type: ignore[arg-type]
 
-    def draw(path: str) -> object:
-        from tracewire.show import plot_growth
-
-        return plot_growth(found, path)
-
     bent = f"the envelope bends, and its second half has {found.late:.6g} /s: try --since"
     tell(
-        {
-            "signal": signal,
-            "rate": found.rate,
-            "error": found.error,
-            "peaks": len(found.t),
-            "bends": found.bends,
-            "late": found.late,
-        },
-        [],
-        [f"{signal} goes as exp({found.rate:.6g} t): rate {found.rate:.6g} ± {found.error:.2g} /s"],
+        found,
         as_json=as_json,
-        draw=draw,
         figure=figure,
         columns={"t": found.t, "size": found.size},
         output=output,
@@ -237,33 +187,20 @@ def invariants(
     )
     run = run_of(setting, span, every, rtol)
     from tracewire.analyse import invariant_drift
-    from tracewire.show import Table
+    from tracewire.show.present_analyses import drift_data, drift_table
 
     found = invariant_drift(run, names, scale=scale)
-    rows = tuple(
-        (d.name, d.unit, shown(d.start), f"{d.largest:.3g}", shown(d.at), f"{d.relative:.3g}")
-        for d in found
-    )
-    header = ("signal", "unit", "start", "largest drift", "at t [s]", "relative")
 
     def draw(path: str) -> object:
         from tracewire.show import plot_invariants
 
         return plot_invariants(found, path, run.title)
 
-    data = {
-        d.name: {
-            "start": d.start, "largest": d.largest, "final": d.final, "relative": d.relative,
-            "scale": d.scale,
-        }
-        for d in found
-    }  # fmt: skip
-    tell(
-        {"drift": data, "rtol": rtol},
-        [Table("drift", header, rows, frozenset({2, 3, 4, 5}))],
-        [],
+    tell_parts(
+        {"drift": {d.name: drift_data(d) for d in found}, "rtol": rtol},
+        [drift_table(found)],
+        draw,
         as_json=as_json,
-        draw=draw,
         figure=figure,
         columns={"t": run.t} | {d.name: d.values for d in found},
         output=output,

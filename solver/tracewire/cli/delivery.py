@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from tracewire.cli.output import (
     Cut,
     flush,
     print_json,
-    print_table,
+    print_parts,
     print_text,
 )
 from tracewire.cli.reporting import Attempts, patch_of, store, with_table, write_report, write_table
@@ -42,13 +42,15 @@ def deliver(found: Found, model: Model, own: Diagram, targets: Targets, as_json:
     """
     attempt = Attempts()
     if not as_json:
-        print_trace(found)
+        from tracewire.show import present
+
+        print_parts(present(found).parts)
         flush()
     attempt(lambda: _save(found, targets.save))
     attempt(lambda: _edit(found, model, own, targets, quiet=as_json))
     if as_json:
         planned = [*attempt.written, *([targets.report] if targets.report else [])]
-        data = as_data(found) | {"written": planned}
+        data = found.json() | {"written": planned}
         print_json(data | attempt.not_written)
     else:
         for path in attempt.written:
@@ -60,28 +62,6 @@ def deliver(found: Found, model: Model, own: Diagram, targets: Targets, as_json:
     attempt.finish(as_json)
     if found.interrupted:
         raise Cut
-
-
-def print_trace(found: Found) -> None:
-    """The answer in one sentence and in short, the same in words, the steps, tables and remarks."""
-    from tracewire.show import paragraph_of
-    from tracewire.show.trace_tables import trace_tables
-    from tracewire.show.trace_text import answer_lines, remarks_of, step_lines
-
-    print_text("\n".join(answer_lines(found)))
-    print_text(f"\n{paragraph_of(found)}\n")
-    print_text("\n".join(step_lines(found)))
-    for table in trace_tables(found):
-        print_table(table)
-    for text in remarks_of(found):
-        print_text(f"note: {text}")
-
-
-def as_data(found: Found) -> dict[str, Any]:
-    """A trace as plain data, what it says in words included."""
-    from tracewire.show import paragraph_of
-
-    return found.as_json() | {"paragraph": paragraph_of(found)}
 
 
 def _save(found: Found, path: str | None) -> list[str]:

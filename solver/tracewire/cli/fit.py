@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries, load_model
-from tracewire.cli.output import Cut, note, print_json, print_table, print_text, working
+from tracewire.cli.output import Cut, note, print_json, print_parts, print_text, working
 from tracewire.cli.reporting import (
     Apply,
     Attempts,
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from tracewire.diagram import Diagram
-    from tracewire.fit import Fit, Options, Profile, Progress
+    from tracewire.fit import Options, Profile, Progress
 
 TELL_EVERY = 10.0
 PLOTS = "fit_frames"
@@ -105,6 +105,7 @@ def fit(
     from tracewire.diagram import set_sensors, set_values
     from tracewire.fit import fit as fit_model
     from tracewire.fit import profile as profile_of
+    from tracewire.show import present
 
     check_targets(report, output)
     model = load_model(diagram, library)
@@ -151,9 +152,12 @@ def fit(
     attempt(lambda: store(model.diagram, edited, apply, output))
     attempt(lambda: write_report(found, report, profiles))
     if as_json:
-        print_json(_json(found, profiles) | {"written": attempt.written} | attempt.not_written)
+        told = {"profiles": profiles, "written": attempt.written} | attempt.not_written
+        print_json(found.json() | told)
     else:
-        _print(found, profiles, attempt.written)
+        print_parts(present(found).parts)
+        for text in (*(p.words for p in profiles), *(f"written: {w}" for w in attempt.written)):
+            print_text(text)
     attempt.finish(as_json)
     if cut:
         raise Cut
@@ -188,52 +192,3 @@ def _told(tell: Callable[[str], None]) -> Callable[[Progress], None]:
             note(text)
 
     return progress
-
-
-def _print(found: Fit, profiles: list[Profile], written: list[str]) -> None:
-    from tracewire.show.fit_tables import fit_tables, fit_text, fit_words
-
-    print_text(fit_text(found))
-    for table in fit_tables(found):
-        print_table(table)
-    for text in (*fit_words(found), *(p.words for p in profiles)):
-        print_text(text)
-    for path in written:
-        print_text(f"written: {path}")
-
-
-def _json(found: Fit, profiles: list[Profile]) -> dict[str, object]:
-    return {
-        "method": found.method,
-        "values": found.values,
-        "before": found.began,
-        "errors": found.errors,
-        "intervals": found.intervals,
-        "correlation": found.uncertainty.correlation,
-        "not_determined": found.uncertainty.directions,
-        "at_bounds": found.uncertainty.at_bounds,
-        "unmoved": found.uncertainty.unmoved,
-        "words": found.uncertainty.words,
-        "remarks": found.remarks,
-        "starts": found.starts,
-        "criterion_before": found.criterion_before,
-        "criterion": found.criterion,
-        "evaluations": found.evaluations,
-        "iterations": found.iterations,
-        "exitflag": found.exitflag,
-        "message": found.message,
-        "seconds": found.seconds,
-        "seed": found.seed,
-        "profiles": profiles,
-        "comparisons": [
-            {
-                "series": c.series,
-                "use": c.use,
-                "signal": c.signal,
-                "unit": c.unit,
-                "rmse_before": c.rmse_before,
-                "rmse_after": c.rmse_after,
-            }
-            for c in found.comparisons
-        ],
-    }

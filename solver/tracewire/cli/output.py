@@ -6,15 +6,15 @@ import json
 import math
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import typer
 
 from tracewire.errors import OptionError, Problem, unknown
+from tracewire.result import plain
 
 if TYPE_CHECKING:
     from tracewire.show import Table
@@ -92,27 +92,19 @@ def print_table(table: Table) -> None:
     _echo(captured.get(), nl=False)
 
 
+def print_parts(parts: Iterable[str | Table]) -> None:
+    """Print sentences and tables in their order."""
+    for part in parts:
+        if isinstance(part, str):
+            print_text(part)
+        else:
+            print_table(part)
+
+
 def print_json(data: object) -> None:
     """Print data as JSON to stdout; what is not finite becomes null."""
     text = json.dumps(plain(data), indent=2, ensure_ascii=False, allow_nan=False)
     _echo(text.translate({number: f"\\u{number:04x}" for number in CONTROLS}))
-
-
-def plain(data: object) -> Any:
-    """Data in the types of JSON: arrays are lists, dataclasses objects, NaN and infinity null."""
-    if isinstance(data, bool | int | str | None):
-        return data
-    if isinstance(data, float):
-        return data if math.isfinite(data) else None
-    if isinstance(data, Mapping):
-        return {str(key): plain(value) for key, value in data.items()}
-    if is_dataclass(data) and not isinstance(data, type):
-        return {field.name: plain(getattr(data, field.name)) for field in fields(data)}
-    if hasattr(data, "tolist"):
-        return plain(data.tolist())
-    if isinstance(data, Sequence | set | frozenset):
-        return [plain(value) for value in data]
-    return str(data)
 
 
 def print_problems(problems: Sequence[Problem], as_json: bool = False) -> None:

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from tracewire.cli.options import AsJson, Debug, Libraries
-from tracewire.cli.output import check_target, print_json, print_text
+from tracewire.cli.output import check_target, print_json, print_parts, print_text
 from tracewire.cli.reporting import ReportFile, write_report
 
 
@@ -30,15 +30,15 @@ def report(
       tracewire report trace.json
       tracewire report trace.json --report trace.html
     """
-    from tracewire.cli.delivery import as_data, print_trace
+    from tracewire.show import present
     from tracewire.trace import load
 
     check_target(report, (".md", ".html"), "report")
     found = load(saved, library or ())
     if as_json:
-        print_json(as_data(found) | {"written": [report] if report else []})
+        print_json(found.json() | {"written": [report] if report else []})
     elif report is None:
-        print_trace(found)
+        print_parts(present(found).parts)
     for path in write_report(found, report):
         if not as_json:
             print_text(f"written: {path}")

@@ -14,7 +14,7 @@ from tracewire.cli.output import (
     check_target,
     note,
     print_json,
-    print_table,
+    print_parts,
     print_text,
     working,
 )
@@ -24,6 +24,7 @@ from tracewire.files import replacing, write_rows, writing
 
 if TYPE_CHECKING:
     from tracewire.compile import Model
+    from tracewire.result import Result
     from tracewire.show import Table
 
 OUTPUTS = (".csv", ".npz")
@@ -168,34 +169,59 @@ def values_of(model: Model, texts: Sequence[str], option: str = "--over") -> dic
 
 
 def tell(
-    data: Mapping[str, object],
-    tables: Sequence[Table],
-    lines: Sequence[str],
+    found: Result,
     *,
     as_json: bool,
-    draw: Callable[[str], object] | None = None,
+    figure: str | None = None,
+    look: Mapping[str, Any] | None = None,
+    columns: Mapping[str, Any] | None = None,
+    output: str | None = None,
+    warnings: Sequence[str] = (),
+) -> None:
+    """Write figure and numbers of a result where they are asked for, and print what came out.
+
+    look: options of its figure. columns: its arrays.
+    """
+    from tracewire.show import present
+
+    shown = present(found)
+    tell_parts(
+        found.json(),
+        shown.parts,
+        lambda path: shown.draw(path, look or {}),
+        as_json=as_json,
+        figure=figure,
+        columns=columns,
+        output=output,
+        warnings=warnings,
+    )
+
+
+def tell_parts(
+    data: Mapping[str, object],
+    parts: Sequence[str | Table],
+    draw: Callable[[str], object],
+    *,
+    as_json: bool,
     figure: str | None = None,
     columns: Mapping[str, Any] | None = None,
     output: str | None = None,
     warnings: Sequence[str] = (),
 ) -> None:
-    """Write figure and numbers where they are asked for, and print what came out."""
+    """The same of data, tables and sentences that are no result by themselves."""
     for warning in warnings:
         note(f"warning: {warning}")
     if output is not None:
         with writing(output):
             write_numbers(output, columns or {})
-    if figure is not None and draw is not None:
+    if figure is not None:
         with working(f"drawing {figure}"), writing(figure):
             draw(figure)
     written = [path for path in (output, figure) if path is not None]
     if as_json:
         print_json({**data, "written": written})
         return
-    for table in tables:
-        print_table(table)
-    for line in lines:
-        print_text(line)
+    print_parts(parts)
     for path in written:
         print_text(f"written: {path}")
 
@@ -213,34 +239,9 @@ def write_numbers(path: str, columns: Mapping[str, Any]) -> None:
     write_rows(path, list(arrays), rows)
 
 
-def shown(value: float) -> str:
-    """A number for a table."""
-    return f"{value:.8g}"
-
-
-def complex_text(value: complex) -> str:
-    """A complex number for a table."""
-    if abs(value.imag) <= 1e-12 * abs(value):
-        return f"{value.real:.8g}"
-    return f"{value.real:.8g} {'+' if value.imag >= 0 else '-'} {abs(value.imag):.8g}i"
-
-
-def failed_lines(errors: Mapping[Any, str]) -> list[str]:
-    """What to say of points that failed: how many, and why the first did."""
-    if not errors:
-        return []
-    first = next(iter(errors.values())).split("\n")[0]
-    return [f"{len(errors)} points failed; the first of them: {first}"]
-
-
 def number_or_formula(text: str) -> float | str:
     """A number, or the text as a formula."""
     try:
         return float(text)
     except ValueError:
         return text
-
-
-def parts(values: Any) -> list[list[float]]:
-    """Complex numbers for JSON, as [real, imaginary]."""
-    return [[float(value.real), float(value.imag)] for value in values]

@@ -20,9 +20,7 @@ from tracewire.cli.setting import (
     Start,
     Values,
     Workers,
-    failed_lines,
     read_setting,
-    shown,
     tell,
     values_of,
 )
@@ -97,27 +95,6 @@ def sweep(
         )
     import numpy as np
 
-    from tracewire.show import Table
-
-    rows = tuple(
-        (name, shown(float(np.nanmin(v))), shown(float(np.nanmax(v))))
-        for name, v in found.values.items()
-    )
     points = np.meshgrid(*found.grid.values(), indexing="ij")
     columns = dict(zip(found.grid, points, strict=True)) | dict(found.values)
-
-    def draw(path: str) -> object:
-        from tracewire.show import plot_sweep
-
-        return plot_sweep(found, path)
-
-    tell(
-        {"grid": found.grid, "values": found.values, "failed": len(found.errors)},
-        [Table("over the grid", ("number", "min", "max"), rows, frozenset({1, 2}))],
-        [f"{points[0].size} runs", *failed_lines(found.errors)],
-        as_json=as_json,
-        draw=draw,
-        figure=figure,
-        columns=columns,
-        output=output,
-    )
+    tell(found, as_json=as_json, figure=figure, columns=columns, output=output)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
@@ -27,6 +28,7 @@ from tracewire.fit.refusals import (
 from tracewire.fit.result import Comparison, Fit
 from tracewire.fit.search import Ended, Progress, Search, Stopped
 from tracewire.fit.uncertainty import uncertainty_of
+from tracewire.options import options_of
 from tracewire.residual import (
     Criterion,
     Measured,
@@ -52,7 +54,7 @@ def fit(
     free: Sequence[str] | None = None,
     fixed: Sequence[str] = (),
     parameters: Mapping[str, float] | None = None,
-    options: Options | None = None,
+    options: Options | Mapping[str, Any] | None = None,
     loss: str = "linear",
     scale: Mapping[str, float] | None = None,
     correlated: bool | None = None,
@@ -79,15 +81,19 @@ def fit(
     the diagram's. Series for other uses are compared with the fitted model; only their free start
     values are adapted to them.
 
-    `options` are those of optimset: limits of iterations and evaluations and output functions for
-    every method, tolerances for the simplex. `loss` is `linear`, `huber` or `cauchy`, the last two
-    for data with outliers. `scale` gives sizes by name, by which unknowns are divided in a search.
-    `correlated` says whether errors follow from the actual autocorrelation of the residuals; unless
-    given they do where the model has states. `seed` makes random methods repeatable. The search is
+    `options` are those of optimset, or a dictionary such as `{"MaxIter": 50}`: limits of iterations
+    and evaluations and output functions for every method, tolerances for the simplex. `loss` is
+    `linear`, `huber` or `cauchy`, the last two for data with outliers. `scale` gives sizes by name,
+    by which unknowns are divided in a search. `correlated` says whether errors follow from the
+    actual autocorrelation of the residuals; unless given they do where the model has states. `seed`
+    makes random methods repeatable. The search is
     stored in the file `save`, and goes on from the file `resume`; Ctrl-C ends it at its best.
 
     Raises DataError, OptionError; FitError where the model cannot be simulated at the start.
     """
+    if isinstance(options, Mapping):
+        given = {"Display": "off", **options}
+        options = options_of(Options, given, "a fit", inspect.signature(fit).parameters)
     if method not in METHODS:
         raise OptionError([unknown("method", method, METHODS)])
     began = time.perf_counter()

@@ -31,6 +31,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from tracewire.errors import FitError, OptionError
 from tracewire.fit.optimset import OptimValues, Options
+from tracewire.options import options_of
 
 Vector = NDArray[np.float64]
 
@@ -69,7 +70,7 @@ class Minimum(NamedTuple):
 def fminsearch(
     fun: Callable[[Vector], float],
     x0: ArrayLike,
-    options: Options | None = None,
+    options: Options | Mapping[str, Any] | None = None,
     *,
     resumed: Mapping[str, Any] | None = None,
     keep: Callable[[dict[str, Any]], None] | None = None,
@@ -91,13 +92,10 @@ def fminsearch(
     FitError where fun(x0) is not finite or fun does not return a number. What fun itself raises
     goes through.
     """
-    options = Options() if options is None else options
-    if not isinstance(options, Options):
-        what = f"the options of fminsearch are {_shown(options)}"
-        raise OptionError.one(what, hint="Make them with optimset(TolX=1e-3).")
+    chosen = options_of(Options, options, "fminsearch")
     start = _start(x0)
     evaluate = _Evaluate(fun)
-    monitor = _Monitor(options, evaluate)
+    monitor = _Monitor(chosen, evaluate)
     iteration, procedure = 0, "initial simplex"
     if resumed:
         vertices, values = np.array(resumed["vertices"], float), list(resumed["values"])
@@ -118,7 +116,7 @@ def fminsearch(
             flag, message = STOPPED, _USER_STOP
             break
         # Not before the first move: Scilab gives even a converged simplex one.
-        if iteration > 1 and (end := _end(vertices, values, iteration, evaluate.count, options)):
+        if iteration > 1 and (end := _end(vertices, values, iteration, evaluate.count, chosen)):
             flag, message = end
             break
         procedure = _move(vertices, values, evaluate)

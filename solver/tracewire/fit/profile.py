@@ -13,6 +13,7 @@ from tracewire.errors import FitError, OptionError, Problem, unknown
 from tracewire.fit.result import Fit
 from tracewire.fit.uncertainty import criterion_unit
 from tracewire.residual import Criterion, Unknown, descend, whole_segment
+from tracewire.result import Result
 
 Vector = NDArray[np.float64]
 
@@ -29,8 +30,8 @@ Step = tuple[float, float, NDArray[np.float64]]
 """A value, the rise there, and the other scaled unknowns."""
 
 
-@dataclass(frozen=True, eq=False)
-class Profile:
+@dataclass(frozen=True, eq=False, repr=False)
+class Profile(Result):
     """How the fit worsens as the value `name` is held and the others are fitted again.
 
     `values` (n,) in SI, ascending, and at each the `rise` (n,) of -2 log likelihood over the best

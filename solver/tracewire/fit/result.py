@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tracewire.compile import Model
 from tracewire.fit.uncertainty import Uncertainty
 from tracewire.residual import Measured
+from tracewire.result import Result
 
 Vector = NDArray[np.float64]
 
@@ -72,8 +73,8 @@ class Improvement:
     values: Mapping[str, float]
 
 
-@dataclass(frozen=True, eq=False)
-class Fit:
+@dataclass(frozen=True, eq=False, repr=False)
+class Fit(Result):
     """A fitted diagram.
 
     `values` are the free parameters by name in SI (those of a sensor are `offset.SIGNAL`,

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from tracewire.show.live import optimplotfit, optimplotfval, optimplotx
     from tracewire.show.parameter_figures import plot_convergence, plot_correlation, plot_parameters
     from tracewire.show.plane_figures import plot_orbit, plot_polar, plot_portrait
+    from tracewire.show.presentation import Presentation, Presented, present
     from tracewire.show.scene import Moved, extent_of, moved_parts
     from tracewire.show.several_runs import plot_runs
     from tracewire.show.signal_figures import (
@@ -32,13 +33,15 @@ if TYPE_CHECKING:
         plot_spectrum,
     )
     from tracewire.show.sticking import held_intervals
-    from tracewire.show.summary import Table, shown
     from tracewire.show.sweep_figures import plot_chart, plot_sweep
+    from tracewire.show.table import Table, shown
     from tracewire.show.trace_summary import paragraph_of
     from tracewire.show.uplot import library_script, library_style
 
 __all__ = [
     "Moved",
+    "Presentation",
+    "Presented",
     "Report",
     "Table",
     "animate",
@@ -78,6 +81,7 @@ __all__ = [
     "plot_section",
     "plot_spectrum",
     "plot_sweep",
+    "present",
     "report",
     "shown",
 ]
@@ -100,7 +104,8 @@ FILE_OF = {
     "several_runs": "plot_runs",
     "signal_figures": "plot_growth plot_invariants plot_lyapunov plot_scalogram plot_spectrum",
     "sticking": "held_intervals",
-    "summary": "Table shown",
+    "presentation": "Presentation Presented present",
+    "table": "Table shown",
     "sweep_figures": "plot_chart plot_sweep",
     "trace_summary": "paragraph_of",
     "uplot": "library_script library_style",

@@ -11,7 +11,8 @@ from tracewire.show.diagram_picture import diagram_figure
 from tracewire.show.document import Figure, Report, Section
 from tracewire.show.figures import plot_run
 from tracewire.show.fit_report import fit_report
-from tracewire.show.summary import Table, event_counts, events_table, run_table, shown
+from tracewire.show.summary import event_counts, events_table, run_table
+from tracewire.show.table import Table, shown
 from tracewire.show.trace_report import trace_report
 from tracewire.solve import Run
 from tracewire.trace import Found

@@ -13,7 +13,7 @@ from pathlib import Path
 from tracewire.errors import OptionError, Problem, TracewireError, unknown
 from tracewire.files import check_writable, write_file, writing
 from tracewire.show.style import saved_figures
-from tracewire.show.summary import Table
+from tracewire.show.table import Table
 from tracewire.show.uplot import scripts, style
 from tracewire.show.zoom import curves_of
 
@@ -143,7 +143,7 @@ class Report:
             if section.points:
                 points = "".join(f"<li>{_tagged(text)}</li>" for text in section.points)
                 parts.append(f"<ul>{points}</ul>")
-            parts += [_html_table(table) for table in section.tables]
+            parts += [table.html() for table in section.tables]
             if section.code:
                 parts.append(f"<pre>{html.escape(section.code)}</pre>")
             parts += [_html_figure(figure, drawn[figure.name]) for figure in section.figures]
@@ -178,22 +178,6 @@ def _markdown_table(table: Table) -> list[str]:
     for row in (table.header, *table.rows):
         lines.append("| " + " | ".join(_plain(cell).replace("|", "\\|") for cell in row) + " |")
     return [lines[1], lines[0], *lines[2:]]
-
-
-def _html_table(table: Table) -> str:
-    kinds = [' class="number"' if n in table.numeric else "" for n in range(len(table.header))]
-    head = "".join(
-        f"<th{kind}>{html.escape(cell)}</th>"
-        for kind, cell in zip(kinds, table.header, strict=True)
-    )
-    rows = []
-    for row in table.rows:
-        cells = (
-            f"<td{kind}>{html.escape(cell)}</td>" for kind, cell in zip(kinds, row, strict=True)
-        )
-        rows.append("<tr>" + "".join(cells) + "</tr>")
-    caption = f"<caption>{html.escape(table.title)}</caption>" if table.title else ""
-    return f"<table>{caption}<tr>{head}</tr>{''.join(rows)}</table>"
 
 
 def _html_figure(figure: Figure, drawn: Path | str) -> str:

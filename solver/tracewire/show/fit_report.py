@@ -30,7 +30,7 @@ from tracewire.show.fit_tables import (
     tied_table,
 )
 from tracewire.show.parameter_figures import plot_convergence, plot_correlation, plot_parameters
-from tracewire.show.summary import Table, shown
+from tracewire.show.table import Table, shown
 
 ALIKE = 0.95
 """Two values whose errors are correlated more than this are told in a sentence."""

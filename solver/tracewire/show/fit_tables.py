@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from tracewire.fit import Comparison, Diagnosis, Fit, diagnose
 from tracewire.show.comparison_figures import root_mean_square
 from tracewire.show.parameter_figures import unknown_width
-from tracewire.show.summary import Table, shown
+from tracewire.show.table import Table, shown
 
 UNKNOWN = "not determined"
 

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from tracewire.errors import OptionError, Problem
 from tracewire.show.figures import MOST_PANELS
 from tracewire.show.style import LINES, dots, fit_time, panels, save, shortened, styled, with_unit
-from tracewire.show.summary import Table, extremes, shown
+from tracewire.show.summary import extremes
+from tracewire.show.table import Table, shown
 
 if TYPE_CHECKING:
     from tracewire.residual import Measured

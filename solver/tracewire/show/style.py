@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
@@ -57,6 +57,7 @@ STYLE: dict[Any, Any] = {
 }
 
 _SAVED: ContextVar[list[Figure] | None] = ContextVar("_SAVED", default=None)
+_WRITING: ContextVar[bool] = ContextVar("_WRITING", default=True)
 
 
 @contextmanager
@@ -102,12 +103,28 @@ def save(figure: Figure, path: str | Path) -> Path:
     if path.suffix not in ENDINGS:
         raise OptionError([unknown("ending of a figure", path.suffix, ENDINGS)])
     dated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
-    with replacing(path) as file:
-        figure.savefig(file, format=path.suffix[1:], metadata=dated.get(path.suffix))
+    if _WRITING.get():
+        with replacing(path) as file:
+            figure.savefig(file, format=path.suffix[1:], metadata=dated.get(path.suffix))
     saved = _SAVED.get()
     if saved is not None:
         saved.append(figure)
     return path
+
+
+def drawn(draw: Callable[[Path], object]) -> Figure:
+    """The figure that a function draws to a file, without the file; a notebook shows it."""
+    from tracewire.show.picture import Picture
+
+    token = _WRITING.set(False)
+    try:
+        with saved_figures() as found:
+            draw(Path("figure.png"))
+    finally:
+        _WRITING.reset(token)
+    figure = found[-1]
+    figure.__class__ = Picture
+    return figure
 
 
 def fit_time(panel: Axes, t: NDArray[np.float64]) -> None:

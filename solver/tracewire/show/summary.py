@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.diagram import Diagram
+from tracewire.show.table import Table, shown
 
 if TYPE_CHECKING:
     from tracewire.residual import Measured
@@ -20,22 +20,6 @@ if TYPE_CHECKING:
 
 RUNAWAY = 1e9
 """What grows this many times within a run has most likely a force with the wrong sign."""
-
-
-@dataclass(frozen=True)
-class Table:
-    """A table to show: title, header, rows of text; `numeric` are the columns of numbers."""
-
-    title: str
-    header: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    numeric: frozenset[int] = field(default_factory=frozenset)
-
-
-def shown(value: float) -> str:
-    """A number for a table."""
-    return f"{value:.6g}"
-
 
 # --- diagrams and models ------------------------------------------------------------------------
 

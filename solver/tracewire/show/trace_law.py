@@ -44,6 +44,11 @@ FAR = 3.0
 """Means with an error of more than this many median errors set no limits."""
 
 
+def has_law(found: Found) -> bool:
+    """Whether an effect was added to a sum, so that there is a force to be drawn."""
+    return any(effect.block and "drive." not in effect.place for effect in found.effects)
+
+
 def plot_law(found: Found, path: Path) -> Path:
     """The law over the one variable on which it depends most, before and after."""
     from matplotlib.figure import Figure

@@ -11,7 +11,7 @@ from tracewire.show.document import Figure, Report, Section
 from tracewire.show.fit_tables import sentence
 from tracewire.show.trace_experiments import experiment_words
 from tracewire.show.trace_figures import plot_candidates, plot_free_runs, plot_residuals
-from tracewire.show.trace_law import plot_forces, plot_law
+from tracewire.show.trace_law import has_law, plot_forces, plot_law
 from tracewire.show.trace_maps import (
     drawable,
     plot_confusable,
@@ -127,7 +127,7 @@ def _answer(found: Found) -> Section:
     added = [effect.block for effect in found.effects if effect.block]
     figures: tuple[Figure, ...] = (diagram_figure(found.diagram, added),)
     figures += _figure(
-        _has_law(found), found, plot_law, "law.png",
+        has_law(found), found, plot_law, "law.png",
         "The force that the data need, and the law that was found",
     )  # fmt: skip
     missing = found.missing
@@ -136,11 +136,6 @@ def _answer(found: Found) -> Section:
         "What is missing, as a smooth function of what it depends on",
     )  # fmt: skip
     return Section("What was found", (headline_of(found), answer_lines(found)[0]), figures=figures)
-
-
-def _has_law(found: Found) -> bool:
-    """Whether an effect was added to a sum, so that there is a force to be drawn."""
-    return any(effect.block and "drive." not in effect.place for effect in found.effects)
 
 
 def _shares(found: Found) -> Section | None:
@@ -181,7 +176,7 @@ def _errors(found: Found) -> Section | None:
 def _effects(found: Found) -> Section | None:
     tables = tuple(t for t in (effects_table(found), moved_table(found)) if t.rows)
     figures = _figure(
-        _has_law(found), found, plot_forces, "forces.png",
+        has_law(found), found, plot_forces, "forces.png",
         "What the data need at a place over its coordinate and its rate, and the fitted law",
     )  # fmt: skip
     if not tables and not figures:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from tracewire.show.summary import Table, shown
+from tracewire.show.table import Table, shown
 from tracewire.show.trace_experiments import settings_words
 from tracewire.show.trace_words import (
     common_powers,

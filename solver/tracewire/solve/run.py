@@ -14,8 +14,10 @@ from numpy.typing import NDArray
 from tracewire.compile import Model
 from tracewire.diagram import Shown
 from tracewire.errors import OptionError, Problem, unknown
+from tracewire.extras import import_extra
 from tracewire.files import replacing, write_rows
 from tracewire.formula import quantity_hint, read_unit, same_quantity
+from tracewire.result import Result
 
 Vector = NDArray[np.float64]
 Cube = NDArray[np.float64]
@@ -111,8 +113,8 @@ class Statistics:
     seconds: float
 
 
-@dataclass(frozen=True, eq=False)
-class Run:
+@dataclass(frozen=True, eq=False, repr=False)
+class Run(Result):
     """A simulated solution: `run.t` (N,) in s, `run["name"]` (N,) in SI, and `run.events`.
 
     A sample at the time of an event is the right limit. `parameters` and `start` are the values
@@ -165,6 +167,38 @@ class Run:
             hint = "Add it to `record:` of the diagram, or to `record=` of compile."
             raise OptionError([unknown("recorded signal", name, self.signals, hint=hint)])
         return self.signals[name]
+
+    def to_pandas(self) -> Any:
+        """The samples as a DataFrame of pandas in SI, over the time `t` in s.
+
+        `attrs["units"]` has the units, which `Measured.from_frame` reads. Raises InstallationError
+        where pandas is not installed.
+        """
+        pandas = import_extra("pandas", "frames", "for run.to_pandas()")
+        frame = pandas.DataFrame(dict(self.signals), index=pandas.Index(self.t, name="t"))
+        frame.attrs["units"] = {"t": "s", **self._known_units()}
+        return frame
+
+    def to_xarray(self) -> Any:
+        """The samples as a Dataset of xarray in SI, over the time `t`, with `units` and `long_name`
+        as attributes. Raises InstallationError where xarray is not installed."""
+        xarray = import_extra("xarray", "frames", "for run.to_xarray()")
+        units = self._known_units()
+        variables = {
+            name: (
+                "t",
+                values,
+                {"long_name": self.look(name).label}
+                | ({"units": units[name]} if name in units else {}),
+            )
+            for name, values in self.signals.items()
+        }
+        time = {"t": ("t", self.t, {"units": "s"})}
+        return xarray.Dataset(variables, time, {"title": self.title})
+
+    def _known_units(self) -> dict[str, str]:
+        """The units of the recorded signals that have one."""
+        return {name: unit for name in self.signals if (unit := self.units.get(name, ""))}
 
     def save(self, path: str | Path) -> Path:
         """Write the samples to a .csv file, or samples and events to an .npz file."""

@@ -9,14 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.errors import OptionError, Problem, unknown
+from tracewire.result import Result
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 Cube = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
-class Runs:
+@dataclass(frozen=True, eq=False, repr=False)
+class Runs(Result):
     """Many runs of one model: `runs["name"]` (rows, N) in SI at `runs.t` (N,) in s.
 
     `parameters` holds the rows, by name (rows,), NaN where a row does not have it. `final` (rows,

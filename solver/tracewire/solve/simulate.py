@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, SimulationError, unknown
 from tracewire.formula import evaluate, names_of, to_text
+from tracewire.options import options_of
 from tracewire.solve.core.arrays import Flow
 from tracewire.solve.core.codes import SAMPLED
 from tracewire.solve.core.methods import NAMES, STEPPED
@@ -55,7 +56,7 @@ def simulate(
     step: float | None = None,
     preset: str = "",
     inputs: Mapping[str, tuple[ArrayLike, ArrayLike]] | None = None,
-    limits: Limits | None = None,
+    limits: Limits | Mapping[str, float] | None = None,
     progress: Tell | None = None,
     sensitivities: Sequence[str] = (),
 ) -> Run:
@@ -69,7 +70,8 @@ def simulate(
     1e-8 or less, and rosenbrock where a mode combination turns out to be stiff. `atol` is given as
     a number or by state; else it is rtol/1000 of the largest value so far of each state, or of 1,
     whichever is less. `inputs` gives measured inputs as (times, values), joined
-    by straight lines; `Held(times, values)` holds each value until the next. `progress` is told
+    by straight lines; `Held(times, values)` holds each value until the next. `limits` is a record
+    or a dictionary such as `{"seconds": 60}`. `progress` is told
     about ten times a second the part of the span that is done, and the seconds that are left.
     `sensitivities` names parameters and start values (`start.theta`) whose forward sensitivities
     are wanted.
@@ -85,7 +87,8 @@ def simulate(
     samples = samples_of(model, values, begin, end, given)
     if method != "auto" and method not in NAMES:
         raise OptionError([unknown("method", method, ["auto", *NAMES])])
-    longest = longest_step(model, values, limits or Limits())
+    within = options_of(Limits, limits, "limits of a run")
+    longest = longest_step(model, values, within)
     tolerance = tolerance_of(model, rtol, atol, method, step, end - begin, longest)
     tables = packed(tables_of(model, values, inputs or {}))
     moving = moving_with(model, asked, values, parameters or {}, preset)
@@ -96,9 +99,7 @@ def simulate(
     if asked:
         sensitivity = arrays.sensitivity
         set_sensitivity(model, flow, state, sensitivity, asked, moving, start or {}, values)
-    execution = Execution(
-        model, arrays, limits or Limits(), begin, progress, None, asked, space.table
-    )
+    execution = Execution(model, arrays, within, begin, progress, None, asked, space.table)
     try:
         execution.run()
     except Interrupted as error:

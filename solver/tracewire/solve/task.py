@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, TracewireError, unknown
 from tracewire.formula import names_of
+from tracewire.options import options_of
 from tracewire.solve.core.arrays import Plan
 from tracewire.solve.core.flow import FREE, FUNCTIONS
 from tracewire.solve.core.methods import NAMES
@@ -61,7 +62,7 @@ class Options(TypedDict, total=False):
     step: float | None
     preset: str
     inputs: Mapping[str, tuple[ArrayLike, ArrayLike]] | None
-    limits: Limits | None
+    limits: Limits | Mapping[str, float] | None
 
 
 @dataclass(frozen=True)
@@ -87,7 +88,7 @@ class Task:
         self.parameters = dict(options.get("parameters") or {})
         self.start = dict(options.get("start") or {})
         self.preset = options.get("preset", "")
-        self.limits = options.get("limits") or Limits()
+        self.limits = options_of(Limits, options.get("limits"), "limits of a run")
         self.method = options.get("method", "auto")
         if self.method != "auto" and self.method not in NAMES:
             raise OptionError([unknown("method", self.method, ["auto", *NAMES])])

@@ -18,6 +18,7 @@ from tracewire.trace.found import (
     Remainder,
     StepTold,
     Tie,
+    data_of,
 )
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.saved import load, save
@@ -69,6 +70,7 @@ __all__ = [
     "TrialOptions",
     "check_options",
     "coefficient_of",
+    "data_of",
     "load",
     "save",
     "signal_of",

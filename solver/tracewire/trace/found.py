@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields, is_dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Literal
 
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.diagram import Diagram, difference
+from tracewire.result import Result, plain
 from tracewire.trace.options import TraceOptions
 
 Vector = NDArray[np.float64]
@@ -270,8 +271,8 @@ class HeldOut:
     floor: Vector
 
 
-@dataclass(frozen=True, eq=False)
-class Found:
+@dataclass(frozen=True, eq=False, repr=False)
+class Found(Result):
     """What a trace found.
 
     `verdict`: `null` (nothing is missing beyond the noise), `effect` (named in `effects`), or
@@ -347,30 +348,13 @@ class Found:
             raise ValueError("the diagram has changed since it was traced: trace it again")
         return self.diagram
 
-    def as_json(self) -> dict[str, Any]:
-        """The result as plain data, without curves and diagrams."""
-        data = {name: plain(getattr(self, name)) for name in IN_JSON.split()}
-        data |= {"parameters": plain(self.values), "where_what": plain(self.dependences)}
-        for told, effect in zip(data["effects"], self.effects, strict=True):
-            told |= {"ties": [str(tie) for tie in effect.ties], "tied": told["ties"]}
-        for experiment in data["experiments"]:
-            del experiment["map"]
-        return data
 
-
-def plain(value: Any, number: Callable[[float], Any] = float) -> Any:
-    """A value in plain types: records as dictionaries, arrays and tuples as lists.
-
-    `number` says what a float becomes.
-    """
-    if isinstance(value, bool | int | str | None):
-        return value
-    if isinstance(value, float):
-        return number(value)
-    if isinstance(value, np.ndarray | np.generic):
-        return plain(value.tolist(), number)
-    if isinstance(value, Mapping):
-        return {str(key): plain(item, number) for key, item in value.items()}
-    if is_dataclass(value) and not isinstance(value, type):
-        return {f.name: plain(getattr(value, f.name), number) for f in fields(value)}
-    return [plain(item, number) for item in value]
+def data_of(found: Found) -> dict[str, Any]:
+    """The result as plain data, without curves and diagrams."""
+    data: dict[str, Any] = {name: plain(getattr(found, name)) for name in IN_JSON.split()}
+    data |= {"parameters": plain(found.values), "where_what": plain(found.dependences)}
+    for told, effect in zip(data["effects"], found.effects, strict=True):
+        told |= {"ties": [str(tie) for tie in effect.ties], "tied": told["ties"]}
+    for experiment in data["experiments"]:
+        del experiment["map"]
+    return data

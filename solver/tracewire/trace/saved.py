@@ -21,7 +21,8 @@ from tracewire.diagram import Diagram, read_text
 from tracewire.errors import OptionError, Place, Problem, TracewireError
 from tracewire.files import write_file, writing
 from tracewire.library import load_library
-from tracewire.trace.found import Force, Found, plain
+from tracewire.result import plain
+from tracewire.trace.found import Force, Found
 from tracewire.trace.units import known_units, users_unit
 
 KIND, VERSION = "a trace of tracewire", 1

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 from tracewire.compile import Model
 from tracewire.errors import FitError, Problem
 from tracewire.fit import Fit
+from tracewire.options import options_of
 from tracewire.residual import Measured
 from tracewire.trace.choose.prediction import Prediction, predict
 from tracewire.trace.choose.safeguards import fit_declared, refuse_mistaken, safeguard
@@ -29,7 +31,7 @@ def trace(
     subject: Model | Fit,
     measured: Sequence[Measured] | None = None,
     *,
-    options: TraceOptions | None = None,
+    options: TraceOptions | Mapping[str, Any] | None = None,
     rtol: float = 1e-6,
     progress: Callable[[str], None] | None = None,
 ) -> Found:
@@ -39,13 +41,13 @@ def trace(
     then the best, and pairs of them, by a refit in the loop. Where the noise of the sensors is in
     reach, BIC ranks them and stretches that no fit saw accept them; elsewhere models are chosen by
     what they predict on blocks of time that their fits did not see. The errors reported come from a
-    third stretch. `options` says what is tried, and from when on an effect is believed. Ctrl-C ends
-    it with what was found so far.
+    third stretch. `options`, a record or a dictionary, says what is tried, and
+    from when on an effect is believed. Ctrl-C ends it with what was found so far.
 
     Raises DataError where the series cannot be used, FitError where the model does not run, or
     where `rtol` is too loose for such small noise.
     """
-    options = options or TraceOptions()
+    options = options_of(TraceOptions, options, "a trace")
     tell = progress or (lambda text: None)
     search = begun(subject, measured, rtol, within(options.budget, tell), options)
     interrupted = False
