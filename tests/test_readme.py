@@ -69,6 +69,18 @@ def test_the_python_example_of_the_readme_works(here: Path) -> None:
     assert (here / "trace.html").is_file()
 
 
+@pytest.mark.slow
+def test_the_example_of_the_page_on_python_works(
+    here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (example,) = fenced("python", (ROOT / "docs/python.md").read_text(encoding="utf-8"))
+    names: dict[str, object] = {}
+    exec(compile(example, "python.md", "exec"), names)
+    assert names["fitted"].values["c"] == pytest.approx(0.1, rel=1e-3)  # type: ignore[attr-defined]
+    assert "<Run: Pendulum" in capsys.readouterr().out
+    assert all((here / figure).is_file() for figure in ("run.png", "bench.svg"))
+
+
 def test_the_diagram_of_the_readme_is_the_shipped_one() -> None:
     lesson = ROOT / "diagrams/lessons/pendulum.yaml"
     shown = read_text(fenced("yaml")[0], lesson)
