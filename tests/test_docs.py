@@ -67,7 +67,7 @@ def test_the_examples_are_a_diagram(tmp_path: Path) -> None:
     """All examples at once, with what they name beside them."""
     examples = dict(rows())
     del examples["include"], examples["measured"], examples["blocks"]
-    assert len(examples) == 11
+    assert len(examples) == 12
     text = "\n".join(examples.values()).replace("{k:", "{m: 1, c: 1, limit: 1, k:")
     blocks = re.findall(r"blocks: \{(.+)\}", dict(rows())["blocks"])[0]
     text += f"\nblocks:\n  {blocks}\n  v: {{type: integrator, of: force}}\n"

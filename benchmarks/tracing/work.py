@@ -72,7 +72,8 @@ def _coefficients() -> dict[str, str]:
     """The coefficient of every effect of the library, by its name."""
     from tracewire.library import load_library
 
-    return {b.name: b.effect.coefficient for b in load_library().effects() if b.effect}
+    effects = load_library().effects().items()
+    return {name: block.effect.coefficient for name, block in effects if block.effect}
 
 
 def _free_runs(

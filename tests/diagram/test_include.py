@@ -63,7 +63,7 @@ def test_mistakes_in_an_included_file_name_that_file(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ("blocks: {}", "unknown section of an included file 'blocks'; there are: include, sub"),
+        ("blocks: {}", "unknown section of an included file 'blocks'; there are: include, lib"),
         ("a: [", "this is not YAML"),
         ("text", "an included file must be a mapping"),
         ("", "the file is empty"),

@@ -23,7 +23,7 @@ OF_EITHER_SIGN = (
     " harmonic parametric cogging stiffness_drift viscous_drift friction_drift coupling_q"
     " coupling_v drive_gain drive_2nd_harm drive_3rd_harm inertia play play_q stop_q"
 )
-EFFECTS = {block.name: block for block in library().effects()}
+EFFECTS = library().effects()
 EACH = pytest.mark.parametrize("block", EFFECTS.values(), ids=EFFECTS)
 FREE = tuple(name for name, block in EFFECTS.items() if not block.states)
 Q, V = st.floats(-3, 3), st.floats(-9, 9)

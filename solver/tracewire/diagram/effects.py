@@ -32,7 +32,7 @@ class EffectType:
 
 def effects_of(diagram: Diagram) -> list[EffectType]:
     """Every effect that may be added to a diagram: of its library, and subsystems that say so."""
-    found = [_of_block(block) for block in diagram.library.effects()]
+    found = [_of_block(name, block) for name, block in diagram.library.effects().items()]
     return found + [
         _of_subsystem(name, inside, inside.effect)
         for name, inside in diagram.subsystems.items()
@@ -40,7 +40,7 @@ def effects_of(diagram: Diagram) -> list[EffectType]:
     ]
 
 
-def _of_block(block: Block) -> EffectType:
+def _of_block(name: str, block: Block) -> EffectType:
     if block.effect is None:
         raise AssertionError("the library's effects are blocks that have one")
     given: dict[str, Expression | float] = {}
@@ -52,7 +52,7 @@ def _of_block(block: Block) -> EffectType:
     known = _worked_out(given)
     parameters = {p.name: known.get(p.name) for p in numbers}
     ports = tuple(port.name for port in block.inputs)
-    return EffectType(block.name, block.effect, ports, parameters, block=block)
+    return EffectType(name, block.effect, ports, parameters, block=block)
 
 
 def _of_subsystem(name: str, inside: Diagram, effect: Effect) -> EffectType:

@@ -12,6 +12,7 @@ from tracewire.diagram.diagram import Diagram
 from tracewire.diagram.files import load
 from tracewire.diagram.loops import check_parameters
 from tracewire.diagram.measured import read_measured
+from tracewire.diagram.packages import Packages, who_has
 from tracewire.diagram.problems import Problems, clip
 from tracewire.diagram.read_effect import read_effect
 from tracewire.diagram.read_scene import read_scene
@@ -43,9 +44,9 @@ INSIDE = (
 )
 TOP = (
     *("title", "span", "every", "record", "inputs", "parameters", "blocks", "subsystems"),
-    *("include", "events", "require", "presets", "measured", "max_step", "scene"),
+    *("include", "events", "require", "presets", "measured", "max_step", "scene", "libraries"),
 )
-INCLUDED = ("title", "include", "subsystems")
+INCLUDED = ("title", "libraries", "include", "subsystems")
 
 
 def read(path: str | Path, libraries: Iterable[str | Path] = ()) -> Diagram:
@@ -148,11 +149,15 @@ class _Definition:
 
 class _Reader:
     def __init__(self, library: Library, problems: Problems) -> None:
-        self.library, self.problems = library, problems
+        self.packages, self.problems = Packages(library, problems), problems
         self.stack: list[_Definition] = []
         self.including: list[Path] = []
         self.included: dict[Path, dict[str, _Definition]] = {}
         self.sizes: dict[int, int] = {}
+
+    @property
+    def library(self) -> Library:
+        return self.packages.library
 
     def top(self, text: str, file: Path) -> Diagram | None:
         root = compose(text, file, self.problems)
@@ -169,6 +174,8 @@ class _Reader:
         body.required(entries, "blocks", "a diagram")
         scope = _Scope(file, text)
         self.including = [_resolved(file)]
+        if "libraries" in entries.values:
+            self.packages.read(entries.values["libraries"], body)
         scope.definitions = self.define(entries, scope) | self.include(entries, scope, body)
         base = self.common(entries, body, scope, file.stem, Place(str(file), 1, 1))
         diagram = self.with_settings(base, entries, body)
@@ -249,6 +256,8 @@ class _Reader:
             visible = around.definitions | visible
             around = around.parent
         definition = visible.get(type_name)
+        if definition is None and not self.packages.has(type_name, place):
+            return None
         if definition is None and type_name in self.library:
             return self.library[type_name]
         if definition is None:
@@ -267,8 +276,10 @@ class _Reader:
 
     def unknown_type(self, type_name: str, visible: Iterable[str], place: Place) -> None:
         """Note a type that is neither block nor subsystem; a name of another tool is explained."""
+        if self.packages.unknown(type_name, place) or self.problems.skips():
+            return
         found = find_synonym(type_name, [*self.library])
-        hint = found[1] if found is not None else find_instead(type_name)
+        hint = found[1] if found is not None else find_instead(type_name) or who_has(type_name)
         if hint:
             self.problems.add(f"unknown block type '{clip(type_name)}'", place, (), hint)
         else:
@@ -329,7 +340,8 @@ class _Reader:
         there = own.keys if isinstance(own, Entries) else {}
         for name in body.scalars(node, "'include'") if node is not None else ():
             place = body.place(name)
-            for key, definition in self.included_file(body.folder / name.text, place).items():
+            file = self.packages.file(name.text, body.folder, place)
+            for key, definition in self.included_file(file, place).items() if file else ():
                 other = found.get(key)
                 if key in there or (other is not None and other is not definition):
                     first = there[key].place if other is None else other.key.place
@@ -369,6 +381,8 @@ class _Reader:
             return {}
         hint = "A file that is included holds subsystems only."
         body.check_keys(entries, INCLUDED, "section of an included file", hint=hint)
+        if "libraries" in entries.values:
+            self.packages.read(entries.values["libraries"], body)
         scope = _Scope(file, text)
         own = self.define(entries, scope)
         scope.definitions = own | self.include(entries, scope, body)

@@ -5,11 +5,23 @@ from tracewire.library.declare import Block
 from tracewire.library.describe import describe, describe_json, palette
 from tracewire.library.effect import SCALES, SYMBOLS, Effect, Scale, Shape, Symbol, Tone, Where
 from tracewire.library.load import Library, load_library
+from tracewire.library.packages import (
+    OWN,
+    Package,
+    find_package,
+    folder_of,
+    installed_packages,
+    package_blocks,
+    package_file,
+    packages_with,
+    subsystem_files,
+)
 from tracewire.library.parts import Event, Input, Mode, Output, Parameter, State, Transition
 from tracewire.library.sensor import SENSOR_TERMS
 from tracewire.library.synonyms import find_instead, find_synonym
 
 __all__ = [
+    "OWN",
     "SCALES",
     "SENSOR_TERMS",
     "SYMBOLS",
@@ -21,6 +33,7 @@ __all__ = [
     "Library",
     "Mode",
     "Output",
+    "Package",
     "Parameter",
     "Scale",
     "Shape",
@@ -33,7 +46,14 @@ __all__ = [
     "describe",
     "describe_json",
     "find_instead",
+    "find_package",
     "find_synonym",
+    "folder_of",
+    "installed_packages",
     "load_library",
+    "package_blocks",
+    "package_file",
+    "packages_with",
     "palette",
+    "subsystem_files",
 ]

@@ -26,9 +26,10 @@ def describe(library: Library, name: str) -> str:
 
     A name of another tool finds the block that it is here. Raises BlockError: there is none.
     """
-    block, same = _find(library, name)
+    name, same = _find(library, name)
+    block = library[name]
     lines = [same, ""] if same else []
-    lines += [f"{block.name}: {block.doc}", ""]
+    lines += [f"{name}: {block.doc}", ""]
     lines += _section("inputs", [(p.name, p.unit, _wiring(p), p.doc) for p in block.inputs])
     lines += _section("parameters", [(p.name, p.unit, _range(p), p.doc) for p in block.parameters])
     lines += _section("conditions", [(condition, "") for condition in block.require])
@@ -46,7 +47,7 @@ def describe(library: Library, name: str) -> str:
     lines += ["formulas", *(f"  {o.name} = {_told(o.formula)}" for o in block.outputs), ""]
     if block.effect is not None:
         lines.append(_effect(block))
-    if others := other_names(block.name):
+    if others := other_names(name):
         lines.append(f"Also known as {'; '.join(others)}.")
     if block.source:
         lines.append(f"Source: {block.source}")
@@ -59,10 +60,11 @@ def describe_json(library: Library, name: str) -> dict[str, object]:
 
     A name of another tool finds the block that it is here. Raises BlockError: there is none.
     """
-    block, _ = _find(library, name)
+    name, _ = _find(library, name)
+    block = library[name]
     feedthrough = {o.name: _feedthrough(block, o.name) for o in block.outputs}
     return {
-        "name": block.name,
+        "name": name,
         "family": library.families.get(name, ""),
         "doc": block.doc,
         "inputs": [asdict(port) for port in block.inputs],
@@ -74,19 +76,19 @@ def describe_json(library: Library, name: str) -> dict[str, object]:
         "events": [asdict(event) | {"when": list(event.guards)} for event in block.events],
         "outputs": [asdict(o) | {"feedthrough": feedthrough[o.name]} for o in block.outputs],
         "effect": None if block.effect is None else _effect_json(block.effect),
-        "also_known_as": other_names(block.name),
+        "also_known_as": other_names(name),
         "source": block.source,
         "place": {"file": block.place.file, "line": block.place.line},
     }
 
 
-def _find(library: Library, name: str) -> tuple[Block, str]:
-    """The block of a name, and where it has another name here, a sentence that says so."""
+def _find(library: Library, name: str) -> tuple[str, str]:
+    """The name of a block here, and where that is another one, a sentence that says so."""
     if name in library:
-        return library[name], ""
+        return name, ""
     found = find_synonym(name, [*library])
     if found is not None:
-        return library[found[0]], found[1]
+        return found
     instead = find_instead(name)
     problem = Problem(f"'{name}' is no block", hint=instead)
     raise BlockError([problem if instead else unknown("block", name, library)])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import runpy
 import traceback
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -36,9 +36,13 @@ class Library:
     def __iter__(self) -> Iterator[str]:
         return iter(self.blocks)
 
-    def effects(self) -> list[Block]:
-        """The blocks that may be tried as a missing effect."""
-        return [block for block in self.blocks.values() if block.effect is not None]
+    def extended(self, blocks: Mapping[str, Block], families: Mapping[str, str]) -> Library:
+        """A library with further blocks."""
+        return _library({**self.blocks, **blocks}, {**self.families, **families})
+
+    def effects(self) -> dict[str, Block]:
+        """The blocks that may be tried as a missing effect, by name."""
+        return {name: block for name, block in self.blocks.items() if block.effect is not None}
 
 
 def load_library(extra: Iterable[str | Path] = ()) -> Library:
@@ -49,29 +53,47 @@ def load_library(extra: Iterable[str | Path] = ()) -> Library:
     BlockError: a folder without block files, a file that cannot be read, a declaration that is
     wrong, a name declared twice.
     """
-    blocks: dict[str, Block] = {}
-    families: dict[str, str] = {}
+    files: list[Path] = []
     problems: list[Problem] = []
     for folder in (shipped("blocks"), *(Path(path).resolve() for path in extra)):
-        files = [folder] if folder.is_file() else sorted(folder.glob("[!_]*.py"))
-        if not files:
+        found = [folder] if folder.is_file() else block_files(folder)
+        if not found:
             hint = "A library is a .py file of block declarations, or a folder of them."
             problems.append(Problem("there are no block files here", Place(str(folder)), (), hint))
-        for file in files:
-            try:
-                found = _read(file, file.stat().st_mtime_ns)
-            except BlockError as error:
-                problems += error.problems
-                continue
-            for block in found:
-                if blocks.setdefault(block.name, block) is not block:
-                    there = blocks[block.name].place
-                    what = f"the block '{block.name}' is already declared in {there}"
-                    problems.append(Problem(what, block.place, (), "Give it another name."))
-                families.setdefault(block.name, file.stem)
+        files += found
+    return _library(*load_files(files, problems))
+
+
+def block_files(folder: Path) -> list[Path]:
+    """The files of a folder that may declare blocks."""
+    return sorted(folder.glob("[!_]*.py"))
+
+
+def load_files(
+    files: Iterable[Path], problems: Sequence[Problem] = ()
+) -> tuple[dict[str, Block], dict[str, str]]:
+    """The blocks that files declare, by name, and the family of each; the files are run.
+
+    Raises BlockError: `problems`, a file that cannot be read, a name declared twice.
+    """
+    blocks: dict[str, Block] = {}
+    families: dict[str, str] = {}
+    problems = list(problems)
+    for file in files:
+        try:
+            found = _read(file, file.stat().st_mtime_ns)
+        except BlockError as error:
+            problems += error.problems
+            continue
+        for block in found:
+            if blocks.setdefault(block.name, block) is not block:
+                there = blocks[block.name].place
+                what = f"the block '{block.name}' is already declared in {there}"
+                problems.append(Problem(what, block.place, (), "Give it another name."))
+            families.setdefault(block.name, file.stem)
     if problems:
         raise BlockError(problems)
-    return _library(blocks, families)
+    return blocks, families
 
 
 def _library(blocks: dict[str, Block], families: dict[str, str]) -> Library:

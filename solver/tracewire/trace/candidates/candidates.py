@@ -64,7 +64,8 @@ def find_candidates(
             name = kind.name
             if kind.effect.place != place.kind:
                 continue
-            wanted = f"{name}_{place.name.rpartition('.')[2]}" if several[place.kind] else name
+            plain = name.rpartition(".")[2]  # a block of a package has the name of that in front
+            wanted = f"{plain}_{place.name.rpartition('.')[2]}" if several[place.kind] else plain
             for of, signals in _wirings(kind.effect, place, places):
                 block = free_name(f"{wanted}_{of}" if of else wanted, names)
                 candidate = _candidate(

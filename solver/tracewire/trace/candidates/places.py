@@ -67,12 +67,16 @@ def find_places(model: Model) -> list[Place]:
 def untried(diagram: Diagram, places: Sequence[Place]) -> list[str]:
     """What cannot be tried at sums that have no rate, or no coordinate, in words."""
     found = []
-    effects = [block for block in diagram.library.effects() if block.effect is not None]
+    effects = diagram.library.effects()
     for place in places:
         missing = [s for s, signal in (("q", place.q), ("v", place.v)) if not signal]
         if place.kind != "sum" or not missing:
             continue
-        needs = [b.name for b in effects if b.effect and {*missing} & {*b.effect.inputs.values()}]
+        needs = [
+            name
+            for name, block in effects.items()
+            if block.effect and {*missing} & {*block.effect.inputs.values()}
+        ]
         lacks = " and no ".join({"q": "coordinate", "v": "rate"}[s] for s in missing)
         shown = ", ".join(needs[:MOST_TOLD]) + (" ..." if len(needs) > MOST_TOLD else "")
         adds = ", ".join(f"{s}: SIGNAL" for s in missing)
