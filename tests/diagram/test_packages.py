@@ -54,6 +54,16 @@ def test_a_library_is_not_read_before_a_diagram_names_it(site: Path) -> None:
     assert "magnets.py:1: the block file cannot be read: ValueError: run" in refused(TOP)[0]
 
 
+def test_a_diagram_without_libraries_does_not_look_for_them(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def scanned(path: object) -> None:
+        raise AssertionError("no diagram asked for a library")
+
+    monkeypatch.setattr("tracewire.library.packages._scanned", scanned)
+    read_text("blocks: {x: {type: constant, value: 2}}")
+
+
 def test_effects_of_a_library_are_tried_where_the_diagram_names_it(site: Path) -> None:
     rub = HEAD + (
         'rub = Block("rub", "Rubs.", inputs=(Input("rate"),), parameters=(Parameter("c"),),'

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tracewire.cli.output import working
+from tracewire.cli.project import with_project
 
 if TYPE_CHECKING:
     from tracewire.compile import Model
@@ -22,6 +23,7 @@ Libraries = Annotated[
         metavar="PATH",
         help="A Python file or folder of further blocks; it is run, so trust it. Repeatable.",
         show_default=False,
+        callback=with_project,
     ),
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]

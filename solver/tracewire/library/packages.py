@@ -12,15 +12,18 @@ import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from tracewire.errors import BlockError, Place, Problem, unknown
 from tracewire.formula import is_name, name_hint
 from tracewire.library.declare import Block
 from tracewire.library.load import block_files, load_files
 from tracewire.shipped import shipped
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 GROUP = "tracewire.blocks"
 OWN = "tracewire"
@@ -144,6 +147,8 @@ def packages_with(block: str) -> list[str]:
 @lru_cache(maxsize=8)
 def _scanned(path: tuple[str, ...]) -> tuple[Package, ...]:
     """What the distributions on the path of Python declare; `path` says when to look again."""
+    from importlib.metadata import entry_points  # imported where a diagram asks for a library
+
     return tuple(map(_package, entry_points(group=GROUP)))
 
 
