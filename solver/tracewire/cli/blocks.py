@@ -1,13 +1,22 @@
-"""`tracewire blocks`: the blocks that a diagram may use."""
+"""`tracewire blocks`: the blocks that a diagram may use, and the libraries that are installed."""
 
 from __future__ import annotations
 
-from typing import Annotated
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from tracewire.cli.options import AsJson, Debug, Libraries
-from tracewire.cli.output import print_json, print_text
+from tracewire.cli.output import check_target, note, print_json, print_text, working
+from tracewire.cli.reporting import ReportFile
+from tracewire.errors import BlockError
+
+if TYPE_CHECKING:
+    from tracewire.diagram import Diagram
+    from tracewire.library import Library, Package
 
 
 def blocks(
@@ -15,28 +24,149 @@ def blocks(
         str | None,
         typer.Argument(
             metavar="[NAME]",
-            help="A block, or its name in Simulink, Modelica or Xcos.",
+            help="A block, or its name in Simulink, Modelica or Xcos; or an installed library.",
             show_default=False,
         ),
     ] = None,
+    report: ReportFile = None,
     library: Libraries = None,
     as_json: AsJson = False,
     debug: Debug = False,
 ) -> None:
-    """List the blocks, or describe one: ports, parameters, formulas, source.
+    """List the blocks of tracewire or of an installed library, or describe one block.
+
+    What is told of a block is its ports, parameters, formulas and source. A report has that of
+    all blocks, and the pictures of the subsystems of a library.
 
     \b
     Examples:
       tracewire blocks
       tracewire blocks dry_friction
       tracewire blocks INTEGRAL_m
+      tracewire blocks tracewire --report blocks.html
     """
-    from tracewire.library import describe, describe_json, load_library, palette
+    from tracewire.library import describe, describe_json, palette
 
-    found = load_library(library or ())
-    if as_json and name is None:
-        print_json({"blocks": [describe_json(found, block) for block in found]})
-    elif as_json and name is not None:
-        print_json(describe_json(found, name))
+    check_target(report, (".md", ".html"), "report")
+    found = _found(name, library or ())
+    if found.block:
+        told: dict[str, object] = describe_json(found.library, found.block)
+        text = describe(found.library, found.block)
     else:
-        print_text(palette(found) if name is None else describe(found, name))
+        told = {"blocks": [describe_json(found.library, block) for block in found.library]}
+        text = palette(found.library)
+        told |= _more_json(found)
+        text = "\n\n".join(part for part in (found.title, text, _more_text(found)) if part)
+    if report is not None:
+        told["written"] = [_write(report, found)]
+    if as_json:
+        print_json(told)
+    else:
+        print_text(text if report is None else f"written: {report}")
+
+
+@dataclass(frozen=True)
+class _Found:
+    """What is told: the blocks of a library, or `block` alone.
+
+    `package` is the installed library that was named, `subsystems` are the names of those in its
+    files; without one `others` are the libraries that can be named.
+    """
+
+    library: Library
+    block: str = ""
+    package: Package | None = None
+    subsystems: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    others: Sequence[Package] = ()
+
+    @property
+    def title(self) -> str:
+        return "" if self.package is None else f"library {self.package.name} of {self.package}"
+
+
+def _found(name: str | None, libraries: Sequence[str]) -> _Found:
+    """What a name on the command line means. Raises BlockError: a library is wrong or missing."""
+    from tracewire.library import (
+        OWN,
+        Library,
+        find_package,
+        find_synonym,
+        installed_packages,
+        load_library,
+        package_blocks,
+    )
+
+    known = load_library(libraries)
+    packages = [find_package(OWN), *installed_packages()]
+    if name is None:
+        return _Found(known, others=packages)
+    library, dot, _ = name.partition(".")
+    if name in known or (not dot and name not in {package.name for package in packages}):
+        if name not in known and find_synonym(name, [*known]) is None:
+            _refuse_of_others(name)
+        return _Found(known, name)
+    package = find_package(library)
+    inside = known if library == OWN else Library(*package_blocks(package))
+    if dot:
+        return _Found(inside, name)
+    from tracewire.diagram import package_subsystems
+
+    return _Found(inside, "", package, package_subsystems(package))
+
+
+def _refuse_of_others(name: str) -> None:
+    """Say which installed library has a block or subsystem of this name. Raises BlockError."""
+    from tracewire.diagram import who_has
+
+    if hint := who_has(name):
+        raise BlockError.one(f"'{name}' is no block of tracewire", hint=hint)
+
+
+def _more_json(found: _Found) -> dict[str, object]:
+    def told(package: Package) -> dict[str, object]:
+        names = {"library": package.name, "distribution": package.distribution}
+        return {**names, "version": package.version}
+
+    if found.package is None:
+        return {"libraries": [told(package) for package in found.others]}
+    return {**told(found.package), "subsystems": found.subsystems}
+
+
+def _more_text(found: _Found) -> str:
+    """The subsystems of the library that was named; without one the libraries there are."""
+    if found.package is None:
+        head = "libraries: 'tracewire blocks NAME' lists one"
+        rows = {package.name: str(package) for package in found.others}
+    else:
+        head = "subsystems"
+        named = found.subsystems.items()
+        rows = {f"include: {found.package.name}:{file}": ", ".join(names) for file, names in named}
+    width = max(map(len, rows), default=0)
+    lines = [f"  {name:<{width}}  {what}" for name, what in rows.items()]
+    return "\n".join([head, *lines]) if lines else ""
+
+
+def _write(report: str, found: _Found) -> str:
+    """Write the page of what was found; the path of it."""
+    from tracewire.library import Library, describe_json
+    from tracewire.show import library_report
+
+    library, title = found.library, found.title or "The blocks of tracewire"
+    if found.block:
+        title = str(describe_json(library, found.block)["name"])  # by its name here
+        library = Library({title: library[title]}, library.families)
+    with working(f"writing {report}"):
+        page = library_report(title, library, _read_subsystems(found))
+        return str(page.write(report, note))
+
+
+def _read_subsystems(found: _Found) -> dict[tuple[str, str], Diagram]:
+    """The subsystems of a package by what a diagram includes and the name there."""
+    from tracewire.diagram import read_text
+
+    read: dict[tuple[str, str], Diagram] = {}
+    for file, names in found.subsystems.items():
+        wanted = f"{found.package and found.package.name}:{file}"
+        diagram = read_text(f"include: {json.dumps(wanted)}\nblocks: {{}}")
+        read |= {(wanted, name): diagram.subsystems[name] for name in names}
+    return read

@@ -52,6 +52,7 @@ from tracewire.diagram.names import (
     state_names,
     states,
 )
+from tracewire.diagram.packages import package_subsystems, who_has
 from tracewire.diagram.read import read, read_readable, read_readable_text, read_text
 from tracewire.diagram.rewire import add_to_drive, rewired
 from tracewire.diagram.write import write
@@ -91,6 +92,7 @@ __all__ = [
     "find_state",
     "load_text",
     "mapping_text",
+    "package_subsystems",
     "path_text",
     "quoted",
     "read",
@@ -109,6 +111,7 @@ __all__ = [
     "split_index",
     "state_names",
     "states",
+    "who_has",
     "with_series_of",
     "write",
     "written_units",

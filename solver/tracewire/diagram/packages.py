@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from shlex import quote
 
@@ -126,46 +124,39 @@ class Packages:
         self.problems.add(what, place, (), hint)
 
 
-@dataclass(frozen=True)
-class _Subsystems:
-    """The names of the subsystems in a file of a library."""
-
-    package: Package
-    file: str
-    names: tuple[str, ...]
-
-
 def who_has(type_name: str) -> str:
     """Which installed libraries have a block or subsystem of a name, as a hint; else nothing."""
     hints = [
         f"The installed library '{name}' has it: write type: {name}.{type_name}."
         for name in packages_with(type_name)
     ]
-    hints += [
-        f"The library '{one.package.name}' has a subsystem '{type_name}': "
-        f"write include: {one.package.name}:{one.file}."
-        for one in _subsystems()
-        if type_name in one.names
-    ]
-    return " ".join(hints)
-
-
-def _subsystems() -> Iterator[_Subsystems]:
-    """What the files of subsystems hold, of tracewire and of all installed libraries."""
     for package in (find_package(OWN), *installed_packages()):
+        for file, names in package_subsystems(package).items():
+            if type_name in names:
+                what = f"The library '{package.name}' has a subsystem '{type_name}'"
+                hints.append(f"{what}: write include: {package.name}:{file}.")
+    return " ".join(dict.fromkeys(hints))
+
+
+def package_subsystems(package: Package) -> dict[str, tuple[str, ...]]:
+    """The names of the subsystems in the files of an installed library that can be included."""
+    found: dict[str, tuple[str, ...]] = {}
+    try:
+        folder = folder_of(package)
+        files = subsystem_files(package)
+    except BlockError:
+        return found
+    for file in files:
         try:
-            folder = folder_of(package)
-            files = subsystem_files(package)
-        except BlockError:
+            root = compose(load(folder / file), folder / file, Problems())
+        except DiagramError:
             continue
-        for file in files:
-            try:
-                root = compose(load(folder / file), folder / file, Problems())
-            except DiagramError:
-                continue
-            inside = root.values.get("subsystems") if isinstance(root, Entries) else None
-            if isinstance(inside, Entries):
-                yield _Subsystems(package, file, tuple(inside.keys))
+        if not isinstance(root, Entries) or "blocks" in root.values:  # a diagram is not included
+            continue
+        inside = root.values.get("subsystems")
+        if isinstance(inside, Entries):
+            found[file] = tuple(inside.keys)
+    return found
 
 
 def _library_in(type_name: str) -> str:

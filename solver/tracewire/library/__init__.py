@@ -2,7 +2,14 @@
 
 from tracewire.library.check_effect import Face, check_effect
 from tracewire.library.declare import Block
-from tracewire.library.describe import describe, describe_json, palette
+from tracewire.library.describe import (
+    describe,
+    describe_formulas,
+    describe_json,
+    describe_origin,
+    describe_parts,
+    palette,
+)
 from tracewire.library.effect import SCALES, SYMBOLS, Effect, Scale, Shape, Symbol, Tone, Where
 from tracewire.library.load import Library, load_library
 from tracewire.library.packages import (
@@ -44,7 +51,10 @@ __all__ = [
     "Where",
     "check_effect",
     "describe",
+    "describe_formulas",
     "describe_json",
+    "describe_origin",
+    "describe_parts",
     "find_instead",
     "find_package",
     "find_synonym",

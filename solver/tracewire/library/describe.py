@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 
 from tracewire.errors import BlockError, Problem, unknown
 from tracewire.library.declare import Block
@@ -21,6 +21,18 @@ def palette(library: Library) -> str:
     return _table([("family", "block", "what it is"), *rows])
 
 
+@dataclass(frozen=True)
+class Description:
+    """Parts of one kind of a block: the heads of their columns, and a row for each.
+
+    The first column is a name, the second its unit.
+    """
+
+    kind: str
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
 def describe(library: Library, name: str) -> str:
     """One block in full, as plain text: ports, parameters, states, formulas, modes, events, source.
 
@@ -30,29 +42,71 @@ def describe(library: Library, name: str) -> str:
     block = library[name]
     lines = [same, ""] if same else []
     lines += [f"{name}: {block.doc}", ""]
-    lines += _section("inputs", [(p.name, p.unit, _wiring(p), p.doc) for p in block.inputs])
-    lines += _section("parameters", [(p.name, p.unit, _range(p), p.doc) for p in block.parameters])
-    lines += _section("conditions", [(condition, "") for condition in block.require])
-    lines += _section(
-        "states",
-        [(s.name, s.unit, f"rate = {_told(s.rate)}", f"start = {s.start}") for s in block.states],
-    )
-    lines += _section("modes", [(m.name, "", _started(block, m), m.doc) for m in block.modes])
-    lines += _section("transitions", [_transition(t) for t in block.transitions])
-    events = [(e.name, "", _when(e), _reset(e.set), e.doc) for e in block.events]
-    lines += _section("events", events)
-    lines += _section(
-        "outputs", [(o.name, o.unit, _at_once(block, o), o.doc) for o in block.outputs]
-    )
-    lines += ["formulas", *(f"  {o.name} = {_told(o.formula)}" for o in block.outputs), ""]
-    if block.effect is not None:
-        lines.append(_effect(block))
+    for part in describe_parts(block):
+        lines += _section(part.kind, part.rows)
+    lines += ["formulas", *(f"  {line}" for line in describe_formulas(block)), ""]
+    return "\n".join([*lines, *describe_origin(name, block)])
+
+
+def describe_parts(block: Block) -> list[Description]:
+    """The parts of a block: inputs, parameters, states, modes, events, outputs; none is empty."""
+    found = [
+        Description(
+            "inputs",
+            ("input", "unit", "wiring", "meaning"),
+            tuple((p.name, p.unit, _wiring(p), p.doc) for p in block.inputs),
+        ),
+        Description(
+            "parameters",
+            ("parameter", "unit", "values", "meaning"),
+            tuple((p.name, p.unit, _range(p), p.doc) for p in block.parameters),
+        ),
+        Description("conditions", ("condition", ""), tuple((text, "") for text in block.require)),
+        Description(
+            "states",
+            ("state", "unit", "rate", "start"),
+            tuple(
+                (s.name, s.unit, f"rate = {_told(s.rate)}", f"start = {s.start}")
+                for s in block.states
+            ),
+        ),
+        Description(
+            "modes",
+            ("mode", "", "begins", "meaning"),
+            tuple((m.name, "", _started(block, m), m.doc) for m in block.modes),
+        ),
+        Description(
+            "transitions",
+            ("transition", "", "condition", "new values"),
+            tuple(_transition(t) for t in block.transitions),
+        ),
+        Description(
+            "events",
+            ("event", "", "when", "new values", "meaning"),
+            tuple((e.name, "", _when(e), _reset(e.set), e.doc) for e in block.events),
+        ),
+        Description(
+            "outputs",
+            ("output", "unit", "feedthrough", "meaning"),
+            tuple((o.name, o.unit, _at_once(block, o), o.doc) for o in block.outputs),
+        ),
+    ]
+    return [part for part in found if part.rows]
+
+
+def describe_formulas(block: Block) -> list[str]:
+    """The formula of each output."""
+    return [f"{o.name} = {_told(o.formula)}" for o in block.outputs]
+
+
+def describe_origin(name: str, block: Block) -> list[str]:
+    """What else is known of a block, in sentences: its use in traces, other names, its source."""
+    found = [] if block.effect is None else [_effect(block)]
     if others := other_names(name):
-        lines.append(f"Also known as {'; '.join(others)}.")
+        found.append(f"Also known as {'; '.join(others)}.")
     if block.source:
-        lines.append(f"Source: {block.source}")
-    lines.append(f"Declared in {block.place}.")
-    return "\n".join(lines)
+        found.append(f"Source: {block.source}")
+    return [*found, f"Declared in {block.place}."]
 
 
 def describe_json(library: Library, name: str) -> dict[str, object]:

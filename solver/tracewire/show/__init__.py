@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from tracewire.show.figures import group_signals, plot_run
     from tracewire.show.fit_figures import plot_fit, plot_residual
     from tracewire.show.fit_tables import fit_text, fit_words
+    from tracewire.show.library_page import library_report
     from tracewire.show.live import optimplotfit, optimplotfval, optimplotx
     from tracewire.show.parameter_figures import plot_convergence, plot_correlation, plot_parameters
     from tracewire.show.plane_figures import plot_orbit, plot_polar, plot_portrait
@@ -52,6 +53,7 @@ __all__ = [
     "group_signals",
     "held_intervals",
     "jump_times",
+    "library_report",
     "library_script",
     "library_style",
     "moved_parts",
@@ -96,6 +98,7 @@ FILE_OF = {
     "figures": "group_signals plot_run",
     "fit_figures": "plot_fit plot_residual",
     "fit_tables": "fit_text fit_words",
+    "library_page": "library_report",
     "live": "optimplotfit optimplotfval optimplotx",
     "parameter_figures": "plot_convergence plot_correlation plot_parameters",
     "plane_figures": "plot_orbit plot_polar plot_portrait",
