@@ -80,6 +80,14 @@ def replacing(path: str | Path, permissions: int = PERMISSIONS) -> Iterator[IO[b
     _keep_name(target.parent)
 
 
+def working_folder() -> Path | None:
+    """The folder in which this program works; None where it has been deleted."""
+    try:
+        return Path.cwd().resolve()
+    except OSError:
+        return None
+
+
 @contextmanager
 def writing(path: str | Path) -> Iterator[None]:
     """Tell in words that a file cannot be written. Raises OptionError for an OSError."""

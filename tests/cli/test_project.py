@@ -93,3 +93,11 @@ def test_a_project_without_libraries_says_nothing(call: Any, project: Path) -> N
     (project / "work" / "a.yaml").write_text("blocks: {a: {type: constant, value: 1}}")
     told = call("check", "../a.yaml")
     assert (told.code, told.err) == (0, "")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="a folder in use cannot be deleted there")
+def test_a_working_folder_that_was_deleted_has_no_project(call: Any, project: Path) -> None:
+    (project / "work" / "a.yaml").write_text("blocks: {a: {type: constant, value: 1}}")
+    (project / "work" / "deep").rmdir()
+    told = call("check", project / "work" / "a.yaml")
+    assert (told.code, told.err) == (0, "")

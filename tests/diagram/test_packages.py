@@ -144,6 +144,23 @@ def test_an_included_file_says_what_it_needs_too(site: Path, tmp_path: Path) -> 
     assert "rig.yaml:1:20: the diagram needs the library 'mylab' >=9" in told
 
 
+def test_a_library_that_is_missing_is_told_once(site: Path) -> None:
+    text = (
+        "include: nolab:rig.yaml\nlibraries: [nolab]\n"
+        "blocks: {a: {type: nolab.wing}, b: {type: nolab.wing}}\n"
+    )
+    (told,) = refused(text)
+    assert told.startswith("top.yaml:2:13: the library 'nolab' is not installed")
+
+
+def test_a_type_of_tracewire_has_no_name_in_front() -> None:
+    (told,) = refused("blocks: {a: {type: tracewire.constant, value: 1}}")
+    assert told.endswith(
+        "'tracewire.constant'; there is no block type here. The types of tracewire"
+        " have no name in front."
+    )
+
+
 def test_an_unknown_type_names_the_library_that_has_it(site: Path) -> None:
     install(site, {"magnets.py": MAGNET, "rig.yaml": RIG})
     one, two, three = refused(

@@ -94,6 +94,15 @@ def test_a_library_that_is_edited_in_place_is_found(
     assert folder_of(find_package("mylab")) == elsewhere
 
 
+def test_what_lies_in_the_working_folder_is_not_installed(
+    site: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`python -m` has that folder on the path; it may be the one of a stranger's diagram."""
+    install(site, {"magnets.py": MAGNET})
+    monkeypatch.chdir(site)
+    assert "is not installed" in told(lambda: find_package("mylab"))
+
+
 def test_the_library_of_tracewire_itself_has_its_version() -> None:
     package = find_package("tracewire")
     assert package.version == sys.modules["tracewire"].__version__

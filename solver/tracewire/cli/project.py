@@ -12,6 +12,7 @@ from pathlib import Path
 
 from tracewire.cli.output import note
 from tracewire.errors import OptionError, Place, Problem, unknown
+from tracewire.files import working_folder
 
 NAME = "tracewire.toml"
 KEYS = ("libraries",)
@@ -23,7 +24,8 @@ def with_project(given: Sequence[str] | None) -> list[str]:
 
     Raises OptionError: a `tracewire.toml` that is not well formed.
     """
-    file = _project_file(Path.cwd())
+    here = working_folder()
+    file = None if here is None else _project_file(here)
     found = [] if file is None else _libraries(file)
     if found:
         note(f"libraries of {file}: {', '.join(found)}")

@@ -27,7 +27,6 @@ from tracewire.library import (
 
 IN_A_PACKAGE = re.compile(r"(\w{2,}):(.*)", re.DOTALL)
 """A file of a library. One letter in front of a colon is a drive of Windows."""
-EXAMPLE = '{mylab: ">=1.2"}'
 
 
 class Packages:
@@ -38,6 +37,7 @@ class Packages:
 
     def __init__(self, library: Library, problems: Problems) -> None:
         self.library, self.problems = library, problems
+        self._found: dict[str, Package | None] = {}
         self._loaded: dict[str, bool] = {}  # and whether that went well
         self._folders: list[Path] = []
 
@@ -64,10 +64,12 @@ class Packages:
             self._loaded[name] = True
             if any(known.startswith(f"{name}.") for known in self.library):
                 return True  # the blocks of a diagram that is read again
+            package = self._find(name, place)
+            if package is None or package.name == OWN:  # whose blocks have no name in front
+                self._loaded[name] = package is not None
+                return self._loaded[name]
             try:
-                package = find_package(name, place)
-                if name != OWN:  # its blocks are there without a name in front
-                    self.library = self.library.extended(*package_blocks(package, place))
+                self.library = self.library.extended(*package_blocks(package, place))
             except BlockError as error:
                 self.problems.take(error)
                 self._loaded[name] = False
@@ -84,19 +86,22 @@ class Packages:
         if name:
             there = [known for known in self.library if known.startswith(f"{name}.")]
             hint = f"'tracewire blocks {name}' lists what the library has."
+            if name == OWN:
+                hint = "The types of tracewire have no name in front."
             self.problems.unknown("block type", type_name, there, place, hint)
         return bool(name)
 
     def file(self, text: str, folder: Path, place: Place) -> Path | None:
         """The file that `include` names in a diagram of `folder`; None with a problem noted."""
         found = IN_A_PACKAGE.fullmatch(text)
-        try:
-            if found:
-                package = find_package(found[1], place)
-                self._folders.append(folder_of(package, place))
-                return package_file(package, found[2], place)
-        except BlockError as error:
-            self.problems.take(error)
+        if found:
+            package = self._find(found[1], place)
+            try:
+                if package is not None:
+                    self._folders.append(folder_of(package, place))
+                    return package_file(package, found[2], place)
+            except BlockError as error:
+                self.problems.take(error)
             return None
         file = folder / text
         if any(_is_in(folder, root) and not _is_in(file, root) for root in self._folders):
@@ -105,11 +110,23 @@ class Packages:
             return None
         return file
 
+    def _find(self, name: str, place: Place) -> Package | None:
+        """An installed library; None where there is none, which is noted once."""
+        if name not in self._found:
+            self._found[name] = None
+            try:
+                self._found[name] = find_package(name, place)
+            except BlockError as error:
+                self.problems.take(error)
+        return self._found[name]
+
     def _check_version(self, name: str, wanted: str, place: Place) -> None:
         from packaging.specifiers import InvalidSpecifier, SpecifierSet
         from packaging.version import InvalidVersion
 
-        package = find_package(name, place)
+        package = self._find(name, place)
+        if package is None:
+            return
         try:
             if SpecifierSet(wanted).contains(package.version, prereleases=True):
                 return

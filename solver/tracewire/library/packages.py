@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tracewire.errors import BlockError, Place, Problem, unknown
+from tracewire.files import working_folder
 from tracewire.formula import is_name, name_hint
 from tracewire.library.declare import Block
 from tracewire.library.load import block_files, load_files
@@ -46,8 +47,14 @@ class Package:
 
 
 def installed_packages() -> list[Package]:
-    """The libraries of all installed distributions, by name. Nothing of them is run."""
-    return sorted(_scanned(tuple(sys.path)), key=lambda p: (p.name, p.distribution))
+    """The libraries of all installed distributions, by name. Nothing of them is run.
+
+    `python -m` and notebooks have the working folder on the path of Python: what lies there is not
+    installed.
+    """
+    here = working_folder()
+    found = (p for p in _scanned(tuple(sys.path)) if p.beside != here)
+    return sorted(found, key=lambda p: (p.name, p.distribution))
 
 
 def find_package(name: str, place: Place = Place()) -> Package:
@@ -155,7 +162,7 @@ def _scanned(path: tuple[str, ...]) -> tuple[Package, ...]:
 def _package(point: EntryPoint) -> Package:
     distribution = point.dist
     assert distribution is not None, "an entry point that was found belongs to a distribution"
-    beside = Path(str(distribution.locate_file("")))
+    beside = Path(str(distribution.locate_file(""))).resolve()
     return Package(point.name, distribution.name, distribution.version, point.value, beside)
 
 
