@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from library.installed import HEAD, install
 from tracewire.compile import Model, compile
 from tracewire.diagram import Diagram, difference, read_text
 from tracewire.solve import simulate
@@ -187,6 +188,22 @@ def test_a_coupling_is_tried_with_each_other_body_and_names_are_unique() -> None
 def test_a_block_name_of_the_diagram_is_not_used_again() -> None:
     diagram = read_text(PENDULUM.replace("gravity", "coulomb"))
     assert named(found_in(diagram))["coulomb @ torque"].block == "coulomb_2"
+
+
+def test_an_effect_of_an_installed_library_keeps_its_type_and_gets_a_plain_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rub = HEAD + (
+        'rub = Block("rub", "Rubs.", inputs=(Input("rate"),), parameters=(Parameter("c"),),'
+        ' outputs=(Output("force", "-c*rate"),), effect=Effect("c", {"rate": "v"}, sign=1))\n'
+    )
+    install(tmp_path, {"frictions.py": rub})
+    monkeypatch.syspath_prepend(tmp_path)
+    diagram = read_text("libraries: [mylab]\n" + PENDULUM)
+    candidate = named(found_in(diagram))["mylab.rub @ torque"]
+    assert candidate.block == "rub"
+    extended = extend(diagram, [(candidate, {"c": 0.1})])
+    assert extended.blocks["rub"].type == "mylab.rub"
 
 
 def test_what_a_trace_has_taken_is_no_candidate_any_more() -> None:
