@@ -10,7 +10,7 @@ from library.installed import HEAD, MAGNET, RIG, install
 from tracewire.compile import compile
 from tracewire.diagram import effects_of, read_text
 from tracewire.errors import DiagramError
-from tracewire.library import load_library
+from tracewire.library import load_library, packages
 from tracewire.solve import simulate
 
 TOP = "blocks: {x: {type: constant, value: 2}, f: {type: mylab.magnet, x: x, k: 8}}\n"
@@ -120,6 +120,11 @@ def test_a_version_that_is_none_meets_nothing(site: Path) -> None:
     install(site, {"magnets.py": MAGNET}, version="new")
     (told,) = refused(f'libraries: {{mylab: ">=1"}}\n{TOP}')
     assert "the diagram needs the library 'mylab' >=1, and mylab-blocks new is installed" in told
+    (information,) = site.glob("*.dist-info")
+    (information / "METADATA").write_text("Name: mylab-blocks\n", encoding="utf-8")
+    packages._scanned.cache_clear()
+    (told,) = refused(f'libraries: {{mylab: ">=1"}}\n{TOP}')
+    assert "mylab-blocks ? is installed" in told
 
 
 @pytest.mark.parametrize(

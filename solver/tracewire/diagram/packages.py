@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from pathlib import Path
 from shlex import quote
 
@@ -164,16 +165,23 @@ def package_subsystems(package: Package) -> dict[str, tuple[str, ...]]:
     except BlockError:
         return found
     for file in files:
-        try:
-            root = compose(load(folder / file), folder / file, Problems())
-        except DiagramError:
-            continue
-        if not isinstance(root, Entries) or "blocks" in root.values:  # a diagram is not included
-            continue
-        inside = root.values.get("subsystems")
-        if isinstance(inside, Entries):
-            found[file] = tuple(inside.keys)
+        names = _names_in(folder / file, (folder / file).stat().st_mtime_ns)
+        if names:
+            found[file] = names
     return found
+
+
+@lru_cache(maxsize=1024)
+def _names_in(file: Path, changed: int) -> tuple[str, ...]:
+    """The subsystems of a file that can be included; `changed` is its time, to read it once."""
+    try:
+        root = compose(load(file), file, Problems())
+    except DiagramError:
+        return ()
+    if not isinstance(root, Entries) or "blocks" in root.values:  # a diagram is not included
+        return ()
+    inside = root.values.get("subsystems")
+    return tuple(inside.keys) if isinstance(inside, Entries) else ()
 
 
 def _library_in(type_name: str) -> str:

@@ -163,7 +163,10 @@ def _package(point: EntryPoint) -> Package:
     distribution = point.dist
     assert distribution is not None, "an entry point that was found belongs to a distribution"
     beside = Path(str(distribution.locate_file(""))).resolve()
-    return Package(point.name, distribution.name, distribution.version, point.value, beside)
+    said = distribution.metadata
+    known = {key: said[key] for key in ("Name", "Version") if key in said}
+    name, version = known.get("Name", "?"), known.get("Version", "?")  # a file may be damaged
+    return Package(point.name, name, version, point.value, beside)
 
 
 def _roots(module: str) -> list[Path]:
