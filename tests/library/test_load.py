@@ -54,8 +54,9 @@ def test_a_family_called_math_does_not_shadow_the_standard_library(tmp_path: Pat
     assert "tracewire.blocks.math" not in sys.modules
 
 
-def test_files_that_begin_with_an_underscore_hold_no_blocks(tmp_path: Path) -> None:
-    (tmp_path / "__init__.py").write_text("raise ValueError", encoding="utf-8")
+@pytest.mark.parametrize("name", ["__init__.py", "_parts.py", "test_chains.py"])
+def test_files_that_are_no_block_files_are_not_run(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_text("raise ValueError", encoding="utf-8")
     write(tmp_path / "chains.py", block("chain"))
     assert "chain" in load_library([tmp_path])
 

@@ -49,9 +49,9 @@ def load_library(extra: Iterable[str | Path] = ()) -> Library:
     """The shipped blocks, and those of the files and folders that the user names.
 
     Block files are Python and run when they are read: only name libraries that you trust. A file
-    that has not changed is not read again. Files whose name begins with `_` hold no blocks. Raises
-    BlockError: a folder without block files, a file that cannot be read, a declaration that is
-    wrong, a name declared twice.
+    that has not changed is not read again. Files of a folder whose name begins with `_` or `test_`
+    hold no blocks. Raises BlockError: a folder without block files, a file that cannot be read, a
+    declaration that is wrong, a name declared twice.
     """
     files: list[Path] = []
     problems: list[Problem] = []
@@ -65,8 +65,8 @@ def load_library(extra: Iterable[str | Path] = ()) -> Library:
 
 
 def block_files(folder: Path) -> list[Path]:
-    """The files of a folder that may declare blocks."""
-    return sorted(folder.glob("[!_]*.py"))
+    """The files of a folder that may declare blocks: none begins with `_` or `test_`."""
+    return sorted(f for f in folder.glob("[!_]*.py") if not f.name.startswith("test_"))
 
 
 def load_files(
