@@ -10,7 +10,7 @@ from tracewire.draw import draw
 from tracewire.formula import Number, to_text
 from tracewire.library import Library, describe_formulas, describe_origin, describe_parts
 from tracewire.show.document import Figure, Report, Section
-from tracewire.show.summary import Table, shown
+from tracewire.show.table import Table, shown
 
 
 def library_report(
