@@ -20,7 +20,6 @@ from tracewire.solve.core.arrays import (
 from tracewire.solve.core.codes import (
     ABSOLUTE,
     BUDGET,
-    CALM,
     CURRENT,
     END,
     FINISHED,
@@ -31,7 +30,6 @@ from tracewire.solve.core.codes import (
     LOG_FULL,
     LOGGED,
     LONGEST,
-    METHOD,
     PACED,
     PASSED,
     PAUSED,
@@ -41,7 +39,6 @@ from tracewire.solve.core.codes import (
     SEGMENT,
     STAGE,
     STEPS,
-    STIFF_ROWS,
     STIFF_STEPS,
     SUSPICIOUS,
     TIME,
@@ -61,25 +58,19 @@ from tracewire.solve.core.flow import (
 )
 from tracewire.solve.core.locate import AT_ONCE, NOTHING
 from tracewire.solve.core.methods import (
-    DOP853,
-    DORMAND_PRINCE,
-    EDGE,
     EXPONENT,
     FIXED_STEP,
     IMPLICIT,
-    ROSENBROCK,
     SAFETY,
 )
 from tracewire.solve.core.record import sample_end, sample_inside
 from tracewire.solve.core.saltation import begin_sensitivities
 from tracewire.solve.core.start import begin
+from tracewire.solve.core.stiffness import choose, watch_stiffness
 from tracewire.solve.core.surface import pin
 from tracewire.solve.core.transition import happen, no_crossings
 from tracewire.solve.core.units import helper, unit
 
-TIGHT = 1e-8  # where order 8 takes fewer steps, and its errors add up to less
-MANY_STIFF = 8
-MANY_CALM = 6
 TOGETHER = 1e-12
 SOON = 1e-9
 NEARLY = 0.01  # of what a margin falls by in the last quarter of a step
@@ -145,7 +136,7 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
         rates(core, now[T], x, rate)
     due = schedule.upcoming(core, now[T], x, ahead)
     limit = min(due, now[END])
-    _choose(core)
+    choose(core)
     if now[H] <= 0.0 and limit > now[T]:
         now[H] = _first_step(core, rate, limit)
     while now[T] < limit:
@@ -187,8 +178,8 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
             locate.margins(core, now[T], x, start)
         else:  # the last sample is that of the same time and states
             copy(watch_of(core).rows[locate.SAMPLES - 1], start)
-        if _watch_stiffness(core):
-            _choose(core)
+        if watch_stiffness(core):
+            choose(core)
     if limit == due:
         return _scheduled(core, ahead)
     return FINISHED
@@ -267,66 +258,6 @@ def _outpaced(core: int) -> bool:
     if h <= 2.0 * longest:
         return False
     now[H] = max(2.0 * longest, h / 4)
-    return True
-
-
-@helper
-def _key(core: int, out: Vector) -> None:
-    """What identifies the mode combination. The points of tables in t are passed over: between
-    any two of them the field is as stiff, and a measured input has hundreds."""
-    flow, plan = flow_of(core), plan_of(core)
-    modes = len(plan.kind)
-    for i in range(len(flow.m)):
-        passed = i < modes and plan.kind[i] == SEGMENT and plan.is_timed[i] != 0
-        out[i] = 0.0 if passed else flow.m[i]
-    for i in range(modes):
-        out[len(flow.m) + i] = flow.bound[i]
-
-
-@unit
-def _choose(core: int) -> None:
-    """The method for this mode combination."""
-    progress = progress_of(core)
-    ints = progress.ints
-    ints[CURRENT] = ints[METHOD]
-    if ints[METHOD] >= 0:
-        return
-    ints[CURRENT] = DOP853 if progress.now[RTOL] <= TIGHT else DORMAND_PRINCE
-    if ints[STIFF_ROWS] == 0:
-        return
-    stiff = progress.stiff
-    key = np.empty(stiff.shape[1])
-    _key(core, key)
-    for row in range(ints[STIFF_ROWS]):
-        same = True
-        for i in range(len(key)):
-            same = same and stiff[row, i] == key[i]
-        if same:
-            ints[CURRENT] = ROSENBROCK
-            return
-
-
-@unit
-def _watch_stiffness(core: int) -> bool:
-    """After enough steps at the edge of stability this combination is called stiff: now."""
-    progress = progress_of(core)
-    trial = trial_of(core)
-    ints = progress.ints
-    if ints[METHOD] >= 0 or IMPLICIT[ints[CURRENT]]:
-        return False
-    if trial.ends[2] > EDGE[ints[CURRENT]]:
-        ints[SUSPICIOUS] += 1
-        ints[CALM] = 0
-    else:
-        ints[CALM] += 1
-        if ints[CALM] == MANY_CALM:
-            ints[SUSPICIOUS] = 0
-    if ints[SUSPICIOUS] < MANY_STIFF:
-        return False
-    ints[SUSPICIOUS] = 0
-    row = min(ints[STIFF_ROWS], len(progress.stiff) - 1)  # the last row is used again when full
-    _key(core, progress.stiff[row])
-    ints[STIFF_ROWS] = row + 1
     return True
 
 
