@@ -1,6 +1,41 @@
-"""Delay: what stands for a delay of a flowing signal."""
+"""Delays of flowing signals: a true one, and a rational function that stands for one."""
 
 from tracewire.library import Block, Input, Output, Parameter, State
+
+delay = Block(
+    name="delay",
+    doc="The input as it was some time ago, exactly: a loop through it is no algebraic loop.",
+    inputs=(
+        Input("of"),
+        Input("past", default="before", doc="of before the start: a smooth signal of t alone"),
+    ),
+    parameters=(
+        Parameter("time", "s", above=0.0),
+        Parameter("before", doc="the input before the start", default=0.0),
+    ),
+    outputs=(Output("y", "delayed(of, time, past)"),),
+    source="A. Bellen, M. Zennaro, Numerical Methods for Delay Differential Equations, 2003.",
+)
+
+variable_delay = Block(
+    name="variable_delay",
+    doc="The input as it was some time ago, where that time changes between two bounds.",
+    inputs=(
+        Input("of"),
+        Input("time", "s", "the delay"),
+        Input("past", default="before", doc="of before the start: a smooth signal of t alone"),
+    ),
+    parameters=(
+        Parameter("shortest", "s", "what is below is this: steps are no longer", above=0.0),
+        Parameter("longest", "s", "what is above is this", above=0.0),
+        Parameter("before", doc="the input before the start", default=0.0),
+    ),
+    require=("shortest <= longest",),
+    outputs=(
+        Output("y", "delayed(of, min(max(time, shortest), longest), past, shortest, longest)"),
+    ),
+    source="A. Bellen, M. Zennaro, Numerical Methods for Delay Differential Equations, 2003.",
+)
 
 pade_delay = Block(
     name="pade_delay",

@@ -66,6 +66,8 @@ def use(block: Block) -> str:
     """A use of a shipped block that reads the states x and y."""
     parts = [f"type: {block.name}"]
     for number, port in enumerate(block.inputs):
+        if port.name == "past":  # of a delay: a signal of t alone
+            continue
         wire = "[x, -y]" if port.many else ("x", "y")[number % 2]
         parts.append(f"{port.name}: {wire}")
     for number, parameter in enumerate(block.parameters):

@@ -42,7 +42,7 @@ FAMILIES = {
     "discrete": "unit_delay discrete_integrator discrete_transfer_function discrete_state_space"
     " discrete_pid",
     "logic": "compare and or xor not select edge monostable timer jk_flip_flop debounce",
-    "delay": "pade_delay",
+    "delay": "delay variable_delay pade_delay",
     "control": "transfer_function state_space pid",
     "bodies": "mass rotating_mass gear",
     "transmission": "spring_damper rope elastic_gear",

@@ -194,3 +194,22 @@ def test_pade_delay_is_its_transfer_function_and_delays_what_is_slow() -> None:
     assert slow["y"][late] == pytest.approx(exact, abs=2e-3)
     settled = driven("{type: pade_delay, of: u, delay: 0.5, start: 1}")
     assert settled["y"] == pytest.approx(np.ones_like(settled.t), abs=1e-12)
+
+
+def test_delay_and_variable_delay_give_what_was() -> None:
+    for block in (
+        "{type: delay, of: u, time: 0.5, before: 4}",
+        "{type: variable_delay, of: u, time: half, shortest: 0.2, longest: 1, before: 4}\n"
+        "  half: {type: constant, value: 0.5}",
+    ):
+        result = driven(block, "{type: sine, amplitude: 1, omega: 2}")
+        exact = np.where(result.t < 0.5, 4, np.sin(2 * (result.t - 0.5)))
+        assert result["y"] == pytest.approx(exact, abs=1e-7)
+    moving = "{type: expression, formula: 0.4 + 0.3*sin(t)}"
+    result = driven(
+        "{type: variable_delay, of: u, time: lag, shortest: 0.3, longest: 0.6, past: u}"
+        f"\n  lag: {moving}",
+        "{type: expression, formula: cos(2*t)}",
+    )
+    lag = np.clip(0.4 + 0.3 * np.sin(result.t), 0.3, 0.6)
+    assert result["y"] == pytest.approx(np.cos(2 * (result.t - lag)), abs=1e-7)

@@ -77,6 +77,11 @@ BAD = {
     "monostable": ("of: u, duration: 0", NOT_ABOVE.format("duration", " s", 0)),
     "timer": ("of: u, threshold: u", "'u' is a signal, and a value is fixed"),
     "jk_flip_flop": ("j: u, k: u, clock: u, start: 2", "'start' must be at most 1, not 2."),
+    "delay": ("of: u, time: 0", NOT_ABOVE.format("time", " s", 0)),
+    "variable_delay": (
+        "of: u, time: u, shortest: 2, longest: 1",
+        "the parameters must meet shortest <= longest, and shortest = 2, longest = 1.",
+    ),
     "pade_delay": ("of: u, delay: 0", NOT_ABOVE.format("delay", " s", 0)),
     "spline_table": ("points: [[0, 1], [0, 2]]", "the points must ascend in x, and 0 is not"),
     "monotone_table": ("points: [[0, 1]]", "a table needs at least two points"),

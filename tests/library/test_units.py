@@ -52,6 +52,7 @@ UNITS = {
     "high_pass": ("of: volts, frequency: 2", "V"),
     "band_pass": ("of: volts, frequency: 2", "V"),
     "notch": ("of: volts, frequency: 2", "V"),
+    "delay": ("of: volts, time: T, before: V", "V"),
     "pade_delay": ("of: volts, delay: T", "V"),
     "pid": ("of: turned, kp: k, ki: ki, kd: kd, low: -V, high: V", "V"),
     "transfer_function": ("of: volts, numerator: kt, denominator: [L, R], start: torque", "N m"),

@@ -11,17 +11,19 @@ class Constants:
     """The entries that only read parameters, and their places in the array `c` of a run.
 
     c[0:P] are the parameters themselves; the entries that were collected stand behind them. A
-    function written later uses those that are there, and computes what it needs beyond them.
+    function written later uses those that are there, and computes what it needs beyond them. Where
+    the model has delays, c[P] is the address of what their signals were, which a run writes there.
     """
 
-    def __init__(self, tape: Tape, parameters: int) -> None:
+    def __init__(self, tape: Tape, parameters: int, delays: bool = False) -> None:
         self.tape, self.parameters = tape, parameters
+        self.delays = delays
         self.places: dict[int, int] = {}
 
     @property
     def size(self) -> int:
         """The length of `c`."""
-        return self.parameters + len(self.places)
+        return self.parameters + int(self.delays) + len(self.places)
 
     def collect(self, roots: Iterable[int]) -> None:
         """Give a place to each entry on the way to `roots` that only reads parameters."""

@@ -78,6 +78,8 @@ def _rate(tape: Tape, index: int, inner: list[int]) -> int:
     if entry.op == "segment":  # operands: table, u, mode
         slope = push("slope", entry.operands[0], entry.operands[2])
         return push("*", slope, inner[1])
+    if entry.op == "past":  # operands: history, s, mode
+        return push("+", da, push("*", past_rate(tape, index), inner[1]))
     if len(entry.operands) == 1:
         return (
             push("*", slope_of(tape, entry.op, a, index), da)
@@ -98,6 +100,14 @@ def _rate(tape: Tape, index: int, inner: list[int]) -> int:
             square = push("+", push("*", a, a), push("*", b, b))
             return push("/", push("-", push("*", da, b), push("*", a, db)), square)
     raise AssertionError(f"no derivative of {entry.op}")
+
+
+def past_rate(tape: Tape, index: int) -> int:
+    """The next derivative of a delayed signal by its own time."""
+    entry = tape.entries[index]
+    history, s, mode = entry.operands
+    leaf = tape.push("history_rate", payload=tape.entries[history].payload)
+    return tape.push("past", leaf, s, mode, payload=entry.payload + 1)
 
 
 def _linear_rate(tape: Tape, system: System, inner: list[int]) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import replace
 
 from tracewire.compile.events import lower_events
 from tracewire.compile.flat import Flat
@@ -68,4 +69,10 @@ def _lowering(
         out.starts.append(lowering.start(state.start, state.name, state.place))
     lower_events(lowering)
     lower_memories(lowering)
+    number = 0
+    while number < len(out.delays):  # the signal of one may read another
+        signal = list(lowering.delayed)[number][0]
+        lowering.signal = out.modes[out.delays[number].mode].signal
+        out.delays[number] = replace(out.delays[number], signal=lowering.lower(signal))
+        number += 1
     return lowering

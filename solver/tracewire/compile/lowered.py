@@ -8,8 +8,9 @@ from typing import Literal
 
 from tracewire.compile.tape import Tape
 from tracewire.errors import Place
+from tracewire.formula import Expression
 
-ModeKind = Literal["sign", "floor", "segment", "memory"]
+ModeKind = Literal["sign", "floor", "segment", "memory", "delay"]
 Direction = Literal["up", "down", "both"]
 
 
@@ -18,15 +19,16 @@ class Mode:
     """A frozen choice of the model and the guard that changes it.
 
     kind `sign`: 1 where guard >= 0, else 0. `floor`: the whole number below the guard. `segment`:
-    the piece of table `table` on which the guard lies. `timed`: the guard is a*t + b with these
-    entries, so its changes are known times. `holds`: at guard = 0 a `dry` may hold the guard at
-    zero. `at_zero`: the sign mode that the user's comparison gives at exactly zero. `compares`: the
-    comparison does not move what it compares, and its mode is `at_zero` wherever the guard rests at
-    zero. `memory`: the number of the mode of a block with memory, by the order of `names`; its
-    guard is the number at the start, and only the model's transitions change it. `jumps`: it is
-    there for an event, and no log shows it: the `side` of zero that a guard is on which only jumps,
-    the memory by which the event fires where that goes `up` or `down`, or the time at which a
-    `clock` begins.
+    the piece of table `table` on which the guard lies. `delay`: the smooth stretch, between two
+    instants at which the delayed signal `table` has jumped, in which the guard lies. `timed`: the
+    guard is a*t + b with these entries, so its changes are known times. `holds`: at guard = 0 a
+    `dry` may hold the guard at zero. `at_zero`: the sign mode that the user's comparison gives at
+    exactly zero. `compares`: the comparison does not move what it compares, and its mode is
+    `at_zero` wherever the guard rests at zero. `memory`: the number of the mode of a block with
+    memory, by the order of `names`; its guard is the number at the start, and only the model's
+    transitions change it. `jumps`: it is there for an event, and no log shows it: the `side` of
+    zero that a guard is on which only jumps, the memory by which the event fires where that goes
+    `up` or `down`, or the time at which a `clock` begins.
     """
 
     kind: ModeKind
@@ -78,13 +80,29 @@ class Transition:
     at_zero: bool = True
 
 
+@dataclass(frozen=True)
+class Delay:
+    """A signal that is read with a delay: its entry, and those of the delay and the longest one.
+
+    `mode` is the number of its mode, `shortest` the least delay as a formula of parameters, `text`
+    what the signal is in the diagram.
+    """
+
+    signal: int
+    lag: int
+    longest: int
+    mode: int
+    shortest: Expression
+    text: str
+
+
 @dataclass
 class Lowered:
     """The tape of a model with its roots: entries of signals, rates, starts, resets; the modes.
 
     The resets of `flat.events` come first, in their order, and then those of transitions. `loops`
     holds the modes inside of each algebraic loop: their guards read the solution, which jumps with
-    them, so that they are decided together.
+    them, so that they are decided together. `delays` are the signals that are read with a delay.
     """
 
     tape: Tape = field(default_factory=Tape)
@@ -97,3 +115,4 @@ class Lowered:
     resets: list[Reset] = field(default_factory=list)
     transitions: list[Transition] = field(default_factory=list)
     loops: list[tuple[int, ...]] = field(default_factory=list)
+    delays: list[Delay] = field(default_factory=list)

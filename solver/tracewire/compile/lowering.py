@@ -6,13 +6,13 @@ from collections.abc import Callable, Collection
 from dataclasses import replace
 
 from tracewire.compile.curves import PARTS, lower_curve
-from tracewire.compile.differentiate import differentiate, linear_in_t
+from tracewire.compile.differentiate import differentiate, linear_in_t, substitute
 from tracewire.compile.draws import lower_random
 from tracewire.compile.flat import Flat
 from tracewire.compile.holding import holding, modes_read
 from tracewire.compile.kept import kept_states
 from tracewire.compile.linear import solve_linear, work
-from tracewire.compile.lowered import Lowered, Mode, ModeKind
+from tracewire.compile.lowered import Delay, Lowered, Mode, ModeKind
 from tracewire.compile.tape import BINARY, UNARY, Entry
 from tracewire.errors import DiagramError, Place, Problem
 from tracewire.formula import Call, Expression, Name, Number, to_text
@@ -60,6 +60,7 @@ class Lowering:
         self.t = self.tape.push("t")
         self.by_guard: dict[tuple[str, int], int] = {}
         self.by_multiple: dict[int, tuple[int, float]] = {}  # of an entry: a relay, and its factor
+        self.delayed: dict[tuple[Expression, ...], int] = {}  # of their arguments, the entries
         self.index = {state.name: number for number, state in enumerate(flat.states)}
         self.kept = kept_states(flat)
         self.signal = ""
@@ -147,6 +148,7 @@ class Lowering:
             "mod": self.modulo,
             "dry": self.dry,
             "is_held": self.is_held,
+            "delayed": self.delay,
             "interp": self.interp,
             "cubic_spline": self.curve,
             "monotone_cubic": self.curve,
@@ -430,6 +432,33 @@ class Lowering:
             return self.tape.constant(0.0)
         mode, _ = self.side(self.positive(guard, to_text(arguments[0])))
         return self.tape.push("hold", payload=mode)
+
+    def delay(self, arguments: tuple[Expression, ...]) -> int:
+        """What a signal was; the entry of the signal itself is for later."""
+        known = self.delayed.get(arguments)
+        if known is not None:
+            return known
+        tape, push = self.tape, self.tape.push
+        signal, time, before, *bounds = arguments
+        own, earlier, text = self.lower(time), self.lower(before), to_text(signal)
+        shortest, longest = bounds or (time, time)
+        fixed = [self.lower(shortest), self.lower(longest)]
+        if not tape.leaves(fixed) <= {"param", "const"}:
+            what = f"the delay '{to_text(time)}' of '{text}' changes during a run"
+            raise self.refused(what, "Use a block of type variable_delay.")
+        if not tape.leaves([earlier]) <= {"t", "param", "const"}:
+            what = f"'{to_text(before)}' is given as the past of '{text}', and reads more than t"
+            hint = "Before the start there is no state: wire a smooth signal of t and parameters."
+            raise self.refused(what, hint)
+        s, number = push("-", self.t, own), len(self.out.delays)
+        mode = self.mode("delay", s, f"jump of {text}", table=number)
+        stretch = self.out.modes[mode].leaf
+        kept = push("past", push("history", payload=number), s, stretch)
+        begun = push("ge", stretch, tape.constant(1.0))
+        entry = push("select", begun, kept, substitute(tape, earlier, {self.t: s}))
+        self.out.delays.append(Delay(-1, own, fixed[1], mode, shortest, text))
+        self.delayed[arguments] = entry
+        return entry
 
     def interp(self, arguments: tuple[Expression, ...]) -> int:
         return self.interpolated(self.lower(arguments[0]), _table(arguments))

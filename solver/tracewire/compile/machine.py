@@ -17,6 +17,7 @@ from collections.abc import Mapping, Sequence
 
 from tracewire.compile import libm
 from tracewire.compile.constants import Constants
+from tracewire.compile.past import PAST
 from tracewire.compile.search import SearchText
 from tracewire.compile.tape import Entry, Tape
 from tracewire.formula import OPERATIONS
@@ -94,7 +95,7 @@ next:
 done:
   ret void
 }"""
-HELPERS = {"segment": SEGMENT, "slope": SLOPE, "fill": FILL}
+HELPERS = {"segment": SEGMENT, "slope": SLOPE, "fill": FILL, "past": PAST}
 
 
 def machine_text(functions: Sequence[str]) -> str:
@@ -237,7 +238,7 @@ class _Body:
         match entry.op:
             case "t":
                 return "%t"
-            case "table":
+            case "table" | "history" | "history_rate":
                 return f"i64 {entry.payload}"
             case "state" | "param":
                 return self.load("x", int(entry.payload))
@@ -318,6 +319,10 @@ class _Body:
             case "segment" | "slope":
                 rest = ", ".join(f"double {operand}" for operand in a[1:])
                 return [f"{name} = call double @{op}(ptr %k, {a[0]}, {rest})"]
+            case "past":
+                address = self.load("c", self.writer.constants.parameters)
+                rest = f"double {a[1]}, double {a[2]}, i64 {entry.payload}"
+                return [f"{name} = call double @past(double {address}, {a[0]}, {rest})"]
         raise AssertionError(f"no IR of {op}")
 
 

@@ -111,6 +111,7 @@ class Model:
         low = self.lowered
         roots = [*low.rates, *low.entries.values(), *(mode.guard for mode in low.modes)]
         roots += [entry for reset in low.resets for entry in reset.values.values()]
+        roots += [delay.signal for delay in low.delays]
         read = modes_read(low.tape, roots) | {move.trigger for move in low.transitions}
         return frozenset({reset.trigger for reset in low.resets if reset.trigger >= 0} - read)
 
@@ -121,8 +122,20 @@ class Model:
         roots = [*low.rates, *low.starts, *(mode.guard for mode in low.modes)]
         roots += [entry for reset in low.resets for entry in reset.values.values()]
         roots += [low.entries[name] for name in self.recorded]
+        roots += [delay.signal for delay in low.delays]
         read = set(low.tape.needed(roots))
         return frozenset(name for name in self.parameters if low.entries[name] in read)
+
+    @cached_property
+    def watched_delays(self) -> frozenset[int]:
+        """The numbers of the delays that guards read, or what a slide may hold: steps follow these,
+        where no state feels them."""
+        return self._routines.watched_delays
+
+    def jump_orders(self) -> list[list[int]]:
+        """Of each mode, and behind them each state: by how many orders of the derivative its jump
+        is smoother in the signal of each delay."""
+        return self._routines.jump_orders()
 
     @cached_property
     def scene(self) -> tuple[ScenePart, ...]:
@@ -193,13 +206,15 @@ class Model:
                    double *out)
 
         x[n]: states. m[2*M]: the values of the modes, and behind them 1.0 for each guard that is
-        held at zero. c: what `prepare` makes of the parameters, which it takes as x. k: the tables,
+        held at zero. c: what `prepare` makes of the parameters, which it takes as x; behind these
+        the address of what delayed signals were (see `past`) where there are any. k: the tables,
         k[j] is the offset of table j; there: count N, x[N], y[N], slope[N-1]. `out` is zeroed by
         the caller. Functions, with the length of out: prepare (C), rhs (n), outputs (R),
-        guards (M), guard_rates (M), timed (2T), starts (n), resets, pace (2: of the guards,
-        and while something is held), and guard_sizes (M),
-        as all `sizes` a function of x[2n]: states, and behind them their sizes; compiled when they
-        are first called: jacobian (n*(n+1): d rate/d x, d rate/d t), guard_gradients (M*n),
+        guards (M), guard_rates (M), timed (2T), starts (n), resets, delayed (D: signals that are
+        read with a delay), lags (2D: the delays, and the longest they may be), pace (2: of the
+        guards, and while something is held), and guard_sizes (M), as all `sizes` a function of
+        x[2n]: states, and behind them their sizes; compiled when they are first called: jacobian
+        (n*(n+1): d rate/d x, d rate/d t), guard_gradients (M*n),
         guard_curves (M*(n+1): gradient of the guard's rate, its change with t), guard_second,
         guard_third, guard_fourth (M: derivatives of the guards along the flow), and the sizes of
         these, guard_rate_sizes, guard_second_sizes, ..., and rate_sizes (n).
@@ -225,10 +240,13 @@ class Model:
         """The name of the function d(function `of`) / d(`by`), for `address`.
 
         of: a function that is no derivative itself (`rhs`, `guards`, `starts`, ...). by: names of
-        states, parameters, or `t`. out: [length of `of`, length of `by`], row by row; modes are
-        frozen.
+        states, parameters, or `t`; behind them come what each delayed signal was, and its rates.
+        out: [length of `of`, number of these], row by row; modes are frozen.
         """
         leaves = [self.lowered.entries[name] for name in by]
+        for op in ("history", "history_rate"):
+            delays = range(len(self.lowered.delays))
+            leaves += [self.lowered.tape.push(op, payload=number) for number in delays]
         return self._routines.add_derivative(of, leaves)
 
     def all_signals(
@@ -241,7 +259,8 @@ class Model:
     ) -> tuple[list[str], tuple[float, ...]]:
         """Every signal by name, in the order of computation: to find what went wrong.
 
-        The arguments are those of the C functions, with the parameters p for the constants.
+        The arguments are those of the C functions, with the parameters p for the constants; behind
+        them the address of what delayed signals were, where there are any.
         """
         names = [*self.flat.signals, *(f"{state.name}'" for state in self.flat.states)]
         low = self.lowered

@@ -9,6 +9,7 @@ from threading import RLock
 from typing import Any, Literal
 
 from tracewire.compile.constants import Constants
+from tracewire.compile.delays import jump_orders
 from tracewire.compile.differentiate import differentiate, gradients
 from tracewire.compile.holding import holding, reads
 from tracewire.compile.lowered import Lowered, Reset
@@ -77,7 +78,8 @@ class Routines:
         self.tape, self.labels, self.backend = low.tape, labels, backend
         self.states, self.modes = len(low.states), len(low.modes)
         self.lock = RLock()
-        self.constants = Constants(low.tape, sum(e.op == "param" for e in low.tape.entries))
+        parameters = sum(e.op == "param" for e in low.tape.entries)
+        self.constants = Constants(low.tape, parameters, bool(low.delays))
         self.flow = dict(zip(low.states, low.rates, strict=True))
         self.flow[low.entries["t"]] = low.tape.constant(1.0)
         guards = [mode.guard for mode in low.modes]
@@ -94,6 +96,13 @@ class Routines:
                 [entry for mode in low.modes for entry in mode.timed or ()],
             ),
             "starts": _dense("Start values of the states.", low.starts),
+            "delayed": _dense(
+                "Signals that are read with a delay.", [d.signal for d in low.delays]
+            ),
+            "lags": _dense(
+                "Delays, and the longest they may be.",
+                [*(d.lag for d in low.delays), *(d.longest for d in low.delays)],
+            ),
             "pace": _dense("Largest pace of the guards, and of what is held.", self._paces()),
             "resets": _dense(
                 "New values of all resets, one after the other.",
@@ -166,6 +175,27 @@ class Routines:
         forces += [self.guard_rates[i] for i in sorted(self.holding)]
         time = {low.entries["t"]: self.tape.constant(1.0)}
         return [pace(self.tape, searched, self.flow), pace(self.tape, forces, time)]
+
+    @property
+    def watched_delays(self) -> frozenset[int]:
+        """The numbers of the delays that are read by what is searched for zeros."""
+        low = self.lowered
+        roots = [m.guard for m in low.modes if not m.timed and m.kind != "memory"]
+        roots += [self.guard_rates[i] for i in self.holding]
+        read = (self.tape.entries[index] for index in self.tape.needed(roots))
+        return frozenset(int(entry.payload) for entry in read if entry.op == "history")
+
+    def jump_orders(self) -> list[list[int]]:
+        """By how many orders the jump of each mode and state is smoother in each delayed signal."""
+        low = self.lowered
+        fractions = {low.modes[i].leaf: self.guard_rates[i] for i in self.holding}
+        forces: dict[int, list[int]] = {}
+        for reset in low.resets:
+            if self._may_hit(reset):
+                bends = self.along_the_flow([self.guard_rates[reset.trigger]], 1)
+                for state in reset.values:
+                    forces.setdefault(low.states[state], []).extend(bends)
+        return jump_orders(low, fractions, forces)
 
     def _may_hit(self, reset: Reset) -> bool:
         """Whether a reset may be that of a contact: it writes a rate of its guard, and no place."""
@@ -325,7 +355,9 @@ class Routines:
             found, routine = self._evaluated[name], self.routine(name)
         # numbers of numpy would warn where those of Python raise
         lists = [[float(value) for value in array] for array in (x, m, p, k)]
-        constants = found[PREPARE](lists[2])
+        count = self.constants.parameters
+        constants = [*found[PREPARE](lists[2][:count])]
+        constants[count : len(lists[2])] = lists[2][count:]  # where the past of delays is
         values = [0.0] * routine.size
         given = found[name](float(t), lists[0], lists[1], constants, lists[3])
         for place, value in zip(routine.roots, given, strict=True):

@@ -20,6 +20,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from tracewire.compile.delays import has_delay
 from tracewire.compile.flat import FlatEvent, FlatMemory, FlatParameter, FlatState
 from tracewire.diagram import Condition
 from tracewire.errors import Place
@@ -178,6 +179,8 @@ class _Holds:
                     for setter in self.setters.get(name, ())
                 )
                 held, flows = held or own, flows or not own
+            elif name in self.signals and has_delay(self.signals[name]):
+                flows = True  # it changes at other times than what it reads
             elif name in self.signals:
                 due += names_of(self.signals[name])
         return held, flows

@@ -18,9 +18,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tracewire.compile.differentiate import gradients, slope_of
+from tracewire.compile.differentiate import gradients, past_rate, slope_of
 from tracewire.compile.tape import Tape
 
+NO_VALUE = ("newton", "table", "unknown", "history", "history_rate")
 EXACT = ("ge", "gt", "and", "or", "not", "floor", "slope")
 
 
@@ -28,7 +29,7 @@ def sizes(tape: Tape, roots: Sequence[int], states: int) -> list[int]:
     """The entries of the sizes of `roots`, for a model of so many states."""
     found: dict[int, int] = {}
     for index in tape.needed(roots):
-        if tape.entries[index].op not in ("newton", "table", "unknown"):
+        if tape.entries[index].op not in NO_VALUE:
             found[index] = _size(tape, index, found, states)
     return [found[root] for root in roots]
 
@@ -62,6 +63,9 @@ def _size(tape: Tape, index: int, found: dict[int, int], states: int) -> int:
             return push("select", a, found[entry.operands[1]], found[b])
         case "segment":  # operands: table, u, mode
             steep = push("abs", push("slope", a, b))
+            return push("+", push("*", steep, found[entry.operands[1]]), own)
+        case "past":  # operands: history, s, mode
+            steep = push("abs", past_rate(tape, index))
             return push("+", push("*", steep, found[entry.operands[1]]), own)
         case "atan2":
             square = push("+", push("*", a, a), push("*", b, b))

@@ -15,9 +15,11 @@ from typing import Any
 
 from tracewire.compile import libm
 from tracewire.compile.constants import Constants
+from tracewire.compile.past import past
 from tracewire.compile.tape import CLOSE, LEAST_SHARE, SEARCHES, Tape
 
 LONGEST_INLINE = 60
+INLINE = ("const", "table", "history", "history_rate")
 
 Function = Callable[..., tuple[float, ...]]
 
@@ -85,6 +87,7 @@ SHARED: dict[str, Any] = {
     "max": max,
     "segment": _segment,
     "slope": _slope,
+    "past": past,
     "newton": _newton,
 }
 FAST: dict[str, Any] = {name: getattr(math, name) for name in (*libm.ONE, *libm.TWO, "sqrt")}
@@ -115,7 +118,8 @@ class Writer:
         doc = (
             '    """The constants of a run: its parameters, and what is computed of them alone."""'
         )
-        returned = ", ".join(part for part in ("*p", body.returned) if part)
+        address = "0.0" if self.constants.delays else ""
+        returned = ", ".join(part for part in ("*p", address, body.returned) if part)
         return "\n".join(["def prepare(p):", doc, *body.lines, f"    return ({returned},)", ""])
 
 
@@ -138,7 +142,7 @@ class _Body:
             label = writer.labels.get(index)
             plain = self.is_leaf(index) and uses[index] < 2
             short = uses[index] < 2 and len(text) <= LONGEST_INLINE and label is None
-            if plain or short or self.tape.entries[index].op in ("const", "table"):
+            if plain or short or self.tape.entries[index].op in INLINE:
                 self.texts[index] = text
             else:
                 self.texts[index] = label or f"v{index}"
@@ -175,6 +179,11 @@ class _Body:
                 return f"m[{self.writer.modes} + {entry.payload}]"
             case "table":
                 return f"k, {entry.payload}"
+            case "history" | "history_rate":
+                return f"c[{self.writer.constants.parameters}], {entry.payload}"
+            case "past":
+                texts = (_bare(self.texts[operand]) for operand in entry.operands)
+                return f"past({', '.join(texts)}, {entry.payload})"
             case "newton":
                 return self.search(index)
             case "pick":

@@ -265,6 +265,8 @@ SHAPES: dict[str, Shape] = {
     "discrete_pid": _function("PID(z)"),
     "unit_delay": _function(raised("z", -1)),
     "discrete_integrator": _discrete_integrator,
+    "delay": _function("exp(−T s)"),
+    "variable_delay": _function("exp(−T(t) s)"),
     "pade_delay": _function("≈ exp(−T s)"),
     "quantizer": _icon(icons.LADDER),
     "compare": _compare,

@@ -38,7 +38,7 @@ from tracewire.residual import (
     whole_segment,
     with_measured_signals,
 )
-from tracewire.solve import parameter_values
+from tracewire.solve import parameter_values, refuse_delays
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -102,6 +102,8 @@ def fit(
     series = tuple(measured)
     if not series:
         raise DataError([Problem("there is no measured series to fit to")])
+    if method == "multiple_shooting":
+        refuse_delays(model, "each segment of multiple_shooting", "method growing_windows, or ")
     model = with_measured_signals(model, series)
     train = [m for m in series if m.use == "train"]
     refuse_unusable(series, train)

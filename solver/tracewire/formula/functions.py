@@ -18,6 +18,7 @@ UnitRule = Literal[
     "same",
     "compared",
     "levels",
+    "delayed",
     "kept",
     "lost",
     "root",
@@ -40,8 +41,9 @@ class Function:
 
     unit: a `number` of numbers; of arguments of the `same` unit, which the value has, too; of those
     that are `compared`, the value has none; of `levels` behind the first argument, which the value
-    has; of `any`, nothing is known of the value. Of one argument: its unit is `kept`, or `lost`, or
-    the value is its `root`. Of two: their `product`, `quotient` or `power`.
+    has; of a signal `delayed` by a time, the value has the unit of the first and third argument; of
+    `any`, nothing is known of the value. Of one argument: its unit is `kept`, or `lost`, or the
+    value is its `root`. Of two: their `product`, `quotient` or `power`.
 
     slope: of one argument u, the derivative, a formula of u and of the value f. pace: whether it
     `turns` again and again as u grows, as a sine does, or `fades` where u is large.
@@ -139,6 +141,10 @@ FUNCTIONS = {
     "is_held": Function(1, 1,
         "is_held(u): 1 while a closed contact or sticking friction holds u at zero, else 0",
         lambda u: 0.0, unit="lost"),
+    "delayed": Function(3, 5,
+        "delayed(u, time, before): u as it was so long ago, and before the start what `before` is;"
+        " delayed(u, time, before, shortest, longest): with a time that changes between these",
+        unit="delayed", instead="Use a block of type delay or variable_delay."),
     "interp": Function(2, 2, "interp(u, points): straight lines through points, held beyond them",
         reads="points", instead="Use a block that has a table of points."),
     "cubic_spline": Function(2, 2,

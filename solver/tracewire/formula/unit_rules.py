@@ -52,6 +52,8 @@ def unit_term(node: Expression, named: Named, equal: Equal, strict: bool) -> Ter
             return {}
         case "levels":
             return _same(list(zip(node.arguments, terms, strict=True))[1:], equal)
+        case "delayed":
+            return _same([(node.arguments[i], terms[i]) for i in (0, 2)], equal)
         case "kept":
             return terms[0]
         case "lost":

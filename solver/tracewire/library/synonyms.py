@@ -37,6 +37,12 @@ NAMES: dict[str, dict[Tool, str]] = {
     "coulomb": {"": "coulomb friction"},
     "dead_zone": {"Simulink": "Dead Zone", "Xcos": "DEADBAND", "": "deadband"},
     "debounce": {"": "debouncer, glitch filter, contact bounce"},
+    "delay": {
+        "Simulink": "Transport Delay",
+        "Modelica": "FixedDelay",
+        "Xcos": "TIME_DELAY",
+        "": "time delay, dead time, true delay",
+    },
     "demux": {"Simulink": "Selector", "Modelica": "Extractor, DeMultiplex", "Xcos": "EXTRACTOR"},
     "derivative": {
         "Modelica": "Der",
@@ -254,6 +260,11 @@ NAMES: dict[str, dict[Tool, str]] = {
         "Xcos": "DOLLAR_m, DOLLAR, REGISTER",
         "": "z^-1, 1/z, one sample delay, delay_line",
     },
+    "variable_delay": {
+        "Simulink": "Variable Time Delay, Variable Transport Delay",
+        "Modelica": "VariableDelay",
+        "Xcos": "VARIABLE_DELAY",
+    },
     "viscous": {"Modelica": "Damper", "": "damper, viscous friction, damping"},
     "stiffness": {"Modelica": "Spring", "": "spring"},
     "xor": {"Modelica": "Xor", "": "exclusive or, XOR gate"},
@@ -270,10 +281,6 @@ Sources: the block libraries of Simulink R2023, of Modelica 4.0 and of Xcos 2023
 
 SENSOR = "It is a number of a measured signal: signals: {{x: {{column: x, {0}: ...}}}}."
 INSTEAD: dict[str, str] = {
-    "delay, transport delay, time delay, dead time, fixed delay, variable delay, TIME_DELAY": (
-        "There is no exact delay of flowing signals: 'pade_delay' approximates one up to a"
-        " frequency, and 'unit_delay' delays samples by their period."
-    ),
     "logical operator, LOGICAL_OP, LOGIC, logic": "Use 'and', 'or', 'xor' or 'not'.",
     "MinMax, MAXMIN": "Use 'min' or 'max', which take two signals or more.",
     "scope, CSCOPE, CMSCOPE, display, to workspace, plot, sink": (

@@ -15,7 +15,7 @@ from tracewire.compile import Model, compile
 from tracewire.residual.measured import Measured
 from tracewire.residual.segment import of_diagram
 from tracewire.residual.starts import start_from_data
-from tracewire.solve import Driving, Held, Span, SpanRuns, simulate_spans, values_at
+from tracewire.solve import Driving, Held, Span, SpanRuns, refuse_delays, simulate_spans, values_at
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -124,6 +124,7 @@ def input_response(
 ) -> InputResponse:
     """How a series answers to its inputs along states (N, n) at its samples, in a model with these
     values of unknowns. A sample from which no run is possible passes changes on as they are."""
+    refuse_delays(model, "a fit with noise on the inputs")
     names, signals = model.states, tuple(measured.values)
     inputs = tuple(measured.inputs)
     quick = compile(model.diagram, record=list(dict.fromkeys((*signals, *names))), backend="quick")

@@ -109,11 +109,21 @@ arrays of a run (`setup`), let the core go on (`execute`), and find words for wh
 (`failures`). Many rows of parameters run in threads (`many`); many short runs with the same
 parameters are prepared once, and the core goes from one to the next (`spans`).
 
-Not there yet: delays; the rate of a state that is held by a stop is still a state, so that friction
+**Delays.** What is read with a delay is kept over each step, as polynomials through its values in
+the dense output, and before the start it is what is declared. Steps are shorter than the delay, so
+that the past is known: a loop through a delay is no algebraic loop. An event, and the start, at tau
+is a known time at tau + delay, as far as what is delayed feels it in a derivative of order 5 or
+less; each integrator on the way raises the order by one. Steps end there, and what is read jumps
+there. A guard that reads the past is located as others are. Steps meet at most two of the
+polynomials of what a guard reads. Sensitivities of what was are kept, too: with u(t - T) comes
+dU(t - T) - u'(t - T) dT, and its jumps move with those of u and with T.
+
+Not there yet: the rate of a state that is held by a stop is still a state, so that friction
 on it keeps its last side while the stop holds.
 """
 
 from tracewire.solve.held import Driving, Held, values_at, with_points
+from tracewire.solve.history import refuse_delays
 from tracewire.solve.interrupt import Halt, Interrupted, until_interrupted
 from tracewire.solve.limits import Limits
 from tracewire.solve.many import simulate_many
@@ -145,6 +155,7 @@ __all__ = [
     "crew",
     "each",
     "parameter_values",
+    "refuse_delays",
     "release",
     "simulate",
     "simulate_many",

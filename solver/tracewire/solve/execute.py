@@ -19,6 +19,7 @@ from tracewire.solve.core.codes import (
     END,
     EVENTS,
     FINISHED,
+    HISTORY_FULL,
     LENGTH,
     LOG_FULL,
     LOG_HEAD,
@@ -34,6 +35,7 @@ from tracewire.solve.core.codes import (
 from tracewire.solve.core.flow import EVALUATIONS, FUNCTIONS
 from tracewire.solve.core_library import library
 from tracewire.solve.failures import failure, too_long, too_many_events
+from tracewire.solve.history import grow
 from tracewire.solve.interrupt import Halt, Interrupted, until_interrupted
 from tracewire.solve.limits import Limits
 from tracewire.solve.run import Event, EventDirection, EventKind, Statistics
@@ -134,7 +136,9 @@ class Execution:
             self.check_events()
             if status == FINISHED:
                 return True
-            if status not in (LOG_FULL, PAUSED):
+            if status == HISTORY_FULL:
+                grow(self.arrays, table)
+            elif status not in (LOG_FULL, PAUSED):
                 raise failure(self.model, self.arrays, status)
             self.check_limits()
             # what was compiled meanwhile is called without a detour

@@ -199,7 +199,8 @@ def not_finite(model: Model, flow: Flow, t: float, x: Vector) -> tuple[str, floa
     for name, value in zip(model.states, x.tolist(), strict=True):
         if not math.isfinite(value):
             return name, value
-    arrays = (x, flow.m, flow.c[: len(model.parameters)], flow.k)
+    given = len(model.parameters) + bool(model.lowered.delays)
+    arrays = (x, flow.m, flow.c[:given], flow.k)
     names, values = model.all_signals(t, *(array.tolist() for array in arrays))
     for name, value in zip(names, values, strict=True):
         if not math.isfinite(value):

@@ -31,6 +31,7 @@ from tracewire.solve.core.methods import NAMES, STEPPED
 from tracewire.solve.core_library import library
 from tracewire.solve.execute import Execution
 from tracewire.solve.failures import failure
+from tracewire.solve.history import refuse_delays
 from tracewire.solve.interrupt import Halt, Interrupted
 from tracewire.solve.limits import Limits
 from tracewire.solve.sensitivities import UNMOVED, new_sensitivity
@@ -85,6 +86,7 @@ class Passage:
         if not (np.isfinite(length) and length > 0 and np.isfinite(begin)):
             what = f"an interval of {length:g} s from t = {begin:g} s has no use"
             raise OptionError([Problem(what, hint="Give a finite length above 0.")])
+        refuse_delays(model, "an analysis")
         self.model = model
         self.parameters = parameter_values(model, parameters or {}, preset)
         longest = longest_step(model, self.parameters, Limits())
@@ -103,7 +105,7 @@ class Passage:
         sensitivity = new_sensitivity(model, flow, progress, asked, UNMOVED, {}, self.parameters)
         if asked:  # no recorded signals are followed, but the states
             sensitivity = sensitivity._replace(samples=np.zeros((inner, len(x) * len(x))))
-        arrays = new_arrays(flow, plan, progress, sensitivity)
+        arrays = new_arrays(model, flow, plan, progress, sensitivity)
         self._space = Space((inner, len(tables), asked, ()), arrays)
         self.arrays: Arrays = self._space.arrays
         self._execution = Execution(

@@ -155,7 +155,7 @@ def new_sensitivity(
     set and so follow no parameter, `values` those of the parameters.
     """
     n, modes, q = len(progress.x), len(flow.bound), len(asked)
-    a = len(moving.names)
+    a = len(moving.names) + 2 * len(model.lowered.delays)
     w = n + 1 + a if q else 0
     names = [*model.states, "t", *moving.names]
     functions = [model.derivative(of, names) for of in DERIVATIVES] if q else []
@@ -198,8 +198,8 @@ def set_sensitivity(
     """Let the sensitivities of a run that has not begun be those of this one."""
     n, s = len(progress.x), sensitivity.s
     if moving.names:
-        sensitivity.chain[:] = moving.rates
-        rows, nothing = np.zeros((n, n + 1 + len(moving.names))), np.zeros(1)
+        sensitivity.chain[: len(moving.names)] = moving.rates
+        rows, nothing = np.zeros((n, n + 1 + len(sensitivity.chain))), np.zeros(1)
         address = sensitivity.address[OF_STARTS]
         invoke(address, 0.0, nothing, flow.m, flow.c, flow.k, rows.reshape(-1))
         s[:] = rows[:, n + 1 :] @ sensitivity.chain

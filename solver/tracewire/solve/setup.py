@@ -42,6 +42,7 @@ from tracewire.solve.core.locate import SAMPLES
 from tracewire.solve.core.memory import invoke
 from tracewire.solve.core.methods import METHODS, NAMES
 from tracewire.solve.held import Held
+from tracewire.solve.history import new_history
 
 Vector = NDArray[np.float64]
 MOST_STIFF = 64  # mode combinations of a run that are remembered as stiff
@@ -218,7 +219,9 @@ def set_up(
     progress.ints[METHOD] = -1 if method == "auto" else NAMES.index(method)
 
 
-def new_arrays(flow: Flow, plan: Plan, progress: Progress, sensitivity: Sensitivity) -> Arrays:
+def new_arrays(
+    model: Model, flow: Flow, plan: Plan, progress: Progress, sensitivity: Sensitivity
+) -> Arrays:
     """All arrays of a run, with the work space."""
     n, modes = len(progress.x), len(plan.kind)
     most = 3 * modes  # a guard has two levels at most, and held it has a force or two fractions
@@ -263,4 +266,5 @@ def new_arrays(flow: Flow, plan: Plan, progress: Progress, sensitivity: Sensitiv
         due=ints(len(plan.resets)),
         known=ints(1),
     )
-    return Arrays(flow, plan, progress, trial, watch, crossings, sensitivity)
+    history = new_history(model, sensitivity)
+    return Arrays(flow, plan, progress, trial, watch, crossings, sensitivity, history)

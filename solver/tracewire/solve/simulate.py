@@ -40,6 +40,7 @@ Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 DEFAULT_SAMPLES = 1001
 MOST_SAMPLES = 10_000_000
+KNOWN_PAST = 0.98  # of a delay: a step to a known time may be a little longer
 MOST_KEPT = 100  # of the values that parameters have by themselves
 
 
@@ -167,10 +168,18 @@ def tolerance_of(
 
 
 def longest_step(model: Model, values: Mapping[str, float], limits: Limits) -> float:
-    """The longest step in s: that of the diagram or of the limits. Raises OptionError."""
+    """The longest step in s: that of the diagram or of the limits, and no longer than a delay, so
+    that what is read is known. Raises OptionError.
+    """
     given, longest = model.flat.max_step, limits.max_step
     if given is not None:
         longest = min(longest, float(evaluate(given, values)))
+    for delay in model.lowered.delays:
+        time = float(evaluate(delay.shortest, values))
+        if not 0 < time < math.inf:
+            what = f"'{delay.text}' is delayed by {time:g} s"
+            raise OptionError([Problem(what, hint="Give a delay above 0.")])
+        longest = min(longest, KNOWN_PAST * time)
     if not longest > 0:
         what = f"steps of {longest:g} s at most lead nowhere"
         raise OptionError([Problem(what, hint="Give a max_step above 0.")])

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.solve.core.arrays import Arrays, table_of
+from tracewire.solve.history import GROWING
 from tracewire.solve.sensitivities import Moving, new_sensitivity
 from tracewire.solve.setup import (
     Tolerance,
@@ -24,7 +25,7 @@ Vector = NDArray[np.float64]
 Key = tuple[int, int, tuple[str, ...], tuple[str, ...]]
 MOST = 16  # kinds of spaces that a model keeps
 MOST_NUMBERS = 500_000  # of samples and tables; larger arrays are not kept
-ONLY_WRITTEN = ("address", "c", "k", "log", "stiff", "times")
+ONLY_WRITTEN = ("address", "c", "k", "log", "stiff", "times", *GROWING)
 """What is written before each run, or not read before the run has written it."""
 
 
@@ -88,7 +89,7 @@ def space_for(
         tolerance = Tolerance(1.0, np.ones(len(nowhere)))
         progress = new_progress(model, nowhere, (0.0, 1.0), times, "auto", tolerance)
         sensitivity = new_sensitivity(model, flow, progress, asked, moving, {}, values)
-        return Space(key, new_arrays(flow, kept_plan(model), progress, sensitivity))
+        return Space(key, new_arrays(model, flow, kept_plan(model), progress, sensitivity))
     flow = space.arrays.flow
     flow.k[:] = tables
     prepare(model, flow, vector)

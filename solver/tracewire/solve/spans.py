@@ -15,11 +15,12 @@ from numpy.typing import ArrayLike, NDArray
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, SimulationError, unknown
 from tracewire.solve.core.arrays import Spans, table_of
-from tracewire.solve.core.codes import BUDGET, FINISHED, LOG_FULL, PAUSED
+from tracewire.solve.core.codes import BUDGET, FINISHED, HISTORY_FULL, LOG_FULL, PAUSED
 from tracewire.solve.core.spans import INSIDE, LEFT, SPAN
 from tracewire.solve.core_library import library
 from tracewire.solve.execute import Execution
 from tracewire.solve.failures import failure
+from tracewire.solve.history import refuse_delays
 from tracewire.solve.interrupt import Halt, Interrupted
 from tracewire.solve.limits import Limits, beyond_budget
 from tracewire.solve.run import Sensitivities
@@ -103,6 +104,8 @@ def simulate_spans(
     run that begins beyond it fails. `halt` says whether the user wants to stop. A run that fails
     does not end the others. Raises OptionError for arguments that do not fit, and Interrupted.
     """
+    if any(span.follows for span in spans):
+        refuse_delays(model, "a span that follows another")
     values = parameter_values(model, parameters or {}, preset)
     asked = checked(model, sensitivities)
     tables = packed(tables_of(model, values, inputs or {}))
@@ -210,7 +213,7 @@ def _executed(
         number = int(at[SPAN])
         one = replace(execution, start=float(many.ends[number, 0]), rows=[], halt=halt)
         try:
-            if status not in (FINISHED, LOG_FULL, PAUSED):
+            if status not in (FINISHED, LOG_FULL, PAUSED, HISTORY_FULL):
                 raise failure(one.model, one.arrays, status)
             if not one.go_on(halt, status):
                 raise one.interrupted()

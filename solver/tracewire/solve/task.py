@@ -211,7 +211,7 @@ class Task:
         if width > columns:
             state = state._replace(samples=np.full((len(every), width), np.nan))
         nothing = new_sensitivity(model, flow, state, (), UNMOVED, {}, {})
-        arrays = new_arrays(flow, self.plan, state, nothing)
+        arrays = new_arrays(model, flow, self.plan, state, nothing)
         execution = Execution(model, arrays, self.limits, begin, halt=halt)
         execution.run()
         points = np.empty((0, 1 + len(x)))

@@ -237,6 +237,39 @@ class Spans(NamedTuple):
     first: Vector
 
 
+class History(NamedTuple):
+    """What D delayed signals were, as pieces of polynomials; D = 0 where nothing is delayed.
+
+    Per delay, `mode` is its mode; `order` (M + n, D): by how many orders the jump of a mode or a
+    state is smoother in its signal; `seen` 1 where a guard reads it, so that steps follow its
+    pieces; `size` the largest value so far; `points` (D, B) the times at which its signal has
+    jumped, `ranks` (D, B) in which derivative, `shifts` (D, B*q) how the times move. `lag` (2D,):
+    the delays at the time of the last question, and the longest; `node_lags` (4, D) at the nodes of
+    sensitivities. `counts` (D, 2): how many points there are and how many were dropped; `along`:
+    how many pieces of sensitivities, and their next node in this step. `pieces` are rows as
+    `compile/past.py` tells; `moves` likewise of how the signals move: begin, middle, 2/length, the
+    stretches, and of each signal and number 5 coefficients. `first` is the place of the address in
+    the constants. `at` (9, max(D, D*q)) and `rows` (D, w) are work space.
+    """
+
+    mode: Ints
+    order: IntMatrix
+    seen: Ints
+    lag: Vector
+    size: Vector
+    points: Matrix
+    ranks: IntMatrix
+    shifts: Matrix
+    counts: IntMatrix
+    along: Ints
+    pieces: Matrix
+    moves: Matrix
+    first: Ints
+    at: Matrix
+    rows: Matrix
+    node_lags: Matrix
+
+
 class Arrays(NamedTuple):
     """All arrays of a run."""
 
@@ -247,6 +280,7 @@ class Arrays(NamedTuple):
     watch: Watch
     crossings: Crossings
     sensitivity: Sensitivity
+    history: History
 
 
 def table_of(groups: Arrays | Sequence[Spans]) -> Ints:
@@ -270,7 +304,7 @@ def _first_places() -> dict[type, int]:
     """The place of the first array of each group in its table; spans have a table of their own."""
     places: dict[type, int] = {Spans: 0}
     place = 0
-    for group in (Flow, Plan, Progress, Trial, Watch, Crossings, Sensitivity):
+    for group in (Flow, Plan, Progress, Trial, Watch, Crossings, Sensitivity, History):
         places[group] = place
         place += len(group._fields)
     return places
@@ -335,6 +369,12 @@ def crossings_of(core: int) -> Crossings:
 def sensitivity_of(core: int) -> Sensitivity:
     """How the states change with what was asked for."""
     return cast(Sensitivity, _read(Sensitivity, core))
+
+
+@reader
+def history_of(core: int) -> History:
+    """What the delayed signals were."""
+    return cast(History, _read(History, core))
 
 
 @reader

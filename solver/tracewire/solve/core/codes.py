@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-KINDS = ("sign", "floor", "segment", "memory")
-SIGN, FLOOR, SEGMENT, MEMORY = 0, 1, 2, 3
+KINDS = ("sign", "floor", "segment", "memory", "delay")
+SIGN, FLOOR, SEGMENT, MEMORY, DELAY = 0, 1, 2, 3, 4
 UP, DOWN, BOTH = 1, -1, 0
 DIRECTIONS = {"up": UP, "down": DOWN, "both": BOTH}
 # what reaches a level; PASSED: a guard that is found beyond it where a step begins
@@ -15,7 +15,7 @@ EVENTS = ("crossing", "scheduled", "reset", "impact", "stick", "slip", "rest", "
 CROSSING, SCHEDULED, RESET, IMPACT, STICK, SLIP, REST, TRANSITION = range(8)
 LOG_HEAD = 4  # time, kind, mode, direction; behind them the states before and after
 
-FINISHED, PAUSED, LOG_FULL = 0, 1, 2
+FINISHED, PAUSED, LOG_FULL, HISTORY_FULL = 0, 1, 2, 3
 UNDERFLOW, UNDEFINED, CHATTER, NO_MODE, NO_SLIDE = 10, 11, 12, 13, 14
 UNSETTLED, TWO_WRITES, BAD_RESET, NO_END, CARRIED, ENDLESS = 15, 16, 17, 18, 19, 20
 
@@ -25,6 +25,8 @@ T, H, END, LENGTH, RTOL, FIXED, RATIO, LONGEST, PACED, LAST = range(10)
 STEPS, REJECTED, STIFF_STEPS, METHOD, CURRENT, SUSPICIOUS, CALM = range(7)
 SAMPLED, LOGGED, STIFF_ROWS, RECENT, BUDGET, WARNINGS, STAGE, WATCHED = range(7, 15)
 NOT_UNIQUE = 1
+POINTS, DROPPED = range(2)  # places in History.counts
+MOVES, NODE = range(2)  # places in History.along
 FLAGS = 5
 ZENO, GRAZES, SIMULTANEOUS, TOUCHES, LOST = range(FLAGS)  # where sensitivities end
 CHATTER_EVENTS = 50

@@ -11,8 +11,9 @@ import math
 import numpy as np
 
 from tracewire.solve.core import methods
-from tracewire.solve.core.arrays import Ints, Matrix, flow_of, sensitivity_of, trial_of
+from tracewire.solve.core.arrays import Ints, Matrix, flow_of, history_of, sensitivity_of, trial_of
 from tracewire.solve.core.flow import RESTING, SLIDING
+from tracewire.solve.core.history import find_lags, is_delayed, recall
 from tracewire.solve.core.linear import factor, substitute_all
 from tracewire.solve.core.units import helper, unit
 from tracewire.solve.core.variation import field
@@ -37,12 +38,18 @@ TIME, INTERVAL, KNOWN, UNCHECKED, LONGEST, SMOOTH = range(6)  # places in Sensit
 
 
 @unit
-def _slopes(core: int, node: int, place: int) -> None:
-    """J S + f_p at a node, with S where the interval begins, as one of three parts of `slopes`."""
+def _slopes(core: int, node: int, place: int, t: float) -> None:
+    """J S + f_p at a node, at the time t, with S where the interval begins, as one of three parts
+    of `slopes`."""
     sensitivity = sensitivity_of(core)
     s, chain, out = sensitivity.s, sensitivity.chain, sensitivity.slopes
     nodes = sensitivity.nodes
     n, q = s.shape
+    if is_delayed(core):
+        history = history_of(core)
+        for j in range(len(history.mode)):
+            history.lag[j] = history.node_lags[node, j]
+        recall(core, t)
     for i in range(n):
         row, into = node * n + i, place * n + i
         for j in range(q):
@@ -72,6 +79,11 @@ def _fill_nodes(core: int, method: int, h: float) -> None:
         theta = min(1.0, max(0.0, (time - trial.ends[0]) / trial.ends[1]))
         methods.inside(core, method, theta, trial.at)
         field(core, time, trial.at, nodes[node * n : node * n + n])
+        if is_delayed(core):
+            find_lags(core, time, trial.at)
+            history = history_of(core)
+            for j in range(len(history.mode)):
+                history.node_lags[node, j] = history.lag[j]
     sensitivity.now[KNOWN] = 1.0
 
 
@@ -86,7 +98,7 @@ def collocate(core: int, method: int, h: float, check: bool) -> float:
     n, q = sensitivity.s.shape
     _fill_nodes(core, method, h)
     for node in range(3):
-        _slopes(core, node + 1, node)
+        _slopes(core, node + 1, node, sensitivity.now[TIME] + h * NODES[node])
     for a in range(3):
         first, second, third = h * RADAU[a, 0], h * RADAU[a, 1], h * RADAU[a, 2]
         for i in range(n):
@@ -210,7 +222,7 @@ def _error(core: int, h: float) -> float:
     s, peak, change = sensitivity.s, sensitivity.peak, sensitivity.change
     n, q = s.shape
     real, error = sensitivity.real, sensitivity.slopes[:n]
-    _slopes(core, 0, 0)
+    _slopes(core, 0, 0, sensitivity.now[TIME])
     for i in range(n):
         for k in range(n):
             real[i, k] = -sensitivity.nodes[i, k]

@@ -21,10 +21,12 @@ from tracewire.solve.core.codes import (
     ABSOLUTE,
     BUDGET,
     CURRENT,
+    DELAY,
     END,
     FINISHED,
     FIXED,
     GUARD,
+    HISTORY_FULL,
     LAST,
     LENGTH,
     LOG_FULL,
@@ -55,6 +57,14 @@ from tracewire.solve.core.flow import (
     evaluate,
     rates,
     sizes,
+)
+from tracewire.solve.core.history import (
+    begin_history,
+    has_room,
+    is_delayed,
+    is_rough,
+    longest_followed,
+    point_to_history,
 )
 from tracewire.solve.core.locate import AT_ONCE, NOTHING
 from tracewire.solve.core.methods import (
@@ -90,14 +100,18 @@ SMALLEST_PART = 1e-12  # of the span: no pace asks for a shorter step
 def advance(core: int) -> int:
     """Go on with a run until it ends, its budget of steps or its log is used up, or it fails.
 
-    Returns FINISHED, PAUSED, LOG_FULL, or the status of an error.
+    Returns FINISHED, PAUSED, LOG_FULL, HISTORY_FULL, or the status of an error.
     """
     plan = plan_of(core)
     progress = progress_of(core)
     now, ints, x = progress.now, progress.ints, progress.x
     modes = len(plan.kind)
     ahead = np.empty(len(plan.timed))
+    if is_delayed(core):
+        point_to_history(core)
     if ints[STAGE] == 0:
+        if is_delayed(core):
+            begin_history(core)
         _first_sizes(core)
         status = begin(core)
         if status != FINISHED:
@@ -143,6 +157,11 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
         if ints[STEPS] >= budget:
             ints[STAGE] = PAUSED_INSIDE
             return PAUSED
+        if is_delayed(core):
+            if not has_room(core):
+                ints[STAGE] = PAUSED_INSIDE
+                return HISTORY_FULL
+            now[H] = min(now[H], longest_followed(core, now[T], x))
         if locate.passed(core, hit):  # so slowly that no step has seen it
             return _cross(core, PASSED)
         longest = _longest_step(core, now[T], x)
@@ -423,7 +442,10 @@ def _scheduled(core: int, ahead: Vector) -> int:
         if not np.isnan(ahead[row]):
             crossings.how[i], crossings.to[i] = TIME, ahead[row]
             crossings.up[i] = ahead[row] > flow.m[i]
-            loud = loud or plan.kind[i] != SEGMENT
+            quiet = plan.kind[i] == SEGMENT
+            if plan.kind[i] == DELAY:
+                quiet = not is_rough(core, i, ahead[row])
+            loud = loud or not quiet
     loud = _reached_with(core) or loud
     status = happen(core, progress.now[T], progress.x)
     if loud:

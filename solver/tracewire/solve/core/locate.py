@@ -24,6 +24,7 @@ from tracewire.solve.core.arrays import (
 )
 from tracewire.solve.core.codes import (
     CURRENT,
+    DELAY,
     FLOOR,
     FORCE,
     FRACTION,
@@ -40,7 +41,7 @@ from tracewire.solve.core.flow import (
     SLIDING,
     held,
 )
-from tracewire.solve.core.modes import held_levels, levels, piece
+from tracewire.solve.core.modes import held_levels, jump_time, levels, piece
 from tracewire.solve.core.readings import guard_rates, guard_values
 from tracewire.solve.core.units import helper, unit
 
@@ -79,7 +80,10 @@ def watch(core: int) -> None:
             count = _add(core, count, i, GUARD, 1.0 - value, 0.0, sign)
             continue
         low, high = value, value + 1.0
-        if plan.kind[i] != FLOOR:
+        if plan.kind[i] == DELAY:
+            low = jump_time(core, plan.table[i], value)
+            high = jump_time(core, plan.table[i], value + 1.0)
+        elif plan.kind[i] != FLOOR:
             low, high = piece(core, plan.table[i], value)
         if low > -np.inf:
             count = _add(core, count, i, GUARD, value - 1.0, low, 1.0)

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from tracewire.solve.core.arrays import Vector, flow_of, plan_of, progress_of
-from tracewire.solve.core.codes import FLOOR, MEMORY, SIGN
+from tracewire.solve.core.arrays import Vector, flow_of, history_of, plan_of, progress_of
+from tracewire.solve.core.codes import DELAY, DROPPED, FLOOR, MEMORY, POINTS, SIGN
 from tracewire.solve.core.flow import (
     FREE,
     GRADIENTS,
@@ -65,9 +65,32 @@ def mode_value(core: int, i: int, guard: float) -> float:
         return 1.0 if guard > 0 or (guard == 0 and plan.at_zero[i]) else 0.0
     if plan.kind[i] == FLOOR:
         return float(math.floor(guard))
+    if plan.kind[i] == DELAY:
+        return stretch_at(core, plan.table[i], guard)
     offset = int(flow.k[plan.table[i]])
     points = int(flow.k[offset])
     return float(np.searchsorted(flow.k[offset + 1 : offset + 1 + points], guard, side="right"))
+
+
+@helper
+def jump_time(core: int, delay: int, number: float) -> float:
+    """The time of a jump of a delayed signal by its number, from 1 on; inf where it has not been,
+    -inf where it is forgotten."""
+    history = history_of(core)
+    place = int(number) - 1 - history.counts[delay, DROPPED]
+    if place < 0:
+        return -np.inf
+    return history.points[delay, place] if place < history.counts[delay, POINTS] else np.inf
+
+
+@helper
+def stretch_at(core: int, delay: int, s: float) -> float:
+    """The number of the smooth stretch of a delayed signal that begins at s or before."""
+    history = history_of(core)
+    number = history.counts[delay, DROPPED] + history.counts[delay, POINTS]
+    while number > 0 and jump_time(core, delay, float(number)) > s:
+        number -= 1
+    return float(number)
 
 
 @helper
@@ -102,7 +125,11 @@ def inside(core: int, i: int, guard: float) -> float:
         return guard if value > 0.5 else -guard
     if kind == FLOOR:
         return min(guard - value, value + 1.0 - guard)
-    low, high = piece(core, plan_of(core).table[i], value)
+    if kind == DELAY:
+        table = plan_of(core).table[i]
+        low, high = jump_time(core, table, value), jump_time(core, table, value + 1.0)
+    else:
+        low, high = piece(core, plan_of(core).table[i], value)
     return min(guard - low, high - guard)
 
 

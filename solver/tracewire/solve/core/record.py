@@ -17,20 +17,24 @@ from tracewire.solve.core.arrays import (
 )
 from tracewire.solve.core.codes import LOG_HEAD, LOGGED, SAMPLED
 from tracewire.solve.core.flow import RESTING, SLIDING, outputs
-from tracewire.solve.core.sensitivity import follow, sample
+from tracewire.solve.core.history import is_delayed, record_step
+from tracewire.solve.core.history_moves import follow_all
+from tracewire.solve.core.sensitivity import sample
 from tracewire.solve.core.surface import pin
 from tracewire.solve.core.units import unit
 
 
 @unit
 def sample_inside(core: int, method: int, end: float) -> None:
-    """Fill the samples of a step that lie before `end`."""
+    """Fill the samples of a step that lie before its `end`, and keep what is read with a delay."""
+    if is_delayed(core):
+        record_step(core, method)
     progress = progress_of(core)
     trial = trial_of(core)
     row = progress.ints[SAMPLED]
     if row == len(progress.times) or not progress.times[row] < end:
         if is_sensitive(core):
-            follow(core, method, end)
+            follow_all(core, method, end)
         return
     # what follows sensitivities has its own use for trial.at
     at = np.empty(len(trial.x)) if is_sensitive(core) else trial.at
@@ -39,12 +43,12 @@ def sample_inside(core: int, method: int, end: float) -> None:
         methods.inside(core, method, (time - trial.ends[0]) / trial.ends[1], at)
         _fill(core, row, time, at)
         if is_sensitive(core):
-            follow(core, method, time)
+            follow_all(core, method, time)
             sample(core, row, time, at)
         row += 1
     progress.ints[SAMPLED] = row
     if is_sensitive(core):
-        follow(core, method, end)
+        follow_all(core, method, end)
 
 
 @unit

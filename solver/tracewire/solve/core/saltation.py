@@ -15,6 +15,7 @@ from tracewire.solve.core.arrays import (
     sensitivity_of,
 )
 from tracewire.solve.core.codes import (
+    DELAY,
     FRACTION,
     GRAZES,
     GUARD,
@@ -43,6 +44,7 @@ from tracewire.solve.core.flow import (
     patterns,
     rates,
 )
+from tracewire.solve.core.history import find_lags, is_delayed, jump_moves, recall
 from tracewire.solve.core.linear import dot, factor, substitute
 from tracewire.solve.core.modes import levels
 from tracewire.solve.core.readings import guard_rates
@@ -178,6 +180,9 @@ def _instant(core: int, t: float, x: Vector, rate: Vector, i: int, out: Vector) 
     sensitivity, _progress = sensitivity_of(core), progress_of(core)
     s, chain = sensitivity.s, sensitivity.chain
     n, modes, w = len(x), len(flow.bound), sensitivity.nodes.shape[1]
+    if is_delayed(core):
+        find_lags(core, t, x)
+        recall(core, t)
     how, row, speed = crossings.how[i], np.zeros(w), 0.0
     if how == TIME:
         line = int(np.searchsorted(plan.timed, i))
@@ -213,6 +218,9 @@ def _instant(core: int, t: float, x: Vector, rate: Vector, i: int, out: Vector) 
         return
     for j in range(len(out)):
         out[j] = -total_of(row, s, chain, j) / speed
+        if plan.kind[i] == DELAY:  # what it reaches moves, too
+            number = max(crossings.to[i], flow.m[i])
+            out[j] += jump_moves(core, plan.table[i], number, j) / speed
         if not np.isfinite(out[j]):
             out[j] = 0.0
             flag(core, LOST, i, t)
@@ -227,6 +235,9 @@ def reset_sensitivities(core: int, t: float, before: Vector, due: Ints, modes: V
     n, w = len(before), sensitivity.nodes.shape[1]
     rows, old, now = np.empty((len(plan.writes), w)), sensitivity.s.copy(), flow.m.copy()
     flow.m[:] = modes
+    if is_delayed(core):
+        find_lags(core, t, before)
+        recall(core, t)
     derive_read(core, OF_RESETS, RESETS, t, before, rows)
     flow.m[:] = now
     for reset in np.flatnonzero(due):
@@ -273,6 +284,9 @@ def leave(core: int, t: float, before: Vector, x: Vector, old: Vector, waits: Ve
 def _settle(core: int, t: float, x: Vector) -> None:
     """Put S onto the surfaces that hold the run from now on."""
     flow, sensitivity = flow_of(core), sensitivity_of(core)
+    if is_delayed(core):
+        find_lags(core, t, x)
+        recall(core, t)
     if not np.all(np.isfinite(sensitivity.s)):
         flag(core, LOST, 0, t)
         n, q = sensitivity.s.shape

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from tracewire.solve.core.arrays import Vector, flow_of, plan_of
-from tracewire.solve.core.codes import FLOOR, SIGN
+from tracewire.solve.core.codes import DELAY, FLOOR, SIGN
 from tracewire.solve.core.flow import TIMED, evaluate
-from tracewire.solve.core.modes import inside, right_limit
+from tracewire.solve.core.modes import inside, jump_time, right_limit
 from tracewire.solve.core.units import helper, unit
 
 TOGETHER = 1e-13
@@ -95,6 +95,10 @@ def _change(core: int, i: int, slope: float) -> tuple[float, float]:
         return (np.inf if value == beyond else 0.0), beyond
     if plan.kind[i] == FLOOR:
         return (value + 1.0, value + 1.0) if slope > 0 else (value, value - 1.0)
+    if plan.kind[i] == DELAY:
+        on = 1.0 if slope > 0 else -1.0
+        level = jump_time(core, plan.table[i], value + max(on, 0.0))
+        return (level if np.isfinite(level) else np.inf), value + on
     offset = int(flow.k[plan.table[i]])
     points, piece = int(flow.k[offset]), int(value)
     if slope > 0:

@@ -19,7 +19,9 @@ import numpy as np
 from tracewire.solve.core.arrays import (
     Matrix,
     Vector,
+    copy,
     flow_of,
+    history_of,
     plan_of,
     progress_of,
     sensitivity_of,
@@ -35,6 +37,7 @@ from tracewire.solve.core.collocation import (
     collocate,
 )
 from tracewire.solve.core.flow import OUTPUTS, RESTING, SLIDING, held, patterns
+from tracewire.solve.core.history import find_lags, is_delayed, recall
 from tracewire.solve.core.units import helper, unit
 from tracewire.solve.core.variation import OF_OUTPUTS, derive, derive_blended, held_parts
 
@@ -106,6 +109,9 @@ def _accept(core: int) -> None:
             peak[i, j] = max(peak[i, j], abs(s[i, j]))
         for k in range(nodes.shape[1]):
             nodes[i, k] = nodes[3 * n + i, k]
+    if is_delayed(core):
+        node_lags = history_of(core).node_lags
+        copy(node_lags[3], node_lags[0])
     sensitivity.now[KNOWN] = 1.0
 
 
@@ -115,6 +121,9 @@ def sample(core: int, row: int, t: float, x: Vector) -> None:
     flow, plan = flow_of(core), plan_of(core)
     sensitivity = sensitivity_of(core)
     s, chain = sensitivity.s, sensitivity.chain
+    if is_delayed(core):
+        find_lags(core, t, x)
+        recall(core, t)
     (_n, q), w, count = s.shape, sensitivity.nodes.shape[1], len(plan.direct)
     rows = np.empty((count, w))
     if np.any(plan.direct < 0):

@@ -8,6 +8,7 @@ from tracewire.solve.core.arrays import Vector, flow_of, plan_of, progress_of, t
 from tracewire.solve.core.codes import (
     CALM,
     CURRENT,
+    DELAY,
     METHOD,
     RTOL,
     SEGMENT,
@@ -24,12 +25,13 @@ MANY_CALM = 6
 
 @helper
 def _key(core: int, out: Vector) -> None:
-    """What identifies the mode combination. The points of tables in t are passed over: between
-    any two of them the field is as stiff, and a measured input has hundreds."""
+    """What identifies the mode combination. Points of tables in t and jumps of delayed signals are
+    passed over: between any two of them the field is as stiff, and there may be hundreds."""
     flow, plan = flow_of(core), plan_of(core)
     modes = len(plan.kind)
     for i in range(len(flow.m)):
         passed = i < modes and plan.kind[i] == SEGMENT and plan.is_timed[i] != 0
+        passed = passed or (i < modes and plan.kind[i] == DELAY)
         out[i] = 0.0 if passed else flow.m[i]
     for i in range(modes):
         out[len(flow.m) + i] = flow.bound[i]

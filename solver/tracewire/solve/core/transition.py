@@ -21,6 +21,7 @@ from tracewire.solve.core.codes import (
     CHATTER_EVENTS,
     CROSSED,
     CROSSING,
+    DELAY,
     DOWN,
     ENDLESS,
     FINISHED,
@@ -47,6 +48,7 @@ from tracewire.solve.core.flow import (
     SLIDING,
     bind,
 )
+from tracewire.solve.core.history import is_delayed, mark_jumps
 from tracewire.solve.core.modes import JUMP, levels, margin, mode_value, rate_levels
 from tracewire.solve.core.readings import guard_rates, guard_values
 from tracewire.solve.core.record import log
@@ -128,6 +130,8 @@ def happen(core: int, t: float, x: Vector) -> int:
                 return status
     status = _carry_on(core, t, x, fired, marks)
     crossings.known[0] = 0
+    if is_delayed(core):
+        mark_jumps(core, t, before, x, old, bound)
     leave(core, t, before, x, old, waits)
     return status
 
@@ -368,12 +372,12 @@ def _write_log(
         how, up = crossings.how[i], UP if crossings.up[i] else DOWN
         entered = flow.bound[i] == SLIDING and bound[i] == FREE
         gone = flow.bound[i] == FREE and bound[i] != FREE
-        silent = plan.kind[i] == SEGMENT or plan.kind[i] == MEMORY
+        silent = plan.kind[i] in (SEGMENT, MEMORY, DELAY)
         if how >= 0 and fired[i] < 0 and not (silent or gone or entered):
             log(core, t, SCHEDULED if how == TIME else CROSSING, i, up, before, after)
     for i in range(len(plan.kind)):
         gone = flow.bound[i] == FREE and bound[i] != FREE
-        silent = plan.kind[i] == SEGMENT or plan.kind[i] == MEMORY
+        silent = plan.kind[i] in (SEGMENT, MEMORY, DELAY)
         up = UP if flow.m[i] > (0.5 if gone else old[i]) else DOWN
         if flow.bound[i] == SLIDING and bound[i] == FREE:
             log(core, t, STICK, i, 0, before, after)

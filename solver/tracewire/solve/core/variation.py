@@ -25,8 +25,8 @@ from tracewire.solve.core.linear import dot, factor, substitute
 from tracewire.solve.core.memory import invoke
 from tracewire.solve.core.units import helper, unit
 
-DERIVATIVES = ("rhs", "guards", "guard_rates", "outputs", "timed", "resets", "starts")
-OF_RHS, OF_GUARDS, OF_GUARD_RATES, OF_OUTPUTS, OF_TIMED, OF_RESETS, OF_STARTS = range(7)
+DERIVATIVES = ("rhs", "guards", "guard_rates", "outputs", "timed", "resets", "starts", "delayed")
+OF_RHS, OF_GUARDS, OF_GUARD_RATES, OF_OUTPUTS, OF_TIMED, OF_RESETS, OF_STARTS, OF_DELAYED = range(8)
 ASIDE = 1e-5  # of the size of the states: how far the second derivatives of a guard look
 
 

@@ -14,6 +14,7 @@ from tracewire.residual import (
     refuse_readers_of_free,
     with_measured_signals,
 )
+from tracewire.solve import refuse_delays
 from tracewire.trace.candidates.places import find_places, untried
 from tracewire.trace.check.option_checks import check_options
 from tracewire.trace.check.refusals import check_series, remarks
@@ -39,6 +40,7 @@ def begun(
         subject = subject.model
     model = with_measured_signals(subject, measured)
     series = tuple(load_measured(model) if measured is None else measured)
+    refuse_delays(model, "each window of a trace")
     check_series(model, series, options.check)
     refuse_readers_of_free(model)
     check_options(options, model)

@@ -1,0 +1,94 @@
+"""The memory of what delayed signals were: made before a run, and made larger while it goes on."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import Model
+from tracewire.errors import OptionError, Place, Problem
+from tracewire.solve.core.arrays import FIRST, Arrays, History, Sensitivity
+from tracewire.solve.core.history import DEGREE, EACH, HEAD, ROOM
+
+Ints = NDArray[np.int64]
+FIRST_PIECES = 3 * ROOM
+FIRST_MOVES = 512
+FIRST_POINTS = 512
+GROWING = ("points", "ranks", "shifts", "pieces", "moves")
+
+
+def new_history(model: Model, sensitivity: Sensitivity) -> History:
+    """The arrays of the delays of a model, for a run with these sensitivities."""
+    delays, q = model.lowered.delays, len(sensitivity.moved)
+    count, w = len(delays), sensitivity.nodes.shape[1]
+    some = int(bool(count))
+    mode, order, seen = _kept(model)
+    return History(
+        mode=mode,
+        order=order,
+        seen=seen,
+        lag=np.zeros(2 * count),
+        size=np.zeros(count),
+        points=np.empty((count, FIRST_POINTS)),
+        ranks=np.empty((count, FIRST_POINTS), dtype=np.int64),
+        shifts=np.empty((count, FIRST_POINTS * q)),
+        counts=np.zeros((count, 2), dtype=np.int64),
+        along=np.zeros(2, dtype=np.int64),
+        pieces=np.empty((some * FIRST_PIECES, HEAD + EACH * count)),
+        moves=np.empty((some * FIRST_MOVES, HEAD + count + 5 * count * q)),
+        first=np.array([len(model.parameters)], dtype=np.int64),
+        at=np.zeros((DEGREE + 1, max(count, count * q))),
+        rows=np.zeros((count, w)),
+        node_lags=np.zeros((4, count)),
+    )
+
+
+def refuse_delays(model: Model, what: str, instead: str = "") -> None:
+    """Raises OptionError where a model has delays, for `what` begins runs at states and no more."""
+    problems = []
+    for delay in model.lowered.delays:
+        name = model.modes[delay.mode].signal
+        block = model.flat.blocks.get(name)
+        said = f"{what} begins at states, and the delay needs what '{delay.text}' was before"
+        place = replace(block.place if block else Place(), block=name)
+        hint = f"Take {instead}a block of type pade_delay in its place, whose states are its past."
+        problems.append(Problem(said, place, (), hint))
+    if problems:
+        raise OptionError(problems)
+
+
+def _kept(model: Model) -> tuple[Ints, Ints, Ints]:
+    """The modes of the delays, how far jumps get, and which of them guards read; made once."""
+    found = model.kept.get("delays")
+    if found is None:
+        delays = model.lowered.delays
+        count, leaves = len(delays), len(model.modes) + len(model.states)
+        order = model.jump_orders() if count else []
+        found = model.kept["delays"] = (
+            np.array([delay.mode for delay in delays], dtype=np.int64),
+            np.array(order, dtype=np.int64).reshape(leaves if count else 0, count),
+            np.array([int(j in model.watched_delays) for j in range(count)], dtype=np.int64),
+        )
+    return cast(tuple[Ints, Ints, Ints], found)
+
+
+def grow(arrays: Arrays, table: Ints) -> None:
+    """Let a run that has no room left go on with twice as much.
+
+    The arrays stay the same objects, whoever holds them; `table` is told where they are now.
+    """
+    history = arrays.history
+    for name in GROWING:
+        array = getattr(history, name)
+        if not array.size:
+            continue
+        old, (rows, columns) = array.copy(), array.shape
+        by_rows = name in ("pieces", "moves")
+        array.resize((2 * rows, columns) if by_rows else (rows, 2 * columns), refcheck=False)
+        array[:rows, :columns] = old
+        place = 3 * (FIRST[History] + History._fields.index(name))
+        data = array.__array_interface__["data"][0]
+        table[place : place + 3] = data, *array.shape
