@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from solve.delays import BALL, LINEAR, RELAY, VARIABLE
-from solve.models import made
+from solve.models import LIMITS, made
 from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.errors import DiagramError, OptionError, SimulationError
@@ -22,6 +22,7 @@ from tracewire.solve import (
     Passage,
     Span,
     execute,
+    history,
     simulate,
     simulate_many,
     simulate_spans,
@@ -386,3 +387,30 @@ def test_what_needs_states_alone_is_refused_in_words() -> None:
     spans = [Span(0.0, 1.0, np.array([1.0]), {}), Span(1.0, 2.0, np.array([2.0]), {}, True)]
     with pytest.raises(OptionError, match="a span that follows another begins at states"):
         simulate_spans(model, spans)
+
+
+def test_steps_that_follow_the_past_of_a_guard_do_not_become_nothing() -> None:
+    """Steps that end where old ones did met them again one rounding too early, for ever."""
+    text = """
+    span: [0, 8]
+    blocks:
+      x0: {type: integrator, of: r0, start: 0.47}
+      r0: {type: expression, formula: "-0.3*x0 - 0.17*tanh(l2) + 0.04*sin(x1) + 2.49*x1"}
+      x1: {type: integrator, of: r1, start: 0.72}
+      r1: {type: expression, formula: "-0.3*x1 - 0.3*max(l2, 0.2) + 0.57*x0 + 0.76*sign(l1)"}
+      l0: {type: delay, of: l2, time: 0.525, before: 0.3}
+      u1: {type: expression, formula: "0.5*x1 - 1.95*max(x1, 0.2)"}
+      l1: {type: delay, of: u1, time: 0.989, before: 0.3}
+      u2: {type: expression, formula: 0.5*l0 + 0.6*sin(l0)}
+      l2: {type: delay, of: u2, time: 0.104, before: 0.3}
+    """
+    run = simulate(made(text), rtol=1e-9, limits=LIMITS)
+    assert run.statistics.steps < 3000
+
+
+def test_a_past_that_takes_too_much_memory_ends_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(history, "MOST_NUMBERS", 200_000)
+    text = LINEAR.replace("[0, 10]", "[0, 3000]").replace("0.7", "2999")
+    text = text.replace("a*x + b*late", "cos(9*t) + 0*late")
+    with pytest.raises(SimulationError, match=r"the past of what is delayed takes more than 0 GB"):
+        simulate(made(text), rtol=1e-10)

@@ -1,4 +1,4 @@
-"""Delays: what a formula reads at once and what later, and how far a jump gets through them.
+"""Delays: how far a jump gets through them.
 
 `delayed(u, time, before)` is u(t - time), and before the start of the run what `before` is, a
 formula of t, at t - time. The mode of a delay is the number of the smooth stretch of u that is
@@ -12,34 +12,12 @@ signal (A. Bellen, M. Zennaro, Numerical Methods for Delay Differential Equation
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from tracewire.compile.lowered import Lowered
 from tracewire.compile.tape import Tape
-from tracewire.formula import Call, Expression, Name
 
 NO_WAY = 1_000
-
-
-def has_delay(formula: Expression) -> bool:
-    """Whether a part of a formula is delayed."""
-    if not isinstance(formula, Call):
-        return False
-    return formula.function == "delayed" or any(map(has_delay, formula.arguments))
-
-
-def read_at_once(formula: Expression) -> tuple[str, ...]:
-    """The names that a formula reads without a delay, each once."""
-    return tuple(dict.fromkeys(_read_at_once(formula)))
-
-
-def _read_at_once(formula: Expression) -> Iterator[str]:
-    if isinstance(formula, Name):
-        yield formula.name
-    elif isinstance(formula, Call):
-        first = 1 if formula.function == "delayed" else 0
-        for argument in formula.arguments[first:]:
-            yield from _read_at_once(argument)
 
 
 def jump_orders(

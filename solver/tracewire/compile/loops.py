@@ -9,11 +9,10 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from typing import TYPE_CHECKING
 
-from tracewire.compile.delays import read_at_once
 from tracewire.compile.flat import Loop
 from tracewire.diagram import cycles, shown_cycle
 from tracewire.errors import DiagramError, Place, Problem
-from tracewire.formula import Expression, evaluation_order
+from tracewire.formula import Expression, evaluation_order, read_at_once
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -34,7 +33,7 @@ def order_signals(
     DiagramError: too many signals depend on each other.
     """
     reads = {
-        name: [read for read in read_at_once(formula) if read in signals]
+        name: [read for read in read_at_once(formula, also_before=True) if read in signals]
         for name, formula in signals.items()
     }
     order = evaluation_order(reads)

@@ -20,11 +20,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from tracewire.compile.delays import has_delay
 from tracewire.compile.flat import FlatEvent, FlatMemory, FlatParameter, FlatState
 from tracewire.diagram import Condition
 from tracewire.errors import Place
-from tracewire.formula import Call, Expression, Name, Number, names_of, rename
+from tracewire.formula import Call, Expression, Name, Number, has_delay, names_of, rename
 
 APART = (
     "Blocks that give this number have one clock: write one parameter of the diagram in all of"

@@ -12,7 +12,16 @@ from typing import TYPE_CHECKING
 
 from tracewire.formula.dimension import dimension_of, dimension_text
 from tracewire.formula.evaluate import evaluate
-from tracewire.formula.expression import Call, Expression, Name, Number, names_of, rename
+from tracewire.formula.expression import (
+    Call,
+    Expression,
+    Name,
+    Number,
+    has_delay,
+    names_of,
+    read_at_once,
+    rename,
+)
 from tracewire.formula.functions import CONSTANTS, FUNCTIONS, OPERATIONS
 from tracewire.formula.order import evaluation_order
 from tracewire.formula.parse import is_name, name_hint, parse, parse_condition
@@ -39,6 +48,7 @@ __all__ = [
     "evaluate",
     "evaluate_along",
     "evaluation_order",
+    "has_delay",
     "is_name",
     "name_hint",
     "names_of",
@@ -46,6 +56,7 @@ __all__ = [
     "parse",
     "parse_condition",
     "quantity_hint",
+    "read_at_once",
     "read_unit",
     "rename",
     "same_quantity",

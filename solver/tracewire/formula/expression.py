@@ -49,6 +49,31 @@ def names_of(expression: Expression) -> tuple[str, ...]:
     return tuple(found)
 
 
+def has_delay(expression: Expression) -> bool:
+    """Whether a part of the formula is read with a delay."""
+    if not isinstance(expression, Call):
+        return False
+    return expression.function == "delayed" or any(map(has_delay, expression.arguments))
+
+
+def read_at_once(expression: Expression, also_before: bool = False) -> tuple[str, ...]:
+    """The names that the formula reads without a delay, each once; also_before: and those of what
+    delayed signals were before the start."""
+    found: dict[str, None] = {}
+
+    def visit(node: Expression) -> None:
+        if isinstance(node, Name):
+            found.setdefault(node.name)
+        elif isinstance(node, Call):
+            later = {0} if also_before else {0, 2}
+            for number, argument in enumerate(node.arguments):
+                if node.function != "delayed" or number not in later:
+                    visit(argument)
+
+    visit(expression)
+    return tuple(found)
+
+
 def rename(expression: Expression, change: Callable[[str], Expression]) -> Expression:
     """The formula with every name replaced by what `change` makes of it."""
     if isinstance(expression, Name):

@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 
 from tracewire.errors import BlockError, Place
-from tracewire.formula import Call, Expression, Name, Number, names_of, parse, parse_condition
+from tracewire.formula import Call, Expression, Name, Number, parse, parse_condition, read_at_once
 from tracewire.library.check import check_block
 from tracewire.library.parts import ByMode, Parts
 
@@ -91,7 +91,7 @@ class Block(Parts):
     def feedthrough(self, output: str) -> frozenset[str]:
         """The inputs on which an output depends at the same instant."""
         inputs = {port.name for port in self.inputs}
-        return frozenset(inputs.intersection(names_of(self.formulas[output])))
+        return frozenset(inputs.intersection(read_at_once(self.formulas[output])))
 
 
 def _caller() -> Place:

@@ -9,14 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
-from tracewire.errors import OptionError, Place, Problem
+from tracewire.errors import OptionError, Place, Problem, SimulationError
 from tracewire.solve.core.arrays import FIRST, Arrays, History, Sensitivity
+from tracewire.solve.core.codes import T
 from tracewire.solve.core.history import DEGREE, EACH, HEAD, ROOM
 
 Ints = NDArray[np.int64]
 FIRST_PIECES = 3 * ROOM
 FIRST_MOVES = 512
 FIRST_POINTS = 512
+MOST_NUMBERS = 250_000_000  # 2 GB
 GROWING = ("points", "ranks", "shifts", "pieces", "moves")
 
 
@@ -75,12 +77,23 @@ def _kept(model: Model) -> tuple[Ints, Ints, Ints]:
     return cast(tuple[Ints, Ints, Ints], found)
 
 
+def has_grown(arrays: Arrays) -> bool:
+    """Whether a run has needed more memory than most."""
+    return len(arrays.history.pieces) > FIRST_PIECES
+
+
 def grow(arrays: Arrays, table: Ints) -> None:
     """Let a run that has no room left go on with twice as much.
 
-    The arrays stay the same objects, whoever holds them; `table` is told where they are now.
+    The arrays stay the same objects, whoever holds them; `table` is told where they are now. Raises
+    SimulationError where that would be too much.
     """
     history = arrays.history
+    if 2 * history.pieces.size > MOST_NUMBERS:
+        what = f"the past of what is delayed takes more than {8e-9 * MOST_NUMBERS:.0f} GB"
+        t = arrays.progress.now[T]
+        hint = "Loosen rtol, or shorten the longest delay."
+        raise SimulationError([Problem(f"{what} at t = {t:.9g} s", hint=hint)])
     for name in GROWING:
         array = getattr(history, name)
         if not array.size:

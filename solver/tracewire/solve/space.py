@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.solve.core.arrays import Arrays, table_of
-from tracewire.solve.history import GROWING
+from tracewire.solve.history import GROWING, has_grown
 from tracewire.solve.sensitivities import Moving, new_sensitivity
 from tracewire.solve.setup import (
     Tolerance,
@@ -112,7 +112,7 @@ def give_back(model: Model, space: Space) -> None:
     progress = space.arrays.progress
     sensitivity = space.arrays.sensitivity
     size = progress.samples.size + sensitivity.samples.size
-    if size + space.key[1] > MOST_NUMBERS:
+    if size + space.key[1] > MOST_NUMBERS or has_grown(space.arrays):
         return
     if space.key not in kept and len(kept) >= MOST:
         kept.clear()

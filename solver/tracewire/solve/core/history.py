@@ -26,7 +26,7 @@ from tracewire.solve.core.arrays import (
     sensitivity_of,
     trial_of,
 )
-from tracewire.solve.core.codes import DELAY, DROPPED, MOVES, NODE, POINTS, RTOL, T
+from tracewire.solve.core.codes import DELAY, DROPPED, LENGTH, MOVES, NODE, POINTS, RTOL, T
 from tracewire.solve.core.flow import (
     DELAYED,
     LAGS,
@@ -77,6 +77,7 @@ FINEST = 1e-13
 SMALLEST = 2.0**-11  # of a step: the shortest piece
 ROOM = 2100  # pieces that a step may need
 SPARE = 64  # points
+SHORTEST = 1e-12  # of the span: no piece asks for a shorter step
 PIECES = FIRST[History] + History._fields.index("pieces")
 
 
@@ -321,10 +322,12 @@ def longest_followed(core: int, t: float, x: Vector) -> float:
                 low = middle
             else:
                 high = middle - 1
-        last = min(low + 1, count)
-        end = history.pieces[last, 1] + 1.0 / history.pieces[last, 2]
-        if end > s:
-            longest = min(longest, end - s)
+        least = SHORTEST * progress_of(core).now[LENGTH]
+        for piece in range(low + 1, count + 1):
+            end = history.pieces[piece, 1] + 1.0 / history.pieces[piece, 2]
+            if end - s > least:
+                longest = min(longest, end - s)
+                break
     return longest
 
 
