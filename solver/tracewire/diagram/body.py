@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Literal
 
 from tracewire.diagram.diagram import Shown
+from tracewire.diagram.grammar import OF_A_BLOCK
 from tracewire.diagram.problems import Problems, clip
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.errors import FormulaError, Place
 from tracewire.formula import Unit, is_name, name_hint, read_unit
 
 Sees = Literal["parameter", "signal", "either"]
-OF_A_BLOCK = ("type", "unit", "label", "place", "guess")
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from typing import get_args
 
 from tracewire.diagram.body import Body
 from tracewire.diagram.diagram import Channel, Diagram, Hold, Value
+from tracewire.diagram.grammar import FREE, MEASURED_INPUT, SIGNAL
 from tracewire.diagram.names import find_recorded, recordable
 from tracewire.diagram.problems import clip
 from tracewire.diagram.quantities import SECOND, read_above_zero, read_unit_like
@@ -16,8 +17,6 @@ from tracewire.diagram.values import read_bounds, read_value
 from tracewire.formula import Number, Unit
 from tracewire.library import SENSOR_TERMS
 
-OF_A_SIGNAL = ("sigma", "weight", "modulo", *SENSOR_TERMS)
-OF_AN_INPUT = ("sigma", "hold")
 HOLDS: dict[str, Hold] = {word: word for word in get_args(Hold)}
 NO_UNIT = Unit("", 1.0)
 
@@ -69,11 +68,11 @@ def _channel(
     entries = body.entries(node, what, "{column: angle, unit: deg}")
     if entries is None:
         return None
-    more = OF_A_SIGNAL if kind == "signal" else OF_AN_INPUT
-    body.check_keys(entries, ("column", "unit", *more), f"key of a measured {kind}")
+    keys = SIGNAL if kind == "signal" else MEASURED_INPUT
+    body.check_keys(entries, keys, f"key of a measured {kind}")
     column_node = body.required(entries, "column", what)
     column = None if column_node is None else body.text(column_node, "'column'")
-    values = {name: node for name, node in entries.values.items() if name in more}
+    values = {name: node for name, node in entries.values.items() if name in keys}
     unit, declared = NO_UNIT, None
     if "unit" in entries.values:
         unit = body.unit(entries.values["unit"])
@@ -153,7 +152,7 @@ def _of_sensor(name: str, node: Node, body: Body, unit: Unit) -> Value | None:
 
 
 def _free(name: str, node: Entries, body: Body, unit: Unit) -> Value | None:
-    body.check_keys(node, ("value", "unit", "fit"), "key of a value")
+    body.check_keys(node, FREE, "key of a value")
     own = body.unit(node.values["unit"]) if "unit" in node.values else unit
     bounds = read_bounds(node.values["fit"], body)
     if bounds is None:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from tracewire.data import STEPS, Option
 from tracewire.diagram.body import Body
 from tracewire.diagram.diagram import Channel, Cleaning, Diagram
+from tracewire.diagram.grammar import STEP
 from tracewire.diagram.names import find_recorded, recordable
 from tracewire.diagram.problems import clip
 from tracewire.diagram.quantities import read_above_zero, read_count, read_time
@@ -71,8 +72,7 @@ class _Reader:
         first = next(iter(known))
         if isinstance(given, Entries):
             values = given.values
-            extra = ("sigma",) if name == "differentiate" else ()
-            body.check_keys(given, (*known, *extra), f"option of '{name}'")
+            body.check_keys(given, STEP[name], f"option of '{name}'")
             for needed, option in known.items():
                 if option.required:
                     body.required(given, needed, f"'{name}'")

@@ -10,6 +10,7 @@ from tracewire.diagram.channels import read_measured_inputs, read_signals
 from tracewire.diagram.cleaning import read_clean
 from tracewire.diagram.diagram import Cleaning, Clock, Diagram, Format, Series, Use, Value
 from tracewire.diagram.files import problem_of
+from tracewire.diagram.grammar import CLOCK, FORMAT, SERIES
 from tracewire.diagram.names import find_state, states
 from tracewire.diagram.problems import clip
 from tracewire.diagram.quantities import read_above_zero, read_time, read_unit_like
@@ -18,10 +19,6 @@ from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.diagram.values import read_value
 
 EXAMPLE = "{file: run.csv, time: t, signals: {theta: angle}}"
-KEYS = (
-    *("file", "format", "where", "use", "time", "from", "to", "burn_in", "weight"),
-    *("signals", "inputs", "clean", "start", "preset", "parameters"),
-)
 USES: dict[str, Use] = {word: word for word in get_args(Use)}
 
 
@@ -47,7 +44,7 @@ class _Series:
 
     def read(self, key: Scalar) -> Series | None:
         body, given = self.body, self.entries.values
-        body.check_keys(self.entries, KEYS, "key of a series")
+        body.check_keys(self.entries, SERIES, "key of a series")
         file = self.file()
         clock_node = body.required(self.entries, "time", self.what)
         clock = None if clock_node is None else self.clock(clock_node)
@@ -115,7 +112,7 @@ class _Series:
             column = body.text(node, "'time'")
             return None if column is None else Clock(column)
         given = node.values
-        body.check_keys(node, ("column", "unit", "zero", "every"), "key of a time")
+        body.check_keys(node, CLOCK, "key of a time")
         if "every" in given:
             for key in ("column", "unit"):
                 if key in given:
@@ -232,7 +229,7 @@ class _Series:
         entries = body.entries(node, f"'format' of {self.what}", "{delimiter: ';', decimal: ','}")
         if entries is None:
             return Format()
-        body.check_keys(entries, ("delimiter", "decimal", "comment"), "key of a format")
+        body.check_keys(entries, FORMAT, "key of a format")
         texts = {
             name: given.text if isinstance(given, Scalar) else body.text(given, f"'{name}'")
             for name, _, given in entries

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tracewire.diagram.body import Body
+from tracewire.diagram.grammar import TIME
 from tracewire.diagram.strict import Entries, Node
 from tracewire.formula import Unit, quantity_hint, same_quantity
 
@@ -13,7 +14,7 @@ def read_time(node: Node, body: Body, what: str) -> float | None:
     """A time in s: a number, or {value: 10, unit: ms}."""
     if not isinstance(node, Entries):
         return body.number(node, what)
-    body.check_keys(node, ("value", "unit"), "key of a time")
+    body.check_keys(node, TIME, "key of a time")
     given = body.required(node, "value", what)
     value = None if given is None else body.number(given, what)
     unit = SECOND if "unit" not in node.values else read_unit_like(node.values["unit"], body, "s")

@@ -10,6 +10,7 @@ from tracewire.diagram.body import Body
 from tracewire.diagram.check import check_names
 from tracewire.diagram.diagram import Diagram
 from tracewire.diagram.files import load
+from tracewire.diagram.grammar import INCLUDED, INSIDE, TOP
 from tracewire.diagram.loops import check_parameters
 from tracewire.diagram.measured import read_measured
 from tracewire.diagram.packages import Packages, who_has
@@ -39,14 +40,6 @@ from tracewire.library import Block, Library, find_instead, find_synonym, load_l
 
 MOST_LEVELS = 30
 MOST_BLOCKS = 100_000
-INSIDE = (
-    *("title", "inputs", "outputs", "parameters", "blocks", "subsystems", "events", "effect"),
-)
-TOP = (
-    *("title", "span", "every", "record", "inputs", "parameters", "blocks", "subsystems"),
-    *("include", "events", "require", "presets", "measured", "max_step", "scene", "libraries"),
-)
-INCLUDED = ("title", "libraries", "include", "subsystems")
 
 
 def read(path: str | Path, libraries: Iterable[str | Path] = ()) -> Diagram:

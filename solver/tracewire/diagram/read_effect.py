@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Literal, TypeVar, get_args
+from typing import TypeVar, get_args
 
 from tracewire.diagram.body import Body
 from tracewire.diagram.diagram import Diagram
+from tracewire.diagram.grammar import EFFECT, SHAPE, SIGNS
 from tracewire.diagram.problems import clip
 from tracewire.diagram.strict import Items, Node
 from tracewire.library import (
@@ -23,10 +24,8 @@ from tracewire.library import (
 )
 
 Word = TypeVar("Word")
-KEYS = ("coefficient", "inputs", "sign", "shapes", "place", "at")
 EXAMPLE = "{coefficient: k, inputs: {q: q}, sign: either, shapes: {s: {at: [0.1, 0.5], of: Q}}}"
-SHAPE = "{at: [0.1, 0.3], of: Q}"
-SIGNS: dict[str, Literal[0, 1]] = {"positive": 1, "either": 0}
+EXAMPLE_SHAPE = "{at: [0.1, 0.3], of: Q}"
 PLACES: dict[str, Where] = {word: word for word in get_args(Where)}
 NAMED_SYMBOLS: dict[str, Symbol] = {word: word for word in SYMBOLS}
 NAMED_SCALES: dict[str, Scale] = {word: word for word in SCALES if word}
@@ -37,7 +36,7 @@ def read_effect(node: Node, body: Body, inside: Diagram) -> Effect | None:
     entries = body.entries(node, "'effect'", EXAMPLE)
     if entries is None:
         return None
-    body.check_keys(entries, KEYS, "key of an effect")
+    body.check_keys(entries, EFFECT, "key of an effect")
     before = len(body.problems.found)
     given = entries.values
     coefficient = body.required(entries, "coefficient", "an effect")
@@ -47,7 +46,7 @@ def read_effect(node: Node, body: Body, inside: Diagram) -> Effect | None:
     inputs = _read_wiring(given["inputs"], body) if "inputs" in given else {}
     shapes: dict[str, Shape] = {}
     if "shapes" in given:
-        example = "{s: " + SHAPE + "}"
+        example = "{s: " + EXAMPLE_SHAPE + "}"
         for key, _, value in body.entries(given["shapes"], "'shapes'", example) or ():
             shape = _read_shape(value, key, _least(inside, key), body)
             if shape is not None:
@@ -112,10 +111,10 @@ def _read_shape(node: Node, name: str, least: float, body: Body) -> Shape | None
     what = f"the shape '{clip(name)}'"
     if isinstance(node, Items):
         return _made(node, "", least, what, body)
-    entries = body.entries(node, what, SHAPE)
+    entries = body.entries(node, what, EXAMPLE_SHAPE)
     if entries is None:
         return None
-    body.check_keys(entries, ("at", "of", "low"), "key of a shape")
+    body.check_keys(entries, SHAPE, "key of a shape")
     at = body.required(entries, "at", what)
     scale = _word(entries.values, "of", "scale of a shape", NAMED_SCALES, body)
     low = entries.values.get("low")

@@ -6,6 +6,7 @@ from typing import get_args
 
 from tracewire.diagram.body import Body
 from tracewire.diagram.diagram import Crosses, Event, InputPort, Shown, Value, Wire
+from tracewire.diagram.grammar import EVENT, INPUT
 from tracewire.diagram.problems import clip
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.diagram.values import NO_UNIT, read_formula, read_value
@@ -31,7 +32,7 @@ def read_inputs(node: Node, body: Body) -> dict[str, InputPort]:
         properties = body.entries(value, f"input '{clip(text)}'", "{unit: N m, default: 0}")
         unit, default, shown = NO_UNIT, None, Shown()
         if properties is not None:
-            body.check_keys(properties, ("unit", "label", "default"), "key of an input")
+            body.check_keys(properties, INPUT, "key of an input")
             _, shown = body.shown(properties)
             if "unit" in properties.values:
                 unit = body.unit(properties.values["unit"])
@@ -89,7 +90,7 @@ def _read_event(node: Node, body: Body) -> Event | None:
     entries = body.entries(node, "an event", "{when: theta - 1, crosses: up, set: {omega: 0}}")
     if entries is None:
         return None
-    body.check_keys(entries, ("when", "crosses", "every", "offset", "set"), "key of an event")
+    body.check_keys(entries, EVENT, "key of an event")
     crosses: Crosses = "both"
     if "crosses" in entries.values:
         given = entries.values["crosses"]

@@ -6,8 +6,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from tracewire.diagram.arrays import read_array, read_formulas
-from tracewire.diagram.body import OF_A_BLOCK, Body, Reference
+from tracewire.diagram.body import Body, Reference
 from tracewire.diagram.diagram import Array, BlockUse, Diagram, Points, Value, Wire
+from tracewire.diagram.grammar import OF_A_BLOCK
 from tracewire.diagram.problems import clip
 from tracewire.diagram.strict import Entries, Node, Scalar
 from tracewire.diagram.values import read_points, read_value, reads_parameters

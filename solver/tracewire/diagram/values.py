@@ -7,6 +7,7 @@ import math
 from tracewire.data import read_columns
 from tracewire.diagram.body import Body, Reference, Sees
 from tracewire.diagram.diagram import Points, Value
+from tracewire.diagram.grammar import FITTED, POINTS_FILE, VALUE
 from tracewire.diagram.problems import clip
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.errors import DataError, FormulaError, Place
@@ -86,8 +87,7 @@ def read_value(
         hint = "Write it like 2.5, 2*k, or {value: 2.5, unit: N m, fit: [0, 5]}."
         body.problems.add(what, body.place(node, block), (), hint)
         return None
-    keys = ("value", "unit", "fit") if fit else ("value", "unit")
-    body.check_keys(node, keys, "key of a value", block)
+    body.check_keys(node, FITTED if fit else VALUE, "key of a value", block)
     given = body.required(node, "value", "a value in a mapping", block)
     if "unit" in node.values:
         unit = body.unit(node.values["unit"], block)
@@ -173,9 +173,8 @@ def read_points(node: Node, body: Body, block: str) -> Points | None:
 
 
 def _points_of_file(node: Entries, body: Body, block: str) -> Points | None:
-    keys = ("file", "x", "y")
-    body.check_keys(node, keys, "key of a table", block)
-    parts = [body.required(node, key, "a table from a file", block) for key in keys]
+    body.check_keys(node, POINTS_FILE, "key of a table", block)
+    parts = [body.required(node, key, "a table from a file", block) for key in POINTS_FILE]
     texts = [None if part is None else body.text(part, "it", block) for part in parts]
     if None in texts:
         return None
