@@ -41,7 +41,6 @@ DEEP = {
     "analyse -> solve": 3,
     "cli -> analyse": 2,
     "cli -> data": 2,
-    "cli -> diagram": 2,
     "cli -> paper": 7,
     "cli -> show": 11,
     "cli -> solve": 1,

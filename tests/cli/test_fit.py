@@ -199,7 +199,7 @@ def test_a_missing_record_is_told(call: Any, decay: Path) -> None:
     decay.with_name("run.csv").unlink()
     told = call("fit", decay)
     assert told.code == 2
-    assert f"{decay}:11:15: unknown file 'run.csv'" in told.err
+    assert f"{decay}:11:3: unknown file 'run.csv'" in told.err
 
 
 def test_a_diagram_without_measured_series_is_told(call: Any, decay: Path) -> None:

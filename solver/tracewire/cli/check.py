@@ -34,8 +34,9 @@ def check(
     """Check diagrams, their formulas and their measured files, and say what is in them.
 
     Everything that is wrong is told at once, with file, line and column. Of each measured series
-    it tells what is done to the data (-), and what is odd about them (!). In a folder all files
-    with `blocks:` are checked.
+    it tells what is done to the data (-), and what is odd about them (!). A measured file that is
+    not there is a remark: the diagram can be run without. In a folder all files with `blocks:` are
+    checked.
 
     \b
     Examples:
@@ -46,7 +47,7 @@ def check(
     problems: list[Problem] = []
     found: list[dict[str, Any]] = []
     code: type[TracewireError] = OptionError
-    files = _files(diagrams)
+    files = diagram_files(diagrams)
     for file in files:
         try:
             found.append(_contents(file, library, as_json))
@@ -66,6 +67,7 @@ def check(
 def _contents(file: str, library: Sequence[str] | None, quiet: bool) -> dict[str, Any]:
     """What is in a diagram, printed unless `quiet`. Raises TracewireError."""
     from tracewire.compile import remarks_of, unit_problems
+    from tracewire.diagram import absent_series
     from tracewire.show.summary import contents, contents_text, series_contents
     from tracewire.solve import parameter_values
 
@@ -75,13 +77,16 @@ def _contents(file: str, library: Sequence[str] | None, quiet: bool) -> dict[str
     for preset in ("", *model.flat.presets):  # they must be what the diagram requires
         parameter_values(model, {}, preset)
     measured: list[dict[str, object]] = []
-    found = {**contents(model), "remarks": remarks_of(model, parameter_values(model, {}))}
-    if model.diagram.measured:
+    absent = absent_series(model.diagram)
+    remarks = [*remarks_of(model, parameter_values(model, {})), *map(str, absent.values())]
+    found = {**contents(model), "remarks": remarks}
+    present = [name for name in model.diagram.measured if name not in absent]
+    if present:
         with working("reading the measured series"):
             from tracewire.residual import free_names, load_measured, refuse_readers_of_free
 
             refuse_readers_of_free(model)
-            series = load_measured(model, driving=True)
+            series = load_measured(model, driving=True, series=present)
             measured = [series_contents(one) for one in series]
             found["free"] = free_names(model, series)
     if not quiet:
@@ -93,13 +98,12 @@ def _from_stdin(library: Sequence[str] | None) -> Model:
     """The compiled model of the diagram that stdin has; its files are looked for from here."""
     with working("compiling stdin"):
         from tracewire.compile import compile
-        from tracewire.diagram import read_text
-        from tracewire.diagram.files import STDIN, load_stdin
+        from tracewire.diagram import STDIN, load_stdin, read_text
 
         return compile(read_text(load_stdin(), STDIN, library or ()))
 
 
-def _files(paths: Sequence[str]) -> list[str]:
+def diagram_files(paths: Sequence[str]) -> list[str]:
     """The files, and those of folders that have blocks. Raises OptionError."""
     found: list[str] = []
     for path in paths:

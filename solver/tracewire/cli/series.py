@@ -44,7 +44,7 @@ def read_series(model: Model, name: str) -> Conditions:
         raise OptionError([unknown("measured series", name, model.diagram.measured)])
     from tracewire.residual import load_measured
 
-    measured = next(found for found in load_measured(model, driving=True) if found.series == name)
+    measured = load_measured(model, driving=True, series=[name])[0]
     start = {state: value for state, value in measured.start.items() if value is not None}
     # a series with start values begins at its first sample, one without at the diagram's start
     span = (float(measured.t[0]), float(measured.t[-1])) if measured.start else None

@@ -39,6 +39,7 @@ from tracewire.diagram.edit_series import (
     with_series_of,
 )
 from tracewire.diagram.effects import EffectType, effects_of
+from tracewire.diagram.files import STDIN, absent_series, load_stdin
 from tracewire.diagram.files import load as load_text
 from tracewire.diagram.loops import cycles, shown_cycle
 from tracewire.diagram.names import (
@@ -58,6 +59,7 @@ from tracewire.diagram.rewire import add_to_drive, rewired
 from tracewire.diagram.write import write
 
 __all__ = [
+    "STDIN",
     "Array",
     "BlockUse",
     "Channel",
@@ -78,6 +80,7 @@ __all__ = [
     "Use",
     "Value",
     "Wire",
+    "absent_series",
     "add_addend",
     "add_own",
     "add_sensor",
@@ -90,6 +93,7 @@ __all__ = [
     "find_recorded",
     "find_signal",
     "find_state",
+    "load_stdin",
     "load_text",
     "mapping_text",
     "package_subsystems",

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
+from tracewire.diagram.diagram import Diagram
 from tracewire.errors import DiagramError, Place, Problem, unknown
 
 MOST_BYTES = 1_000_000
@@ -34,6 +36,26 @@ def problem_of(path: Path, place: Place) -> Problem | None:
     alike = [name for name in names if Path(name).suffix == path.suffix]
     problem = unknown("file", path.name, alike or names, place)
     return Problem(f"{problem.what} in '{path.parent}'", place, problem.exists, problem.hint)
+
+
+def is_absent(path: Path) -> bool:
+    """Whether there is nothing of this name, which a file could have."""
+    try:
+        possible = len(str(path)) <= MOST_LENGTH and "\0" not in str(path)
+        return possible and not path.exists()
+    except (OSError, ValueError):
+        return False
+
+
+def absent_series(diagram: Diagram) -> dict[str, Problem]:
+    """The measured series whose file is not there, each with what is to be said of it."""
+    found = {}
+    for name, series in diagram.measured.items():
+        problem = problem_of(series.file, series.place) if is_absent(series.file) else None
+        if problem is not None:
+            hint = problem.hint or "The path is relative to the diagram's file."
+            found[name] = replace(problem, what=f"series '{name}': {problem.what}", hint=hint)
+    return found
 
 
 def load(path: Path, place: Place = Place()) -> str:

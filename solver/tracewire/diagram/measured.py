@@ -9,7 +9,7 @@ from tracewire.diagram.body import Body
 from tracewire.diagram.channels import read_measured_inputs, read_signals
 from tracewire.diagram.cleaning import read_clean
 from tracewire.diagram.diagram import Cleaning, Clock, Diagram, Format, Series, Use, Value
-from tracewire.diagram.files import problem_of
+from tracewire.diagram.files import is_absent, problem_of
 from tracewire.diagram.grammar import CLOCK, FORMAT, SERIES
 from tracewire.diagram.names import find_state, states
 from tracewire.diagram.problems import clip
@@ -100,7 +100,7 @@ class _Series:
             return None
         path = self.body.folder / text
         problem = problem_of(path, self.body.place(node))
-        if problem is not None:
+        if problem is not None and not is_absent(path):  # without data a diagram can still be run
             hint = problem.hint or "The path is relative to the diagram's file."
             self.body.problems.add(problem.what, problem.place, problem.exists, hint)
         return path

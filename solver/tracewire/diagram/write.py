@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from tracewire.diagram.diagram import Diagram
+from tracewire.diagram.files import absent_series
 from tracewire.diagram.read import read_text
-from tracewire.errors import OptionError, Place
+from tracewire.errors import DiagramError, OptionError, Place
 from tracewire.files import write_file
 
 
@@ -23,7 +24,11 @@ def write(diagram: Diagram, path: str | Path, overwrite: bool = False) -> Path:
             hint = "Choose another name, or say that it may be overwritten."
             raise OptionError.one("there is a file of this name", Place(str(target)), hint=hint)
         if target.resolve().parent != diagram.file.resolve().parent:
-            read_text(diagram.text, target, library=diagram.library)
+            moved = read_text(diagram.text, target, library=diagram.library)
+            there = absent_series(diagram)
+            lost = [p for name, p in absent_series(moved).items() if name not in there]
+            if lost:
+                raise DiagramError(lost)
         write_file(target, diagram.text)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)

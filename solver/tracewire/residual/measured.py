@@ -150,8 +150,11 @@ def load_measured(
     *,
     driving: bool = False,
     parameters: Mapping[str, float] | None = None,
+    series: Iterable[str] = (),
 ) -> tuple[Measured, ...]:
-    """The measured series of a model's diagram, read from their files; all, or those of some uses.
+    """The measured series of a model's diagram, read from their files.
+
+    All are read, or those of some uses, or those whose names are in `series`.
 
     `parameters` are values in SI in place of those of the diagram, for starts and sensors that are
     formulas of them.
@@ -162,11 +165,13 @@ def load_measured(
     Raises DataError: no series, a file or column that is missing or cannot be used, a column of
     another quantity than its signal, a step that cannot be done, a window without samples.
     """
-    wanted = set(uses)
+    wanted, names = set(uses), set(series)
     chosen = [
-        series
-        for series in model.diagram.measured.values()
-        if (not wanted or wanted & {series.use, *series.windows}) and (series.channels or driving)
+        one
+        for name, one in model.diagram.measured.items()
+        if (not wanted or wanted & {one.use, *one.windows})
+        and (not names or name in names)
+        and (one.channels or driving)
     ]
     if not chosen:
         what = "the diagram names no measured series" + (f" for {sorted(wanted)}" if wanted else "")
@@ -174,9 +179,9 @@ def load_measured(
         raise DataError([Problem(what, Place(str(model.diagram.file)), (), hint)])
     problems: list[Problem] = []
     loaded: list[Measured] = []
-    for series in chosen:
+    for one in chosen:
         try:
-            loaded += _load(model, series, wanted, parameters or {})
+            loaded += _load(model, one, wanted, parameters or {})
         except TracewireError as error:
             problems += error.problems
     if problems:

@@ -47,7 +47,7 @@ def conditions_of(model: Model, series: str) -> SeriesConditions:
 
     if series not in model.diagram.measured:
         raise OptionError([unknown("measured series", series, model.diagram.measured)])
-    measured = next(one for one in load_measured(model, driving=True) if one.series == series)
+    measured = load_measured(model, driving=True, series=[series])[0]
     return SeriesConditions(measured, whole_segment(model, measured))
 
 

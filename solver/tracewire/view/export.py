@@ -31,7 +31,7 @@ for name, values in run.signals.items():
 run.save({output!r})
 '''
 SERIES = """\
-measured = next(one for one in tw.load_measured(model, driving=True) if one.series == {name!r})
+measured = tw.load_measured(model, driving=True, series=[{name!r}])[0]
 """
 CONDITIONS = """
     start={start!r},
