@@ -51,7 +51,10 @@ def test_version(call: Any) -> None:
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["chek"], "No such command 'chek'. Did you mean 'check'? See 'tracewire --help'."),
+        (
+            ["chek"],
+            "No such command 'chek'. Did you mean 'check', 'schema'? See 'tracewire --help'.",
+        ),
         (["run"], "Missing argument 'DIAGRAM'. See 'tracewire run --help'."),
         (["run", "a.yaml", "--rtol", "small"], "'--rtol'"),
         (["run", "a.yaml", "--span", "1"], "'--span' requires 2 arguments"),

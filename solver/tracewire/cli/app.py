@@ -22,7 +22,7 @@ USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
 
 VERBS = (
     *("check", "show", "draw", "view", "run", "animate", "fit", "trace", "report", "sweep"),
-    *("paper", "blocks", "units", "demo", "analyse", "data", "new"),
+    *("paper", "blocks", "units", "schema", "demo", "analyse", "data", "new"),
 )
 """In the order of the help. Each is a function, or a `typer.Typer` of several, in the file of its
 name; a verb imports what is slow to import inside its function."""
@@ -47,6 +47,7 @@ def tracewire_(
       tracewire analyse steady pendulum.yaml
       tracewire blocks dry_friction
       tracewire units "N m s/deg"
+      tracewire schema --modeline pendulum.yaml
     """
     if version:
         typer.echo(f"tracewire {_version()}")

@@ -42,6 +42,7 @@ from tracewire.diagram.effects import EffectType, effects_of
 from tracewire.diagram.files import STDIN, absent_series, load_stdin
 from tracewire.diagram.files import load as load_text
 from tracewire.diagram.loops import cycles, shown_cycle
+from tracewire.diagram.modeline import with_modeline
 from tracewire.diagram.names import (
     element_name,
     find_parameter,
@@ -56,6 +57,7 @@ from tracewire.diagram.names import (
 from tracewire.diagram.packages import package_subsystems, who_has
 from tracewire.diagram.read import read, read_readable, read_readable_text, read_text
 from tracewire.diagram.rewire import add_to_drive, rewired
+from tracewire.diagram.schema import schema_of
 from tracewire.diagram.write import write
 
 __all__ = [
@@ -106,6 +108,7 @@ __all__ = [
     "remove_addend",
     "replace_series",
     "rewired",
+    "schema_of",
     "sensor_numbers",
     "series_parts",
     "set_sensors",
@@ -116,6 +119,7 @@ __all__ = [
     "state_names",
     "states",
     "who_has",
+    "with_modeline",
     "with_series_of",
     "write",
     "written_units",

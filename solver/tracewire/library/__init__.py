@@ -3,12 +3,14 @@
 from tracewire.library.check_effect import Face, check_effect
 from tracewire.library.declare import Block
 from tracewire.library.describe import (
+    bounds_text,
     describe,
     describe_formulas,
     describe_json,
     describe_origin,
     describe_parts,
     palette,
+    wiring,
 )
 from tracewire.library.effect import SCALES, SYMBOLS, Effect, Scale, Shape, Symbol, Tone, Where
 from tracewire.library.load import Library, load_library
@@ -49,6 +51,7 @@ __all__ = [
     "Tone",
     "Transition",
     "Where",
+    "bounds_text",
     "check_effect",
     "describe",
     "describe_formulas",
@@ -66,4 +69,5 @@ __all__ = [
     "packages_with",
     "palette",
     "subsystem_files",
+    "wiring",
 ]

@@ -54,12 +54,12 @@ def describe_parts(block: Block) -> list[Description]:
         Description(
             "inputs",
             ("input", "unit", "wiring", "meaning"),
-            tuple((p.name, p.unit, _wiring(p), p.doc) for p in block.inputs),
+            tuple((p.name, p.unit, wiring(p), p.doc) for p in block.inputs),
         ),
         Description(
             "parameters",
             ("parameter", "unit", "values", "meaning"),
-            tuple((p.name, p.unit, _range(p), p.doc) for p in block.parameters),
+            tuple((p.name, p.unit, bounds_text(p), p.doc) for p in block.parameters),
         ),
         Description("conditions", ("condition", ""), tuple((text, "") for text in block.require)),
         Description(
@@ -160,13 +160,15 @@ def _at_once(block: Block, output: Output) -> str:
     return f"depends at once on {', '.join(names)}" if names else "no feedthrough"
 
 
-def _wiring(port: Input) -> str:
+def wiring(port: Input) -> str:
+    """What an input takes, in words."""
     text = "one wire or several, each with a sign" if port.many else "a wire"
     text += "" if port.sampled is None else f", sampled at each {port.sampled}"
     return text if port.default is None else f"{text}; not connected: {port.default}"
 
 
-def _range(parameter: Parameter) -> str:
+def bounds_text(parameter: Parameter) -> str:
+    """The default, the kind and the bounds of a parameter, in words."""
     default = parameter.default
     value = default if isinstance(default, str) else "" if default is None else f"{default:g}"
     parts = [f"default {value}" if value else "must be given"]
