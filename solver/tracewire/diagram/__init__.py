@@ -41,6 +41,7 @@ from tracewire.diagram.edit_series import (
 from tracewire.diagram.effects import EffectType, effects_of
 from tracewire.diagram.files import STDIN, absent_series, load_stdin
 from tracewire.diagram.files import load as load_text
+from tracewire.diagram.layout import laid_out
 from tracewire.diagram.loops import cycles, shown_cycle
 from tracewire.diagram.modeline import with_modeline
 from tracewire.diagram.names import (
@@ -95,6 +96,7 @@ __all__ = [
     "find_recorded",
     "find_signal",
     "find_state",
+    "laid_out",
     "load_stdin",
     "load_text",
     "mapping_text",
