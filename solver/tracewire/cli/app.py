@@ -22,7 +22,7 @@ USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
 
 VERBS = (
     *("check", "show", "draw", "view", "run", "animate", "fit", "trace", "report", "sweep"),
-    *("paper", "blocks", "units", "format", "schema", "demo", "analyse", "data", "new"),
+    *("paper", "blocks", "units", "format", "rename", "schema", "demo", "analyse", "data", "new"),
 )
 """In the order of the help. Each is a function, or a `typer.Typer` of several, in the file of its
 name; a verb imports what is slow to import inside its function."""

@@ -63,7 +63,8 @@ def format(
         except TracewireError as error:
             problems += error.problems
             code = type(error)
-    _tell(changed, len(files), check, as_json, printed="-" in files)
+    if not problems or changed:
+        _tell(changed, len(files), check, as_json, printed="-" in files)
     if problems:
         raise code(problems)
     if changed and check:

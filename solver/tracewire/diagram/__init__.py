@@ -57,6 +57,7 @@ from tracewire.diagram.names import (
 )
 from tracewire.diagram.packages import package_subsystems, who_has
 from tracewire.diagram.read import read, read_readable, read_readable_text, read_text
+from tracewire.diagram.rename import renamed
 from tracewire.diagram.rewire import add_to_drive, rewired
 from tracewire.diagram.schema import schema_of
 from tracewire.diagram.write import write
@@ -108,6 +109,7 @@ __all__ = [
     "read_readable_text",
     "read_text",
     "remove_addend",
+    "renamed",
     "replace_series",
     "rewired",
     "schema_of",

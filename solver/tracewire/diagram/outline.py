@@ -63,7 +63,7 @@ class Outline:
         if not found:
             included = self.top.subsystems.get(where)
             if included is not None:
-                raise _elsewhere(included)
+                raise elsewhere(included)
             raise OptionError([unknown("subsystem", where, (p for p in self.definitions if p))])
         inside, entries = self.definitions[found[0]]
         blocks = entries.values.get("blocks")
@@ -104,7 +104,7 @@ class Outline:
 
     def _entries(self, diagram: Diagram) -> Entries:
         if id(diagram) not in self.nodes:
-            raise _elsewhere(diagram)
+            raise elsewhere(diagram)
         return self.nodes[id(diagram)]
 
 
@@ -123,7 +123,8 @@ def _part(entries: Entries, section: str, name: str) -> Node:
     return node.values[name]
 
 
-def _elsewhere(diagram: Diagram) -> TracewireError:
+def elsewhere(diagram: Diagram) -> TracewireError:
+    """The error of an edit of a subsystem that stands in a file which is included."""
     what = f"the subsystem '{diagram.name}' is defined in another file"
     hint = "Edit that file, or move the subsystem into the diagram's own."
     return OptionError.one(what, diagram.place, hint=hint)

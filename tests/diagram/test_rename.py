@@ -1,0 +1,189 @@
+"""A part gets another name at every place that reads it, and nowhere else."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from diagram.whole import WHOLE
+from tracewire.compile import compile
+from tracewire.diagram import Diagram, read, read_text, renamed
+from tracewire.errors import OptionError
+from tracewire.shipped import shipped
+from tracewire.solve import simulate
+
+
+@pytest.fixture(scope="module")
+def whole() -> Diagram:
+    return read_text(WHOLE, Path("a.yaml"))
+
+
+def lines_of(before: str, after: str) -> list[str]:
+    """The lines that are new, without those that stay."""
+    pairs = zip(before.splitlines(), after.splitlines(), strict=True)
+    return [new.strip() for old, new in pairs if old != new]
+
+
+def test_a_signal(whole: Diagram) -> None:
+    text = renamed(whole, "theta", "angle").text
+    read_text(text, Path("a.yaml"))
+    expected = re.sub(r"(?<![\w.])theta\b", "angle", WHOLE)
+    expected = expected.replace(
+        "column: angle", "column: theta"
+    )  # the file's column keeps its name
+    assert text == expected
+
+
+def test_a_parameter_is_no_label_column_comment_or_key(whole: Diagram) -> None:
+    assert lines_of(WHOLE, renamed(whole, "k", "stiff").text) == [
+        "stiff: {value: 3.1e-3, unit: N m/rad, fit: [1e-3, 1e-2]}     # k of the spring",
+        "half: stiff/2",
+        "require: [J > 0, stiff*T > 0]",
+        "column: {type: gain, of: theta, k: -stiff}",
+        "hinge: {type: hinge, rate: omega, slip: 2*stiff}",
+        'force: {type: expression, formula: "drive + load - min(stiff*theta, 1) + hinge.torque"}',
+        "- {when: theta - stiff, crosses: up, set: {omega: -0.5*omega*stiff}}",
+        "printed: {stiff: 3.0e-3, hinge.slip: stiff/10}",
+        "parameters: {stiff: {value: 2, fit: [0, 3]}, hinge.width: 2*T}",
+        "- disc: {at: [sin(theta), -cos(theta)], radius: stiff}",
+    ]
+
+
+def test_a_block_that_is_a_subsystem_keeps_its_type(whole: Diagram) -> None:
+    assert lines_of(WHOLE, renamed(whole, "hinge", "bearing").text) == [
+        'record: [theta, bearing.slide, "q[1]", bearing.torque]',
+        "bearing: {type: hinge, rate: omega, slip: 2*k}",
+        'force: {type: expression, formula: "drive + load - min(k*theta, 1) + bearing.torque"}',
+        'of: [column, -force, bearing.torque, "q[0]"]',
+        "printed: {k: 3.0e-3, bearing.slip: k/10}",
+        "bearing.torque: k",
+        "start: {theta: free, bearing.slide: free}",
+        "parameters: {k: {value: 2, fit: [0, 3]}, bearing.width: 2*T}",
+    ]
+
+
+def test_a_parameter_of_a_subsystem(whole: Diagram) -> None:
+    assert lines_of(WHOLE, renamed(whole, "hinge.slip", "level").text) == [
+        "hinge: {type: hinge, rate: omega, level: 2*k}",
+        "level: {value: 1.5e-4, unit: N m, fit: [0, 1e-3]}",
+        "coefficient: level",
+        "total: {type: expression, formula: -level*tanh(slide/width)*sign(rate)}",
+        "printed: {k: 3.0e-3, hinge.level: k/10}",
+    ]
+
+
+def test_an_input_of_a_subsystem(whole: Diagram) -> None:
+    assert lines_of(WHOLE, renamed(whole, "hinge.rate", "v").text) == [
+        "hinge: {type: hinge, v: omega, slip: 2*k}",
+        "inputs: [v]",
+        "inputs: {v: v}",
+        "slide: {type: integrator, of: v}",
+        "total: {type: expression, formula: -slip*tanh(slide/width)*sign(v)}",
+    ]
+
+
+def test_an_output_and_a_block_of_a_subsystem(whole: Diagram) -> None:
+    out = lines_of(WHOLE, renamed(whole, "hinge.torque", "moment").text)
+    assert len(out) == 5
+    assert "outputs: {moment: total}" in out
+    assert lines_of(WHOLE, renamed(whole, "hinge.slide", "way").text) == [
+        'record: [theta, hinge.way, "q[1]", hinge.torque]',
+        "way: {type: integrator, of: rate}",
+        "total: {type: expression, formula: -slip*tanh(way/width)*sign(rate)}",
+        "start: {theta: free, hinge.way: free}",
+    ]
+
+
+def test_an_input_and_a_vector(whole: Diagram) -> None:
+    drive = lines_of(WHOLE, renamed(whole, "drive", "push").text)
+    assert [line.split(":")[0] for line in drive] == ["push", "force", "inputs", "clean"]
+    vector = lines_of(WHOLE, renamed(whole, "q", "pair").text)
+    assert vector[0] == 'record: [theta, hinge.slide, "pair[1]", hinge.torque]'
+    assert len(vector) == 3
+
+
+def test_a_subsystem_where_no_block_has_its_name(whole: Diagram) -> None:
+    other = renamed(whole, "hinge", "bearing")
+    assert lines_of(other.text, renamed(other, "hinge", "joint").text) == [
+        "bearing: {type: joint, rate: omega, slip: 2*k}",
+        "joint:",
+    ]
+    assert (
+        renamed(other, "bearing.slip", "level").text == renamed(other, "hinge.slip", "level").text
+    )
+
+
+def parts(diagram: Diagram, path: str = "") -> list[str]:
+    """Every name that can be given, by its path."""
+    own = dict.fromkeys([*diagram.blocks, *diagram.inputs, *diagram.parameters, *diagram.outputs])
+    found = [path + name for name in own]
+    for name, inside in diagram.subsystems.items():
+        if inside.file == diagram.file:
+            found += [path + name, *parts(inside, f"{path}{name}.")]
+    return found
+
+
+@pytest.mark.parametrize("file", ["papers/a_torsion/pendulum.yaml", "demo/full.yaml", "whole"])
+def test_there_and_back_gives_the_same_text(file: str, whole: Diagram) -> None:
+    diagram = whole if file == "whole" else read(shipped("diagrams") / file)
+    names = parts(diagram)
+    assert len(names) > 15
+    for path in names:
+        where, _, name = path.rpartition(".")
+        new = f"{name}_zz"
+        there = renamed(diagram, path, new)
+        assert there.text != diagram.text
+        assert renamed(there, f"{where}.{new}".lstrip("."), name).text == diagram.text
+
+
+def test_a_run_has_the_same_numbers() -> None:
+    diagram = read(shipped("diagrams") / "lessons" / "cart.yaml")
+    before = simulate(compile(diagram))
+    state = next(name for name in before.signals if name in diagram.blocks)
+    after = simulate(compile(renamed(diagram, state, "zz_other")))
+    assert list(after.signals) == [n if n != state else "zz_other" for n in before.signals]
+    for one, other in zip(before.signals.values(), after.signals.values(), strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_escapes_in_quotes_are_no_names() -> None:
+    text = 'parameters: {u0063: 1, c: 2}\nblocks: {a: {type: constant, value: "u0063 + \\u0063"}}\n'
+    assert 'value: "b + \\u0063"' in renamed(read_text(text), "u0063", "b").text
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("thta", "x", "unknown name 'thta'; there are: J, T, alpha,"),
+        ("hinge.slop", "x", "unknown name 'hinge.slop'; there are: hinge.rate, hinge.slide"),
+        ("hing.slip", "x", "unknown subsystem 'hing'; there are: hinge. Did you mean 'hinge'?"),
+        ("theta", "omega", "a.yaml:1:1: there is a part 'omega' already. Choose another name."),
+        ("theta", "k", "there is a part 'k' already"),
+        ("theta", "theta", "there is a part 'theta' already"),
+        ("hinge.slip", "rate", "there is a part 'rate' already"),
+        ("hinge.slip", "unit", "'unit:' means something else on every block"),
+        ("theta", "sin", "'sin' cannot be the name of a part. 'sin' is a word of formulas"),
+        ("theta", "φ", "'φ' cannot be the name of a part. Use the letters a to z, digits and _"),
+        ("theta", "hinge.x", "'hinge.x' cannot be the name of a part"),
+    ],
+)
+def test_refusals(whole: Diagram, old: str, new: str, words: str) -> None:
+    with pytest.raises(OptionError) as caught:
+        renamed(whole, old, new)
+    assert words in str(caught.value)
+
+
+def test_a_type_that_is_taken(whole: Diagram) -> None:
+    other = renamed(whole, "hinge", "bearing")
+    with pytest.raises(OptionError, match="there is a block type 'gain' already"):
+        renamed(other, "hinge", "gain")
+
+
+def test_a_part_of_an_included_file_is_renamed_there(tmp_path: Path) -> None:
+    (tmp_path / "parts.yaml").write_text("subsystems: {s: {blocks: {x: {type: time}}}}\n")
+    diagram = read_text("include: parts.yaml\nblocks: {b: {type: s}}\n", tmp_path / "a.yaml")
+    for path in ("s", "s.x", "b.x"):
+        with pytest.raises(OptionError, match="the subsystem 's' is defined in another file"):
+            renamed(diagram, path, "y")
