@@ -73,6 +73,27 @@ def test_other_conditions_of_an_event_are_refused(when: str, said: str) -> None:
         ("k: -1", "k: 2*1.5mm", "{value: 1.5, unit: mm}"),
         ("k: -1", "k: max(limit, 2)", "between braces a comma ends the value of 'k'. "
          'Write k: "max(limit, 2)".'),
+        ("k: -1", "k: max(min(limit, 2), 3), unit: m", 'Write k: "max(min(limit, 2), 3)".'),
+        ("{limit: 1}", "{limit: 1}\nrequire: [max(limit, 2) > 1]", "between brackets a comma ends "
+         'an entry. Write "max(limit, 2) > 1".'),
+        ("limit: 1", "limit: .nan", "'limit' is .nan, and a value is a finite number. Write a "
+         "number for 'limit'."),
+        ("k: -1", "k: -.INF", "'k' is -.INF, and a value is a finite number. Write a number"),
+        ("[0, 10]", "[0, .inf]", "an entry of this list is .inf, and a value is a finite number."),
+        ("limit: 1", "limit: {value: 1, fit: [0, .inf]}", "a bound of a fit may be inf or -inf."),
+        ("limit: 1", "limit: nan", "unknown parameter 'nan'; there are: limit. A value is a finite "
+         "number: write one."),
+        ("limit: 1", "limit: yes", "unknown parameter 'yes'; there are: limit. A value is a "
+         "number: write 1."),
+        ("limit: 1", "limit: Off", "A value is a number: write 0."),
+        ("limit: 1", "limit: ~", "'limit' has no value. Write a value behind the colon"),
+        ("limit: 1", "limit: {value: 1, fit: [0, 010]}", "must be a number, not '010'. Write 10."),
+        ("limit: 1", "limit: {value: 1, fit: [0, yes]}", "must be a number, not 'yes'. A value is"),
+        ("limit: 1", "limit: {value: 1, fit: [0, '1,5']}", "Write 1.5: a point stands before"),
+        ("limit: 1", "limit: {value: 1, fit: [0, 1,5]}", "the bounds of a fit are two numbers. "
+         "Write fit: [low, high] in the unit of the value, or fit: free. A decimal has a point"),
+        ("[0, 10]", "[0, 1,5]", "Write it like [0, 40]. A decimal has a point: 1.5."),
+        ("  phi:", "\tphi:", "a.yaml:4:1: a tab stands where YAML needs blanks. Indent with"),
         ("start: 2", "start: 1,5", "of 'start'. Write start: 1.5: a point stands before"),
         ("limit: 1", "limit: '1,5'", "a comma is no decimal point. Write 1.5"),
         ("limit: 1", "limit: 010", "a number has zeros in front. Write 10."),
@@ -93,6 +114,7 @@ def test_a_name_that_cannot_be_is_told_once(name: str) -> None:
     text = BALL.replace("phi:", f"{name}:").replace("of: phi", f"of: {name}")
     (line,) = refused(text)
     assert f"'{name}' cannot be the name of a block. Use the letters a to z" in line
+    assert ("'label: " in line) == (" " not in name)
 
 
 def test_a_number_that_is_no_unit_s_is_no_unit() -> None:

@@ -35,7 +35,7 @@ BLOCKS = "blocks: {}\n"
         ("---\n", "the file is empty"),
         ("title: [a\nblocks: {}", "2:7: this is not YAML: while parsing a flow sequence"),
         ("title: 'a", "this is not YAML: while scanning a quoted scalar"),
-        ("blocks:\n\ta: {}", "2:1: this is not YAML: while scanning"),
+        ("blocks:\n\ta: {}", "2:1: a tab stands where YAML needs blanks"),
         ("title: a: b", "1:9: this is not YAML: mapping values are not allowed"),
         ("title: a\x00b", "1:9: the character U+0000 is no character of a text file"),
         ("title: a\udc00b", "1:9: the character U+DC00 is no character of a text file"),

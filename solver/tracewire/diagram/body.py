@@ -12,7 +12,7 @@ from tracewire.diagram.grammar import OF_A_BLOCK
 from tracewire.diagram.problems import Problems, clip
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.errors import FormulaError, Place
-from tracewire.formula import Unit, is_name, name_hint, read_unit
+from tracewire.formula import Unit, is_name, name_hint, number_hint, read_unit
 
 Sees = Literal["parameter", "signal", "either"]
 
@@ -53,7 +53,10 @@ class Body:
         name, place = key.text, self.place(key)
         if not is_name(name):
             what = f"'{clip(name)}' cannot be the name of {kind}"
-            self.problems.add(what, place, (), name_hint(name))
+            hint = name_hint(name)
+            if name.isidentifier() and not name.isascii() and kind in ("a block", "an input"):
+                hint += f" 'label: {name}' is its name in figures."
+            self.problems.add(what, place, (), hint)
         elif self.path and name in OF_A_BLOCK and kind in ("an input", "a parameter"):
             what = f"'{name}' cannot be the name of {kind} of a subsystem"
             self.problems.add(what, place, (), f"'{name}:' means something else on every block.")
@@ -100,8 +103,9 @@ class Body:
         """The node as a finite number, or None with a problem noted."""
         value = node.number if isinstance(node, Scalar) else None
         if value is None:
-            said = f", not '{clip(node.text)}'" if isinstance(node, Scalar) else ""
-            self.problems.add(f"{what} must be a number{said}", self.place(node, block))
+            text = node.text if isinstance(node, Scalar) else ""
+            said, hint = f", not '{clip(text)}'" if text else "", number_hint(text)
+            self.problems.add(f"{what} must be a number{said}", self.place(node, block), (), hint)
         return value
 
     def unit(self, node: Node, block: str = "") -> Unit:

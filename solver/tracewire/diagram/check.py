@@ -16,6 +16,7 @@ from tracewire.diagram.names import (
 )
 from tracewire.diagram.problems import clip
 from tracewire.errors import Place
+from tracewire.formula import number_hint
 
 
 def check_names(diagram: Diagram, body: Body) -> None:
@@ -50,7 +51,7 @@ def _explain(diagram: Diagram, reference: Reference, body: Body) -> None:
         hint = "A value may use parameters only; for a formula of signals use an expression block."
         problems.add(what, place, tuple(sorted(diagram.parameters)), hint)
     elif sees == "parameter":
-        problems.unknown("parameter", name, diagram.parameters, place)
+        problems.unknown("parameter", name, diagram.parameters, place, number_hint(name))
     elif sees == "signal" and name in diagram.parameters:
         hint = "Put it into a block of type constant, and name that."
         problems.add(f"'{shown}' is a parameter, and not a signal", place, (), hint)

@@ -8,7 +8,7 @@ from tracewire.diagram.names import find_parameter, find_recorded, parameters, r
 from tracewire.diagram.problems import clip
 from tracewire.diagram.strict import Items, Node
 from tracewire.diagram.uses import in_unit_of
-from tracewire.diagram.values import read_formula, read_value
+from tracewire.diagram.values import read_formula, read_value, two_of
 from tracewire.errors import Place
 from tracewire.formula import Number
 
@@ -16,7 +16,7 @@ from tracewire.formula import Number
 def read_span(node: Node, body: Body) -> tuple[Value, Value] | None:
     """`span`: [from, to] in s."""
     if not isinstance(node, Items) or len(node.items) != 2:
-        hint = "Write it like [0, 40]."
+        hint = "Write it like [0, 40]." + two_of(node)
         body.problems.add("'span' must be a pair of times", body.place(node), (), hint)
         return None
     begin, end = (read_value(item, body, fit=False) for item in node.items)

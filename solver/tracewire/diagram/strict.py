@@ -3,15 +3,16 @@
 What a diagram needs of YAML is mappings, lists and text. Refused are duplicate and empty keys, keys
 without a value, anchors and aliases (which can unfold to any size), merge keys, tags, and a second
 document. A plain scalar that matches `NUMBER` is a number (`1e-3` is one, unlike in YAML 1.1);
-every other scalar is text: `yes`, `on`, `null` and dates have no meaning of their own.
+every other scalar is text: `yes`, `on`, `null` and dates have no meaning of their own, nor has
+`010`. `.nan` and `.inf` are refused.
 """
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import yaml
@@ -23,7 +24,8 @@ from tracewire.errors import DiagramError, Place
 MOST_DEPTH = 60
 MOST_KEY = 100
 MOST_VALUES = 10_000  # of a vector or matrix: 100 x 100 compiles in seconds, 500 x 500 in hours
-NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?")
+NUMBER = re.compile(r"[+-]?(?:(?:0|[1-9]\d*)(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?")
+NOT_FINITE = re.compile(r"([+-]?)\.(inf|nan)", re.IGNORECASE)
 STRANGE_BREAK = re.compile("\r(?!\n)|[\x85\u2028\u2029]")
 PARSER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # only its events are used
 ELEMENT = re.compile(r"\w\[\d")
@@ -93,7 +95,11 @@ def compose(text: str, file: Path, problems: Problems) -> Node:
         place = Place(str(file), spot.line + 1, spot.column + 1) if spot else Place(str(file))
         said = " ".join(part for part in (error.context, error.problem) if part)
         tab = "cannot start any token" in said and "\t" in text.splitlines()[place.line - 1]
-        hint = "Indent with blanks, never with tabs." if tab else BROKEN
+        if tab:
+            what = "a tab stands where YAML needs blanks"
+            hint = "Indent with blanks, never with tabs."
+            raise DiagramError.one(what, place, hint=hint) from None
+        hint = BROKEN
         if spot and any(map(ELEMENT.search, text.splitlines()[place.line - 1 : place.line])):
             hint = f'{BROKEN} An element of a vector needs quotes between brackets: {{of: "q[1]"}}.'
         raise DiagramError.one(f"this is not YAML: {said}", place, hint=hint) from None
@@ -207,7 +213,9 @@ class _Composer:
             for node in items:
                 if _is_empty(node):
                     self.problems.add("an entry of this list is empty", node.place)
-            kept = tuple(node for node in items if not _is_empty(node))
+            kept = tuple(self.finite(node) for node in items if not _is_empty(node))
+            if flow:
+                self.refuse_comma_in_list(kept)
             self.put(Items(kept, place, start, end, flow), frame.values)
 
     def put(self, node: Node | None, values: int = 1) -> None:
@@ -224,9 +232,10 @@ class _Composer:
     def pairs(self, nodes: list[Node | None]) -> tuple[dict[str, Scalar], dict[str, Node]]:
         keys: dict[str, Scalar] = {}
         values: dict[str, Node] = {}
-        for key, value in zip(nodes[::2], nodes[1::2], strict=True):
+        pairs = list(zip(nodes[::2], nodes[1::2], strict=True))
+        for n, (key, value) in enumerate(pairs):
             if isinstance(key, Scalar) and value is not None and _is_empty(value):
-                self.refuse_comma(key, keys, values)
+                self.refuse_comma(pairs[n:], keys, values)
             if key is None or not self.is_key(key, keys) or not isinstance(key, Scalar):
                 continue
             if value is None:
@@ -235,17 +244,35 @@ class _Composer:
                 hint = "Write a value behind the colon, or remove the line."
                 self.problems.add(f"'{key.text}' has no value", key.place, (), hint)
                 continue
-            keys[key.text], values[key.text] = key, value
+            keys[key.text], values[key.text] = key, self.finite(value, key.text)
         return keys, values
 
-    def refuse_comma(self, key: Scalar, keys: dict[str, Scalar], values: dict[str, Node]) -> None:
-        """Raise where an entry without a value is the rest of a formula, cut at its comma."""
+    def finite(self, node: Node, name: str = "") -> Node:
+        """The node; one that is no finite number is noted, and 1 in its place."""
+        if not isinstance(node, Scalar) or node.style or not NOT_FINITE.fullmatch(node.text):
+            return node
+        what = f"'{name}' is {node.text}" if name else f"an entry of this list is {node.text}"
+        hint = f"Write a number for '{name}'." if name else "Write a number; a bound of a fit may"
+        hint += "" if name else " be inf or -inf."
+        self.problems.add(f"{what}, and a value is a finite number", node.place, (), hint)
+        return replace(node, text="1")  # so that nothing more is told of it
+
+    def refuse_comma(
+        self,
+        rest: Sequence[tuple[Node | None, Node | None]],
+        keys: dict[str, Scalar],
+        values: dict[str, Node],
+    ) -> None:
+        """Raise where entries without a value are the rest of a formula, cut at its commas."""
         name = next(reversed(keys), "")
-        before = values.get(name)
-        if not isinstance(before, Scalar) or before.style or key.style:
+        before, key = values.get(name), rest[0][0]
+        if not isinstance(before, Scalar) or before.style:
             return
-        whole = f"{before.text}, {key.text}"
-        if before.text.count("(") > before.text.count(")") and ")" in key.text:
+        if not isinstance(key, Scalar) or key.style:
+            return
+        more = (k for k, value in rest if value is not None and _is_empty(value))
+        whole = _joined(before, more)
+        if whole:
             hint = f'Write {name}: "{whole}".'
         elif before.number is not None and key.number is not None:
             hint = f"Write {name}: {before.text}.{key.text}: a point stands before the decimals."
@@ -254,6 +281,15 @@ class _Composer:
         what = f"between braces a comma ends the value of '{name}'"
         self.problems.add(what, before.place, (), hint)
         raise DiagramError(self.problems.found)
+
+    def refuse_comma_in_list(self, items: Sequence[Node]) -> None:
+        """Raise where an entry of a list in brackets is a formula, cut at its commas."""
+        for n, item in enumerate(items):
+            whole = _joined(item, items[n + 1 :])
+            if whole:
+                what, hint = "between brackets a comma ends an entry", f'Write "{whole}".'
+                self.problems.add(what, item.place, (), hint)
+                raise DiagramError(self.problems.found)
 
     def is_key(self, key: Node, keys: dict[str, Scalar]) -> bool:
         what, hint = "", ""
@@ -277,5 +313,19 @@ class _Composer:
         return not what
 
 
+def _joined(first: Node, others: Iterable[Node | None]) -> str:
+    """A formula whose commas have cut it, up to its last bracket; empty where it is none."""
+    whole = first.text if isinstance(first, Scalar) and not first.style else ""
+    if whole.count("(") <= whole.count(")"):
+        return ""
+    for node in others:
+        if not isinstance(node, Scalar) or node.style:
+            break
+        whole = f"{whole}, {node.text}"
+        if whole.count("(") == whole.count(")"):
+            return whole
+    return ""
+
+
 def _is_empty(node: Node) -> bool:
-    return isinstance(node, Scalar) and not node.text and not node.style
+    return isinstance(node, Scalar) and node.text in ("", "~") and not node.style

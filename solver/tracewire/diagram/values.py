@@ -124,7 +124,7 @@ def read_bounds(node: Node, body: Body, block: str = "") -> tuple[float, float] 
     hint = "Write fit: [low, high] in the unit of the value, or fit: free."
     if not isinstance(node, Items) or len(node.items) != 2:
         what = "the bounds of a fit are two numbers"
-        body.problems.add(what, body.place(node, block), (), hint)
+        body.problems.add(what, body.place(node, block), (), hint + two_of(node))
         return None
     ends = []
     for item in node.items:
@@ -141,6 +141,11 @@ def read_bounds(node: Node, body: Body, block: str = "") -> tuple[float, float] 
         body.problems.add(what, body.place(node, block), (), hint)
         return None
     return low, high
+
+
+def two_of(node: Node) -> str:
+    """What to say where a pair has more than two numbers: a comma may be meant as a point."""
+    return " A decimal has a point: 1.5." if isinstance(node, Items) and len(node.items) > 2 else ""
 
 
 def read_points(node: Node, body: Body, block: str) -> Points | None:

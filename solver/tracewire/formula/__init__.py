@@ -24,7 +24,7 @@ from tracewire.formula.expression import (
 )
 from tracewire.formula.functions import CONSTANTS, FUNCTIONS, OPERATIONS
 from tracewire.formula.order import evaluation_order
-from tracewire.formula.parse import is_name, name_hint, parse, parse_condition
+from tracewire.formula.parse import is_name, name_hint, number_hint, parse, parse_condition
 from tracewire.formula.text import number_text, to_text
 from tracewire.formula.unit_rules import Term, times, unit_term
 from tracewire.formula.units import Unit, quantity_hint, read_unit, same_quantity
@@ -52,6 +52,7 @@ __all__ = [
     "is_name",
     "name_hint",
     "names_of",
+    "number_hint",
     "number_text",
     "parse",
     "parse_condition",

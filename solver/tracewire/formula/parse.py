@@ -35,6 +35,7 @@ INSTEAD: dict[type[ast.operator], str] = {
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 WITH_UNIT = re.compile(r"(?<![\w.])(\d+(?:\.\d*)?(?:[eE][+-]?\d+)?)\s*([A-Za-z%]+)(?![\w.(])")
 ZEROS = re.compile(r"(?<![\w.])0+([1-9]\d*)(?![\w.])")
+DECIMAL = re.compile(r"([+-]?\d+),(\d+)")
 BY_NAME = {"wires": "a port", "points": "a table of points"}
 LANGUAGE = (
     "A formula knows + - * / **, < <= > >=, and/or/not, 'a if c else b' and: "
@@ -57,6 +58,19 @@ def name_hint(text: str) -> str:
     if NAME.fullmatch(text) and not text.startswith("__"):
         return f"'{text}' is a word of formulas: choose another one, such as {text}_1."
     return "Use the letters a to z, digits and _, no digit in front, and no __."
+
+
+def number_hint(text: str) -> str:
+    """What to write in place of a text that is meant as a number; '' where that is not clear."""
+    decimal, zeros, word = DECIMAL.fullmatch(text), ZEROS.search(text), text.lstrip("+-").lower()
+    if decimal:
+        return f"Write {decimal[1]}.{decimal[2]}: a point stands before the decimals."
+    if zeros:
+        return f"Write {zeros[1]}."
+    if word in ("nan", "inf", "infinity", "null", "none"):
+        return "A value is a finite number: write one."
+    answer = {"yes": 1, "on": 1, "true": 1, "no": 0, "off": 0, "false": 0}.get(word)
+    return "" if answer is None else f"A value is a number: write {answer}."
 
 
 class _Refused(Exception):
