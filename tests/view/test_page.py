@@ -233,3 +233,75 @@ def test_a_fit_is_proposed_and_taken_by_a_click(browser: Chromium, tmp_path: Pat
         assert file.read_text(encoding="utf-8") == before
         browser.open("about:blank")
     assert browser.errors == []
+
+
+TYPE = """
+(words) => {
+  const area = document.getElementById("source");
+  area.focus();
+  document.execCommand("insertText", false, words);
+}
+"""
+PRESS = """
+(key, ctrlKey = false) => document.getElementById("source").dispatchEvent(
+  new KeyboardEvent("keydown", {key, ctrlKey, bubbles: true, cancelable: true}))
+"""
+OPEN = "!document.getElementById('completion').hidden"
+ROWS = "[...document.querySelectorAll('#completion b')].map((one) => one.textContent)"
+
+
+def cursor_behind(page: Chromium, words: str) -> None:
+    page.run(f"""
+        (() => {{
+          const area = document.getElementById("source");
+          const at = area.value.indexOf({words!r}) + {len(words)};
+          area.focus();
+          area.setSelectionRange(at, at);
+        }})()""")
+
+
+def test_a_word_in_the_text_is_completed(page: Chromium) -> None:
+    cursor_behind(page, "start: start, unit: m}")
+    page.run(f"({TYPE})('\\n  b: {{type: integr')")
+    page.wait(OPEN)
+    assert page.run(ROWS)[0] == "integrator"
+    area = "document.getElementById('source')"
+    assert page.run(f"{area}.getAttribute('aria-activedescendant')") == "proposal-0"
+    page.run(f"({PRESS})('Enter')")
+    assert "  b: {type: integrator\n" in page.run(f"{area}.value")
+    assert not page.run(OPEN)
+    page.run(f"({TYPE})(', ')")
+    page.wait(OPEN)
+    assert page.run(ROWS)[:2] == ["of", "start"]
+    assert page.run(f"({PRESS})('Enter')") is True  # nothing is chosen yet: a new line
+    page.run(f"({PRESS})('Escape')")
+    page.run(f"({PRESS})(' ', true)")
+    page.wait(f"{OPEN} && {ROWS}[0] === 'of'")
+    page.run(f"({PRESS})('ArrowDown')")
+    page.run(f"({PRESS})('ArrowUp')")
+    page.run(f"({PRESS})('Tab')")
+    page.run(f"({TYPE})('v')")
+    page.wait("document.getElementById('problems').children.length > 0")
+    page.run(f"({PRESS})('Escape')")
+    page.run(f"({TYPE})('}}')")
+    page.wait("document.getElementById('problems').children.length === 0")
+    assert "  b: {type: integrator, of: v}\n" in page.run(f"{area}.value")
+    page.run("document.execCommand('undo')")
+    assert "of: v}\n  v:" not in page.run(f"{area}.value")
+
+
+def test_the_list_of_words_closes(page: Chromium) -> None:
+    cursor_behind(page, "record: [x, v")
+    page.run(f"({TYPE})(', ')")
+    page.wait(OPEN)
+    page.run(f"({PRESS})('Escape')")
+    assert not page.run(OPEN)
+    page.run(f"({PRESS})(' ', true)")
+    page.wait(OPEN)
+    page.run("document.getElementById('source').dispatchEvent(new Event('blur'))")
+    assert not page.run(OPEN)
+    cursor_behind(page, "title: A mass")
+    page.run(f"({PRESS})(' ', true)")
+    page.run(f"({TYPE})(' x')")
+    time.sleep(0.3)
+    assert not page.run(OPEN)

@@ -36,6 +36,20 @@ def test_a_page_opens_the_file_and_reads_it(service: Service, spring: Path) -> N
     assert [p["name"] for p in read["parameters"]] == ["k", "start", "twice", "force", "c"]
 
 
+def test_a_page_is_told_what_may_stand_at_its_cursor(service: Service) -> None:
+    key: Any = service.answer("read", {"text": SPRING})
+    assert key["drawn"] is True
+    before = SPRING.partition("-k*x - c")[0] + "st"
+    answer: Any = service.answer("complete", {"text": before, "key": key["key"]})
+    assert answer["word"] == "st"
+    assert answer["proposals"] == [{"text": "start", "doc": "a parameter", "insert": "start"}]
+    other: Any = service.answer("complete", {"text": "blocks: {a: {type: gai", "key": "gone"})
+    assert other["proposals"][0]["text"] == "gain"
+    assert other["proposals"][0]["doc"]
+    wrong: Any = service.answer("read", {"text": "blocks: [1"})
+    assert wrong["drawn"] is False
+
+
 def test_sliders_have_bounds_units_and_scales() -> None:
     sliders = {s.name: s for s in sliders_of(compile(read_text(SPRING)))}
     k, start, c = sliders["k"], sliders["start"], sliders["c"]

@@ -1,5 +1,6 @@
 """Diagrams: from a YAML file to a checked description, and edits of its text."""
 
+from tracewire.diagram.complete import Proposal, complete, word_before
 from tracewire.diagram.diagram import (
     Array,
     BlockUse,
@@ -78,6 +79,7 @@ __all__ = [
     "Hold",
     "InputPort",
     "Points",
+    "Proposal",
     "ScenePart",
     "Series",
     "Shown",
@@ -89,6 +91,7 @@ __all__ = [
     "add_own",
     "add_sensor",
     "add_to_drive",
+    "complete",
     "cycles",
     "difference",
     "effects_of",
@@ -125,6 +128,7 @@ __all__ = [
     "who_has",
     "with_modeline",
     "with_series_of",
+    "word_before",
     "write",
     "written_units",
 ]

@@ -70,7 +70,7 @@ OF_A_BLOCK = {
     "unit": Key(UNIT, "The unit of the signal, in which it is printed and drawn."),
     "label": Key(TEXT, "The name of the signal in figures, in any letters: label: φ."),
     "place": Key(
-        Mapped(Text(names="signal")),
+        Mapped(Text(names="wire")),
         "Of a sum: the signals by which a trace tries effects there, {q: theta, v: omega}.",
     ),
     "guess": Key(Either((FIXED, Listed(FIXED))), "Where the search of an algebraic loop begins."),
@@ -264,7 +264,7 @@ INSIDE = {
     "title": _TITLE,
     "inputs": _INPUTS,
     "outputs": Key(
-        Either((Mapped(Text(names="signal"), "new"), Listed(Text(names="port"), alone=True))),
+        Either((Mapped(Text(names="wire"), "new"), Listed(Text(names="port"), alone=True))),
         "The signals that a subsystem gives: a list, or {name: signal}.",
     ),
     "parameters": _PARAMETERS,
@@ -296,8 +296,8 @@ SHAPES: dict[str, Shape] = {
             Listed(Either((Formula(signals=True), Listed(Formula(signals=True))))),
         )
     ),
-    "wire": Text(names="signal"),
-    "wires": Listed(Text(names="signal"), alone=True),
+    "wire": Text(names="wire"),
+    "wires": Listed(Text(names="wire"), alone=True),
 }
 OF_KINDS = {"number": "values", "points": "points", "formula": "formulas"}
 """The shape of a block's parameter by its kind."""

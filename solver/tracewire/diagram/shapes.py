@@ -6,8 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-Names = Literal["", "new", "signal", "state", "parameter", "input", "port", "preset", "unit"]
-"""What a name is: of nothing in a diagram, of a new part, or of a part that is there."""
+Names = Literal[
+    "", "new", "wire", "signal", "state", "parameter", "input", "port", "preset", "unit"
+]
+"""What a name is: of nothing in a diagram, of a new part, or of a part that is there.
+
+A wire is a signal that the diagram itself sees, a signal also one inside of its subsystems.
+"""
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-from tracewire.diagram import load_text, set_values
+from tracewire.diagram import complete, load_text, set_values, word_before
 from tracewire.draw import draw
 from tracewire.errors import DiagramError, OptionError, Problem, TracewireError, unknown
 from tracewire.files import write_file, writing
@@ -64,6 +64,7 @@ class Service:
         self.actions: dict[str, Callable[[Request], Answer]] = {
             "open": self.open,
             "read": self.read,
+            "complete": self.complete,
             "draw": self.draw,
             "run": self.run,
             "state": self.state,
@@ -108,6 +109,7 @@ class Service:
         answer: dict[str, Any] = {
             "key": version.key,
             "problems": [record_of(problem) for problem in version.problems],
+            "drawn": version.diagram is not None,
             "runs": version.model is not None,
         }
         if version.model is not None:
@@ -122,6 +124,18 @@ class Service:
                 "fits": any(one.channels for one in diagram.measured.values()),
             }
         return answer
+
+    def complete(self, request: Request) -> Answer:
+        """What may stand at the end of a text, in place of the `word` there.
+
+        `key` is that of the last version with a diagram, whose names are proposed.
+        """
+        before = _text_in(request)
+        version = self._versions.get(str(request.get("key")))
+        diagram = None if version is None else version.diagram
+        library = self.library if diagram is None else diagram.library  # with those that it names
+        found = complete(before, library, diagram)
+        return {"word": word_before(before), "proposals": [asdict(one) for one in found]}
 
     def draw(self, request: Request) -> Answer:
         """The picture of a version as SVG, with its mistakes in red."""

@@ -1,14 +1,17 @@
 // The text of the diagram: a plain text area with numbers of lines, and the mistakes below it.
 
+import {Completion} from "./completion.js";
 import {make, part} from "./page.js";
 
 export class Editor {
-  constructor(changed) {
+  // key: the key of the last version of the text that has a diagram
+  constructor(changed, key) {
     this.area = part("source");
     this.gutter = part("gutter");
     this.problems = [];
     this.area.addEventListener("input", () => { this.number(); changed(); });
     this.area.addEventListener("scroll", () => { this.gutter.scrollTop = this.area.scrollTop; });
+    this.completion = new Completion(this.area, key);
   }
 
   get text() { return this.area.value; }

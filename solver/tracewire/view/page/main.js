@@ -13,12 +13,12 @@ import {Work} from "./work.js";
 const TYPING = 200;  // ms without a key before the text is read
 const LOOK = 500;    // ms between two looks at the file
 
-const state = {key: "", runs: false, path: "", saved: "", digest: "", seen: "", present: false, ended: false};
+const state = {key: "", names: "", runs: false, path: "", saved: "", digest: "", seen: "", present: false, ended: false};
 const plots = new Plots();
 const scene = new Scene((time) => plots.point(time));
 const runner = new Runner(wanted, ran);
 const parameters = new Parameters(() => runner.wish(), (line) => editor.jump(line));
-const editor = new Editor(() => { tellSaved(); typed(); });
+const editor = new Editor(() => { tellSaved(); typed(); }, () => state.names);
 
 const work = new Work({
   request: wanted,
@@ -115,6 +115,7 @@ async function read() {
   if (mine !== reading) return;
   editor.mark(answer.problems, state.path);
   state.key = answer.key || "";
+  if (answer.drawn) state.names = state.key;
   state.runs = Boolean(answer.runs);
   if (!state.runs) {
     const many = answer.problems.length;
