@@ -254,7 +254,7 @@ def test_several_values_are_in_one_figure(call: Any, pendulum: Path, tmp_path: P
     figure = tmp_path / "a.svg"
     told = call("run", pendulum, "--over", "c=0.1,1,3", "--figure", figure)
     assert told.code == 0
-    assert [line.split()[4] for line in told.out.splitlines() if "phi" in line] == ["0.1", "1", "3"]
+    assert [line.split()[5] for line in told.out.splitlines() if "phi" in line] == ["0.1", "1", "3"]
     drawn = figure.read_text(encoding="utf-8")
     for legend in ("c = 0.1 1/s", "c = 1 1/s", "c = 3 1/s", "φ [deg]"):
         assert f"<!-- {legend} -->" in drawn
@@ -304,7 +304,7 @@ def test_results_are_in_the_unit_that_is_asked_for(
     file, figure = tmp_path / "a.csv", tmp_path / "a.svg"
     told = call("run", pendulum, "--unit", "omega=rpm", "--figure", figure, "--output", file)
     rows = {line.split()[0]: line.split()[1:] for line in told.out.splitlines() if line.strip()}
-    assert rows["phi"][:2] == ["deg", "28.6479"]  # 0.5 rad
+    assert rows["phi"][:3] == ["(φ)", "deg", "28.6479"]  # 0.5 rad
     assert rows["omega"][0] == "rpm"
     assert float(rows["omega"][4]) == pytest.approx(60 / (2 * np.pi) * 1.4, rel=0.05)
     drawn = figure.read_text(encoding="utf-8")

@@ -140,7 +140,8 @@ def _use(name: str, block: Block) -> Schema:
             properties.setdefault(own, _key(key))
     needed = [port.name for port in block.inputs if port.default is None]
     needed += [p.name for p in block.parameters if p.default is None]
-    found = _object(properties)
+    # an editor offers all that is required at once, by the title
+    found = {"title": name, "properties": properties, "additionalProperties": False}
     return found | ({"required": needed} if needed else {})
 
 

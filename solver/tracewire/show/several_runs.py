@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from tracewire.errors import OptionError, Problem
 from tracewire.show.figures import MOST_PANELS
 from tracewire.show.style import LINES, dots, fit_time, panels, save, shortened, styled, with_unit
-from tracewire.show.summary import extremes
+from tracewire.show.summary import extremes, with_label
 from tracewire.show.table import Table, shown
 
 if TYPE_CHECKING:
@@ -56,7 +56,12 @@ def runs_table(runs: Mapping[str, Run]) -> Table:
     """Recorded signals of several runs: start, end, least and greatest sample, signal by signal."""
     first = next(iter(runs.values()))
     rows = tuple(
-        (name, run.look(name).unit, case, *map(shown, extremes(run.as_shown(name))))
+        (
+            with_label(run, name),
+            run.look(name).unit,
+            case,
+            *map(shown, extremes(run.as_shown(name))),
+        )
         for name in first.signals
         for case, run in runs.items()
     )

@@ -206,10 +206,16 @@ def tree_text(diagram: Diagram, indent: str = "") -> str:
 # --- runs ---------------------------------------------------------------------------------------
 
 
+def with_label(run: Run, name: str) -> str:
+    """A signal in a table: its name, which commands take, and its label in figures."""
+    label = run.look(name).label
+    return name if label == name else f"{name} ({label})"
+
+
 def run_table(run: Run) -> Table:
     """Recorded signals of a run: start, end, least and greatest sample."""
     rows = tuple(
-        (name, run.look(name).unit, *map(shown, extremes(run.as_shown(name))))
+        (with_label(run, name), run.look(name).unit, *map(shown, extremes(run.as_shown(name))))
         for name in run.signals
     )
     header = ("signal", "unit", "start", "end", "min", "max")
