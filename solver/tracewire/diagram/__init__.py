@@ -31,15 +31,14 @@ from tracewire.diagram.edit import (
 from tracewire.diagram.edit_own import add_own
 from tracewire.diagram.edit_sensors import add_sensor, sensor_numbers, set_sensors
 from tracewire.diagram.edit_series import (
-    mapping_text,
     path_text,
-    quoted,
     replace_series,
     series_parts,
     with_series_of,
 )
 from tracewire.diagram.effects import EffectType, effects_of
 from tracewire.diagram.files import load as load_text
+from tracewire.diagram.layout import mapping_text, quoted
 from tracewire.diagram.loops import cycles, shown_cycle
 from tracewire.diagram.names import (
     element_name,
@@ -55,7 +54,7 @@ from tracewire.diagram.names import (
 from tracewire.diagram.packages import package_subsystems, who_has
 from tracewire.diagram.read import read, read_readable, read_readable_text, read_text
 from tracewire.diagram.rewire import add_to_drive, rewired
-from tracewire.diagram.write import write
+from tracewire.diagram.write import write, written_out
 
 __all__ = [
     "Array",
@@ -114,5 +113,6 @@ __all__ = [
     "who_has",
     "with_series_of",
     "write",
+    "written_out",
     "written_units",
 ]

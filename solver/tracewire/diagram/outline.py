@@ -6,7 +6,9 @@ from dataclasses import dataclass
 
 from tracewire.diagram.diagram import BlockUse, Diagram, Value
 from tracewire.diagram.names import find_parameter, parameters, split_index
+from tracewire.diagram.packages import Packages
 from tracewire.diagram.problems import Problems
+from tracewire.diagram.sources import Sources
 from tracewire.diagram.strict import Entries, Items, Node, compose
 from tracewire.errors import DiagramError, OptionError, TracewireError, unknown
 from tracewire.formula import Number
@@ -27,14 +29,20 @@ class Spot:
 
 
 class Outline:
-    """The nodes of a diagram's text, found by the names of its parts."""
+    """The nodes of a diagram, found by the names of its parts.
+
+    `root` has those of the files that it extends and includes, too; `own` those of its text only.
+    """
 
     def __init__(self, diagram: Diagram) -> None:
         self.top = diagram
-        root = compose(diagram.text, diagram.file, Problems())
-        if not isinstance(root, Entries):
-            raise DiagramError.one("a diagram must be a mapping", root.place)
-        self.root = root
+        own = compose(diagram.text, diagram.file, Problems())
+        sources = Sources(Packages(diagram.library, Problems()))
+        root = sources.tree(diagram.text, diagram.file)
+        if not isinstance(own, Entries) or root is None:
+            raise DiagramError.one("a diagram must be a mapping", own.place)
+        self.root, self.own = root, own
+        self.included = sources.all_included(own)
         self.definitions: dict[str, tuple[Diagram, Entries]] = {"": (diagram, root)}
         self._define("", diagram, root)
         self.nodes = {id(inside): entries for inside, entries in self.definitions.values()}
@@ -102,6 +110,16 @@ class Outline:
             inside = use.subsystem
         return Spot(rest, _part(entries, "parameters", rest), value, value.factor)
 
+    def is_own(self, node: Node) -> bool:
+        """Whether a node stands in the diagram's own text."""
+        return node.place.file == str(self.top.file)
+
+    def path(self, node: Node) -> tuple[str, ...]:
+        """The names that lead to a node from the top of the text on, or to the list around it."""
+        found = _path(self.root, node)
+        assert found is not None
+        return found
+
     def _entries(self, diagram: Diagram) -> Entries:
         if id(diagram) not in self.nodes:
             raise _elsewhere(diagram)
@@ -121,6 +139,18 @@ def _part(entries: Entries, section: str, name: str) -> Node:
     node = entries.values[section]
     assert isinstance(node, Entries)
     return node.values[name]
+
+
+def _path(inside: Node, node: Node) -> tuple[str, ...] | None:
+    if inside is node:
+        return ()
+    if isinstance(inside, Items):
+        return () if any(_path(item, node) is not None for item in inside.items) else None
+    for name, _, part in inside if isinstance(inside, Entries) else ():
+        rest = _path(part, node)
+        if rest is not None:
+            return (name, *rest)
+    return None
 
 
 def _elsewhere(diagram: Diagram) -> TracewireError:

@@ -31,22 +31,17 @@ from tracewire.diagram.settings import (
     read_require,
     read_span,
 )
-from tracewire.diagram.strict import Entries, Node, Scalar, compose
+from tracewire.diagram.sources import MOST_LEVELS, TOP, Included, Sources
+from tracewire.diagram.strict import Entries, Node, Scalar
 from tracewire.diagram.uses import read_blocks
 from tracewire.errors import DiagramError, Place, Problem
 from tracewire.formula import is_name, name_hint
 from tracewire.library import Block, Library, find_instead, find_synonym, load_library
 
-MOST_LEVELS = 30
 MOST_BLOCKS = 100_000
 INSIDE = (
     *("title", "inputs", "outputs", "parameters", "blocks", "subsystems", "events", "effect"),
 )
-TOP = (
-    *("title", "span", "every", "record", "inputs", "parameters", "blocks", "subsystems"),
-    *("include", "events", "require", "presets", "measured", "max_step", "scene", "libraries"),
-)
-INCLUDED = ("title", "libraries", "include", "subsystems")
 
 
 def read(path: str | Path, libraries: Iterable[str | Path] = ()) -> Diagram:
@@ -150,8 +145,8 @@ class _Definition:
 class _Reader:
     def __init__(self, library: Library, problems: Problems) -> None:
         self.packages, self.problems = Packages(library, problems), problems
+        self.sources = Sources(self.packages)
         self.stack: list[_Definition] = []
-        self.including: list[Path] = []
         self.included: dict[Path, dict[str, _Definition]] = {}
         self.sizes: dict[int, int] = {}
 
@@ -160,23 +155,13 @@ class _Reader:
         return self.packages.library
 
     def top(self, text: str, file: Path) -> Diagram | None:
-        root = compose(text, file, self.problems)
-        body = Body(self.problems, file.parent)
-        entries = body.entries(root, "a diagram", "'blocks: {column: {type: gain, ...}}'")
+        entries = self.sources.tree(text, file)
         if entries is None:
             return None
-        hint = ""
-        if "outputs" in entries.keys:
-            hint = "It belongs to a subsystem; 'record' names what is kept of a run."
-        elif "effect" in entries.keys:
-            hint = "It belongs to a subsystem, which a trace may then add to the diagram."
-        body.check_keys(entries, TOP, "section", hint=hint)
+        body = Body(self.problems)
         body.required(entries, "blocks", "a diagram")
         scope = _Scope(file, text)
-        self.including = [_resolved(file)]
-        if "libraries" in entries.values:
-            self.packages.read(entries.values["libraries"], body)
-        scope.definitions = self.define(entries, scope) | self.include(entries, scope, body)
+        scope.definitions = self.define(entries, scope) | self.include(entries, scope)
         base = self.common(entries, body, scope, file.stem, Place(str(file), 1, 1))
         diagram = self.with_settings(base, entries, body)
         self.finish(diagram, body)
@@ -292,7 +277,7 @@ class _Reader:
         self.stack.append(definition)
         outer = definition.scope
         path = f"{outer.path}.{definition.name}" if outer.path else definition.name
-        body = Body(self.problems, outer.file.parent, path)
+        body = Body(self.problems, path)
         example = "{inputs: [u], outputs: {y: k}, blocks: {...}}"
         what = f"subsystem '{clip(definition.name)}'"
         entries = body.entries(definition.node, what, example)
@@ -319,7 +304,7 @@ class _Reader:
         node = entries.values.get("subsystems")
         if node is None:
             return found
-        body = Body(self.problems, scope.file.parent, scope.path)
+        body = Body(self.problems, scope.path)
         example = "{bearing: {inputs: [rate], ...}}"
         for name, key, inside in body.entries(node, "'subsystems'", example) or ():
             place = body.place(key)
@@ -332,16 +317,14 @@ class _Reader:
             found[name] = _Definition(name, key, inside, scope)
         return found
 
-    def include(self, entries: Entries, scope: _Scope, body: Body) -> dict[str, _Definition]:
+    def include(self, entries: Entries, scope: _Scope) -> dict[str, _Definition]:
         """The subsystems of the files that a file includes, but not of those that they include."""
         found: dict[str, _Definition] = {}
-        node = entries.values.get("include")
         own = entries.values.get("subsystems")
         there = own.keys if isinstance(own, Entries) else {}
-        for name in body.scalars(node, "'include'") if node is not None else ():
-            place = body.place(name)
-            file = self.packages.file(name.text, body.folder, place)
-            for key, definition in self.included_file(file, place).items() if file else ():
+        for name, included in self.sources.included(entries):
+            place = replace(name.place, block=scope.path)
+            for key, definition in self.definitions_of(included).items():
                 other = found.get(key)
                 if key in there or (other is not None and other is not definition):
                     first = there[key].place if other is None else other.key.place
@@ -350,47 +333,10 @@ class _Reader:
                 found[key] = definition
         return {key: definition for key, definition in found.items() if key not in there}
 
-    def included_file(self, file: Path, place: Place) -> dict[str, _Definition]:
-        resolved = _resolved(file)
-        if resolved in self.including:
-            chain = [path.name for path in self.including[self.including.index(resolved) :]]
-            what = f"files include each other: {' -> '.join([*chain, file.name])}"
-            self.problems.add(what, place, (), "Move what both need into a file of its own.")
-            return {}
-        if len(self.including) > MOST_LEVELS:
-            what = f"files include each other more than {MOST_LEVELS} levels deep"
-            self.problems.add(what, place)
-            return {}
-        if resolved not in self.included:
-            self.included[resolved] = {}
-            self.including.append(resolved)
-            try:
-                self.included[resolved] = self.definitions_of(file, place)
-            except DiagramError as error:
-                if error.problems is not self.problems.found:
-                    self.problems.take(error)
-            self.including.pop()
-        return self.included[resolved]
-
-    def definitions_of(self, file: Path, place: Place) -> dict[str, _Definition]:
-        text = load(file, place)
-        body = Body(self.problems, file.parent)
-        root = compose(text, file, self.problems)
-        entries = body.entries(root, "an included file", "'subsystems: {bearing: {...}}'")
-        if entries is None:
-            return {}
-        hint = "A file that is included holds subsystems only."
-        body.check_keys(entries, INCLUDED, "section of an included file", hint=hint)
-        if "libraries" in entries.values:
-            self.packages.read(entries.values["libraries"], body)
-        scope = _Scope(file, text)
-        own = self.define(entries, scope)
-        scope.definitions = own | self.include(entries, scope, body)
-        return own
-
-
-def _resolved(file: Path) -> Path:
-    try:
-        return file.resolve()
-    except (OSError, ValueError, RuntimeError):  # a path that no file can have
-        return file
+    def definitions_of(self, included: Included) -> dict[str, _Definition]:
+        """The subsystems of an included file."""
+        if included.file not in self.included:
+            scope = _Scope(included.file, included.text)
+            own = self.included[included.file] = self.define(included.entries, scope)
+            scope.definitions = own | self.include(included.entries, scope)
+        return self.included[included.file]
