@@ -9,11 +9,11 @@ from pathlib import Path
 from tracewire.diagram import Diagram
 from tracewire.errors import Place
 
-ELSEWHERE = {"place", "text", "library"}
+ELSEWHERE = {"place", "text", "library", "row", "counts"}
 
 
 def said(part: object) -> object:
-    """What a diagram, or a part of it, says: without places, texts and names of its files."""
+    """What a diagram, or a part of it, says: without places, texts, rows and names of its files."""
     if isinstance(part, Place):
         return None
     if isinstance(part, Diagram):

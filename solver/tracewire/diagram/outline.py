@@ -10,7 +10,7 @@ from tracewire.diagram.packages import Packages
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.sources import Sources
 from tracewire.diagram.strict import Entries, Items, Node, compose
-from tracewire.errors import DiagramError, OptionError, TracewireError, unknown
+from tracewire.errors import DiagramError, OptionError, Place, TracewireError, unknown
 from tracewire.formula import Number
 
 
@@ -45,7 +45,7 @@ class Outline:
         self.included = sources.all_included(own)
         self.definitions: dict[str, tuple[Diagram, Entries]] = {"": (diagram, root)}
         self._define("", diagram, root)
-        self.nodes = {id(inside): entries for inside, entries in self.definitions.values()}
+        self.nodes = {inside.place: entries for inside, entries in self.definitions.values()}
         self.uses = _count_uses(diagram)
 
     def _define(self, path: str, diagram: Diagram, entries: Entries) -> None:
@@ -77,6 +77,10 @@ class Outline:
         blocks = entries.values.get("blocks")
         if name not in inside.blocks or not isinstance(blocks, Entries):
             raise OptionError([unknown("block", name, inside.blocks)])
+        if row := inside.blocks[name].row:
+            what = f"block '{name}' is one of the row '{row}', which have one line"
+            hint = "Edit that line, or write the blocks out: tracewire show --text."
+            raise OptionError.one(what, inside.blocks[name].place, hint=hint)
         return inside, blocks, name
 
     def parameter(self, path: str) -> Spot:
@@ -87,8 +91,13 @@ class Outline:
         inside, entries, rest = self.top, self.root, path
         while "." in rest:
             head, _, rest = rest.partition(".")
-            use, line = inside.blocks[head], _part(entries, "blocks", head)
+            use = inside.blocks[head]
+            line = _part(entries, "blocks", use.row or head)
             assert isinstance(line, Entries)
+            if use.row and rest.partition(".")[0] not in getattr(use.subsystem, "blocks", ()):
+                what = f"'{path}' belongs to a block of the row '{use.row}', which have one line"
+                hint = "Make it a parameter of the diagram, and name that in the line."
+                raise OptionError.one(what, use.place, hint=hint)
             setting, index = split_index(rest)
             if setting in use.settings and use.subsystem is None:
                 node = line.values[setting]
@@ -99,7 +108,7 @@ class Outline:
                 return _given(rest, line.values[rest], value, use)
             assert use.subsystem is not None
             entries = self._entries(use.subsystem)
-            shared = self.uses[id(use.subsystem)] > 1
+            shared = self.uses[use.subsystem.place] > 1
             if rest in use.subsystem.parameters:
                 node = _part(entries, "parameters", rest)
                 return Spot(rest, node, value, value.factor, line if shared else None)
@@ -121,9 +130,9 @@ class Outline:
         return found
 
     def _entries(self, diagram: Diagram) -> Entries:
-        if id(diagram) not in self.nodes:
+        if diagram.place not in self.nodes:
             raise _elsewhere(diagram)
-        return self.nodes[id(diagram)]
+        return self.nodes[diagram.place]
 
 
 def _given(name: str, node: Node, value: Value, use: BlockUse) -> Spot:
@@ -159,20 +168,20 @@ def _elsewhere(diagram: Diagram) -> TracewireError:
     return OptionError.one(what, diagram.place, hint=hint)
 
 
-def _count_uses(top: Diagram) -> dict[int, int]:
-    """How many parts of the whole diagram are made from each definition, by the id of it."""
-    inner_first: dict[int, Diagram] = {}
+def _count_uses(top: Diagram) -> dict[Place, int]:
+    """How many parts of the whole diagram are made from each definition, by the place of it."""
+    inner_first: dict[Place, Diagram] = {}
 
     def visit(diagram: Diagram) -> None:
         for use in diagram.blocks.values():
-            if use.subsystem is not None and id(use.subsystem) not in inner_first:
+            if use.subsystem is not None and use.subsystem.place not in inner_first:
                 visit(use.subsystem)
-        inner_first[id(diagram)] = diagram
+        inner_first[diagram.place] = diagram
 
     visit(top)
-    counts = dict.fromkeys(inner_first, 0) | {id(top): 1}
+    counts = dict.fromkeys(inner_first, 0) | {top.place: 1}
     for diagram in reversed(inner_first.values()):
         for use in diagram.blocks.values():
             if use.subsystem is not None:
-                counts[id(use.subsystem)] += counts[id(diagram)]
+                counts[use.subsystem.place] += counts[diagram.place]
     return counts

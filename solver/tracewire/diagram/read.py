@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -16,6 +16,7 @@ from tracewire.diagram.packages import Packages, who_has
 from tracewire.diagram.problems import Problems, clip
 from tracewire.diagram.read_effect import read_effect
 from tracewire.diagram.read_scene import read_scene
+from tracewire.diagram.replicate import counts_of, numbers_of, replicated
 from tracewire.diagram.sections import (
     read_events,
     read_inputs,
@@ -121,25 +122,30 @@ def _readable(text: str, file: Path, library: Library, problems: Problems) -> Di
 
 @dataclass(eq=False)
 class _Scope:
-    """Where a diagram stands: its file, its path there, and the subsystems that it defines."""
+    """Where a diagram stands: its file, its path there, and the subsystems that it defines.
+
+    `numbers` are its parameters that are plain numbers, `counts` those that say how many blocks
+    there are.
+    """
 
     file: Path
     text: str
     path: str = ""
     parent: _Scope | None = None
     definitions: dict[str, _Definition] = field(default_factory=dict)
+    numbers: Mapping[str, float] = field(default_factory=dict)
+    counts: Collection[str] = ()
 
 
 @dataclass(eq=False)
 class _Definition:
-    """A subsystem that is read when it is first needed."""
+    """A subsystem that is read when it is first needed, once for each set of counts."""
 
     name: str
     key: Scalar
     node: Node
     scope: _Scope
-    is_read: bool = False
-    diagram: Diagram | None = None
+    diagrams: dict[tuple[tuple[str, float], ...], Diagram | None] = field(default_factory=dict)
 
 
 class _Reader:
@@ -160,8 +166,9 @@ class _Reader:
             return None
         body = Body(self.problems)
         body.required(entries, "blocks", "a diagram")
-        scope = _Scope(file, text)
+        scope = _Scope(file, text, numbers=numbers_of(entries), counts=counts_of(entries))
         scope.definitions = self.define(entries, scope) | self.include(entries, scope)
+        entries = replicated(entries, scope.numbers, body)
         base = self.common(entries, body, scope, file.stem, Place(str(file), 1, 1))
         diagram = self.with_settings(base, entries, body)
         self.finish(diagram, body)
@@ -198,8 +205,8 @@ class _Reader:
         """The sections that every diagram may have."""
         given = entries.values
 
-        def find(type_name: str, at: Place) -> Block | Diagram | None:
-            return self.find(type_name, scope, at)
+        def find(type_name: str, at: Place, line: Entries) -> Block | Diagram | None:
+            return self.find(type_name, scope, at, line)
 
         inputs = read_inputs(given["inputs"], body) if "inputs" in given else {}
         parameters = read_parameters(given["parameters"], body) if "parameters" in given else {}
@@ -222,18 +229,25 @@ class _Reader:
             subsystems=subsystems,
             events=read_events(given["events"], body) if "events" in given else (),
             place=place,
+            counts={name: scope.numbers[name] for name in scope.counts if name in scope.numbers},
         )
 
     def finish(self, diagram: Diagram, body: Body) -> None:
         """Check a diagram of which everything has been read."""
         check_names(diagram, body)
         check_parameters(diagram.parameters, self.problems)
+        for name in diagram.counts:
+            if diagram.parameters[name].fit is not None:
+                what = f"'{name}' says how many blocks there are, and a fit cannot change it"
+                self.problems.add(what, diagram.parameters[name].place, (), "Take 'fit' away.")
         self.sizes[id(diagram)] = sum(
             1 + (self.sizes[id(use.subsystem)] if use.subsystem else 0)
             for use in diagram.blocks.values()
         )
 
-    def find(self, type_name: str, scope: _Scope, place: Place) -> Block | Diagram | None:
+    def find(
+        self, type_name: str, scope: _Scope, place: Place, line: Entries
+    ) -> Block | Diagram | None:
         """The block or subsystem of a type, the nearest first; None with a problem noted."""
         visible: dict[str, _Definition] = {}
         around: _Scope | None = scope
@@ -257,7 +271,27 @@ class _Reader:
             what = f"subsystems stand inside each other more than {MOST_LEVELS} levels deep"
             self.problems.add(what, place)
             return None
-        return self.diagram(definition)
+        return self.diagram(definition, self.counts(definition, line, scope))
+
+    def counts(self, definition: _Definition, line: Entries, scope: _Scope) -> dict[str, float]:
+        """The counts that a line gives to the subsystem that it uses."""
+        found: dict[str, float] = {}
+        if not isinstance(definition.node, Entries):
+            return found
+        usual = numbers_of(definition.node)
+        for name in counts_of(definition.node).keys() & line.keys.keys():
+            node = line.values[name]
+            number = node.number if isinstance(node, Scalar) else None
+            if isinstance(node, Scalar) and node.text in scope.numbers:
+                number = scope.numbers[node.text]
+            if number is None:
+                what = (
+                    f"'{name}' is the count of a row, and must be a number or a parameter with one"
+                )
+                self.problems.add(what, node.place, (), "Write it without 'value' and formulas.")
+            elif number != usual.get(name):
+                found[name] = number
+        return found
 
     def unknown_type(self, type_name: str, visible: Iterable[str], place: Place) -> None:
         """Note a type that is neither block nor subsystem; a name of another tool is explained."""
@@ -270,10 +304,14 @@ class _Reader:
         else:
             self.problems.unknown("block type", type_name, [*visible, *self.library], place)
 
-    def diagram(self, definition: _Definition) -> Diagram | None:
+    def diagram(
+        self, definition: _Definition, counts: Mapping[str, float] | None = None
+    ) -> Diagram | None:
         """The diagram of a subsystem; None where it is none, or is just being read."""
-        if definition.is_read or definition in self.stack:
-            return definition.diagram
+        given = counts or {}
+        key = tuple(sorted(given.items()))
+        if key in definition.diagrams or definition in self.stack:
+            return definition.diagrams.get(key)
         self.stack.append(definition)
         outer = definition.scope
         path = f"{outer.path}.{definition.name}" if outer.path else definition.name
@@ -281,22 +319,25 @@ class _Reader:
         example = "{inputs: [u], outputs: {y: k}, blocks: {...}}"
         what = f"subsystem '{clip(definition.name)}'"
         entries = body.entries(definition.node, what, example)
+        diagram = None
         if entries is not None:
             misplaced = any(key in TOP and key not in INSIDE for key in entries.keys)
             hint = "Some sections belong to the top of the file only." if misplaced else ""
             body.check_keys(entries, INSIDE, "section of a subsystem", hint=hint)
-            scope = _Scope(outer.file, outer.text, path, outer)
+            numbers = {**numbers_of(entries), **given}
+            counted = counts_of(entries)
+            scope = _Scope(outer.file, outer.text, path, outer, numbers=numbers, counts=counted)
             scope.definitions = self.define(entries, scope)
+            entries = replicated(entries, numbers, body)
             place = body.place(definition.key)
             diagram = self.common(entries, body, scope, definition.name, place)
             if "effect" in entries.values:
                 effect = read_effect(entries.values["effect"], body, diagram)
                 diagram = replace(diagram, effect=effect)
             self.finish(diagram, body)
-            definition.diagram = diagram
-        definition.is_read = True
+        definition.diagrams[key] = diagram
         self.stack.pop()
-        return definition.diagram
+        return diagram
 
     def define(self, entries: Entries, scope: _Scope) -> dict[str, _Definition]:
         """The subsystems that stand in a diagram."""

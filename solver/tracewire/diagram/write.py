@@ -5,12 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from tracewire.diagram.body import Body
 from tracewire.diagram.diagram import Diagram
 from tracewire.diagram.edit_series import path_text
 from tracewire.diagram.layout import document
 from tracewire.diagram.packages import Packages
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.read import read_text
+from tracewire.diagram.replicate import numbers_of, replicated
 from tracewire.diagram.sources import Sources
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.errors import OptionError, Place
@@ -42,12 +44,14 @@ def write(diagram: Diagram, path: str | Path, overwrite: bool = False) -> Path:
 def written_out(diagram: Diagram) -> str:
     """The text of a diagram with what it extends, includes and replicates written out, as YAML.
 
-    Comments are left out. Raises OptionError: two files that it includes have subsystems of one
+    Rows inside subsystems keep `replicate`, since each use may give a count of its own. Comments
+    are left out. Raises OptionError: two files that it includes have subsystems of one
     name, each for itself; DiagramError: a file cannot be read any more.
     """
     sources = Sources(Packages(diagram.library, Problems()))
     root = sources.tree(diagram.text, diagram.file)
     assert root is not None
+    root = replicated(root, numbers_of(root), Body(sources.problems))
     subsystems = _all_subsystems(sources, root)
     values = {name: node for name, _, node in root if name not in ("include", "subsystems")}
     if subsystems:
