@@ -77,6 +77,15 @@ def test_an_example_is_a_diagram_of_the_gallery(part: str, file: str) -> None:
     assert example(part).splitlines() == [line for line in lines if not line.startswith("#")]
 
 
+def test_a_diagram_built_in_python_is_written_as_the_page_shows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    code = re.findall(r"```python\n(.*?)```", DIAGRAMS, re.DOTALL)[0]
+    exec(code, {})
+    assert Path("built_cart.yaml").read_text(encoding="utf-8") == example("# Built in Python.")
+
+
 def test_the_examples_are_a_diagram(tmp_path: Path) -> None:
     """All examples at once, with what they name beside them."""
     examples = dict(rows())

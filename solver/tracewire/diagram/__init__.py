@@ -1,5 +1,6 @@
 """Diagrams: from a YAML file to a checked description, and edits of its text."""
 
+from tracewire.diagram.builder import DiagramBuilder, Signal, SubsystemBuilder
 from tracewire.diagram.diagram import (
     Array,
     BlockUse,
@@ -65,6 +66,7 @@ __all__ = [
     "Condition",
     "Crosses",
     "Diagram",
+    "DiagramBuilder",
     "EffectType",
     "Event",
     "Format",
@@ -74,6 +76,8 @@ __all__ = [
     "ScenePart",
     "Series",
     "Shown",
+    "Signal",
+    "SubsystemBuilder",
     "Use",
     "Value",
     "Wire",

@@ -11,18 +11,9 @@ WIDTH = 100
 """The longest line that a mapping in braces may take; a longer one gets a line for each entry."""
 INDICATORS = "-?:,[]{}#&*!|>'\"%@`"
 ORDER = (
-    *(
-        "title",
-        "libraries",
-        "include",
-        "span",
-        "every",
-        "max_step",
-        "record",
-        "inputs",
-        "parameters",
-    ),
-    *("require", "subsystems", "blocks", "events", "presets", "measured", "scene"),
+    *("title", "libraries", "include", "span", "every", "max_step", "record", "effect", "inputs"),
+    *("outputs", "parameters", "require", "subsystems", "blocks", "events", "presets"),
+    *("measured", "scene"),
 )
 OPENED = ("parameters", "inputs", "blocks", "subsystems", "presets", "measured", "events", "scene")
 """Sections that have a line for each entry, however short they are."""
@@ -38,9 +29,9 @@ def _is_plain(text: str, flow: bool = True) -> bool:
     if not text or text != text.strip() or not text.isprintable():
         return False
     second = text[1:2].strip()
-    if text[0] in INDICATORS and not (text[0] in "-?:" and second and second not in INDICATORS):
+    if text[0] in INDICATORS and not (text[0] == "-" and second and second not in INDICATORS):
         return False
-    inside = flow and any(mark in text for mark in ",[]{}")
+    inside = flow and any(mark in text for mark in ",[]{}:?")
     return not inside and ": " not in text and " #" not in text and not text.endswith(":")
 
 
@@ -68,8 +59,12 @@ def _scalar(node: Scalar, flow: bool) -> str:
 
 def document(sections: Mapping[str, Node]) -> str:
     """A whole diagram: a line for each entry of a section, more lines where one gets too long."""
+    return "".join(f"{line}\n" for line in _sections(sections, 0))
+
+
+def _sections(sections: Mapping[str, Node], indent: int) -> list[str]:
     parts = {name: sections[name] for name in ORDER if name in sections}
-    return "".join(f"{line}\n" for line in _lines(parts, 0, OPENED))
+    return _lines(parts, indent, OPENED)
 
 
 def _lines(parts: Mapping[str, Node], indent: int, opened: tuple[str, ...] = ()) -> list[str]:
@@ -84,12 +79,13 @@ def _entry(begin: str, node: Node, indent: int, is_opened: bool) -> list[str]:
     if isinstance(node, Scalar):
         return [f"{begin} {_scalar(node, flow=False)}"]
     line = f"{begin} {inline(node)}"
+    if isinstance(node, Entries) and "blocks" in node.keys:  # a subsystem
+        return [begin, *_sections(node.values, indent + 2)]
     empty = not (node.items if isinstance(node, Items) else node.keys)
     if isinstance(node, Items) and all(isinstance(item, Scalar) for item in node.items):
         is_opened = False
     if empty or (len(line) <= WIDTH and not is_opened):
         return [line]
     if isinstance(node, Entries):
-        inner = OPENED if "blocks" in node.keys else ()
-        return [begin, *_lines(node.values, indent + 2, inner)]
+        return [begin, *_lines(node.values, indent + 2)]
     return [begin, *(f"{' ' * (indent + 2)}- {inline(item)}" for item in node.items)]
