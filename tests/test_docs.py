@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import ast
 import re
-from importlib import import_module
 from pathlib import Path
 
 import pytest
 from tracewire.compile import compile
-from tracewire.diagram import measured, read_effect, read_text
+from tracewire.diagram import definitions, measured, read_effect, read_text, sources
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -51,8 +50,7 @@ def test_links_of_the_pages_lead_to_files(page: Path) -> None:
 
 
 def test_every_section_and_key_is_on_the_page() -> None:
-    reader = import_module("tracewire.diagram.read")  # the function `read` hides its file
-    keys = {*reader.TOP, *reader.INSIDE, *measured.KEYS, *read_effect.KEYS}
+    keys = {*sources.TOP, *definitions.INSIDE, *measured.KEYS, *read_effect.KEYS}
     keys |= {"when", "crosses", "every", "offset", "set"}
     assert {key for key in keys if f"`{key}`" not in DIAGRAMS} == set()
 
@@ -75,6 +73,11 @@ def test_an_example_is_a_diagram_of_the_gallery(part: str, file: str) -> None:
     whole = (ROOT / "diagrams" / "gallery" / file).read_text(encoding="utf-8")
     lines = [line.split("  #")[0].rstrip() for line in whole.splitlines()]
     assert example(part).splitlines() == [line for line in lines if not line.startswith("#")]
+
+
+def test_the_example_of_variants_is_in_the_gallery() -> None:
+    whole = (ROOT / "diagrams/gallery/cart_with_variants.yaml").read_text(encoding="utf-8")
+    assert example("variants:") in whole
 
 
 def test_a_diagram_built_in_python_is_written_as_the_page_shows(

@@ -9,7 +9,7 @@ from pathlib import Path
 from tracewire.diagram import Diagram
 from tracewire.errors import Place
 
-ELSEWHERE = {"place", "text", "library", "row", "counts"}
+ELSEWHERE = {"place", "text", "library", "row", "counts", "variant", "variants"}
 
 
 def said(part: object) -> object:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from solve.models import LIMITS
 from tracewire.compile import compile
-from tracewire.diagram import read, read_text
+from tracewire.diagram import read, read_text, set_variants
 from tracewire.errors import SimulationError
 from tracewire.solve import Run, simulate
 
@@ -101,3 +101,19 @@ def test_the_count_of_a_row_is_no_setting_of_a_run() -> None:
     model = compile(read(GALLERY / "chain.yaml"))
     with pytest.raises(SimulationError, match=r"'n' says how many blocks there are: change it"):
         simulate(model, parameters={"n": 11})
+
+
+def test_each_variant_of_the_friction_brakes_the_cart_as_its_law_says() -> None:
+    """Dry friction takes 4*slip/k off each full swing; viscous friction exp(-c*T/(2*m)) of it."""
+    diagram = read(GALLERY / "cart_with_variants.yaml")
+    period = 2 * np.pi * np.sqrt(0.5 / 20)
+    dry = simulate(compile(diagram), span=(0, period), limits=LIMITS)
+    back = (period / 2 < dry.t) & (dry.t < period)  # it swings about -slip/k
+    exact = 0.155 * np.cos(np.sqrt(20 / 0.5) * (dry.t[back] - period)) - 0.3 / 20
+    assert dry["x"][back] == pytest.approx(exact, abs=2e-6)
+    other = set_variants(diagram, {"drag": "viscous"})
+    viscous = simulate(compile(other), limits=LIMITS)
+    decay, rate = 0.4 / (2 * 0.5), np.sqrt(20 / 0.5 - 0.4**2)
+    t = viscous.t
+    exact = 0.2 * np.exp(-decay * t) * (np.cos(rate * t) + decay / rate * np.sin(rate * t))
+    assert viscous["x"] == pytest.approx(exact, abs=1e-6)

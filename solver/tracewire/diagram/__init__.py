@@ -27,6 +27,7 @@ from tracewire.diagram.edit import (
     difference,
     remove_addend,
     set_values,
+    set_variants,
     written_units,
 )
 from tracewire.diagram.edit_own import add_own
@@ -109,6 +110,7 @@ __all__ = [
     "series_parts",
     "set_sensors",
     "set_values",
+    "set_variants",
     "shown_cycle",
     "signals",
     "split_index",

@@ -13,7 +13,7 @@ from tracewire.errors import FormulaError, Place
 from tracewire.formula import Unit, is_name, name_hint, read_unit
 
 Sees = Literal["parameter", "signal", "either"]
-OF_A_BLOCK = ("type", "unit", "label", "place", "guess", "replicate")
+OF_A_BLOCK = ("type", "unit", "label", "place", "guess", "replicate", "variant")
 
 
 @dataclass(frozen=True)

@@ -259,7 +259,8 @@ class Diagram:
     `file` and `text` are those of the file the diagram was read from; an edit of the diagram is an
     edit of that text. `library` holds the blocks that it may use. `effect`: a subsystem that may be
     tried as a missing effect, and how. `scene` says how it is drawn as a mechanism. `counts` are
-    the parameters that say how many blocks there are; a run cannot change them.
+    the parameters that say how many blocks there are; a run cannot change them. `variant`: which of
+    its bodies a subsystem has here, where it has several, which are `variants`.
     """
 
     name: str
@@ -284,6 +285,8 @@ class Diagram:
     effect: Effect | None = None
     scene: tuple[ScenePart, ...] = ()
     counts: Mapping[str, float] = field(default_factory=dict)
+    variant: str = ""
+    variants: tuple[str, ...] = ()
 
     def _repr_svg_(self) -> str:
         """The picture of the diagram, as a notebook shows it."""

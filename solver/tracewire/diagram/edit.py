@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping
 from tracewire.diagram.diagram import BlockUse, Diagram
 from tracewire.diagram.layout import inline, mapping_text
 from tracewire.diagram.outline import Outline
-from tracewire.diagram.override import localised, without_part
+from tracewire.diagram.override import localised, with_parts, without_part
 from tracewire.diagram.rewrite import digits, reread
 from tracewire.diagram.splice import (
     entry_after,
@@ -112,6 +112,22 @@ def set_values(diagram: Diagram, values: Mapping[str, float]) -> Diagram:
             scalar = node.values["value"] if isinstance(node, Entries) else node
             changes.append(replaced(scalar, number))
     return reread(diagram, changes)
+
+
+def set_variants(diagram: Diagram, variants: Mapping[str, str]) -> Diagram:
+    """The diagram with other bodies of subsystems: block -> variant. Raises OptionError."""
+    parts: dict[tuple[str, ...], str] = {}
+    for name, variant in variants.items():
+        use = diagram.blocks.get(name)
+        if use is None:
+            raise OptionError([unknown("block", name, diagram.blocks)])
+        known = use.subsystem.variants if use.subsystem is not None else ()
+        if not known:
+            raise OptionError.one(f"block '{name}' has no variants", use.place)
+        if variant not in known:
+            raise OptionError([unknown(f"variant of '{name}'", variant, known, use.place)])
+        parts["blocks", use.row or name, "variant"] = variant
+    return with_parts(diagram, parts)
 
 
 def written_units(diagram: Diagram, paths: Iterable[str]) -> dict[str, str]:

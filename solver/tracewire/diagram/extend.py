@@ -12,7 +12,7 @@ ADDED = ("include", "require", "events", "scene")
 """Lists without names: the entries of the changes come behind those of the base."""
 PORTS = ("inputs", "outputs")
 """Sections that may be lists of names as well as mappings."""
-NAMED = (*PORTS, "parameters", "blocks", "subsystems", "presets", "measured")
+NAMED = (*PORTS, "parameters", "blocks", "subsystems", "variants", "presets", "measured")
 MAIN = ("value", "count", "column")
 """What a mapping stands for where a single text is given in its place: `k: 3`, `x: angle`."""
 
@@ -24,6 +24,29 @@ def merged(base: Entries, own: Entries) -> Entries:
         new = _by_name(section, node)
         values[section] = _section(section, values[section], new) if section in values else new
     return replace(own, keys=base.keys | own.keys, values=values)
+
+
+def variants_of(entries: Entries) -> tuple[str, ...]:
+    """The names of the bodies of a subsystem that has several."""
+    given = entries.values.get("variants")
+    return tuple(given.keys) if isinstance(given, Entries) else ()
+
+
+def with_variant(entries: Entries, variant: str, problems: Problems) -> Entries:
+    """The sections of a subsystem with the changes that one of its variants makes."""
+    keys = {name: key for name, key in entries.keys.items() if name != "variants"}
+    plain = replace(entries, keys=keys, values={name: entries.values[name] for name in keys})
+    given = entries.values["variants"]
+    changes = given.values[variant] if isinstance(given, Entries) else given
+    if not isinstance(changes, Entries):
+        return plain
+    removed = changes.values.get("remove")
+    items = removed.items if isinstance(removed, Items) else () if removed is None else (removed,)
+    names = [item for item in items if isinstance(item, Scalar)]
+    own = {name: key for name, key in changes.keys.items() if name != "remove"}
+    changes = replace(changes, keys=own, values={name: changes.values[name] for name in own})
+    both = merged(without(plain, names, problems), changes)
+    return replace(both, place=entries.place, start=entries.start, end=entries.end)
 
 
 def _by_name(section: str, node: Node) -> Node:
@@ -57,7 +80,11 @@ def _section(section: str, old: Node, new: Node) -> Node:
 
 def _entry(section: str, old: Node, new: Node) -> Node:
     both = isinstance(old, Entries) and isinstance(new, Entries)
-    if section == "subsystems" and isinstance(old, Entries) and isinstance(new, Entries):
+    if (
+        section in ("subsystems", "variants")
+        and isinstance(old, Entries)
+        and isinstance(new, Entries)
+    ):
         return merged(old, new)
     if section == "blocks" and both and isinstance(new, Entries) and "type" in new.keys:
         return new

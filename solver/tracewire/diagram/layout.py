@@ -12,8 +12,8 @@ WIDTH = 100
 INDICATORS = "-?:,[]{}#&*!|>'\"%@`"
 ORDER = (
     *("title", "libraries", "include", "span", "every", "max_step", "record", "effect", "inputs"),
-    *("outputs", "parameters", "require", "subsystems", "blocks", "events", "presets"),
-    *("measured", "scene"),
+    *("outputs", "parameters", "require", "subsystems", "remove", "blocks", "variants", "events"),
+    *("presets", "measured", "scene"),
 )
 OPENED = ("parameters", "inputs", "blocks", "subsystems", "presets", "measured", "events", "scene")
 """Sections that have a line for each entry, however short they are."""
@@ -79,7 +79,7 @@ def _entry(begin: str, node: Node, indent: int, is_opened: bool) -> list[str]:
     if isinstance(node, Scalar):
         return [f"{begin} {_scalar(node, flow=False)}"]
     line = f"{begin} {inline(node)}"
-    if isinstance(node, Entries) and "blocks" in node.keys:  # a subsystem
+    if isinstance(node, Entries) and {"blocks", "variants"} & node.keys.keys():  # a subsystem
         return [begin, *_sections(node.values, indent + 2)]
     empty = not (node.items if isinstance(node, Items) else node.keys)
     if isinstance(node, Items) and all(isinstance(item, Scalar) for item in node.items):

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tracewire.diagram.diagram import BlockUse, Diagram, Value
+from tracewire.diagram.extend import with_variant
 from tracewire.diagram.names import find_parameter, parameters, split_index
 from tracewire.diagram.packages import Packages
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.sources import Sources
-from tracewire.diagram.strict import Entries, Items, Node, compose
+from tracewire.diagram.strict import Entries, Items, Node, Scalar, compose
 from tracewire.errors import DiagramError, OptionError, Place, TracewireError, unknown
 from tracewire.formula import Number
 
@@ -44,17 +45,22 @@ class Outline:
         self.root, self.own = root, own
         self.included = sources.all_included(own)
         self.definitions: dict[str, tuple[Diagram, Entries]] = {"": (diagram, root)}
+        self.nodes: dict[tuple[Place, str], Entries] = {(diagram.place, ""): root}
+        self.uses, self.used = _count_uses(diagram)
         self._define("", diagram, root)
-        self.nodes = {inside.place: entries for inside, entries in self.definitions.values()}
-        self.uses = _count_uses(diagram)
 
     def _define(self, path: str, diagram: Diagram, entries: Entries) -> None:
         subsystems = entries.values.get("subsystems")
         for name, _, node in subsystems if isinstance(subsystems, Entries) else ():
             if isinstance(node, Entries):
                 inner = f"{path}.{name}" if path else name
-                self.definitions[inner] = diagram.subsystems[name], node
-                self._define(inner, diagram.subsystems[name], node)
+                usual = diagram.subsystems[name]
+                known = self.used.get(usual.place, usual)  # the variant that is used, if one is
+                for variant in usual.variants or ("",):
+                    body = with_variant(node, variant, Problems()) if variant else node
+                    self.nodes[usual.place, variant] = body
+                self.definitions[inner] = known, self.nodes[usual.place, known.variant]
+                self._define(inner, known, self.definitions[inner][1])
 
     def block(self, path: str) -> tuple[Diagram, Entries, str]:
         """The diagram that a block stands in, the node of its `blocks`, and the block's name.
@@ -81,7 +87,9 @@ class Outline:
             what = f"block '{name}' is one of the row '{row}', which have one line"
             hint = "Edit that line, or write the blocks out: tracewire show --text."
             raise OptionError.one(what, inside.blocks[name].place, hint=hint)
-        return inside, blocks, name
+        holder = _holder(self.root, blocks.keys[name]) if inside.variant else blocks
+        assert holder is not None
+        return inside, holder, name
 
     def parameter(self, path: str) -> Spot:
         """Where the value of a parameter of a run is written. Raises OptionError."""
@@ -130,9 +138,9 @@ class Outline:
         return found
 
     def _entries(self, diagram: Diagram) -> Entries:
-        if diagram.place not in self.nodes:
+        if (diagram.place, diagram.variant) not in self.nodes:
             raise _elsewhere(diagram)
-        return self.nodes[diagram.place]
+        return self.nodes[diagram.place, diagram.variant]
 
 
 def _given(name: str, node: Node, value: Value, use: BlockUse) -> Spot:
@@ -148,6 +156,16 @@ def _part(entries: Entries, section: str, name: str) -> Node:
     node = entries.values[section]
     assert isinstance(node, Entries)
     return node.values[name]
+
+
+def _holder(inside: Node, key: Scalar) -> Entries | None:
+    """The mapping of the text in which a key stands: a variant has blocks of two."""
+    if not isinstance(inside, Entries):
+        return None
+    if inside.keys.get(key.text) is key:
+        return inside
+    found = (_holder(part, key) for part in inside.values.values())
+    return next((holder for holder in found if holder is not None), None)
 
 
 def _path(inside: Node, node: Node) -> tuple[str, ...] | None:
@@ -168,8 +186,8 @@ def _elsewhere(diagram: Diagram) -> TracewireError:
     return OptionError.one(what, diagram.place, hint=hint)
 
 
-def _count_uses(top: Diagram) -> dict[Place, int]:
-    """How many parts of the whole diagram are made from each definition, by the place of it."""
+def _count_uses(top: Diagram) -> tuple[dict[Place, int], dict[Place, Diagram]]:
+    """How many parts of the whole diagram are made from each definition, and one of them."""
     inner_first: dict[Place, Diagram] = {}
 
     def visit(diagram: Diagram) -> None:
@@ -184,4 +202,4 @@ def _count_uses(top: Diagram) -> dict[Place, int]:
         for use in diagram.blocks.values():
             if use.subsystem is not None:
                 counts[use.subsystem.place] += counts[diagram.place]
-    return counts
+    return counts, inner_first

@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 
 from tracewire.diagram.body import Body
 from tracewire.diagram.check import check_names
+from tracewire.diagram.definitions import (
+    USUAL,
+    Choice,
+    Definition,
+    Definitions,
+    Scope,
+)
 from tracewire.diagram.diagram import Diagram
 from tracewire.diagram.files import load
 from tracewire.diagram.loops import check_parameters
 from tracewire.diagram.measured import read_measured
-from tracewire.diagram.packages import Packages, who_has
-from tracewire.diagram.problems import Problems, clip
+from tracewire.diagram.packages import Packages
+from tracewire.diagram.problems import Problems
 from tracewire.diagram.read_effect import read_effect
 from tracewire.diagram.read_scene import read_scene
 from tracewire.diagram.replicate import counts_of, numbers_of, replicated
@@ -32,17 +39,13 @@ from tracewire.diagram.settings import (
     read_require,
     read_span,
 )
-from tracewire.diagram.sources import MOST_LEVELS, TOP, Included, Sources
-from tracewire.diagram.strict import Entries, Node, Scalar
+from tracewire.diagram.sources import MOST_LEVELS, Sources
+from tracewire.diagram.strict import Entries
 from tracewire.diagram.uses import read_blocks
 from tracewire.errors import DiagramError, Place, Problem
-from tracewire.formula import is_name, name_hint
-from tracewire.library import Block, Library, find_instead, find_synonym, load_library
+from tracewire.library import Block, Library, load_library
 
 MOST_BLOCKS = 100_000
-INSIDE = (
-    *("title", "inputs", "outputs", "parameters", "blocks", "subsystems", "events", "effect"),
-)
 
 
 def read(path: str | Path, libraries: Iterable[str | Path] = ()) -> Diagram:
@@ -120,40 +123,12 @@ def _readable(text: str, file: Path, library: Library, problems: Problems) -> Di
         return None
 
 
-@dataclass(eq=False)
-class _Scope:
-    """Where a diagram stands: its file, its path there, and the subsystems that it defines.
-
-    `numbers` are its parameters that are plain numbers, `counts` those that say how many blocks
-    there are.
-    """
-
-    file: Path
-    text: str
-    path: str = ""
-    parent: _Scope | None = None
-    definitions: dict[str, _Definition] = field(default_factory=dict)
-    numbers: Mapping[str, float] = field(default_factory=dict)
-    counts: Collection[str] = ()
-
-
-@dataclass(eq=False)
-class _Definition:
-    """A subsystem that is read when it is first needed, once for each set of counts."""
-
-    name: str
-    key: Scalar
-    node: Node
-    scope: _Scope
-    diagrams: dict[tuple[tuple[str, float], ...], Diagram | None] = field(default_factory=dict)
-
-
 class _Reader:
     def __init__(self, library: Library, problems: Problems) -> None:
         self.packages, self.problems = Packages(library, problems), problems
         self.sources = Sources(self.packages)
-        self.stack: list[_Definition] = []
-        self.included: dict[Path, dict[str, _Definition]] = {}
+        self.stack: list[Definition] = []
+        self.definitions = Definitions(self.sources)
         self.sizes: dict[int, int] = {}
 
     @property
@@ -166,8 +141,9 @@ class _Reader:
             return None
         body = Body(self.problems)
         body.required(entries, "blocks", "a diagram")
-        scope = _Scope(file, text, numbers=numbers_of(entries), counts=counts_of(entries))
-        scope.definitions = self.define(entries, scope) | self.include(entries, scope)
+        scope = Scope(file, text, numbers=numbers_of(entries), counts=counts_of(entries))
+        scope.definitions = self.definitions.define(entries, scope)
+        scope.definitions |= self.definitions.include(entries, scope)
         entries = replicated(entries, scope.numbers, body)
         base = self.common(entries, body, scope, file.stem, Place(str(file), 1, 1))
         diagram = self.with_settings(base, entries, body)
@@ -200,7 +176,7 @@ class _Reader:
         return diagram
 
     def common(
-        self, entries: Entries, body: Body, scope: _Scope, name: str, place: Place
+        self, entries: Entries, body: Body, scope: Scope, name: str, place: Place
     ) -> Diagram:
         """The sections that every diagram may have."""
         given = entries.values
@@ -216,6 +192,9 @@ class _Reader:
             for name, definition in scope.definitions.items()
             if (diagram := self.diagram(definition)) is not None
         }
+        for name, diagram in subsystems.items():
+            for variant in diagram.variants:  # what is wrong in one that nothing uses is told, too
+                self.diagram(scope.definitions[name], Choice(variant))
         return Diagram(
             name=name,
             file=scope.file,
@@ -246,11 +225,11 @@ class _Reader:
         )
 
     def find(
-        self, type_name: str, scope: _Scope, place: Place, line: Entries
+        self, type_name: str, scope: Scope, place: Place, line: Entries
     ) -> Block | Diagram | None:
         """The block or subsystem of a type, the nearest first; None with a problem noted."""
-        visible: dict[str, _Definition] = {}
-        around: _Scope | None = scope
+        visible: dict[str, Definition] = {}
+        around: Scope | None = scope
         while around is not None:
             visible = around.definitions | visible
             around = around.parent
@@ -260,7 +239,7 @@ class _Reader:
         if definition is None and type_name in self.library:
             return self.library[type_name]
         if definition is None:
-            self.unknown_type(type_name, visible, place)
+            self.definitions.unknown_type(type_name, visible, place)
             return None
         if definition in self.stack:
             chain = [open_.name for open_ in self.stack[self.stack.index(definition) :]]
@@ -271,113 +250,32 @@ class _Reader:
             what = f"subsystems stand inside each other more than {MOST_LEVELS} levels deep"
             self.problems.add(what, place)
             return None
-        return self.diagram(definition, self.counts(definition, line, scope))
+        choice = self.definitions.choice(definition, line, scope, place)
+        return None if choice is None else self.diagram(definition, choice)
 
-    def counts(self, definition: _Definition, line: Entries, scope: _Scope) -> dict[str, float]:
-        """The counts that a line gives to the subsystem that it uses."""
-        found: dict[str, float] = {}
-        if not isinstance(definition.node, Entries):
-            return found
-        usual = numbers_of(definition.node)
-        for name in counts_of(definition.node).keys() & line.keys.keys():
-            node = line.values[name]
-            number = node.number if isinstance(node, Scalar) else None
-            if isinstance(node, Scalar) and node.text in scope.numbers:
-                number = scope.numbers[node.text]
-            if number is None:
-                what = (
-                    f"'{name}' is the count of a row, and must be a number or a parameter with one"
-                )
-                self.problems.add(what, node.place, (), "Write it without 'value' and formulas.")
-            elif number != usual.get(name):
-                found[name] = number
-        return found
-
-    def unknown_type(self, type_name: str, visible: Iterable[str], place: Place) -> None:
-        """Note a type that is neither block nor subsystem; a name of another tool is explained."""
-        if self.packages.unknown(type_name, place) or self.problems.skips():
-            return
-        found = find_synonym(type_name, [*self.library])
-        hint = found[1] if found is not None else find_instead(type_name) or who_has(type_name)
-        if hint:
-            self.problems.add(f"unknown block type '{clip(type_name)}'", place, (), hint)
-        else:
-            self.problems.unknown("block type", type_name, [*visible, *self.library], place)
-
-    def diagram(
-        self, definition: _Definition, counts: Mapping[str, float] | None = None
-    ) -> Diagram | None:
+    def diagram(self, definition: Definition, choice: Choice = USUAL) -> Diagram | None:
         """The diagram of a subsystem; None where it is none, or is just being read."""
-        given = counts or {}
-        key = tuple(sorted(given.items()))
+        variant = choice.variant or next(iter(definition.variants), "")
+        key = (variant, *sorted(choice.counts.items()))
         if key in definition.diagrams or definition in self.stack:
             return definition.diagrams.get(key)
         self.stack.append(definition)
-        outer = definition.scope
-        path = f"{outer.path}.{definition.name}" if outer.path else definition.name
+        outer, path = definition.scope, definition.path
         body = Body(self.problems, path)
-        example = "{inputs: [u], outputs: {y: k}, blocks: {...}}"
-        what = f"subsystem '{clip(definition.name)}'"
-        entries = body.entries(definition.node, what, example)
+        entries = self.definitions.entries(definition, choice, body)
         diagram = None
         if entries is not None:
-            misplaced = any(key in TOP and key not in INSIDE for key in entries.keys)
-            hint = "Some sections belong to the top of the file only." if misplaced else ""
-            body.check_keys(entries, INSIDE, "section of a subsystem", hint=hint)
-            numbers = {**numbers_of(entries), **given}
+            numbers = {**numbers_of(entries), **choice.counts}
             counted = counts_of(entries)
-            scope = _Scope(outer.file, outer.text, path, outer, numbers=numbers, counts=counted)
-            scope.definitions = self.define(entries, scope)
+            scope = Scope(outer.file, outer.text, path, outer, numbers=numbers, counts=counted)
+            scope.definitions = self.definitions.define(entries, scope)
             entries = replicated(entries, numbers, body)
-            place = body.place(definition.key)
-            diagram = self.common(entries, body, scope, definition.name, place)
+            diagram = self.common(entries, body, scope, definition.name, body.place(definition.key))
             if "effect" in entries.values:
                 effect = read_effect(entries.values["effect"], body, diagram)
                 diagram = replace(diagram, effect=effect)
+            diagram = replace(diagram, variant=variant, variants=definition.variants)
             self.finish(diagram, body)
         definition.diagrams[key] = diagram
         self.stack.pop()
         return diagram
-
-    def define(self, entries: Entries, scope: _Scope) -> dict[str, _Definition]:
-        """The subsystems that stand in a diagram."""
-        found: dict[str, _Definition] = {}
-        node = entries.values.get("subsystems")
-        if node is None:
-            return found
-        body = Body(self.problems, scope.path)
-        example = "{bearing: {inputs: [rate], ...}}"
-        for name, key, inside in body.entries(node, "'subsystems'", example) or ():
-            place = body.place(key)
-            if not is_name(name):
-                what = f"'{clip(name)}' cannot be the name of a subsystem"
-                self.problems.add(what, place, (), name_hint(name))
-            elif name in self.library:
-                what = f"two definitions of '{name}': a subsystem here, and a block of the library"
-                self.problems.add(what, place, (), "Rename the subsystem.")
-            found[name] = _Definition(name, key, inside, scope)
-        return found
-
-    def include(self, entries: Entries, scope: _Scope) -> dict[str, _Definition]:
-        """The subsystems of the files that a file includes, but not of those that they include."""
-        found: dict[str, _Definition] = {}
-        own = entries.values.get("subsystems")
-        there = own.keys if isinstance(own, Entries) else {}
-        for name, included in self.sources.included(entries):
-            place = replace(name.place, block=scope.path)
-            for key, definition in self.definitions_of(included).items():
-                other = found.get(key)
-                if key in there or (other is not None and other is not definition):
-                    first = there[key].place if other is None else other.key.place
-                    what = f"two definitions of '{key}': one in '{name.text}', the other in {first}"
-                    self.problems.add(what, place, (), "Rename one.")
-                found[key] = definition
-        return {key: definition for key, definition in found.items() if key not in there}
-
-    def definitions_of(self, included: Included) -> dict[str, _Definition]:
-        """The subsystems of an included file."""
-        if included.file not in self.included:
-            scope = _Scope(included.file, included.text)
-            own = self.included[included.file] = self.define(included.entries, scope)
-            scope.definitions = own | self.include(included.entries, scope)
-        return self.included[included.file]

@@ -111,6 +111,11 @@ def read_settings(
 
 def _explain(diagram: Diagram, path: str, place: Place, body: Body) -> None:
     inside, head = diagram, path
+    if path.endswith(".variant"):
+        what = f"'{clip(path)}' is no parameter: a variant is chosen when the diagram is read"
+        hint = "Write variant: ... in the block, or in a diagram that extends this one."
+        body.problems.add(what, place, (), hint)
+        return
     while "." in head:
         name, _, rest = head.partition(".")
         use = inside.blocks.get(name)

@@ -64,6 +64,9 @@ def _read_block(name: str, key: Scalar, line: Node, body: Body, find: Find) -> B
             body.problems.add(what, place, (), hint)
     settings = _read_settings(entries, kind, parameters, body, name, place)
     inside = kind if isinstance(kind, Diagram) else None
+    if inside is None and "variant" in entries.values:
+        what = f"only a subsystem has variants, and '{clip(name)}' is a {type_name}"
+        body.problems.add(what, body.place(entries.keys["variant"], name), (), "Take it away.")
     guess = None
     if "guess" in entries.values:
         guess = _read_guess(entries.values["guess"], inside, body, name)
