@@ -18,7 +18,9 @@ def said(part: object) -> object:
         return None
     if isinstance(part, Diagram):
         given = {f.name: getattr(part, f.name) for f in fields(part) if f.name not in ELSEWHERE}
-        return said({k: v for k, v in given.items() if k not in ("file", "name", "subsystems")})
+        return said(
+            {k: v for k, v in given.items() if k not in ("file", "name", "subsystems", "sources")}
+        )
     if is_dataclass(part) and not isinstance(part, type):
         return type(part).__name__, said(
             {f.name: getattr(part, f.name) for f in fields(part) if f.name not in ELSEWHERE}

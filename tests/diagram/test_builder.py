@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import linecache
 import math
 from pathlib import Path
 from typing import Any
@@ -212,3 +213,40 @@ def test_a_series_and_an_effect(tmp_path: Path) -> None:
     effect = built.subsystems["late"].effect
     assert effect is not None and effect.coefficient == "c"
     assert "  late:  # tried by a trace\n" in built.text
+
+
+def test_a_subsystem_with_variants_and_a_row_of_it() -> None:
+    rig = DiagramBuilder()
+    law = rig.subsystem("law")
+    rate = law.input("rate")
+    law.output("force")
+    law.variant("viscous", comment="slow").block("force", "viscous", rate=rate, c=0.1)
+    law.variant("dry").block("force", "coulomb", rate=rate, level=0.2)
+    rig.block("v", "integrator", of="drag.last.force")
+    rig.block("drag", "law", rate="v", variant="dry", replicate=2)
+    assert (
+        rig.text
+        == """\
+subsystems:
+  law:
+    inputs: [rate]
+    outputs: [force]
+    variants:
+      viscous:  # slow
+        blocks:
+          force: {type: viscous, rate: rate, c: 0.1}
+      dry:
+        blocks:
+          force: {type: coulomb, rate: rate, level: 0.2}
+blocks:
+  v: {type: integrator, of: drag.last.force}
+  drag: {type: law, rate: v, variant: dry, replicate: 2}
+"""
+    )
+    inside = rig.build().blocks["drag_2"].subsystem
+    assert inside is not None and inside.variant == "dry"
+    law.variant("none").block("force", "gain", of="speed", k=0)
+    with pytest.raises(DiagramError, match=r"block 'law.force': unknown signal 'speed'") as error:
+        rig.build()
+    (line,) = line_of(error)
+    assert 'of="speed"' in linecache.getline(__file__, line)

@@ -195,6 +195,11 @@ MESSAGES = {
         INSIDE + "inputs: [u]\nblocks: {a: {type: line, wall: u}}\npresets: {long: {a.m: 9}}",
         "'a.m' says how many blocks there are, and a run cannot change it.",
     ),
+    "a count inside that is no parameter": (
+        INSIDE.replace("parameters: {m: 2}", "parameters: {}")
+        + "inputs: [u]\nblocks: {a: {type: line, wall: u, m: 4}}",
+        "block 'line.row': the count of a row must be a whole number from 1 to 10000, not m. Write",
+    ),
     "a formula for a count inside": (
         INSIDE + "inputs: [u]\nblocks: {a: {type: line, wall: u, m: 2*n}}",
         "'m' is the count of a row, and must be a number or a parameter with one. Write it without",

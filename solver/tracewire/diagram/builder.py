@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import TypeVar
 
 from tracewire.diagram.built import Data, Names, by_python, caller, node_of, text_of
 from tracewire.diagram.diagram import Diagram
 from tracewire.diagram.read import read_text
 from tracewire.errors import DiagramError, OptionError, Place, unknown
 from tracewire.formula import is_name, name_hint
+
+FREE_NAMES = ("presets", "measured", "variants")
+"""Sections whose names stand in no formula."""
+B = TypeVar("B", bound="BodyBuilder")
 
 
 class Signal(str):
@@ -36,7 +41,7 @@ class BodyBuilder:
         self._path = path
         self._places: dict[Names, Place] = {(): caller()}
         self._sections: dict[str, Data] = {}
-        self._inner: dict[str, SubsystemBuilder] = {}
+        self._inner: dict[tuple[str, str], BodyBuilder] = {}
         self._comments: dict[Names, str] = {}
 
     def parameter(
@@ -107,13 +112,16 @@ class BodyBuilder:
 
     def subsystem(self, name: str, *, comment: str = "") -> SubsystemBuilder:
         """A subsystem, to which inputs, parameters, blocks and outputs are then added."""
-        self._check("subsystems", name, self._inner)
-        path = ("subsystems", name)
-        self._inner[name] = SubsystemBuilder((*self._path, *path))
-        self._places[path] = caller()
+        return self._open("subsystems", name, comment, SubsystemBuilder)
+
+    def _open(self, section: str, name: str, comment: str, kind: type[B]) -> B:
+        """A part with a body of its own, under a name in a section."""
+        self._check(section, name, (known for within, known in self._inner if within == section))
+        inner = self._inner[section, name] = kind((*self._path, section, name))
+        self._places[section, name] = caller()
         if comment:
-            self._comments[path] = comment
-        return self._inner[name]
+            self._comments[section, name] = comment
+        return inner
 
     def _add(self, section: str, name: str, value: Data, comment: str) -> None:
         known = self._section(section)
@@ -133,7 +141,7 @@ class BodyBuilder:
             first = self._places[section, name]
             what = f"two definitions of '{name}' in '{section}': the other is in {first}"
             raise OptionError.one(what, caller(), hint="Rename one.")
-        if section != "presets" and section != "measured" and not is_name(name):
+        if section not in FREE_NAMES and not is_name(name):
             what = f"'{name}' cannot be a name in '{section}'"
             raise OptionError.one(what, caller(), hint=name_hint(name))
 
@@ -150,8 +158,9 @@ class BodyBuilder:
             ports: dict[str, Data] = found.get(section, {})
             if all(not given or given == name for name, given in ports.items()) and ports:
                 found[section] = list(ports)  # as a person would write it
-        inner = {name: part._data() for name, part in self._inner.items()}
-        return found | ({"subsystems": inner} if inner else {})
+        for (section, name), part in self._inner.items():
+            found[section] = {**found.get(section, {}), name: part._data()}
+        return found
 
     def _all_comments(self) -> dict[Names, str]:
         found = {(*self._path, *path): comment for path, comment in self._comments.items()}
@@ -172,6 +181,10 @@ class SubsystemBuilder(BodyBuilder):
     def output(self, name: str, signal: str = "") -> None:
         """An output: a signal of the subsystem, under this name. It is the name, unless given."""
         self._add("outputs", name, signal or name, "")
+
+    def variant(self, name: str, *, comment: str = "") -> BodyBuilder:
+        """One of several bodies, to which blocks, parameters and events are then added."""
+        return self._open("variants", name, comment, BodyBuilder)
 
     def effect(self, coefficient: str, inputs: Mapping[str, str], **more: Data) -> None:
         """Say how a trace may add the subsystem to a diagram."""

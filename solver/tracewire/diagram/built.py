@@ -93,7 +93,7 @@ def _lines_of(text: str) -> dict[Names, int]:
                 yield (*path, section, str(number)), item.place.line
             for name, inner, part in node if isinstance(node, Entries) else ():
                 yield (*path, section, name), inner.place.line
-                if section == "subsystems" and isinstance(part, Entries):
+                if section in ("subsystems", "variants") and isinstance(part, Entries):
                     yield from inside(part, (*path, section, name))
 
     root = compose(text, Path(), Problems()) if text.strip() else None

@@ -192,10 +192,12 @@ class Definitions:
         if not isinstance(definition.node, Entries):
             return found
         entries = definition.node
-        if known := definition.variants:
-            entries = with_variant(entries, variant or known[0], Problems())
+        if variants := definition.variants:
+            entries = with_variant(entries, variant or variants[0], Problems())
         usual = numbers_of(entries)
-        for name in counts_of(entries).keys() & line.keys.keys():
+        declared = entries.values.get("parameters")
+        known = declared.keys if isinstance(declared, Entries) else {}
+        for name in counts_of(entries).keys() & line.keys.keys() & known.keys():
             node = line.values[name]
             number = node.number if isinstance(node, Scalar) else None
             if isinstance(node, Scalar) and node.text in scope.numbers:

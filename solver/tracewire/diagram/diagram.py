@@ -260,7 +260,8 @@ class Diagram:
     edit of that text. `library` holds the blocks that it may use. `effect`: a subsystem that may be
     tried as a missing effect, and how. `scene` says how it is drawn as a mechanism. `counts` are
     the parameters that say how many blocks there are; a run cannot change them. `variant`: which of
-    its bodies a subsystem has here, where it has several, which are `variants`.
+    its bodies a subsystem has here, where it has several, which are `variants`. `sources` are the
+    other diagram files that it extends or includes.
     """
 
     name: str
@@ -287,6 +288,7 @@ class Diagram:
     counts: Mapping[str, float] = field(default_factory=dict)
     variant: str = ""
     variants: tuple[str, ...] = ()
+    sources: tuple[Path, ...] = ()
 
     def _repr_svg_(self) -> str:
         """The picture of the diagram, as a notebook shows it."""

@@ -147,6 +147,7 @@ class _Reader:
         entries = replicated(entries, scope.numbers, body)
         base = self.common(entries, body, scope, file.stem, Place(str(file), 1, 1))
         diagram = self.with_settings(base, entries, body)
+        diagram = replace(diagram, sources=self.sources.others)
         self.finish(diagram, body)
         if self.sizes[id(diagram)] > MOST_BLOCKS:
             what = f"the diagram has {self.sizes[id(diagram)]} blocks with those of its subsystems"

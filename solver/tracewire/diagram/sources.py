@@ -42,6 +42,13 @@ class Sources:
     files: dict[Path, Included | None] = field(default_factory=dict)
     including: list[Path] = field(default_factory=list)
     extending: list[Path] = field(default_factory=list)
+    extended: list[Path] = field(default_factory=list)
+
+    @property
+    def others(self) -> tuple[Path, ...]:
+        """The files that were read beside that of the diagram itself."""
+        included = (found.file for found in self.files.values() if found is not None)
+        return (*self.extended, *included)
 
     @property
     def problems(self) -> Problems:
@@ -98,6 +105,7 @@ class Sources:
         if len(self.extending) > MOST_LEVELS:
             what = f"diagrams extend each other more than {MOST_LEVELS} levels deep"
             raise DiagramError.one(what, place)
+        self.extended.append(target)
         found = self.tree(load(target, place), target)
         self.extending.pop()
         return found
