@@ -61,15 +61,44 @@ def rows() -> list[tuple[str, str]]:
     return re.findall(r"^\| `(\w+)` \|.*\| `(.+)` \|$", table, re.MULTILINE)
 
 
+def example(part: str) -> str:
+    """The first block of YAML on the page with this part."""
+    return next(
+        text for text in re.findall(r"```yaml\n(.*?)```", DIAGRAMS, re.DOTALL) if part in text
+    )
+
+
+@pytest.mark.parametrize(("part", "file"), [("extends: servo.yaml", "servo_without_friction.yaml")])
+def test_an_example_is_a_diagram_of_the_gallery(part: str, file: str) -> None:
+    whole = (ROOT / "diagrams" / "gallery" / file).read_text(encoding="utf-8")
+    lines = [line.split("  #")[0].rstrip() for line in whole.splitlines()]
+    assert example(part).splitlines() == [line for line in lines if not line.startswith("#")]
+
+
+def test_the_example_of_variants_is_in_the_gallery() -> None:
+    whole = (ROOT / "diagrams/gallery/cart_with_variants.yaml").read_text(encoding="utf-8")
+    assert example("variants:") in whole
+
+
+def test_a_diagram_built_in_python_is_written_as_the_page_shows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    code = re.findall(r"```python\n(.*?)```", DIAGRAMS, re.DOTALL)[0]
+    exec(code, {})
+    assert Path("built_cart.yaml").read_text(encoding="utf-8") == example("# Built in Python.")
+
+
 def test_the_examples_are_a_diagram(tmp_path: Path) -> None:
     """All examples at once, with what they name beside them."""
     examples = dict(rows())
-    del examples["include"], examples["measured"], examples["blocks"]
+    for elsewhere in ("include", "extends", "remove", "measured", "blocks"):
+        del examples[elsewhere]
     assert len(examples) == 12
     text = "\n".join(examples.values()).replace("{k:", "{m: 1, c: 1, limit: 1, k:")
     blocks = re.findall(r"blocks: \{(.+)\}", dict(rows())["blocks"])[0]
     text += f"\nblocks:\n  {blocks}\n  v: {{type: integrator, of: force}}\n"
     text += "  force: {type: expression, formula: F - k*x - c*v}\n"
-    table = re.findall(r"```yaml\n(.*?)```", DIAGRAMS, re.DOTALL)[0]
+    table = example("type: table")
     (tmp_path / "lift.csv").write_text("speed,force\n0,0\n1,2\n", encoding="utf-8")
     assert compile(read_text(text + table, tmp_path / "a.yaml")).flat.states

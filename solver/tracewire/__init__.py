@@ -29,7 +29,7 @@ if TYPE_CHECKING:
         sweep,
     )
     from tracewire.compile import Model, compile
-    from tracewire.diagram import Diagram, read, read_text, write
+    from tracewire.diagram import Diagram, DiagramBuilder, read, read_text, write
     from tracewire.draw import Drawing, draw
     from tracewire.errors import TracewireError
     from tracewire.fit import Fit, diagnose, fit, fminsearch, optimset, profile
@@ -53,6 +53,7 @@ __version__ = "0.1.0"
 __all__ = [
     "Block",
     "Diagram",
+    "DiagramBuilder",
     "Drawing",
     "Effect",
     "Fit",
@@ -115,7 +116,7 @@ ROOM_OF = {
     "analyse": "Plane bifurcation floquet growth_rate invariant_drift linearise lyapunov "
     "periodic_orbit scalogram section spectrum stability_chart steady_state sweep",
     "compile": "compile Model",
-    "diagram": "Diagram read read_text write",
+    "diagram": "Diagram DiagramBuilder read read_text write",
     "draw": "Drawing draw",
     "errors": "TracewireError",
     "fit": "Fit diagnose fit fminsearch optimset profile",

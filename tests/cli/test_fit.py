@@ -150,6 +150,19 @@ def test_apply_and_output_both_happen(call: Any, decay: Path) -> None:
     assert "+  rate: {value: 1.7," in patch.read_text(encoding="utf-8")
 
 
+def test_a_fit_is_applied_to_the_diagram_that_extends_another_one(call: Any, decay: Path) -> None:
+    base = decay.read_text(encoding="utf-8")
+    file = decay.with_name("warm.yaml")
+    file.write_text(f"extends: {decay.name}\ntitle: warm\n", encoding="utf-8")
+    data = call("fit", file, *QUICK, "--apply", "--json").data
+    assert data["written"] == [str(file)]
+    assert decay.read_text(encoding="utf-8") == base
+    lines = file.read_text(encoding="utf-8").splitlines()
+    assert lines[:3] == [f"extends: {decay.name}", "title: warm", "parameters:"]
+    assert lines[3].startswith("  rate: {value: 1.7") and "fit: [" in lines[3]
+    assert len(lines) == 5
+
+
 @pytest.mark.parametrize("ending", [".md", ".html"])
 def test_report_is_written_with_its_figure(call: Any, decay: Path, ending: str) -> None:
     report = decay.with_name(f"report{ending}")

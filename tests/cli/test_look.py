@@ -145,6 +145,18 @@ def test_show_source_is_python(call: Any, swing: Path) -> None:
     assert call("show", swing, "--source", "--json").data["source"].rstrip() == source.rstrip()
 
 
+def test_show_text_is_the_whole_diagram(call: Any, swing: Path) -> None:
+    file = swing.with_name("other.yaml")
+    file.write_text("extends: swing.yaml\ntitle: other\n", encoding="utf-8")
+    text = call("show", file, "--text").out
+    assert text.startswith("title: other\n") and "\nblocks:\n  theta: {type: integrator," in text
+    assert call("show", file, "--text", "--json").data["text"].rstrip() == text.rstrip()
+    whole = swing.with_name("whole.yaml")
+    whole.write_text(text, encoding="utf-8")
+    assert call("check", whole).out == call("check", file).out
+    assert "\nno problems" in call("check", file.parent).out
+
+
 def test_show_tree_goes_into_subsystems(call: Any, swing: Path) -> None:
     replaced(
         swing, "bearing: {type: dry_friction, rate: omega, slip: slip}", "bearing: {type: rub}"

@@ -108,6 +108,17 @@ def test_what_contradicts_is_told_with_both_ends(old: str, new: str, message: st
     assert HINT in first
 
 
+def test_a_row_of_blocks_is_told_once() -> None:
+    text = """
+inputs: {u: {unit: m}}
+blocks:
+  lag: {type: integrator, of: previous, unit: m, replicate: {count: 5, first: {of: u}}}
+"""
+    (only,) = told(text)
+    assert only.startswith("<text>:4:3: block 'lag_1': ")
+    assert "; so it is in 4 other blocks of this line. " in only
+
+
 def test_what_is_left_open_is_told_by_its_name() -> None:
     more = """
   nothing: {type: constant, value: 0}

@@ -19,8 +19,8 @@ def proposed(before: str) -> list[str]:
 
 
 def test_sections() -> None:
-    assert proposed("")[:3] == ["title", "span", "every"]
-    assert proposed("title: a\nre") == ["record", "require", "presets", "measured"]
+    assert proposed("")[:3] == ["title", "extends", "remove"]
+    assert proposed("title: a\nre") == ["remove", "record", "require", "presets", "measured"]
     assert "title" not in proposed("title: a\n")
     (span,) = complete("sp", LIBRARY)[:1]
     assert (span.insert, span.doc) == ("span: ", "Begin and end of a run in s: [0, 40].")

@@ -92,6 +92,49 @@ def test_a_subsystem_cannot_come_from_two_files(folder: Path) -> None:
     assert "two definitions of 'bearing'" in refused(own, folder / "top.yaml")
 
 
+MATERIALS = """
+parameters:
+  rho: {value: 7850, unit: kg/m^3}
+  weight: rho*g
+presets: {aluminium: {rho: 2700}}
+"""
+
+
+def test_parameters_and_presets_of_included_files_are_those_of_the_diagram(folder: Path) -> None:
+    (folder / "parts" / "materials.yaml").write_text(f"include: gravity.yaml{MATERIALS}")
+    (folder / "parts" / "gravity.yaml").write_text("parameters: {g: 9.81}\n")
+    text = TOP.replace("[parts/", "[parts/materials.yaml, parts/gravity.yaml, parts/")
+    text += "parameters: {c: weight/1000}\npresets: {heavy: {rho: 9000, c: 1}}\n"
+    diagram = read_text(text, folder / "top.yaml", library=LIBRARY)
+    assert list(diagram.parameters) == ["g", "rho", "weight", "c"]
+    assert diagram.parameters["rho"].unit == "kg/m^3"
+    assert diagram.parameters["rho"].place.file == str(folder / "parts" / "materials.yaml")
+    assert list(diagram.presets) == ["aluminium", "heavy"]
+    # a subsystem sees its own parameters only, those of its file not
+    part = folder / "parts" / "bearings.yaml"
+    part.write_text(PARTS.replace("c: c}", "c: rho}") + "parameters: {other: 1}")
+    told = refused(text, folder / "top.yaml")
+    assert "bearings.yaml:9:44: block 'bearing.drag': unknown parameter 'rho'" in told
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ("parameters: {k: 1}", "'k': one in 'parts/more.yaml', the other in {top}:4:14. Rename"),
+        ("presets: {p: {}}", "'p': one in 'parts/more.yaml', the other in {top}:5:11. Rename"),
+        ("parameters: [k]", "more.yaml:1:13: 'parameters' must be a mapping. Write it like {{k: 2"),
+        ("presets: {q: {z: 1}}", "more.yaml:1:15: unknown parameter 'z'; there are: b.c, k"),
+        ("parameters: {b: 1}", "block here, and a parameter in {more}:1:14. Parameters, blocks"),
+    ],
+)
+def test_messages_of_included_parameters(folder: Path, content: str, message: str) -> None:
+    more, top = folder / "parts" / "more.yaml", folder / "top.yaml"
+    more.write_text(content)
+    text = TOP.replace("[parts/", "[parts/more.yaml, parts/")
+    told = refused(f"{text}parameters: {{k: 1}}\npresets: {{p: {{k: 2}}}}\n", top)
+    assert message.format(more=more, top=top) in told
+
+
 def test_files_in_a_long_row_are_refused(tmp_path: Path) -> None:
     for i in range(40):
         (tmp_path / f"f{i}.yaml").write_text(f"include: f{i + 1}.yaml")

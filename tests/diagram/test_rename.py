@@ -187,3 +187,17 @@ def test_a_part_of_an_included_file_is_renamed_there(tmp_path: Path) -> None:
     for path in ("s", "s.x", "b.x"):
         with pytest.raises(OptionError, match="the subsystem 's' is defined in another file"):
             renamed(diagram, path, "y")
+
+
+@pytest.mark.parametrize(
+    ("file", "name", "words"),
+    [
+        ("servo_without_friction.yaml", "voltage", "extends another one"),
+        ("chain.yaml", "wall", "has rows of blocks (replicate)"),
+        ("cart_with_variants.yaml", "spring", "has variants"),
+    ],
+)
+def test_composed_diagrams_are_refused(file: str, name: str, words: str) -> None:
+    diagram = read(shipped("diagrams") / "gallery" / file)
+    with pytest.raises(OptionError, match=re.escape(f"rename takes no diagram that {words}")):
+        renamed(diagram, name, "another")

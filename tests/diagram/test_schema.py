@@ -61,7 +61,7 @@ def test_it_accepts_every_shipped_diagram() -> None:
 def test_it_accepts_every_section() -> None:
     whole = content_of(WHOLE)
     VALIDATOR.validate(whole)
-    assert set(whole) | {"include", "libraries"} == set(
+    assert set(whole) | {"include", "libraries", "extends", "remove"} == set(
         SCHEMA["definitions"]["diagram"]["properties"]
     )
 
@@ -129,7 +129,7 @@ def test_it_knows_types_ports_parameters_and_bounds() -> None:
         for one in SCHEMA["definitions"]["block"]["allOf"]
         if one["if"]["properties"]["type"]["const"] == "viscous"
     )
-    assert used["required"] == ["rate", "c"]
+    assert used["then"]["required"] == ["rate", "c"]
     assert used["properties"]["rate"]["description"].endswith("a wire")
     assert used["properties"]["c"]["allOf"][1]["minimum"] == 0
 

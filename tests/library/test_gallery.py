@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from solve.models import LIMITS
 from tracewire.compile import compile
-from tracewire.diagram import read
+from tracewire.diagram import read, read_text, set_variants
+from tracewire.errors import SimulationError
 from tracewire.solve import Run, simulate
 
 GALLERY = Path(__file__).parents[2] / "diagrams" / "gallery"
@@ -77,3 +78,42 @@ def test_the_car_and_its_trailer_take_up_what_the_clutch_passes() -> None:
     steps = np.diff(result.t) * (pushed[1:] + pushed[:-1]) / 2
     momentum = (1200 + 0.02 * 100 / 0.3**2) * result["speed"] + 300 * result["trailer.v"]
     assert momentum[-1] == pytest.approx(steps.sum(), rel=1e-3)
+
+
+def test_a_mode_of_the_chain_swings_as_one() -> None:
+    """x_i = a*sin(pi*i/(n + 1))*cos(w*t), w^2 = w2 + 4*k*sin(pi/(2*(n + 1)))^2 for a small a."""
+    text = """
+extends: chain.yaml
+remove: [chain.replicate.first.start]
+span: [0, 5]
+parameters: {n: 40}
+blocks: {chain: {start: 1e-4*sin(pi*index/(n + 1))}}
+"""
+    model = compile(read_text(text, GALLERY / "mode.yaml"))
+    result = simulate(model, limits=LIMITS, rtol=1e-9, atol=1e-14)
+    rate = np.sqrt(9.81 + 4 * 4 * np.sin(np.pi / 82) ** 2)
+    for i in (1, 2, 20, 40):
+        exact = 1e-4 * np.sin(np.pi * i / 41) * np.cos(rate * result.t)
+        assert result[f"chain_{i}.phi"] == pytest.approx(exact, abs=1e-11)
+
+
+def test_the_count_of_a_row_is_no_setting_of_a_run() -> None:
+    model = compile(read(GALLERY / "chain.yaml"))
+    with pytest.raises(SimulationError, match=r"'n' says how many blocks there are: change it"):
+        simulate(model, parameters={"n": 11})
+
+
+def test_each_variant_of_the_friction_brakes_the_cart_as_its_law_says() -> None:
+    """Dry friction takes 4*slip/k off each full swing; viscous friction exp(-c*T/(2*m)) of it."""
+    diagram = read(GALLERY / "cart_with_variants.yaml")
+    period = 2 * np.pi * np.sqrt(0.5 / 20)
+    dry = simulate(compile(diagram), span=(0, period), limits=LIMITS)
+    back = (period / 2 < dry.t) & (dry.t < period)  # it swings about -slip/k
+    exact = 0.155 * np.cos(np.sqrt(20 / 0.5) * (dry.t[back] - period)) - 0.3 / 20
+    assert dry["x"][back] == pytest.approx(exact, abs=2e-6)
+    other = set_variants(diagram, {"drag": "viscous"})
+    viscous = simulate(compile(other), limits=LIMITS)
+    decay, rate = 0.4 / (2 * 0.5), np.sqrt(20 / 0.5 - 0.4**2)
+    t = viscous.t
+    exact = 0.2 * np.exp(-decay * t) * (np.cos(rate * t) + decay / rate * np.sin(rate * t))
+    assert viscous["x"] == pytest.approx(exact, abs=1e-6)

@@ -234,6 +234,24 @@ def test_a_changed_file_that_the_diagram_names_is_noticed(service: Service, spri
     assert not service.answer("state", {"key": read["key"]})["fresh"]
 
 
+def test_a_diagram_that_extends_another_one_has_its_sliders(service: Service, spring: Path) -> None:
+    base = spring.with_name("base.yaml")
+    base.write_text(SPRING, encoding="utf-8")
+    read: Any = service.answer("read", {"text": f"extends: {base.name}\n"})
+    assert [p["name"] for p in read["parameters"]] == ["k", "start", "twice", "force", "c"]
+    assert {p["line"] for p in read["parameters"]} == {0}
+    put: Any = service.answer("put", {"key": read["key"], "parameters": {"k": 4.0}})
+    assert put["text"].startswith(f"extends: {base.name}\nparameters:\n  k: {{value: 4, unit: N/m")
+    assert service.answer("state", {"key": read["key"]})["fresh"]
+    os.utime(base, (1, 1))
+    assert not service.answer("state", {"key": read["key"]})["fresh"]
+
+
+def test_the_count_of_a_row_has_no_slider() -> None:
+    text = "parameters: {n: 2, c: 1}\nblocks: {x: {type: constant, value: c, replicate: n}}"
+    assert [s.name for s in sliders_of(compile(read_text(text)))] == ["c"]
+
+
 def test_a_page_for_a_class_changes_nothing(spring: Path) -> None:
     service = Service(spring, present=True)
     assert service.answer("read", {"text": SPRING})["problems"] == []

@@ -35,8 +35,8 @@ def check(
 
     Everything that is wrong is told at once, with file, line and column. Of each measured series
     it tells what is done to the data (-), and what is odd about them (!). A measured file that is
-    not there is a remark: the diagram can be run without. In a folder all files with `blocks:` are
-    checked.
+    not there is a remark: the diagram can be run without. In a folder all files with `blocks:` or
+    `extends:` are checked.
 
     \b
     Examples:
@@ -104,7 +104,7 @@ def _from_stdin(library: Sequence[str] | None) -> Model:
 
 
 def diagram_files(paths: Sequence[str]) -> list[str]:
-    """The files, and those of folders that have blocks. Raises OptionError."""
+    """The files, and the diagrams in folders. Raises OptionError."""
     found: list[str] = []
     for path in paths:
         if not Path(path).is_dir():
@@ -113,16 +113,16 @@ def diagram_files(paths: Sequence[str]) -> list[str]:
         inside = [
             str(file)
             for file in sorted(Path(path).rglob("*"))
-            if file.suffix in ENDINGS and _has_blocks(file)
+            if file.suffix in ENDINGS and _is_diagram(file)
         ]
         if not inside:
             what = f"there is no diagram in '{path}'"
-            hint = "A diagram is a file that ends in .yaml and has 'blocks:'."
+            hint = "A diagram is a file that ends in .yaml and has 'blocks:' or 'extends:'."
             raise OptionError([Problem(what, hint=hint)])
         found += inside
     return found
 
 
-def _has_blocks(file: Path) -> bool:
+def _is_diagram(file: Path) -> bool:
     text = file.read_text(encoding="utf-8", errors="replace")
-    return any(line.startswith("blocks:") for line in text.splitlines())
+    return any(line.startswith(("blocks:", "extends:")) for line in text.splitlines())

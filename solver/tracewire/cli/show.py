@@ -14,6 +14,9 @@ def show(
     diagram: DiagramPath,
     equations: Annotated[bool, typer.Option("--equations", help="The flat equations.")] = False,
     source: Annotated[bool, typer.Option("--source", help="The equations as Python.")] = False,
+    text: Annotated[
+        bool, typer.Option("--text", help="The diagram as one YAML text, all written out.")
+    ] = False,
     parameters: Annotated[bool, typer.Option("--parameters", help="The parameters.")] = False,
     tree: Annotated[bool, typer.Option("--tree", help="Blocks and subsystems.")] = False,
     library: Libraries = None,
@@ -28,17 +31,21 @@ def show(
     Examples:
       tracewire show pendulum.yaml --tree
       tracewire show pendulum.yaml --source > pendulum.py
+      tracewire show chain.yaml --text
     """
+    from tracewire.diagram import written_out
     from tracewire.show import summary
 
     model = load_model(diagram, library)
-    whole = not (equations or source or parameters or tree)
+    whole = not (equations or source or text or parameters or tree)
     if as_json:
         data = summary.overview(model)
         if equations:
             data["equations"] = model.equations.split("\n")
         if source:
             data["source"] = model.source
+        if text:
+            data["text"] = written_out(model.diagram)
         if tree:
             data["tree"] = summary.tree(model.diagram)
         print_json(data)
@@ -65,3 +72,5 @@ def show(
         print_text(model.equations)
     if source:
         print_text(model.source.rstrip("\n"))
+    if text:
+        print_text(written_out(model.diagram).rstrip("\n"))

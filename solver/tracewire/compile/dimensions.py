@@ -6,6 +6,8 @@ A signal or a state without a unit takes the one that its equations give it. A n
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from tracewire.compile.flat import Flat, FlatState
 from tracewire.errors import Place, Problem
 from tracewire.formula import (
@@ -63,7 +65,7 @@ class _Units:
             self.term(event.when)
             for name, formula in event.set.items():
                 self.same(name, formula, f"what '{event.name}' sets it to")
-        return self.found
+        return _told_once(self.found)
 
     def term(self, formula: Expression) -> Term | None:
         """The unit of a formula; what contradicts inside of it is noted."""
@@ -166,3 +168,21 @@ class _Units:
         """Where the diagram has a name; nowhere for an input."""
         tables = (self.flat.parameters, self.flat.blocks, self.states)
         return next((table[name].place for table in tables if name in table), Place())
+
+
+def _told_once(problems: list[Problem]) -> list[Problem]:
+    """The problems of a line that several blocks are made from, for the first of them only."""
+    blocks: dict[tuple[str, int, int], list[str]] = {}
+    for problem in problems:
+        at = problem.place
+        same = blocks.setdefault((at.file, at.line, at.column), [])
+        same += [] if at.block in same else [at.block]
+    found = []
+    for problem in problems:
+        at = problem.place
+        first, *others = blocks[at.file, at.line, at.column]
+        if at.block != first:
+            continue
+        also = f"; so it is in {len(others)} other blocks of this line" if others else ""
+        found.append(replace(problem, what=problem.what + also))
+    return found

@@ -172,6 +172,11 @@ class _Flattener:
         self, diagram: Diagram, path: str, definition: str, inputs: Mapping[str, Expression]
     ) -> None:
         scope = _Scope(diagram, path, inputs)
+        for name, count in diagram.counts.items():
+            hint = f"'{name}' says how many blocks there are: change it in the diagram."
+            for relation in (">=", "<="):  # formulas have no equality
+                fixed = Call(relation, (Name(path + name), Number(count)))
+                self.require.append(Condition(fixed, diagram.parameters[name].place, hint))
         for use in diagram.blocks.values():
             if use.subsystem is not None:
                 self.add_subsystem(use, use.subsystem, scope)

@@ -1,5 +1,6 @@
 """Diagrams: from a YAML file to a checked description, and edits of its text."""
 
+from tracewire.diagram.builder import DiagramBuilder, Signal, SubsystemBuilder
 from tracewire.diagram.complete import Proposal, complete, word_before
 from tracewire.diagram.diagram import (
     Array,
@@ -27,14 +28,13 @@ from tracewire.diagram.edit import (
     difference,
     remove_addend,
     set_values,
+    set_variants,
     written_units,
 )
 from tracewire.diagram.edit_own import add_own
 from tracewire.diagram.edit_sensors import add_sensor, sensor_numbers, set_sensors
 from tracewire.diagram.edit_series import (
-    mapping_text,
     path_text,
-    quoted,
     replace_series,
     series_parts,
     with_series_of,
@@ -51,6 +51,7 @@ from tracewire.diagram.names import (
     find_recorded,
     find_signal,
     find_state,
+    is_count,
     signals,
     split_index,
     state_names,
@@ -61,7 +62,8 @@ from tracewire.diagram.read import read, read_readable, read_readable_text, read
 from tracewire.diagram.rename import renamed
 from tracewire.diagram.rewire import add_to_drive, rewired
 from tracewire.diagram.schema import schema_of
-from tracewire.diagram.write import write
+from tracewire.diagram.write import write, written_out
+from tracewire.diagram.yaml_text import mapping_text, quoted
 
 __all__ = [
     "STDIN",
@@ -73,6 +75,7 @@ __all__ = [
     "Condition",
     "Crosses",
     "Diagram",
+    "DiagramBuilder",
     "EffectType",
     "Event",
     "Format",
@@ -83,6 +86,8 @@ __all__ = [
     "ScenePart",
     "Series",
     "Shown",
+    "Signal",
+    "SubsystemBuilder",
     "Use",
     "Value",
     "Wire",
@@ -100,6 +105,7 @@ __all__ = [
     "find_recorded",
     "find_signal",
     "find_state",
+    "is_count",
     "laid_out",
     "load_stdin",
     "load_text",
@@ -120,6 +126,7 @@ __all__ = [
     "series_parts",
     "set_sensors",
     "set_values",
+    "set_variants",
     "shown_cycle",
     "signals",
     "split_index",
@@ -130,5 +137,6 @@ __all__ = [
     "with_series_of",
     "word_before",
     "write",
+    "written_out",
     "written_units",
 ]

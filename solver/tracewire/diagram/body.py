@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Literal
 
 from tracewire.diagram.diagram import Shown
@@ -30,12 +29,10 @@ class Reference:
 class Body:
     """One diagram or subsystem while it is read.
 
-    `path` is the path of its definition, empty at the top of a file; `folder` is where files that
-    it names are looked for.
+    `path` is the path of its definition, empty at the top of a file.
     """
 
     problems: Problems
-    folder: Path
     path: str = ""
     references: list[Reference] = field(default_factory=list)
     resets: list[tuple[str, Place]] = field(default_factory=list)
@@ -62,7 +59,8 @@ class Body:
             self.problems.add(what, place, (), f"'{name}:' means something else on every block.")
         elif name in self.defined:
             other, where = self.defined[name]
-            what = f"two definitions of '{name}': {kind} here, and {other} in line {where.line}"
+            there = f"line {where.line}" if where.file == place.file else str(where)
+            what = f"two definitions of '{name}': {kind} here, and {other} in {there}"
             hint = "Parameters, blocks and inputs share their names: rename one."
             self.problems.add(what, place, (), hint)
         self.defined.setdefault(name, (kind, place))

@@ -46,6 +46,13 @@ def _explain(diagram: Diagram, reference: Reference, body: Body) -> None:
     head, _, port = name.partition(".")
     use = diagram.blocks.get(head)
     is_signal = find_signal(diagram, name) is not None
+    length = sum(use.row == head for use in diagram.blocks.values())
+    if length and sees != "parameter":
+        what = f"'{head}' is a row of {length} blocks, and '{shown}' is no signal"
+        end = f".{port}" if port else ""
+        hint = f"Name one, as in {head}.first{end}, {head}.last{end} or {head}_2{end}"
+        problems.add(what, place, (), f"{hint}; in a list {head}.all{end}.")
+        return
     if sees == "parameter" and (is_signal or name == "t"):
         what = f"'{shown}' is {'the time' if name == 't' else 'a signal'}, and a value is fixed"
         hint = "A value may use parameters only; for a formula of signals use an expression block."

@@ -80,7 +80,8 @@ class Shown:
 class BlockUse:
     """One block of a diagram: a library block, or a subsystem of the diagram (`subsystem`).
 
-    `guess` is the value of its outputs at which the search of an algebraic loop begins.
+    `guess` is the value of its outputs at which the search of an algebraic loop begins. `row` is
+    the name of the line with `replicate` that it comes from; empty where it has a line of its own.
     """
 
     name: str
@@ -93,6 +94,7 @@ class BlockUse:
     guess: Value | Array | None = None
     place: Place = Place()
     shown: Shown = Shown()
+    row: str = ""
 
 
 @dataclass(frozen=True)
@@ -256,7 +258,10 @@ class Diagram:
 
     `file` and `text` are those of the file the diagram was read from; an edit of the diagram is an
     edit of that text. `library` holds the blocks that it may use. `effect`: a subsystem that may be
-    tried as a missing effect, and how. `scene` says how it is drawn as a mechanism.
+    tried as a missing effect, and how. `scene` says how it is drawn as a mechanism. `counts` are
+    the parameters that say how many blocks there are; a run cannot change them. `variant`: which of
+    its bodies a subsystem has here, where it has several, which are `variants`. `sources` are the
+    other diagram files that it extends or includes.
     """
 
     name: str
@@ -280,6 +285,10 @@ class Diagram:
     place: Place = Place()
     effect: Effect | None = None
     scene: tuple[ScenePart, ...] = ()
+    counts: Mapping[str, float] = field(default_factory=dict)
+    variant: str = ""
+    variants: tuple[str, ...] = ()
+    sources: tuple[Path, ...] = ()
 
     def _repr_svg_(self) -> str:
         """The picture of the diagram, as a notebook shows it."""

@@ -13,9 +13,9 @@ from collections.abc import Iterable, Mapping
 
 from tracewire.diagram.diagram import BlockUse, Diagram
 from tracewire.diagram.outline import Outline
+from tracewire.diagram.override import localised, with_parts, without_part
 from tracewire.diagram.rewrite import digits, reread
 from tracewire.diagram.splice import (
-    end_of,
     entry_after,
     entry_last,
     item_last,
@@ -24,6 +24,7 @@ from tracewire.diagram.splice import (
     without_items,
 )
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
+from tracewire.diagram.yaml_text import inline, mapping_text
 from tracewire.errors import DiagramError, OptionError, unknown
 
 
@@ -37,8 +38,7 @@ def add_addend(
     block_line: what stands behind the name, such as `{type: viscous, rate: omega, c: 0}`.
     negative: the sum takes the output away.
     """
-    outline = Outline(diagram)
-    inside, blocks, name = outline.block(sum_name)
+    diagram, inside, blocks, name = _own_sum(diagram, sum_name)
     port, node = _addends(inside.blocks[name], inside, blocks)
     line = block_line.strip().removeprefix(f"{block_name}:").strip()
     text = diagram.text
@@ -58,8 +58,7 @@ def remove_addend(diagram: Diagram, sum_name: str, addend: str) -> Diagram:
 
     addend: the signal as the sum names it, without its sign, or its block.
     """
-    outline = Outline(diagram)
-    inside, blocks, name = outline.block(sum_name)
+    diagram, inside, blocks, name = _own_sum(diagram, sum_name)
     port, node = _addends(inside.blocks[name], inside, blocks)
     before = _signals(inside.blocks[name], port)
     taken = [i for i, s in enumerate(before) if addend in (s, s.partition(".")[0])]
@@ -76,7 +75,12 @@ def remove_addend(diagram: Diagram, sum_name: str, addend: str) -> Diagram:
     new = reread(diagram, wires)
     if block in blocks.keys:
         with contextlib.suppress(DiagramError):  # it stays where something else reads it
-            new = reread(diagram, [*wires, without_entry(diagram.text, blocks, block)])
+            if blocks.keys[block].place.file == str(diagram.file):
+                new = reread(diagram, [*wires, without_entry(diagram.text, blocks, block)])
+            else:
+                outline = Outline(new)
+                path = (*outline.path(outline.block(sum_name)[1]), block)
+                new = without_part(new, ".".join(path))
     _expect(new, sum_name, port, kept)
     return new
 
@@ -90,6 +94,9 @@ def set_values(diagram: Diagram, values: Mapping[str, float]) -> Diagram:
     written into the block, not into the definition.
     """
     outline = Outline(diagram)
+    spots = [outline.parameter(path) for path in values]
+    diagram = localised(diagram, outline, (spot.into or spot.node for spot in spots))
+    outline = Outline(diagram)
     changes = []
     for path, value in values.items():
         if not math.isfinite(value):
@@ -99,12 +106,28 @@ def set_values(diagram: Diagram, values: Mapping[str, float]) -> Diagram:
         number = digits(value / spot.factor, low / spot.factor, high / spot.factor)
         node = spot.node
         if spot.into is not None:  # the definition is shared: a copy of its value goes to the use
-            copy = _copy(diagram.text, node, number)
+            copy = _copy(node, number)
             changes.append(entry_last(diagram.text, spot.into, spot.name, copy))
         else:
             scalar = node.values["value"] if isinstance(node, Entries) else node
             changes.append(replaced(scalar, number))
     return reread(diagram, changes)
+
+
+def set_variants(diagram: Diagram, variants: Mapping[str, str]) -> Diagram:
+    """The diagram with other bodies of subsystems: block -> variant. Raises OptionError."""
+    parts: dict[tuple[str, ...], str] = {}
+    for name, variant in variants.items():
+        use = diagram.blocks.get(name)
+        if use is None:
+            raise OptionError([unknown("block", name, diagram.blocks)])
+        known = use.subsystem.variants if use.subsystem is not None else ()
+        if not known:
+            raise OptionError.one(f"block '{name}' has no variants", use.place)
+        if variant not in known:
+            raise OptionError([unknown(f"variant of '{name}'", variant, known, use.place)])
+        parts["blocks", use.row or name, "variant"] = variant
+    return with_parts(diagram, parts)
 
 
 def written_units(diagram: Diagram, paths: Iterable[str]) -> dict[str, str]:
@@ -125,13 +148,12 @@ def written_units(diagram: Diagram, paths: Iterable[str]) -> dict[str, str]:
     return found
 
 
-def _copy(text: str, node: Node, number: str) -> str:
+def _copy(node: Node, number: str) -> str:
     """The text of a value with another number, on one line."""
     if not isinstance(node, Entries):
         return number
-    parts = {name: text[part.start : end_of(part)] for name, _, part in node}
-    parts["value"] = number
-    return "{" + ", ".join(f"{name}: {part}" for name, part in parts.items()) + "}"
+    parts = {name: inline(part) for name, _, part in node}
+    return mapping_text({**parts, "value": number})
 
 
 def difference(old: Diagram, new: Diagram) -> str:
@@ -157,6 +179,15 @@ def _addends(use: BlockUse, inside: Diagram, blocks: Entries) -> tuple[str, Node
         what = f"block '{use.name}' is a {use.type}, and has no input for several signals"
         raise OptionError.one(what, use.place, hint="Name a sum.")
     return many[0], line.values[many[0]]
+
+
+def _own_sum(diagram: Diagram, sum_name: str) -> tuple[Diagram, Diagram, Entries, str]:
+    """The diagram with the inputs of a sum in its own text, and where the sum stands."""
+    outline = Outline(diagram)
+    inside, blocks, name = outline.block(sum_name)
+    _, node = _addends(inside.blocks[name], inside, blocks)
+    diagram = localised(diagram, outline, [node])
+    return diagram, *Outline(diagram).block(sum_name)
 
 
 def _signals(use: BlockUse, port: str) -> list[str]:

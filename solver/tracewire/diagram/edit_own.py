@@ -7,9 +7,10 @@ from collections.abc import Mapping
 from tracewire.diagram.diagram import Diagram
 from tracewire.diagram.names import find_parameter, parameters
 from tracewire.diagram.outline import Outline
+from tracewire.diagram.override import with_parts
 from tracewire.diagram.rewrite import bounds, digits, reread
 from tracewire.diagram.splice import entry_last
-from tracewire.diagram.strict import Entries
+from tracewire.diagram.strict import Entries, Node
 from tracewire.errors import OptionError, unknown
 
 
@@ -25,7 +26,9 @@ def add_own(
     OptionError: a series does not exist.
     """
     changes = []
-    root = Outline(diagram).root
+    parts: dict[tuple[str, ...], str] = {}
+    outline = Outline(diagram)
+    root = outline.root
     for series, own in values.items():
         if series not in diagram.measured:
             raise OptionError([unknown("measured series", series, diagram.measured)])
@@ -34,17 +37,20 @@ def add_own(
             inner = node.values[key]
             assert isinstance(inner, Entries)
             node = inner
-        parts = {
+        texts = {
             path: _text(value, _factor(diagram, path), (fit or {}).get(path))
             for path, value in own.items()
         }
-        text = ", ".join(f"{path}: {number}" for path, number in parts.items())
         given = node.values.get("parameters")
-        if isinstance(given, Entries) and given.keys:
-            changes += [entry_last(diagram.text, given, path, n) for path, n in parts.items()]
+        parts_of_series: tuple[Node, ...] = (node, *node.keys.values())
+        if not all(map(outline.is_own, parts_of_series)):
+            parts |= {("measured", series, "parameters", p): text for p, text in texts.items()}
+        elif isinstance(given, Entries) and given.keys:
+            changes += [entry_last(diagram.text, given, path, n) for path, n in texts.items()]
         else:
+            text = ", ".join(f"{path}: {number}" for path, number in texts.items())
             changes.append(entry_last(diagram.text, node, "parameters", f"{{{text}}}"))
-    return reread(diagram, changes)
+    return with_parts(reread(diagram, changes), parts)
 
 
 def _text(value: float, factor: float, fit: tuple[float, float] | None) -> str:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from tracewire.data import column_unit
 from tracewire.diagram.diagram import Diagram, Series, Value
 from tracewire.diagram.names import find_recorded
 from tracewire.diagram.outline import Outline
+from tracewire.diagram.override import localised
 from tracewire.diagram.rewrite import bounds, digits, reread
 from tracewire.diagram.splice import Change, entry_last, replaced
 from tracewire.diagram.strict import Entries, Node, Scalar
@@ -41,6 +42,9 @@ def add_sensor(
     if full is None or not having:
         measured = {name for series in diagram.measured.values() for name in series.channels}
         raise OptionError([unknown("measured signal", signal, measured)])
+    outline = Outline(diagram)
+    nodes = [_channel(diagram, outline.root, series, full) for series in having]
+    diagram = localised(diagram, outline, nodes)
     root = Outline(diagram).root
     changes = []
     for series in having:
@@ -57,12 +61,28 @@ def set_sensors(diagram: Diagram, values: Mapping[str, float]) -> Diagram:
     gets it, in the unit that its text has. `harmonic.phase@run_1` is the value of a parameter in
     one series, under its `parameters`.
     """
-    root = Outline(diagram).root
+    outline = Outline(diagram)
+    nodes = [node for node, _ in _numbers(diagram, outline.root, values)]
+    diagram = localised(diagram, outline, nodes)
     changes = []
+    for node, number in _numbers(diagram, Outline(diagram).root, values):
+        if not isinstance(node, Entries):
+            changes.append(replaced(node, number))
+        elif "value" in node.values:
+            changes.append(replaced(node.values["value"], number))
+        else:
+            changes.append(entry_last(diagram.text, node, "value", number))
+    return reread(diagram, changes)
+
+
+def _numbers(
+    diagram: Diagram, root: Entries, values: Mapping[str, float]
+) -> Iterator[tuple[Node, str]]:
+    """The text of each number of a sensor or of a series, and what it becomes."""
     for path, value in values.items():
         parameter, of_series, name = path.partition("@")
         if of_series:
-            changes.append(_own(diagram, root, parameter, name, value))
+            yield _own(diagram, root, parameter, name, value)
             continue
         kind, _, signal = path.partition(".")
         for series in diagram.measured.values():
@@ -72,20 +92,15 @@ def set_sensors(diagram: Diagram, values: Mapping[str, float]) -> Diagram:
                 continue
             node = _channel(diagram, root, series, signal)
             assert isinstance(node, Entries)
-            entry = node.values[kind]
-            assert isinstance(entry, Entries)
             factor = _factor_of(known, kind, series, signal)
             low, high = (end / known.factor for end in known.fit)  # as the text has them
-            number = digits(value / factor, low, high)
-            if "value" in entry.values:
-                changes.append(replaced(entry.values["value"], number))
-            else:
-                changes.append(entry_last(diagram.text, entry, "value", number))
-    return reread(diagram, changes)
+            yield node.values[kind], digits(value / factor, low, high)
 
 
-def _own(diagram: Diagram, root: Entries, parameter: str, series: str, value: float) -> Change:
-    """The text of a parameter's value in one series."""
+def _own(
+    diagram: Diagram, root: Entries, parameter: str, series: str, value: float
+) -> tuple[Node, str]:
+    """The text of a parameter's value in one series, and what it becomes."""
     if series not in diagram.measured:
         raise OptionError([unknown("measured series", series, diagram.measured)])
     given = diagram.measured[series].parameters
@@ -96,10 +111,9 @@ def _own(diagram: Diagram, root: Entries, parameter: str, series: str, value: fl
         inner = node.values[key]
         assert isinstance(inner, Entries)
         node = inner
-    written = node.values[parameter]
     low, high = known.fit or (-math.inf, math.inf)
     number = digits(value / known.factor, low / known.factor, high / known.factor)
-    return replaced(written.values["value"] if isinstance(written, Entries) else written, number)
+    return node.values[parameter], number
 
 
 def sensor_numbers(

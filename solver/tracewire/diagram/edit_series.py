@@ -2,47 +2,41 @@
 
 from __future__ import annotations
 
-import json
 import os
-import re
 from collections.abc import Collection, Mapping
 from pathlib import Path
 
 from tracewire.diagram.diagram import Diagram
 from tracewire.diagram.edit_sensors import add_sensor, sensor_numbers, set_sensors
 from tracewire.diagram.outline import Outline
+from tracewire.diagram.override import without_part
+from tracewire.diagram.problems import Problems
 from tracewire.diagram.rewrite import reread
-from tracewire.diagram.splice import Change, end_of, entry_last, replaced, without_entry
-from tracewire.diagram.strict import Entries, Items, Node, Scalar
+from tracewire.diagram.splice import Change, changed, end_of, entry_last, replaced, without_entry
+from tracewire.diagram.strict import Entries, Node, compose
+from tracewire.diagram.yaml_text import inline, quoted
 
 SECTION = "measured"
-PLAIN = re.compile(r"(?:[^\W\d]|[/.]\w)(?:[\w./*^+-]|-(?!\s))*")
-"""What needs no quotes between braces."""
-
-
-def quoted(text: str) -> str:
-    """A text as YAML has it: plain where it can be, else in quotes."""
-    return text if PLAIN.fullmatch(text) else json.dumps(text, ensure_ascii=False)
-
-
-def mapping_text(parts: Mapping[str, str]) -> str:
-    """`{key: value, ...}` of values that are YAML."""
-    return "{" + ", ".join(f"{quoted(key)}: {value}" for key, value in parts.items()) + "}"
 
 
 def series_parts(diagram: Diagram, series: str, without: Collection[str] = ()) -> dict[str, str]:
     """The keys of a series in the text, each with its value on one line."""
-    node: Node = Outline(diagram).root
+    outline = Outline(diagram)
+    node: Node = outline.root
     for key in (SECTION, series):
         assert isinstance(node, Entries)
         node = node.values[key]
     assert isinstance(node, Entries)
-    return {key: _on_one_line(diagram.text, part) for key, _, part in node if key not in without}
+    parts = {key: inline(part) for key, _, part in node if key not in without}
+    if "file" in parts and not outline.is_own(node.values["file"]):
+        parts["file"] = quoted(path_text(diagram.measured[series].file, diagram.file.parent))
+    return parts
 
 
 def replace_series(diagram: Diagram, series: Mapping[str, str]) -> Diagram:
     """The diagram with other measured series: name -> mapping as YAML on one line."""
-    text, root = diagram.text, Outline(diagram).root
+    diagram = _without_extended(diagram)
+    text, root = diagram.text, Outline(diagram).own
     given = root.values.get(SECTION)
     ending = "\r\n" if "\r\n" in text else "\n"
     lines = [f"{quoted(name)}: {line}" for name, line in series.items()]
@@ -70,8 +64,11 @@ def with_series_of(edited: Diagram, original: Diagram, target: Path | None = Non
     if edited.measured == original.measured:
         return edited
     numbers = sensor_numbers(edited)
-    root, own = Outline(edited).root, Outline(original).root
-    if SECTION not in own.values:
+    outline, own = Outline(edited), Outline(original).own
+    root = outline.own
+    if _is_extended(original):
+        new = _with_sections_of(edited, original)
+    elif SECTION not in own.values:
         if numbers:
             return _moved(edited, root, target or original.file)
         new = reread(edited, [without_entry(edited.text, root, SECTION)])
@@ -79,9 +76,10 @@ def with_series_of(edited: Diagram, original: Diagram, target: Path | None = Non
         return (
             reread(new, [Change(len(new.text.rstrip("\r\n")), len(new.text), "")]) if short else new
         )
-    section = own.values[SECTION]
-    text = original.text[section.start : end_of(section)]
-    new = reread(edited, [replaced(root.values[SECTION], text)])
+    else:
+        section = own.values[SECTION]
+        text = original.text[section.start : end_of(section)]
+        new = reread(edited, [replaced(root.values[SECTION], text)])
     known = sensor_numbers(original)
     measured = {signal for series in original.measured.values() for signal in series.channels}
     for path, (value, fit) in numbers.items():
@@ -90,6 +88,41 @@ def with_series_of(edited: Diagram, original: Diagram, target: Path | None = Non
             new = add_sensor(new, signal, kind, value, fit)
     changed = {path: value for path, (value, fit) in numbers.items() if path in known and fit}
     return set_sensors(new, changed)
+
+
+def _is_extended(diagram: Diagram) -> bool:
+    """Whether a series, or a part of one, stands in a file that the diagram extends."""
+    outline = Outline(diagram)
+    section = outline.root.values.get(SECTION)
+    inside = [] if not isinstance(section, Entries) else [*section.values.values()]
+    keys = [key for node in inside if isinstance(node, Entries) for key in node.keys.values()]
+    return not all(map(outline.is_own, keys))
+
+
+def _without_extended(diagram: Diagram) -> Diagram:
+    """The diagram without the series of the files that it extends, and without changes of them."""
+    if not _is_extended(diagram):
+        return diagram
+    outline = Outline(diagram)
+    if SECTION in outline.own.values:
+        change = without_entry(diagram.text, outline.own, SECTION)
+        diagram = reread(diagram, [change])
+    return without_part(diagram, SECTION)
+
+
+def _with_sections_of(edited: Diagram, original: Diagram) -> Diagram:
+    """The edited diagram, its series and what it removes as the text of the original has them."""
+    text, own = edited.text, Outline(original).own
+    for section in (SECTION, "remove"):
+        root = compose(text, edited.file, Problems())
+        assert isinstance(root, Entries)
+        if section in root.values:
+            text = changed(text, [without_entry(text, root, section)])
+        if section in own.values:
+            part = original.text[own.keys[section].start : end_of(own.values[section])]
+            ending = "\r\n" if "\r\n" in text else "\n"
+            text += ("" if text.endswith("\n") else ending) + part + ending
+    return reread(edited, [Change(0, len(edited.text), text)])
 
 
 def _moved(diagram: Diagram, root: Entries, target: Path) -> Diagram:
@@ -108,14 +141,3 @@ def path_text(file: Path, folder: Path) -> str:
     """The path of a file as a diagram in this folder names it: relative where it lies below."""
     full, base = Path(os.path.abspath(file)), Path(os.path.abspath(folder))
     return (full.relative_to(base) if full.is_relative_to(base) else full).as_posix()
-
-
-def _on_one_line(text: str, node: Node) -> str:
-    if isinstance(node, Entries):
-        return mapping_text({key: _on_one_line(text, part) for key, _, part in node})
-    if isinstance(node, Items):
-        return "[" + ", ".join(_on_one_line(text, item) for item in node.items) + "]"
-    assert isinstance(node, Scalar)
-    if node.style in ("'", '"') or node.number is not None:
-        return text[node.start : node.end]
-    return quoted(node.text)

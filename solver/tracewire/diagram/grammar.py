@@ -13,6 +13,7 @@ from tracewire.data import STEPS, Option
 from tracewire.diagram.diagram import Crosses, Hold, Use
 from tracewire.diagram.scene_kinds import COLORS, KINDS, Kind
 from tracewire.diagram.shapes import (
+    Anything,
     Either,
     Formula,
     Key,
@@ -65,6 +66,12 @@ EVENT = {
         required=True,
     ),
 }
+CHANGED = ("parameters", "blocks", "subsystems", "events")
+ROW = {
+    "count": Key(Either((Number(), TEXT)), "How many blocks there are.", required=True),
+    "first": Key(Anything(), "What the first block has in place of what the line says."),
+    "last": Key(Anything(), "The same of the last block."),
+}
 OF_A_BLOCK = {
     "type": Key(Text(), "A block of the library, or a subsystem of the diagram.", required=True),
     "unit": Key(UNIT, "The unit of the signal, in which it is printed and drawn."),
@@ -74,6 +81,10 @@ OF_A_BLOCK = {
         "Of a sum: the signals by which a trace tries effects there, {q: theta, v: omega}.",
     ),
     "guess": Key(Either((FIXED, Listed(FIXED))), "Where the search of an algebraic loop begins."),
+    "replicate": Key(
+        Either((Number(), TEXT, Record(ROW))), "The line stands for so many blocks in a row."
+    ),
+    "variant": Key(TEXT, "Which of its variants a subsystem has here; the first unless given."),
 }
 SHAPE = {
     "at": Key(Listed(Number(), alone=True), "The values that a trace tries first.", required=True),
@@ -231,8 +242,19 @@ _LIBRARIES = Key(
 )
 _INCLUDE = Key(Listed(TEXT, alone=True), "Files with further subsystems.")
 
+_PRESETS = Key(Mapped(Mapped(FIXED, "parameter")), "Named values of parameters: {free: {c: 0}}.")
+_EFFECT = Key(Record(EFFECT), "How a trace may add this subsystem as a missing effect.")
+VARIANT = {
+    "remove": Key(Listed(TEXT, alone=True), "What is taken away of the blocks above."),
+    **{name: Key(Anything(), "What is added or changed.") for name in CHANGED},
+    "effect": _EFFECT,
+}
 TOP = {  # in the order in which `format` puts them
     "title": _TITLE,
+    "extends": Key(TEXT, "The diagram that this one changes: a file, relative to this one."),
+    "remove": Key(
+        Listed(TEXT, alone=True), "What is taken away of the diagram that is extended: [friction]."
+    ),
     "span": Key(Listed(FIXED, count=2), "Begin and end of a run in s: [0, 40]."),
     "every": Key(FIXED, "The time between samples in s."),
     "max_step": Key(FIXED, "The longest step of a run in s."),
@@ -249,9 +271,7 @@ TOP = {  # in the order in which `format` puts them
     "blocks": Key(_BLOCKS.shape, _BLOCKS.doc, required=True),
     "events": _EVENTS,
     "subsystems": _SUBSYSTEMS,
-    "presets": Key(
-        Mapped(Mapped(FIXED, "parameter")), "Named values of parameters: {free: {c: 0}}."
-    ),
+    "presets": _PRESETS,
     "measured": Key(
         Mapped(Record(SERIES, some=("signals", "inputs"))), "Measured series, by name."
     ),
@@ -271,12 +291,18 @@ INSIDE = {
     "blocks": _BLOCKS,
     "events": _EVENTS,
     "subsystems": _SUBSYSTEMS,
-    "effect": Key(Record(EFFECT), "How a trace may add this subsystem as a missing effect."),
+    "effect": _EFFECT,
+    "variants": Key(
+        Mapped(Record(VARIANT)),
+        "Several bodies, each a change of the blocks above, of which a use chooses one.",
+    ),
 }
 INCLUDED = {
     "title": _TITLE,
     "libraries": _LIBRARIES,
     "include": _INCLUDE,
+    "parameters": _PARAMETERS,
+    "presets": _PRESETS,
     "subsystems": _SUBSYSTEMS,
 }
 

@@ -8,7 +8,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from tracewire.diagram.edit_series import PLAIN
 from tracewire.diagram.grammar import TOP
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.strict import NUMBER, Entries, Items, Node, Scalar, compose
@@ -17,7 +16,7 @@ from tracewire.errors import DiagramError, Place
 STEP = 2  # blanks for each level
 BEFORE_COMMENT = 2
 MARK = "\ufeff"
-BARE = re.compile(f"-?(?:{PLAIN.pattern})")
+BARE = re.compile(r"-?(?:[^\W\d]|[/.]\w)(?:[\w./*^+-]|-(?!\s))*")
 """What needs no quotes, the wire with a minus among it."""
 OTHER_MEANING = re.compile("(?:y|n|yes|no|on|off|true|false|null|none)", re.IGNORECASE)
 """Words that other readers of YAML do not take for texts; their quotes stay."""

@@ -95,10 +95,9 @@ class _Series:
 
     def file(self) -> Path | None:
         node = self.body.required(self.entries, "file", self.what)
-        text = None if node is None else self.body.text(node, "'file'")
-        if node is None or text is None:
+        if node is None or self.body.text(node, "'file'") is None or not isinstance(node, Scalar):
             return None
-        path = self.body.folder / text
+        path = node.path
         problem = problem_of(path, self.body.place(node))
         if problem is not None and not is_absent(path):  # without data a diagram can still be run
             hint = problem.hint or "The path is relative to the diagram's file."

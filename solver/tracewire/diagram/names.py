@@ -189,6 +189,15 @@ def find_parameter(diagram: Diagram, path: str) -> Value | None:
     return find_parameter(use.subsystem, rest)
 
 
+def is_count(diagram: Diagram, path: str) -> bool:
+    """Whether a parameter, by its path, says how many blocks there are."""
+    head, _, rest = path.partition(".")
+    if not rest:
+        return head in diagram.counts
+    inside = diagram.blocks[head].subsystem if head in diagram.blocks else None
+    return inside is not None and is_count(inside, rest)
+
+
 def parameters(diagram: Diagram) -> list[str]:
     """The parameters of a diagram, and those one level down."""
     found = list(diagram.parameters)

@@ -5,10 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tracewire.diagram.diagram import BlockUse, Diagram, Value
+from tracewire.diagram.extend import with_variant
 from tracewire.diagram.names import find_parameter, parameters, split_index
+from tracewire.diagram.packages import Packages
 from tracewire.diagram.problems import Problems
-from tracewire.diagram.strict import Entries, Items, Node, compose
-from tracewire.errors import DiagramError, OptionError, TracewireError, unknown
+from tracewire.diagram.sources import Sources
+from tracewire.diagram.strict import Entries, Items, Node, Scalar, compose
+from tracewire.errors import DiagramError, OptionError, Place, TracewireError, unknown
 from tracewire.formula import Number
 
 
@@ -27,26 +30,37 @@ class Spot:
 
 
 class Outline:
-    """The nodes of a diagram's text, found by the names of its parts."""
+    """The nodes of a diagram, found by the names of its parts.
+
+    `root` has those of the files that it extends and includes, too; `own` those of its text only.
+    """
 
     def __init__(self, diagram: Diagram) -> None:
         self.top = diagram
-        root = compose(diagram.text, diagram.file, Problems())
-        if not isinstance(root, Entries):
-            raise DiagramError.one("a diagram must be a mapping", root.place)
-        self.root = root
+        own = compose(diagram.text, diagram.file, Problems())
+        sources = Sources(Packages(diagram.library, Problems()))
+        root = sources.tree(diagram.text, diagram.file)
+        if not isinstance(own, Entries) or root is None:
+            raise DiagramError.one("a diagram must be a mapping", own.place)
+        self.root, self.own = root, own
+        self.included = sources.all_included(own)
         self.definitions: dict[str, tuple[Diagram, Entries]] = {"": (diagram, root)}
+        self.nodes: dict[tuple[Place, str], Entries] = {(diagram.place, ""): root}
+        self.uses, self.used = _count_uses(diagram)
         self._define("", diagram, root)
-        self.nodes = {id(inside): entries for inside, entries in self.definitions.values()}
-        self.uses = _count_uses(diagram)
 
     def _define(self, path: str, diagram: Diagram, entries: Entries) -> None:
         subsystems = entries.values.get("subsystems")
         for name, _, node in subsystems if isinstance(subsystems, Entries) else ():
             if isinstance(node, Entries):
                 inner = f"{path}.{name}" if path else name
-                self.definitions[inner] = diagram.subsystems[name], node
-                self._define(inner, diagram.subsystems[name], node)
+                usual = diagram.subsystems[name]
+                known = self.used.get(usual.place, usual)  # the variant that is used, if one is
+                for variant in usual.variants or ("",):
+                    body = with_variant(node, variant, Problems()) if variant else node
+                    self.nodes[usual.place, variant] = body
+                self.definitions[inner] = known, self.nodes[usual.place, known.variant]
+                self._define(inner, known, self.definitions[inner][1])
 
     def block(self, path: str) -> tuple[Diagram, Entries, str]:
         """The diagram that a block stands in, the node of its `blocks`, and the block's name.
@@ -69,7 +83,13 @@ class Outline:
         blocks = entries.values.get("blocks")
         if name not in inside.blocks or not isinstance(blocks, Entries):
             raise OptionError([unknown("block", name, inside.blocks)])
-        return inside, blocks, name
+        if row := inside.blocks[name].row:
+            what = f"block '{name}' is one of the row '{row}', which have one line"
+            hint = "Edit that line, or write the blocks out: tracewire show --text."
+            raise OptionError.one(what, inside.blocks[name].place, hint=hint)
+        holder = _holder(self.root, blocks.keys[name]) if inside.variant else blocks
+        assert holder is not None
+        return inside, holder, name
 
     def parameter(self, path: str) -> Spot:
         """Where the value of a parameter of a run is written. Raises OptionError."""
@@ -79,8 +99,13 @@ class Outline:
         inside, entries, rest = self.top, self.root, path
         while "." in rest:
             head, _, rest = rest.partition(".")
-            use, line = inside.blocks[head], _part(entries, "blocks", head)
+            use = inside.blocks[head]
+            line = _part(entries, "blocks", use.row or head)
             assert isinstance(line, Entries)
+            if use.row and rest.partition(".")[0] not in getattr(use.subsystem, "blocks", ()):
+                what = f"'{path}' belongs to a block of the row '{use.row}', which have one line"
+                hint = "Make it a parameter of the diagram, and name that in the line."
+                raise OptionError.one(what, use.place, hint=hint)
             setting, index = split_index(rest)
             if setting in use.settings and use.subsystem is None:
                 node = line.values[setting]
@@ -91,7 +116,7 @@ class Outline:
                 return _given(rest, line.values[rest], value, use)
             assert use.subsystem is not None
             entries = self._entries(use.subsystem)
-            shared = self.uses[id(use.subsystem)] > 1
+            shared = self.uses[use.subsystem.place] > 1
             if rest in use.subsystem.parameters:
                 node = _part(entries, "parameters", rest)
                 return Spot(rest, node, value, value.factor, line if shared else None)
@@ -102,10 +127,20 @@ class Outline:
             inside = use.subsystem
         return Spot(rest, _part(entries, "parameters", rest), value, value.factor)
 
+    def is_own(self, node: Node) -> bool:
+        """Whether a node stands in the diagram's own text."""
+        return node.place.file == str(self.top.file)
+
+    def path(self, node: Node) -> tuple[str, ...]:
+        """The names that lead to a node from the top of the text on, or to the list around it."""
+        found = _path(self.root, node)
+        assert found is not None
+        return found
+
     def _entries(self, diagram: Diagram) -> Entries:
-        if id(diagram) not in self.nodes:
+        if (diagram.place, diagram.variant) not in self.nodes:
             raise elsewhere(diagram)
-        return self.nodes[id(diagram)]
+        return self.nodes[diagram.place, diagram.variant]
 
 
 def _given(name: str, node: Node, value: Value, use: BlockUse) -> Spot:
@@ -123,6 +158,28 @@ def _part(entries: Entries, section: str, name: str) -> Node:
     return node.values[name]
 
 
+def _holder(inside: Node, key: Scalar) -> Entries | None:
+    """The mapping of the text in which a key stands: a variant has blocks of two."""
+    if not isinstance(inside, Entries):
+        return None
+    if inside.keys.get(key.text) is key:
+        return inside
+    found = (_holder(part, key) for part in inside.values.values())
+    return next((holder for holder in found if holder is not None), None)
+
+
+def _path(inside: Node, node: Node) -> tuple[str, ...] | None:
+    if inside is node:
+        return ()
+    if isinstance(inside, Items):
+        return () if any(_path(item, node) is not None for item in inside.items) else None
+    for name, _, part in inside if isinstance(inside, Entries) else ():
+        rest = _path(part, node)
+        if rest is not None:
+            return (name, *rest)
+    return None
+
+
 def elsewhere(diagram: Diagram) -> TracewireError:
     """The error of an edit of a subsystem that stands in a file which is included."""
     what = f"the subsystem '{diagram.name}' is defined in another file"
@@ -130,20 +187,20 @@ def elsewhere(diagram: Diagram) -> TracewireError:
     return OptionError.one(what, diagram.place, hint=hint)
 
 
-def _count_uses(top: Diagram) -> dict[int, int]:
-    """How many parts of the whole diagram are made from each definition, by the id of it."""
-    inner_first: dict[int, Diagram] = {}
+def _count_uses(top: Diagram) -> tuple[dict[Place, int], dict[Place, Diagram]]:
+    """How many parts of the whole diagram are made from each definition, and one of them."""
+    inner_first: dict[Place, Diagram] = {}
 
     def visit(diagram: Diagram) -> None:
         for use in diagram.blocks.values():
-            if use.subsystem is not None and id(use.subsystem) not in inner_first:
+            if use.subsystem is not None and use.subsystem.place not in inner_first:
                 visit(use.subsystem)
-        inner_first[id(diagram)] = diagram
+        inner_first[diagram.place] = diagram
 
     visit(top)
-    counts = dict.fromkeys(inner_first, 0) | {id(top): 1}
+    counts = dict.fromkeys(inner_first, 0) | {top.place: 1}
     for diagram in reversed(inner_first.values()):
         for use in diagram.blocks.values():
             if use.subsystem is not None:
-                counts[id(use.subsystem)] += counts[id(diagram)]
-    return counts
+                counts[use.subsystem.place] += counts[diagram.place]
+    return counts, inner_first

@@ -3,20 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 
 from tracewire.diagram.body import Body
 from tracewire.diagram.check import check_names
+from tracewire.diagram.definitions import (
+    USUAL,
+    Choice,
+    Definition,
+    Definitions,
+    Scope,
+)
 from tracewire.diagram.diagram import Diagram
 from tracewire.diagram.files import load
-from tracewire.diagram.grammar import INCLUDED, INSIDE, TOP
 from tracewire.diagram.loops import check_parameters
 from tracewire.diagram.measured import read_measured
-from tracewire.diagram.packages import Packages, who_has
-from tracewire.diagram.problems import Problems, clip
+from tracewire.diagram.packages import Packages
+from tracewire.diagram.problems import Problems
 from tracewire.diagram.read_effect import read_effect
 from tracewire.diagram.read_scene import read_scene
+from tracewire.diagram.replicate import counts_of, numbers_of, replicated
 from tracewire.diagram.sections import (
     read_events,
     read_inputs,
@@ -32,13 +39,12 @@ from tracewire.diagram.settings import (
     read_require,
     read_span,
 )
-from tracewire.diagram.strict import Entries, Node, Scalar, compose
+from tracewire.diagram.sources import MOST_LEVELS, Sources
+from tracewire.diagram.strict import Entries
 from tracewire.diagram.uses import read_blocks
 from tracewire.errors import DiagramError, Place, Problem
-from tracewire.formula import is_name, name_hint
-from tracewire.library import Block, Library, find_instead, find_synonym, load_library
+from tracewire.library import Block, Library, load_library
 
-MOST_LEVELS = 30
 MOST_BLOCKS = 100_000
 
 
@@ -117,35 +123,12 @@ def _readable(text: str, file: Path, library: Library, problems: Problems) -> Di
         return None
 
 
-@dataclass(eq=False)
-class _Scope:
-    """Where a diagram stands: its file, its path there, and the subsystems that it defines."""
-
-    file: Path
-    text: str
-    path: str = ""
-    parent: _Scope | None = None
-    definitions: dict[str, _Definition] = field(default_factory=dict)
-
-
-@dataclass(eq=False)
-class _Definition:
-    """A subsystem that is read when it is first needed."""
-
-    name: str
-    key: Scalar
-    node: Node
-    scope: _Scope
-    is_read: bool = False
-    diagram: Diagram | None = None
-
-
 class _Reader:
     def __init__(self, library: Library, problems: Problems) -> None:
         self.packages, self.problems = Packages(library, problems), problems
-        self.stack: list[_Definition] = []
-        self.including: list[Path] = []
-        self.included: dict[Path, dict[str, _Definition]] = {}
+        self.sources = Sources(self.packages)
+        self.stack: list[Definition] = []
+        self.definitions = Definitions(self.sources)
         self.sizes: dict[int, int] = {}
 
     @property
@@ -153,25 +136,18 @@ class _Reader:
         return self.packages.library
 
     def top(self, text: str, file: Path) -> Diagram | None:
-        root = compose(text, file, self.problems)
-        body = Body(self.problems, file.parent)
-        entries = body.entries(root, "a diagram", "'blocks: {column: {type: gain, ...}}'")
+        entries = self.sources.tree(text, file)
         if entries is None:
             return None
-        hint = ""
-        if "outputs" in entries.keys:
-            hint = "It belongs to a subsystem; 'record' names what is kept of a run."
-        elif "effect" in entries.keys:
-            hint = "It belongs to a subsystem, which a trace may then add to the diagram."
-        body.check_keys(entries, TOP, "section", hint=hint)
+        body = Body(self.problems)
         body.required(entries, "blocks", "a diagram")
-        scope = _Scope(file, text)
-        self.including = [_resolved(file)]
-        if "libraries" in entries.values:
-            self.packages.read(entries.values["libraries"], body)
-        scope.definitions = self.define(entries, scope) | self.include(entries, scope, body)
+        scope = Scope(file, text, numbers=numbers_of(entries), counts=counts_of(entries))
+        scope.definitions = self.definitions.define(entries, scope)
+        scope.definitions |= self.definitions.include(entries, scope)
+        entries = replicated(entries, scope.numbers, body)
         base = self.common(entries, body, scope, file.stem, Place(str(file), 1, 1))
         diagram = self.with_settings(base, entries, body)
+        diagram = replace(diagram, sources=self.sources.others)
         self.finish(diagram, body)
         if self.sizes[id(diagram)] > MOST_BLOCKS:
             what = f"the diagram has {self.sizes[id(diagram)]} blocks with those of its subsystems"
@@ -201,13 +177,13 @@ class _Reader:
         return diagram
 
     def common(
-        self, entries: Entries, body: Body, scope: _Scope, name: str, place: Place
+        self, entries: Entries, body: Body, scope: Scope, name: str, place: Place
     ) -> Diagram:
         """The sections that every diagram may have."""
         given = entries.values
 
-        def find(type_name: str, at: Place) -> Block | Diagram | None:
-            return self.find(type_name, scope, at)
+        def find(type_name: str, at: Place, line: Entries) -> Block | Diagram | None:
+            return self.find(type_name, scope, at, line)
 
         inputs = read_inputs(given["inputs"], body) if "inputs" in given else {}
         parameters = read_parameters(given["parameters"], body) if "parameters" in given else {}
@@ -217,6 +193,9 @@ class _Reader:
             for name, definition in scope.definitions.items()
             if (diagram := self.diagram(definition)) is not None
         }
+        for name, diagram in subsystems.items():
+            for variant in diagram.variants:  # what is wrong in one that nothing uses is told, too
+                self.diagram(scope.definitions[name], Choice(variant))
         return Diagram(
             name=name,
             file=scope.file,
@@ -230,21 +209,28 @@ class _Reader:
             subsystems=subsystems,
             events=read_events(given["events"], body) if "events" in given else (),
             place=place,
+            counts={name: scope.numbers[name] for name in scope.counts if name in scope.numbers},
         )
 
     def finish(self, diagram: Diagram, body: Body) -> None:
         """Check a diagram of which everything has been read."""
         check_names(diagram, body)
         check_parameters(diagram.parameters, self.problems)
+        for name in diagram.counts:
+            if diagram.parameters[name].fit is not None:
+                what = f"'{name}' says how many blocks there are, and a fit cannot change it"
+                self.problems.add(what, diagram.parameters[name].place, (), "Take 'fit' away.")
         self.sizes[id(diagram)] = sum(
             1 + (self.sizes[id(use.subsystem)] if use.subsystem else 0)
             for use in diagram.blocks.values()
         )
 
-    def find(self, type_name: str, scope: _Scope, place: Place) -> Block | Diagram | None:
+    def find(
+        self, type_name: str, scope: Scope, place: Place, line: Entries
+    ) -> Block | Diagram | None:
         """The block or subsystem of a type, the nearest first; None with a problem noted."""
-        visible: dict[str, _Definition] = {}
-        around: _Scope | None = scope
+        visible: dict[str, Definition] = {}
+        around: Scope | None = scope
         while around is not None:
             visible = around.definitions | visible
             around = around.parent
@@ -254,7 +240,7 @@ class _Reader:
         if definition is None and type_name in self.library:
             return self.library[type_name]
         if definition is None:
-            self.unknown_type(type_name, visible, place)
+            self.definitions.unknown_type(type_name, visible, place)
             return None
         if definition in self.stack:
             chain = [open_.name for open_ in self.stack[self.stack.index(definition) :]]
@@ -265,125 +251,32 @@ class _Reader:
             what = f"subsystems stand inside each other more than {MOST_LEVELS} levels deep"
             self.problems.add(what, place)
             return None
-        return self.diagram(definition)
+        choice = self.definitions.choice(definition, line, scope, place)
+        return None if choice is None else self.diagram(definition, choice)
 
-    def unknown_type(self, type_name: str, visible: Iterable[str], place: Place) -> None:
-        """Note a type that is neither block nor subsystem; a name of another tool is explained."""
-        if self.packages.unknown(type_name, place) or self.problems.skips():
-            return
-        found = find_synonym(type_name, [*self.library])
-        hint = found[1] if found is not None else find_instead(type_name) or who_has(type_name)
-        if hint:
-            self.problems.add(f"unknown block type '{clip(type_name)}'", place, (), hint)
-        else:
-            self.problems.unknown("block type", type_name, [*visible, *self.library], place)
-
-    def diagram(self, definition: _Definition) -> Diagram | None:
+    def diagram(self, definition: Definition, choice: Choice = USUAL) -> Diagram | None:
         """The diagram of a subsystem; None where it is none, or is just being read."""
-        if definition.is_read or definition in self.stack:
-            return definition.diagram
+        variant = choice.variant or next(iter(definition.variants), "")
+        key = (variant, *sorted(choice.counts.items()))
+        if key in definition.diagrams or definition in self.stack:
+            return definition.diagrams.get(key)
         self.stack.append(definition)
-        outer = definition.scope
-        path = f"{outer.path}.{definition.name}" if outer.path else definition.name
-        body = Body(self.problems, outer.file.parent, path)
-        example = "{inputs: [u], outputs: {y: k}, blocks: {...}}"
-        what = f"subsystem '{clip(definition.name)}'"
-        entries = body.entries(definition.node, what, example)
+        outer, path = definition.scope, definition.path
+        body = Body(self.problems, path)
+        entries = self.definitions.entries(definition, choice, body)
+        diagram = None
         if entries is not None:
-            misplaced = any(key in TOP and key not in INSIDE for key in entries.keys)
-            hint = "Some sections belong to the top of the file only." if misplaced else ""
-            body.check_keys(entries, INSIDE, "section of a subsystem", hint=hint)
-            scope = _Scope(outer.file, outer.text, path, outer)
-            scope.definitions = self.define(entries, scope)
-            place = body.place(definition.key)
-            diagram = self.common(entries, body, scope, definition.name, place)
+            numbers = {**numbers_of(entries), **choice.counts}
+            counted = counts_of(entries)
+            scope = Scope(outer.file, outer.text, path, outer, numbers=numbers, counts=counted)
+            scope.definitions = self.definitions.define(entries, scope)
+            entries = replicated(entries, numbers, body)
+            diagram = self.common(entries, body, scope, definition.name, body.place(definition.key))
             if "effect" in entries.values:
                 effect = read_effect(entries.values["effect"], body, diagram)
                 diagram = replace(diagram, effect=effect)
+            diagram = replace(diagram, variant=variant, variants=definition.variants)
             self.finish(diagram, body)
-            definition.diagram = diagram
-        definition.is_read = True
+        definition.diagrams[key] = diagram
         self.stack.pop()
-        return definition.diagram
-
-    def define(self, entries: Entries, scope: _Scope) -> dict[str, _Definition]:
-        """The subsystems that stand in a diagram."""
-        found: dict[str, _Definition] = {}
-        node = entries.values.get("subsystems")
-        if node is None:
-            return found
-        body = Body(self.problems, scope.file.parent, scope.path)
-        example = "{bearing: {inputs: [rate], ...}}"
-        for name, key, inside in body.entries(node, "'subsystems'", example) or ():
-            place = body.place(key)
-            if not is_name(name):
-                what = f"'{clip(name)}' cannot be the name of a subsystem"
-                self.problems.add(what, place, (), name_hint(name))
-            elif name in self.library:
-                what = f"two definitions of '{name}': a subsystem here, and a block of the library"
-                self.problems.add(what, place, (), "Rename the subsystem.")
-            found[name] = _Definition(name, key, inside, scope)
-        return found
-
-    def include(self, entries: Entries, scope: _Scope, body: Body) -> dict[str, _Definition]:
-        """The subsystems of the files that a file includes, but not of those that they include."""
-        found: dict[str, _Definition] = {}
-        node = entries.values.get("include")
-        own = entries.values.get("subsystems")
-        there = own.keys if isinstance(own, Entries) else {}
-        for name in body.scalars(node, "'include'") if node is not None else ():
-            place = body.place(name)
-            file = self.packages.file(name.text, body.folder, place)
-            for key, definition in self.included_file(file, place).items() if file else ():
-                other = found.get(key)
-                if key in there or (other is not None and other is not definition):
-                    first = there[key].place if other is None else other.key.place
-                    what = f"two definitions of '{key}': one in '{name.text}', the other in {first}"
-                    self.problems.add(what, place, (), "Rename one.")
-                found[key] = definition
-        return {key: definition for key, definition in found.items() if key not in there}
-
-    def included_file(self, file: Path, place: Place) -> dict[str, _Definition]:
-        resolved = _resolved(file)
-        if resolved in self.including:
-            chain = [path.name for path in self.including[self.including.index(resolved) :]]
-            what = f"files include each other: {' -> '.join([*chain, file.name])}"
-            self.problems.add(what, place, (), "Move what both need into a file of its own.")
-            return {}
-        if len(self.including) > MOST_LEVELS:
-            what = f"files include each other more than {MOST_LEVELS} levels deep"
-            self.problems.add(what, place)
-            return {}
-        if resolved not in self.included:
-            self.included[resolved] = {}
-            self.including.append(resolved)
-            try:
-                self.included[resolved] = self.definitions_of(file, place)
-            except DiagramError as error:
-                if error.problems is not self.problems.found:
-                    self.problems.take(error)
-            self.including.pop()
-        return self.included[resolved]
-
-    def definitions_of(self, file: Path, place: Place) -> dict[str, _Definition]:
-        text = load(file, place)
-        body = Body(self.problems, file.parent)
-        root = compose(text, file, self.problems)
-        entries = body.entries(root, "an included file", "'subsystems: {bearing: {...}}'")
-        if entries is None:
-            return {}
-        hint = "A file that is included holds subsystems only."
-        body.check_keys(entries, INCLUDED, "section of an included file", hint=hint)
-        if "libraries" in entries.values:
-            self.packages.read(entries.values["libraries"], body)
-        scope = _Scope(file, text)
-        own = self.define(entries, scope)
-        scope.definitions = own | self.include(entries, scope, body)
-        return own
-
-
-def _resolved(file: Path) -> Path:
-    try:
-        return file.resolve()
-    except (OSError, ValueError, RuntimeError):  # a path that no file can have
-        return file
+        return diagram

@@ -35,9 +35,11 @@ def renamed(diagram: Diagram, old: str, new: str) -> Diagram:
     by a block of it. new: the name alone. Each place of the file that reads it follows: wires,
     formulas, records, presets, measured series, scenes. Of a block and a subsystem with one name it
     is the block that is meant. Raises OptionError: there is no such part, the new name is taken or
-    cannot be one, or the part stands in a file that is included.
+    cannot be one, the part stands in a file that is included, or the diagram extends another or has
+    rows or variants.
     """
     outline = Outline(diagram)
+    _refuse_composed(outline)
     part = _find(outline, old)
     _check(outline, part, new)
     found = reread(diagram, _changes(outline, part, new))
@@ -53,6 +55,23 @@ def renamed(diagram: Diagram, old: str, new: str) -> Diagram:
     return found
 
 
+def _refuse_composed(outline: Outline) -> None:
+    """Refuse a text whose names mean parts of other texts, or of several blocks."""
+    what, top = "", outline.top
+    diagrams = [inside for inside, _ in outline.definitions.values()]
+    if "extends" in outline.own.values:
+        what = "extends another one"
+    elif any(
+        use.row for inside, _ in outline.definitions.values() for use in inside.blocks.values()
+    ):
+        what = "has rows of blocks (replicate)"
+    elif any(inside.variants for inside in diagrams):
+        what = "has variants"
+    if what:
+        hint = "Rename by hand; `tracewire check` names each place that is left."
+        raise OptionError.one(f"rename takes no diagram that {what}", top.place, hint=hint)
+
+
 def _find(outline: Outline, path: str) -> _Part:
     where, _, name = path.rpartition(".")
     inside = _inside(outline, where)
@@ -60,7 +79,7 @@ def _find(outline: Outline, path: str) -> _Part:
         return _Part(inside, name)
     if name in inside.subsystems:
         own = inside.subsystems[name]
-        if id(own) not in outline.nodes:
+        if (own.place, own.variant) not in outline.nodes:
             raise elsewhere(own)
         return _Part(own, name, is_type=True)
     known = [*_parts(inside), *inside.subsystems]
@@ -87,7 +106,7 @@ def _inside(outline: Outline, path: str) -> Diagram:
     if found is not None and found[0] is not inside:
         what = f"'{path}' is a block and another subsystem"
         raise OptionError.one(what, inside.place, hint="Rename the block first.")
-    if id(inside) not in outline.nodes:
+    if (inside.place, inside.variant) not in outline.nodes:
         raise elsewhere(inside)
     return inside
 

@@ -10,8 +10,9 @@ from tracewire.diagram.diagram import BlockUse, Diagram, Event
 from tracewire.diagram.edit import add_addend
 from tracewire.diagram.names import find_signal
 from tracewire.diagram.outline import Outline
+from tracewire.diagram.override import localised
 from tracewire.diagram.rewrite import reread
-from tracewire.diagram.splice import Change, entry_after
+from tracewire.diagram.splice import Change, entry_after, entry_last
 from tracewire.diagram.strict import Entries, Items, Node
 from tracewire.errors import DiagramError, OptionError, unknown
 from tracewire.formula import Call, Expression, Name, Number, names_of, rename
@@ -82,19 +83,19 @@ def add_to_drive(diagram: Diagram, drive: str, block_name: str, block_line: str)
     seen = f"{drive}_seen"
     while seen in {*diagram.inputs, *diagram.blocks, *diagram.parameters}:
         seen += "_"
-    outline = Outline(diagram)
-    blocks = outline.root.values["blocks"]
-    assert isinstance(blocks, Entries)
+    diagram, blocks, section = _own_readers(diagram, readers, events)
     line = f"{{type: sum, of: [{drive}]}}"
     text = diagram.text
-    changes = [entry_after(text, blocks, anchor or list(blocks.keys)[-1], seen, line)]
+    if anchor and blocks.keys[anchor].place.file == str(diagram.file):
+        changes = [entry_after(text, blocks, anchor, seen, line)]
+    else:
+        changes = [entry_last(text, blocks, seen, line)]
     for use in readers:
         entries = blocks.values[use.name]
         assert isinstance(entries, Entries)
         formulas = (key for key, given in use.settings.items() if _is_formula(given))
         for key in (*use.inputs, *formulas):
             changes += _tokens(diagram, entries.values[key], drive, seen)
-    section = outline.root.values.get("events") if events else None
     for entry in section.items if isinstance(section, Items) else ():
         for key in ("when", "set"):
             if isinstance(entry, Entries) and key in entry.values:
@@ -106,6 +107,26 @@ def add_to_drive(diagram: Diagram, drive: str, block_name: str, block_line: str)
             what = f"what '{name}' reads is laid out in a way that cannot be edited by program"
             raise DiagramError.one(what, use.place, hint="Write each wire and formula on one line.")
     return add_addend(new, seen, block_name, block_line)
+
+
+def _own_readers(
+    diagram: Diagram, readers: list[BlockUse], events: list[Event]
+) -> tuple[Diagram, Entries, Node | None]:
+    """The diagram with the lines of these blocks in its own text, its blocks, and its events."""
+    outline = Outline(diagram)
+    blocks = outline.root.values["blocks"]
+    assert isinstance(blocks, Entries)
+    for event in events:
+        if event.place.file != str(diagram.file):
+            what = "an event that reads the drive stands in another file, which is extended"
+            raise OptionError.one(what, event.place, hint="Edit that file.")
+    lines = [blocks.values[use.name] for use in readers]
+    parts = [part for line in lines if isinstance(line, Entries) for part in line.values.values()]
+    diagram = localised(diagram, outline, parts)
+    root = Outline(diagram).root
+    blocks = root.values["blocks"]
+    assert isinstance(blocks, Entries)
+    return diagram, blocks, root.values.get("events") if events else None
 
 
 def _acts_on_drive(diagram: Diagram, use: BlockUse) -> bool:

@@ -6,8 +6,9 @@ import keyword
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from tracewire.diagram.grammar import OF_A_BLOCK, OF_KINDS, SHAPES
+from tracewire.diagram.grammar import OF_A_BLOCK, OF_KINDS, SHAPES, TOP
 from tracewire.diagram.shapes import (
+    Anything,
     Either,
     Formula,
     Key,
@@ -32,8 +33,9 @@ SCALAR = ["string", "number", "boolean"]
 def schema_of(library: Library) -> Schema:
     """The JSON Schema (draft 7) of a diagram file, or of a file that others include.
 
-    It knows keys, the types of blocks with their inputs, parameters and bounds, and words. Names of
-    signals and parameters it does not know: `tracewire check` does.
+    It knows keys, the types of blocks with their inputs, parameters and bounds, and words. Of a
+    file that extends another it knows the names of sections alone. Names of signals and parameters
+    it does not know: `tracewire check` does.
     """
     definitions: Schema = {name: _shape(shape) for name, shape in SHAPES.items()}
     definitions["block"] = _block(library)
@@ -41,14 +43,20 @@ def schema_of(library: Library) -> Schema:
     own = [{"required": [key]} for key in ("subsystems", "include")]
     known = {"if": {"pattern": r"\."}, "else": {"enum": sorted(library)}}  # mylab.magnet has a dot
     types = {"additionalProperties": {"properties": {"type": known}}}
+    files = [{"required": [key]} for key in ("blocks", "subsystems", "parameters", "presets")]
+    whole = {
+        **{key: value for key, value in top.items() if key != "required"},
+        "anyOf": files,
+        "if": {"not": {"anyOf": own}},
+        "then": {"properties": {"blocks": types}},
+    }
     return {
         "$schema": DRAFT,
         "title": "A tracewire diagram",
         "description": "https://json-schema.org for editors; `tracewire check` knows more.",
-        **{key: value for key, value in top.items() if key != "required"},
-        "anyOf": [{"required": top["required"]}, {"required": ["subsystems"]}],
-        "if": {"not": {"anyOf": own}},
-        "then": {"properties": {"blocks": types}},
+        "if": {"required": ["extends"]},
+        "then": _object({name: {"description": key.doc} for name, key in TOP.items()}),
+        "else": whole,
         "definitions": definitions,
     }
 
@@ -81,6 +89,8 @@ def _shape(shape: Shape) -> Schema:
             return mapping | ({"minProperties": least} if least else {})
         case Record():
             return _record(shape)
+        case Anything():
+            return {}
 
 
 def _record(record: Record) -> Schema:
@@ -142,7 +152,11 @@ def _use(name: str, block: Block) -> Schema:
     needed += [p.name for p in block.parameters if p.default is None]
     # an editor offers all that is required at once, by the title
     found = {"title": name, "properties": properties, "additionalProperties": False}
-    return found | ({"required": needed} if needed else {})
+    if not needed:
+        return found
+    # of a row the first and the last block may have inputs of their own
+    is_row = {"required": ["replicate"]}
+    return found | {"if": {"not": is_row}, "then": {"required": needed}}
 
 
 def _port(port: Input) -> Schema:

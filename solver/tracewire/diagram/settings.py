@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tracewire.diagram.body import Body
 from tracewire.diagram.diagram import Condition, Diagram, Value
-from tracewire.diagram.names import find_parameter, find_recorded, parameters, recordable
+from tracewire.diagram.names import find_parameter, find_recorded, is_count, parameters, recordable
 from tracewire.diagram.problems import clip
 from tracewire.diagram.strict import Items, Node
 from tracewire.diagram.uses import in_unit_of
@@ -100,6 +100,10 @@ def read_settings(
         value = read_value(given, body, fit=fit)
         if declared is None:
             _explain(diagram, path, body.place(key), body)
+        elif is_count(diagram, path):
+            what = f"'{clip(path)}' says how many blocks there are, and a run cannot change it"
+            hint = "Change it where it is declared, or in a diagram that extends this one."
+            body.problems.add(what, body.place(key), (), hint)
         elif value is not None:
             found[path] = in_unit_of(value, declared)
     return found
@@ -107,6 +111,11 @@ def read_settings(
 
 def _explain(diagram: Diagram, path: str, place: Place, body: Body) -> None:
     inside, head = diagram, path
+    if path.endswith(".variant"):
+        what = f"'{clip(path)}' is no parameter: a variant is chosen when the diagram is read"
+        hint = "Write variant: ... in the block, or in a diagram that extends this one."
+        body.problems.add(what, place, (), hint)
+        return
     while "." in head:
         name, _, rest = head.partition(".")
         use = inside.blocks.get(name)

@@ -85,7 +85,12 @@ class Named:
     name: str
 
 
-Shape = Text | Number | Formula | Listed | Mapped | Record | Either | Named
+@dataclass(frozen=True)
+class Anything:
+    """What another file or another part decides, such as changes of a block."""
+
+
+Shape = Text | Number | Formula | Listed | Mapped | Record | Either | Named | Anything
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ def end_of(node: Node) -> int:
     if isinstance(node, Scalar) or node.flow:
         return node.end
     parts = node.items if isinstance(node, Items) else tuple(node.values.values())
-    return max(end_of(part) for part in parts)
+    return max(end_of(part) for part in parts if part.place.file == node.place.file)
 
 
 def replaced(node: Node, new: str) -> Change:
@@ -52,10 +52,11 @@ def entry_after(text: str, entries: Entries, after: str, name: str, value: str) 
 
 
 def entry_last(text: str, entries: Entries, name: str, value: str) -> Change:
-    """`name: value` as the last entry of a mapping."""
-    if not entries.keys:
+    """`name: value` as the last entry of a mapping, of which others may stand in other files."""
+    own = [known for known, key in entries.keys.items() if key.place.file == entries.place.file]
+    if not own:
         return Change(entries.start + 1, entries.start + 1, f"{name}: {value}")
-    return entry_after(text, entries, list(entries.keys)[-1], name, value)
+    return entry_after(text, entries, own[-1], name, value)
 
 
 def item_last(text: str, items: Items, value: str) -> Change:

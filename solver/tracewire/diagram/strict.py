@@ -50,6 +50,11 @@ class Scalar:
         value = float(self.text)
         return value if math.isfinite(value) else None
 
+    @property
+    def path(self) -> Path:
+        """The file that it names, from the folder of the file in which it stands."""
+        return Path(self.place.file).parent / self.text.strip()
+
 
 @dataclass(frozen=True)
 class Items:

@@ -10,6 +10,7 @@ from tracewire.diagram.body import Body, Reference
 from tracewire.diagram.diagram import Array, BlockUse, Diagram, Points, Value, Wire
 from tracewire.diagram.grammar import OF_A_BLOCK
 from tracewire.diagram.problems import clip
+from tracewire.diagram.replicate import Replica
 from tracewire.diagram.strict import Entries, Node, Scalar
 from tracewire.diagram.values import read_points, read_value, reads_parameters
 from tracewire.diagram.wires import read_wires
@@ -17,8 +18,8 @@ from tracewire.errors import Place
 from tracewire.formula import Expression, Number, evaluate, is_name, names_of, to_text
 from tracewire.library import Block, Input, Parameter
 
-Find = Callable[[str, Place], Block | Diagram | None]
-"""The block or subsystem of a type; where there is none the problem is noted already."""
+Find = Callable[[str, Place, Entries], Block | Diagram | None]
+"""The block or subsystem of a type, as a line uses it; None where a problem is noted already."""
 EXAMPLE = "{type: gain, of: theta, k: 2}"
 
 
@@ -41,7 +42,7 @@ def _read_block(name: str, key: Scalar, line: Node, body: Body, find: Find) -> B
     type_name = None if type_node is None else body.text(type_node, "a type", name)
     if type_node is None or type_name is None:
         return unread
-    kind = find(type_name, body.place(type_node, name))
+    kind = find(type_name, body.place(type_node, name), entries)
     unit, shown = body.shown(entries, name)
     local = {}
     if "place" in entries.values:
@@ -64,10 +65,16 @@ def _read_block(name: str, key: Scalar, line: Node, body: Body, find: Find) -> B
             body.problems.add(what, place, (), hint)
     settings = _read_settings(entries, kind, parameters, body, name, place)
     inside = kind if isinstance(kind, Diagram) else None
+    if inside is None and "variant" in entries.values:
+        what = f"only a subsystem has variants, and '{clip(name)}' is a {type_name}"
+        body.problems.add(what, body.place(entries.keys["variant"], name), (), "Take it away.")
     guess = None
     if "guess" in entries.values:
         guess = _read_guess(entries.values["guess"], inside, body, name)
-    return BlockUse(name, type_name, inputs, settings, unit, local, inside, guess, place, shown)
+    row = entries.row if isinstance(entries, Replica) else ""
+    return BlockUse(
+        name, type_name, inputs, settings, unit, local, inside, guess, place, shown, row
+    )
 
 
 def _read_guess(node: Node, inside: Diagram | None, body: Body, name: str) -> Value | Array | None:

@@ -181,11 +181,11 @@ def _points_of_file(node: Entries, body: Body, block: str) -> Points | None:
     body.check_keys(node, POINTS_FILE, "key of a table", block)
     parts = [body.required(node, key, "a table from a file", block) for key in POINTS_FILE]
     texts = [None if part is None else body.text(part, "it", block) for part in parts]
-    if None in texts:
+    file, (_, x, y) = parts[0], texts
+    if not isinstance(file, Scalar) or x is None or y is None:
         return None
-    file, x, y = (text or "" for text in texts)
     try:
-        columns = read_columns(body.folder / file, {"y": y}, x, place=body.place(node, block))
+        columns = read_columns(file.path, {"y": y}, x, place=body.place(node, block))
     except DataError as error:
         body.problems.take(error)
         return None

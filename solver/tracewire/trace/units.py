@@ -114,8 +114,9 @@ def unit_of_power(found: Found, power: Power) -> str:
 
 def coefficient_of(power: Power) -> str:
     """The coefficient of an effect as its block, or the sensor, calls it."""
-    first, _, last = power.coefficient.partition(".")
-    return first if power.name.startswith("sensor_") or not last else last
+    if power.name.startswith("sensor_"):
+        return power.coefficient.partition(".")[0]
+    return power.coefficient.rpartition(".")[2]
 
 
 def known_units(found: Found) -> dict[str, str]:

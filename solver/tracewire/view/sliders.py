@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from tracewire.compile import Model
-from tracewire.diagram import written_units
+from tracewire.diagram import is_count, written_units
 from tracewire.errors import OptionError
 from tracewire.formula import names_of, to_text
 from tracewire.solve import parameter_values
@@ -46,6 +46,8 @@ def sliders_of(model: Model, preset: str = "") -> list[Slider]:
     units = written_units(model.diagram, model.flat.parameters)
     found = []
     for name, parameter in model.flat.parameters.items():
+        if is_count(model.diagram, name):  # a run cannot change it
+            continue
         # without a unit in this file it is shown in SI
         unit = units.get(name, _plain(parameter.unit))
         factor = parameter.factor if name in units else 1.0

@@ -78,3 +78,4 @@ def _files(diagram: Diagram) -> Iterator[Path]:
         yield series.file
     for subsystem in diagram.subsystems.values():
         yield from _files(subsystem)
+    yield from diagram.sources

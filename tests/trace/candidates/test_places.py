@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from textwrap import dedent
 
 import pytest
 from tracewire.compile import compile
 from tracewire.diagram import read, read_text
-from tracewire.trace.candidates.candidates import find_candidates
+from tracewire.trace.candidates.candidates import extend, find_candidates
 from tracewire.trace.candidates.levels import Level, Levels
 from tracewire.trace.candidates.places import Place, find_places, untried
 from tracewire.trace.options import TraceOptions
@@ -218,21 +219,76 @@ def test_a_signal_inside_a_subsystem_counts_where_a_port_carries_it() -> None:
     ]
 
 
-def test_a_sum_inside_a_subsystem_is_no_place_even_where_it_says_so() -> None:
-    found = places(
-        """
+CART = """
+        inputs: {u: {default: 0}, w: {default: 0}}
         blocks:
-          body: {type: cart}
+          body: {type: cart, u: u, w: -w}
         subsystems:
           cart:
+            inputs: [u, w]
             outputs: {x: x}
             blocks:
               x: {type: integrator, of: v}
-              v: {type: integrator, of: force}
-              force: {type: sum, of: [-x], place: {q: x, v: v}}
-        """
+              v: {type: integrator, of: a}
+              a: {type: gain, of: force, k: 2}
+              force: {type: sum, of: [-x, u, w]}
+"""
+
+
+def test_a_sum_inside_the_only_subsystem_of_its_type_is_a_place() -> None:
+    (place, *drives) = places(CART)
+    # the drive w comes in with a minus: no block inside can read the drive itself
+    assert place == Place(
+        "body.force", "sum", "cart.force", "body.x", "body.v", "body.a", (), ("u",), "body"
     )
-    assert found == []
+    assert [drive.name for drive in drives] == ["drive.u", "drive.w"]
+
+
+DEEPER = """
+          body: {type: cage, u: u}
+        subsystems:
+          cage:
+            inputs: [u]
+            outputs: {x: c.x}
+            blocks: {c: {type: cart, u: u, w: u}}"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("w: -w}", "w: -w}\n          twin: {type: cart, u: u, w: w}"),
+        ("w: -w}", "w: -w, replicate: 1}"),
+        ("\n          body: {type: cart, u: u, w: -w}\n        subsystems:", DEEPER),
+    ],
+    ids=["two uses", "a row", "deeper"],
+)
+def test_what_an_effect_would_change_elsewhere_is_no_place(old: str, new: str) -> None:
+    assert old in CART
+    assert not [place for place in places(CART.replace(old, new)) if place.kind == "sum"]
+
+
+def test_a_sum_of_an_included_file_is_no_place(tmp_path: Path) -> None:
+    lines = dedent(CART).splitlines()
+    at = lines.index("subsystems:")
+    (tmp_path / "cart.yaml").write_text("\n".join(lines[at:]), encoding="utf-8")
+    top = "\n".join(["include: cart.yaml", *lines[:at]])
+    model = compile(read_text(top, tmp_path / "top.yaml"), backend="quick")
+    assert not [place for place in find_places(model) if place.kind == "sum"]
+
+
+def test_an_effect_inside_a_subsystem_is_wired_to_the_names_there() -> None:
+    diagram = read_text(dedent(CART))
+    model = compile(diagram, backend="quick")
+    place = find_places(model)[0]
+    found = find_candidates(model, [place], LEVELS, OPTIONS.candidate)
+    known = {candidate.effect: candidate for candidate in found}
+    viscous = known["viscous"]
+    assert (viscous.block, viscous.coefficient) == ("body.viscous", "body.viscous.c")
+    assert viscous.parameter == "c"
+    new = extend(diagram, [(viscous, {"c": 0.25})])
+    assert "viscous: {type: viscous, rate: v, c: {value: 0.25, fit:" in new.text
+    assert "of: [-x, u, w, viscous]" in new.text
+    assert "body.viscous.c" in compile(new, backend="quick").flat.parameters
 
 
 def test_a_place_that_names_a_coordinate_alone_is_kept() -> None:

@@ -58,7 +58,9 @@ class Candidate:
     @property
     def parameter(self) -> str:
         """The name of the coefficient in its block or sensor."""
-        return self.coefficient.partition(".")[0 if not self.block else 2]
+        if not self.block:
+            return self.coefficient.partition(".")[0]
+        return self.coefficient.removeprefix(f"{self.block}.")
 
     @property
     def imitated(self) -> frozenset[str]:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 
 from tracewire.compile import Model
-from tracewire.diagram import Diagram, EffectType, effects_of
+from tracewire.diagram import BlockUse, Diagram, EffectType, effects_of
 from tracewire.library import SENSOR_TERMS, Effect, Shape
 from tracewire.trace.candidates.candidate import (
     Candidate,
@@ -16,6 +16,7 @@ from tracewire.trace.candidates.candidate import (
 )
 from tracewire.trace.candidates.effects import bounds_of, scale_of
 from tracewire.trace.candidates.extend import extend
+from tracewire.trace.candidates.inside import opened
 from tracewire.trace.candidates.levels import Levels
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.candidates.tones import Sine, own_values
@@ -54,6 +55,9 @@ def find_candidates(
     found: list[Candidate] = []
     have = {(c.effect, c.place.name, c.of) for c in taken}
     names = set().union(diagram.blocks, diagram.parameters, diagram.inputs, diagram.subsystems)
+    names |= {
+        f"{name}.{inner}" for name, use in opened(diagram).items() for inner in _names_in(use)
+    }
     kinds = effects_of(diagram)
     several = {kind: sum(p.kind == kind for p in places) > 1 for kind in ("sum", "drive")}
     for place in places:
@@ -67,7 +71,8 @@ def find_candidates(
             plain = name.rpartition(".")[2]  # a block of a package has the name of that in front
             wanted = f"{plain}_{place.name.rpartition('.')[2]}" if several[place.kind] else plain
             for of, signals in _wirings(kind.effect, place, places):
-                block = free_name(f"{wanted}_{of}" if of else wanted, names)
+                block = f"{wanted}_{of}" if of else wanted
+                block = free_name(f"{place.within}.{block}" if place.within else block, names)
                 candidate = _candidate(
                     kind, place, block, of, signals, levels, tones or {}, options
                 )
@@ -75,6 +80,14 @@ def find_candidates(
                     names.add(block)
                     found.append(candidate)
     return [c for c in found if (c.effect, c.place.name, c.of) not in have]
+
+
+def _names_in(use: BlockUse) -> set[str]:
+    """The names that are taken inside a subsystem."""
+    inside = use.subsystem
+    if inside is None:
+        return set()
+    return set().union(inside.blocks, inside.parameters, inside.inputs, inside.outputs)
 
 
 def free_name(wanted: str, taken: set[str]) -> str:
@@ -93,9 +106,10 @@ def _wirings(
     own = {"q": place.q, "v": place.v, "a": place.a}
     rooms: list[tuple[str, dict[str, str]]] = [("", own)]
     if symbols & {"other_q", "other_v"}:
-        named = {(other.q, other.v): other.definition for other in places if other.kind == "sum"}
+        sums = [other for other in places if other.kind == "sum"]
+        named = {(other.q, other.v): other.name.replace(".", "_") for other in sums}
         rooms = [
-            (named.get((q, v), v or q), {**own, "other_q": q, "other_v": v})
+            (named.get((q, v), (v or q).replace(".", "_")), {**own, "other_q": q, "other_v": v})
             for q, v in place.others
         ]
     if "u" in symbols:

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from tracewire.diagram import Diagram, add_addend, add_own, add_sensor, add_to_drive
 from tracewire.formula import number_text
 from tracewire.trace.candidates.candidate import Candidate, is_default
+from tracewire.trace.candidates.inside import local_name
 
 
 def extend(diagram: Diagram, chosen: Sequence[tuple[Candidate, Mapping[str, float]]]) -> Diagram:
@@ -27,7 +28,11 @@ def extend(diagram: Diagram, chosen: Sequence[tuple[Candidate, Mapping[str, floa
             diagram = add_sensor(diagram, signal, kind, value, (low, high))
             continue
         parts = [f"type: {candidate.effect}"]
-        parts += [f"{port}: {_signal(name)}" for port, name in candidate.signals.items()]
+        within = candidate.place.within
+        parts += [
+            f"{port}: {_signal(local_name(diagram, within, name))}"
+            for port, name in candidate.signals.items()
+        ]
         factor = _factors(diagram, candidate)
         parts.append(f"{kind}: {_setting(value, low, high, factor.get(kind, 1.0))}")
         for name, grid in candidate.shapes.items():
@@ -45,7 +50,8 @@ def extend(diagram: Diagram, chosen: Sequence[tuple[Candidate, Mapping[str, floa
         parts += [f"{name}: {{value: {number_text(value)}}}" for name, value in first.items()]
         line = f"{{{', '.join(parts)}}}"
         add = add_to_drive if candidate.place.kind == "drive" else add_addend
-        diagram = add(diagram, candidate.place.definition, candidate.block, line)
+        name = candidate.block.removeprefix(f"{within}.") if within else candidate.block
+        diagram = add(diagram, candidate.place.definition, name, line)
         known = {n: own for n, own in _own(candidate, values).items() if n in diagram.measured}
         if known:
             fit = {f"{candidate.block}.{name}": candidate.limits[name] for name in candidate.each}

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
 from tracewire.compile import Flat, FlatBlock, FlatState, Model
 from tracewire.diagram import Diagram, find_signal, split_index
 from tracewire.formula import Name, names_of
+from tracewire.trace.candidates.inside import local_name, opened
 
 PASSED = ("sum", "gain", "divide")
 MOST_TOLD = 6
@@ -23,7 +24,8 @@ class Place:
     text of the diagram, the measured signal, or the input or source block. Signals of a sum: the
     rate `v`, the coordinate `q` whose rate that is, the acceleration `a` that v is the integral of
     ('' where there is none), and `others`, (q, v) of the sums of other rates. `drive` holds the
-    drives of the diagram, at a drive itself only that.
+    drives of the diagram, at a drive itself only that. `within` is the block of the subsystem that
+    a sum stands in, '' at the top; its signals have their names of the flat equations.
     """
 
     name: str
@@ -34,6 +36,7 @@ class Place:
     a: str = ""
     others: tuple[tuple[str, str], ...] = ()
     drive: tuple[str, ...] = ()
+    within: str = ""
 
 
 def find_places(model: Model) -> list[Place]:
@@ -43,22 +46,23 @@ def find_places(model: Model) -> list[Place]:
     subsystems; the sums that it meets are places of the nearest state. A sum that only feeds
     another place of the same state says nothing new and is left out. Where the diagram itself says
     which sum is the place of a rate (`place: {q: ..., v: ...}`), that sum is the only one; it may
-    name a coordinate alone, where nothing has a rate (see `untried`). Sums
-    inside subsystems are not tried: what the subsystem puts out enters a sum further up (where
-    nothing but a subsystem feeds the rate, give it a sum of its own); nor are sums of vectors.
+    name a coordinate alone, where nothing has a rate (see `untried`). A sum
+    inside a subsystem is a place where that is the only block of its type (see `opened`). Sums of
+    vectors are not tried.
 
     Drives: the named inputs that something reads, and the blocks whose output depends on nothing
     but the time (sine, square, step, ramp, table, a formula of t) and that something reads.
 
-    A signal inside a subsystem counts where an output of that carries it: blocks at the top cannot
-    be wired to others.
+    For a sum at the top a signal inside a subsystem counts where an output of that carries it, and
+    for a sum inside one at the top where an input carries it: a block cannot be wired to others.
 
     Sensors: the signals that a series measures in a column of its own; but not an input.
     """
     drives = tuple(_drives(model))
-    sums = [place for place in _sums(model.flat, drives) if not _is_drive(model, place, drives)]
+    sums = _sums(model.flat, drives, opened(model.diagram))
+    sums = [place for place in sums if place.within or not _is_drive(model, place, drives)]
     return [
-        *(_seen_from_outside(model, place) for place in sums),
+        *(_seen_from(model, place) for place in sums),
         *(Place(f"drive.{name}", "drive", name, drive=(name,)) for name in drives),
         *(Place(f"sensor.{name}", "sensor", name) for name in _sensors(model)),
     ]
@@ -87,7 +91,7 @@ def untried(diagram: Diagram, places: Sequence[Place]) -> list[str]:
     return found
 
 
-def _sums(flat: Flat, drives: tuple[str, ...]) -> list[Place]:
+def _sums(flat: Flat, drives: tuple[str, ...], inside: Collection[str]) -> list[Place]:
     coordinates = {s.rate.name: s.name for s in flat.states if isinstance(s.rate, Name)}
     states = {state.name: state for state in flat.states}
     nearest: dict[str, tuple[int, str]] = {}
@@ -100,12 +104,14 @@ def _sums(flat: Flat, drives: tuple[str, ...]) -> list[Place]:
     told = {
         name: block
         for name, block in flat.blocks.items()
-        if block.type == "sum" and {"q", "v"} & block.local.keys() and _at_top(name, block)
+        if block.type == "sum"
+        and {"q", "v"} & block.local.keys()
+        and _is_reached(name, block, inside)
     }
     taken = {block.local["v"] for block in told.values() if "v" in block.local}
     rates = {n: (b.local.get("v", ""), b.local.get("q", "")) for n, b in told.items()}
     for name, (_, fed) in nearest.items():
-        if name in told or fed in taken or not _at_top(name, flat.blocks[name]):
+        if name in told or fed in taken or not _is_reached(name, flat.blocks[name], inside):
             continue
         if not _only_feeds(flat, name, fed, nearest):
             rates[name] = fed, coordinates.get(fed, "")
@@ -120,15 +126,18 @@ def _sums(flat: Flat, drives: tuple[str, ...]) -> list[Place]:
             _acceleration(v, states),
             tuple(body for body in bodies if body != (q, v)),
             drives,
+            name.rpartition(".")[0],
         )
         for name, (v, q) in rates.items()
     ]
 
 
-def _seen_from_outside(model: Model, place: Place) -> Place:
-    """The place with signals as the diagram may name them; '' where they stay in a subsystem."""
+def _seen_from(model: Model, place: Place) -> Place:
+    """The place with the signals that a block there can be wired to; '' in place of others."""
 
     def visible(name: str) -> str:
+        if place.within:
+            return name if local_name(model.diagram, place.within, name) else ""
         if not name or find_signal(model.diagram, name) == name:
             return name
         same = (other for other, formula in model.flat.signals.items() if formula == Name(name))
@@ -136,7 +145,16 @@ def _seen_from_outside(model: Model, place: Place) -> Place:
 
     others = tuple((visible(q), visible(v)) for q, v in place.others)
     q, v, a = visible(place.q), visible(place.v), visible(place.a)
-    return replace(place, q=q, v=v, a=a, others=tuple(body for body in others if any(body)))
+    others = tuple(body for body in others if any(body))
+    drive = tuple(name for name in place.drive if visible(name))
+    return replace(place, q=q, v=v, a=a, others=others, drive=drive)
+
+
+def _is_reached(name: str, block: FlatBlock, inside: Collection[str]) -> bool:
+    """Whether an effect can be added to a sum: at the top, or inside one of these subsystems."""
+    if split_index(name)[1] or block.definition.count(".") > 1:
+        return False
+    return "." not in block.definition or name.rpartition(".")[0] in inside
 
 
 def _at_top(name: str, block: FlatBlock) -> bool:

@@ -54,14 +54,26 @@ def _added(diagram: Diagram, place: Place, name: str, formula: Expression) -> Di
     if place.kind == "drive":
         formula = Call("+", (Name(place.definition), formula))
         diagram = rewired(diagram, place.definition, name)
+    elif place.within:
+        use = diagram.blocks[place.within]
+        assert use.subsystem is not None
+        port = InputPort(name, default=Value(Number(0.0)))
+        inside = replace(use.subsystem, inputs={**use.subsystem.inputs, name: port})
+        inside = _wired(inside, place.definition.rpartition(".")[2], name)
+        use = replace(use, subsystem=inside, inputs={**use.inputs, name: (Wire(name),)})
+        diagram = replace(diagram, blocks={**diagram.blocks, place.within: use})
     else:
-        old = diagram.blocks[place.definition]
-        (port,) = (p.name for p in diagram.library[old.type].inputs if p.many)
-        wires = (*old.inputs[port], Wire(name))
-        new = replace(old, inputs={**old.inputs, port: wires})
-        diagram = replace(diagram, blocks={**diagram.blocks, place.definition: new})
+        diagram = _wired(diagram, place.definition, name)
     probe = BlockUse(name, "expression", {}, {"formula": formula})
     return replace(diagram, blocks={**diagram.blocks, name: probe})
+
+
+def _wired(diagram: Diagram, sum_name: str, signal: str) -> Diagram:
+    """The diagram with one more signal in a sum."""
+    old = diagram.blocks[sum_name]
+    (port,) = (p.name for p in diagram.library[old.type].inputs if p.many)
+    new = replace(old, inputs={**old.inputs, port: (*old.inputs[port], Wire(signal))})
+    return replace(diagram, blocks={**diagram.blocks, sum_name: new})
 
 
 def _total(terms: Sequence[Expression]) -> Expression:

@@ -1,0 +1,94 @@
+"""Parts of a diagram that stand in a file which it extends, brought into its own text for an edit.
+
+So an edit of a diagram changes no other file: what it changes is a change of what is extended.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from tracewire.diagram.diagram import Diagram
+from tracewire.diagram.outline import Outline
+from tracewire.diagram.problems import Problems
+from tracewire.diagram.rewrite import reread
+from tracewire.diagram.splice import Change, changed, entry_last, item_last, replaced
+from tracewire.diagram.strict import Entries, Items, Node, compose
+from tracewire.diagram.yaml_text import inline, mapping_text, quoted
+from tracewire.errors import OptionError
+
+
+def localised(diagram: Diagram, outline: Outline, nodes: Iterable[Node]) -> Diagram:
+    """The diagram with a copy of these parts in its own text; itself where they stand there.
+
+    Raises OptionError: a part stands in a file that the diagram includes.
+    """
+    foreign = [node for node in nodes if not outline.is_own(node)]
+    if not foreign:
+        return diagram
+    for node in foreign:
+        _refuse_included(outline, node)
+    parts: dict[tuple[str, ...], str] = {}
+    for node in foreign:
+        path = outline.path(node)
+        parts[path] = inline(_at(outline.root, path))
+    return with_parts(diagram, parts)
+
+
+def with_parts(diagram: Diagram, parts: Mapping[tuple[str, ...], str]) -> Diagram:
+    """The diagram with other values in its own text, by the names that lead to each."""
+    if not parts:
+        return diagram
+    text = diagram.text
+    for path, value in parts.items():
+        root = compose(text, diagram.file, Problems())
+        assert isinstance(root, Entries)
+        text = changed(text, [_with_part(text, root, path, value)])
+    return reread(diagram, [Change(0, len(diagram.text), text)])
+
+
+def without_part(diagram: Diagram, path: str) -> Diagram:
+    """The diagram that takes a part away from what it extends: `blocks.drag`."""
+    root = Outline(diagram).own
+    given = root.values.get("remove")
+    if isinstance(given, Items):
+        return reread(diagram, [item_last(diagram.text, given, path)])
+    names = path if given is None else f"{inline(given)}, {path}"
+    return with_parts(diagram, {("remove",): f"[{names}]"})
+
+
+def _with_part(text: str, root: Entries, path: tuple[str, ...], value: str) -> Change:
+    node, rest = root, list(path)
+    while len(rest) > 1 and isinstance(inner := node.values.get(rest[0]), Entries):
+        node, rest = inner, rest[1:]
+    name, *deeper = rest
+    if name in node.keys and not deeper:
+        return replaced(node.values[name], value)
+    section = node is root and not node.flow and len(deeper) > 0
+    for key in reversed(deeper[1:] if section else deeper):
+        value = mapping_text({key: value})
+    if not section:
+        if node is root and not node.flow:
+            return _at_end(text, [f"{name}: {value}"])
+        return entry_last(text, node, quoted(name), value)
+    return _at_end(text, [f"{name}:", f"  {quoted(deeper[0])}: {value}"])
+
+
+def _at_end(text: str, lines: list[str]) -> Change:
+    ending = "\r\n" if "\r\n" in text else "\n"
+    begin = "" if text.endswith("\n") or not text else ending
+    return Change(len(text), len(text), begin + "".join(f"{line}{ending}" for line in lines))
+
+
+def _at(root: Entries, path: tuple[str, ...]) -> Node:
+    node: Node = root
+    for name in path:
+        assert isinstance(node, Entries)
+        node = node.values[name]
+    return node
+
+
+def _refuse_included(outline: Outline, node: Node) -> None:
+    if node.place.file in outline.included:
+        what = f"'{'.'.join(outline.path(node)[1:])}' is defined in a file that is included"
+        hint = "Edit that file, or move it into the diagram's own."
+        raise OptionError.one(what, node.place, hint=hint)
