@@ -16,7 +16,9 @@ from tracewire.diagram.diagram import (
     Points,
     ScenePart,
     Series,
+    Setting,
     Shown,
+    Statement,
     Use,
     Value,
     Wire,
@@ -53,11 +55,13 @@ from tracewire.diagram.names import (
     states,
 )
 from tracewire.diagram.packages import package_subsystems, who_has
+from tracewire.diagram.quantity_names import EVENT_KINDS, is_quantity, quantity_problems
 from tracewire.diagram.read import read, read_readable, read_readable_text, read_text
 from tracewire.diagram.rewire import add_to_drive, rewired
 from tracewire.diagram.write import write
 
 __all__ = [
+    "EVENT_KINDS",
     "Array",
     "BlockUse",
     "Channel",
@@ -74,7 +78,9 @@ __all__ = [
     "Points",
     "ScenePart",
     "Series",
+    "Setting",
     "Shown",
+    "Statement",
     "Use",
     "Value",
     "Wire",
@@ -90,10 +96,12 @@ __all__ = [
     "find_recorded",
     "find_signal",
     "find_state",
+    "is_quantity",
     "load_text",
     "mapping_text",
     "package_subsystems",
     "path_text",
+    "quantity_problems",
     "quoted",
     "read",
     "read_readable",

@@ -15,6 +15,7 @@ from tracewire.diagram.measured import read_measured
 from tracewire.diagram.packages import Packages, who_has
 from tracewire.diagram.problems import Problems, clip
 from tracewire.diagram.read_effect import read_effect
+from tracewire.diagram.read_expect import read_expect
 from tracewire.diagram.read_scene import read_scene
 from tracewire.diagram.sections import (
     read_events,
@@ -45,6 +46,7 @@ INSIDE = (
 TOP = (
     *("title", "span", "every", "record", "inputs", "parameters", "blocks", "subsystems"),
     *("include", "events", "require", "presets", "measured", "max_step", "scene", "libraries"),
+    "expect",
 )
 INCLUDED = ("title", "libraries", "include", "subsystems")
 
@@ -205,6 +207,8 @@ class _Reader:
             diagram = replace(diagram, measured=read_measured(given["measured"], body, diagram))
         if "scene" in given:
             diagram = replace(diagram, scene=read_scene(given["scene"], body))
+        if "expect" in given:
+            diagram = replace(diagram, expect=read_expect(given["expect"], body, diagram))
         return diagram
 
     def common(

@@ -15,7 +15,8 @@ from tracewire.formula.evaluate import evaluate
 from tracewire.formula.expression import Call, Expression, Name, Number, names_of, rename
 from tracewire.formula.functions import CONSTANTS, FUNCTIONS, OPERATIONS
 from tracewire.formula.order import evaluation_order
-from tracewire.formula.parse import is_name, name_hint, parse, parse_condition
+from tracewire.formula.parse import is_name, name_hint, parse, parse_condition, parse_quantity
+from tracewire.formula.quantities import QUANTITIES, Quantity
 from tracewire.formula.text import number_text, to_text
 from tracewire.formula.unit_rules import Term, times, unit_term
 from tracewire.formula.units import Unit, quantity_hint, read_unit, same_quantity
@@ -28,10 +29,12 @@ __all__ = [
     "CONSTANTS",
     "FUNCTIONS",
     "OPERATIONS",
+    "QUANTITIES",
     "Call",
     "Expression",
     "Name",
     "Number",
+    "Quantity",
     "Term",
     "Unit",
     "dimension_of",
@@ -45,6 +48,7 @@ __all__ = [
     "number_text",
     "parse",
     "parse_condition",
+    "parse_quantity",
     "quantity_hint",
     "read_unit",
     "rename",
