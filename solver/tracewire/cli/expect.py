@@ -24,6 +24,7 @@ def check_expected(
     from tracewire.analyse import Judge, counts_of
     from tracewire.compile import statement_problems
     from tracewire.diagram import Diagram, read
+    from tracewire.paper import with_identification
     from tracewire.show import statement_data, statements_table
 
     diagrams: list[Diagram] = [read(file, libraries or ()) for file in files]
@@ -35,6 +36,7 @@ def check_expected(
     rows = []
     with working("measuring") as show:
         judge = Judge(libraries=libraries or (), tell=stages(show))
+        with_identification(judge)
         for diagram in diagrams:
             if problems := statement_problems(judge.model(diagram)):
                 raise DiagramError(problems)
