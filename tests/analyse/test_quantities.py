@@ -318,6 +318,11 @@ LOST = [
     ("max(after(reset, x))", "", "there is no event 'reset'"),
     ("multiplier(1)", "", "a multiplier needs 'period'. Write run: {period: ...} in the statement"),
     ("multiplier(3)", "run: {period: 1}", "there is no multiplier 3: there are 2"),
+    ("time(x < 0, 1.5)", "", "number 1.5: there are 4"),
+    ("time(x < 0, 1/0)", "", "number inf: there are 4"),
+    ("line(x, 1, 0/0)", "", "there is no number of lines nan"),
+    ("at(x, 1/0)", "", "the sample times do not ascend"),
+    ("motions(1e9, 1, x)", "run: {period: 1}", "there is no number of starts 1e+09"),
     ("section(x, 1)", "", "a section needs 'period'"),
     ("band_low(up, 0.1)", "", "a band needs one parameter in 'over'"),
     ("period(x)", "run: {until: 1}", "rises through its mean 0 times"),
@@ -326,6 +331,9 @@ LOST = [
     ("at(x, -1)", "", "a quantity reads a signal at -1 s, and the run begins at 0 s"),
     ("max(x)", "run: {since: 99}", "fewer than two samples from 99 s on"),
     ("end(x)/0", "", "has no value"),
+    ("max(x/0)", "", "'x/0' is not finite at each sample"),
+    ("motions(3, 0, x)", "run: {period: 1}", "starts within 0 of zero have no use"),
+    ("cosine(x, 1/0)", "", "an angular frequency of cosine(...) is not finite"),
     ("stability_edge(c, 1, 2)", "run: {period: 1}", "the same stability at 1 and at 2"),
     ("criterion()", "", "there is no measured series to fit"),
     ("end(is_held(x))", "", "a quantity cannot work out is_held"),
@@ -339,6 +347,11 @@ def test_what_cannot_be_had_is_told_in_words(that: str, more: str, said: str) ->
     row = row_of(diagram, that, more)
     assert (row.value, row.verdict) == (None, "could not be measured")
     assert said in row.why
+
+
+def test_samples_and_events_do_not_mix() -> None:
+    row = row_of(BALL, "count(after(reset, v) > v)")
+    assert "takes values at samples and at events together" in row.why
 
 
 def test_a_signal_before_an_event_must_be_one_of_states() -> None:

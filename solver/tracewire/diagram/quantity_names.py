@@ -50,6 +50,8 @@ def quantity_problems(
     file is looked up when it is measured.
     """
     names = _Names(diagram, place, reference, fixed)
+    if isinstance(node, Call) and node.function in QUANTITIES and QUANTITIES[node.function].text:
+        return []  # a word, which stands alone
     names.check(node, along=False)
     return names.problems.found
 
@@ -86,6 +88,10 @@ class _Names:
         if self.fixed and reads_run and not node.function.startswith("bessel"):
             what = f"what is expected cannot read {node.function}: it is no number of a run"
             self.note(what, "Write the difference or the ratio of both in 'that'.")
+            return
+        if known.text:
+            hint = "Write it alone, with is: stable."
+            self.note(f"{node.function}() is a word, and no part of a formula", hint)
             return
         if node.function == "reference":
             if self.reference is None:

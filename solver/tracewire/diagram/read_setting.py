@@ -26,6 +26,7 @@ KEYS += (*WORDS, "modulo", "over", "full")
 EXAMPLE = "{preset: free, set: {k: 2}, until: 10}"
 RANGE = re.compile(r"\s*(\S+?)\s*:\s*(\S+?)\s*:\s*(\d+)\s*")
 MOST_VALUES = 100_000
+MOST_SAMPLES = 1_000_000
 
 
 def read_setting(
@@ -55,8 +56,9 @@ def read_setting(
                 found[key] = _of_states(value, body, diagram, f"'{key}'")
             case "samples":
                 count = read_count(value, body, "'samples'")
-                if count is not None and count < 2:
-                    body.problems.add("'samples' must be 2 or more", body.place(value))
+                if count is not None and not 2 <= count <= MOST_SAMPLES:
+                    what = f"'samples' must be 2 or more, and {MOST_SAMPLES} at most"
+                    body.problems.add(what, body.place(value))
                 found["samples"] = count
             case "over":
                 found["over"] = _read_over(value, body, diagram)

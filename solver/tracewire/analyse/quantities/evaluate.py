@@ -89,7 +89,7 @@ class At:
     def whole(self, node: Expression, most: int, what: str) -> int:
         """A number k of 1 to `most`, as an index from 0. Raises AnalysisError."""
         k = self.number(node)
-        if k != int(k) or not 1 <= k <= most:
+        if not (1 <= k <= most and k == round(k)):
             raise AnalysisError([Problem(f"there is no {what} {k:g}: there are {most}")])
         return int(k) - 1
 

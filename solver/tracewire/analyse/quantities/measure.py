@@ -27,7 +27,8 @@ def ask(
     """
     for quantity in quantities:
         resolve(subject.model, quantity)
-        At(subject, reference, functions=FUNCTIONS).ask(quantity)
+        with np.errstate(all="ignore"):  # a time that is not finite is refused when it is read
+            At(subject, reference, functions=FUNCTIONS).ask(quantity)
 
 
 def measure(
@@ -42,7 +43,13 @@ def measure(
     """
     at = At(subject, reference, functions=FUNCTIONS, further=further)
     with np.errstate(all="ignore"):  # the branch of a choice that is not taken
-        found = at.value(quantity)
+        try:
+            found = at.value(quantity)
+        except ValueError as error:  # arrays of numpy that do not go together
+            what = f"'{to_text(quantity)}' takes values at samples and at events together"
+            raise OptionError(
+                [Problem(what, hint="Make one number of each, as by max.")]
+            ) from error
     if isinstance(found, str):
         return found
     if np.ndim(found):

@@ -19,6 +19,8 @@ Complexes = NDArray[np.complex128]
 XTOL = 1e-9  # of the value at an edge
 APART = 1e-2  # rad, or the unit of a state: motions whose section points differ by it are two
 SEED = 0
+MOST_STARTS = 10_000
+LARGEST = 1e100
 
 
 def _multiplier(read: Callable[[At, int], float]) -> Callable[[At, Call], float]:
@@ -123,7 +125,9 @@ def _motions(at: At, node: Call) -> float:
     count, size, *names = node.arguments
     model, modulo = at.subject.model, at.subject.conditions.modulo
     states = [full_name(model, to_text(name)) for name in names]
-    wide, many = at.number(size), int(at.number(count))
+    wide, many = at.number(size), at.whole(count, MOST_STARTS, "number of starts") + 1
+    if not 0 < wide < LARGEST:
+        raise AnalysisError([Problem(f"starts within {wide:g} of zero have no use")])
     columns = [model.states.index(name) for name in states]
     turn = np.array([modulo.get(name, np.inf) for name in states])
     ends: list[Complexes] = []

@@ -26,6 +26,7 @@ from tracewire.solve import Event, Run
 
 Vector = NDArray[np.float64]
 FEWEST_RISES = 2
+MOST_LINES = 1000
 
 
 def of_signal(reduce: Callable[[Vector, Vector], float]) -> Callable[[At, Call], Value]:
@@ -39,15 +40,20 @@ def of_signal(reduce: Callable[[Vector, Vector], float]) -> Callable[[At, Call],
 
 
 def _along(at: At, node: Expression) -> tuple[Vector, Vector]:
-    """The times and values of a signal at the samples; of what is told of events, at these."""
+    """The times and values of a signal at the samples; of what is told of events, at these.
+
+    Raises AnalysisError where a value is not finite, or there is no such event.
+    """
     found = np.asarray(at.along.value(node), dtype=float)
     events = _events_in(node)
+    times = at.subject.t
     if events is not None:
         times = np.array([event.time for event in _events(at, events)])
         if not len(times):
             raise AnalysisError([Problem(f"there is no event '{to_text(events)}'")])
-        return times, np.broadcast_to(found, times.shape)
-    return at.subject.t, np.broadcast_to(found, at.subject.t.shape)
+    if not np.isfinite(found).all():
+        raise AnalysisError([Problem(f"'{to_text(node)}' is not finite at each sample")])
+    return times, np.broadcast_to(found, times.shape)
 
 
 def _events_in(node: Expression) -> Expression | None:
@@ -115,7 +121,7 @@ def _growth(at: At, node: Call) -> float:
 
 def _line(at: At, node: Call) -> float:
     signal, n, count = node.arguments
-    most = int(at.number(count))
+    most = at.whole(count, MOST_LINES, "number of lines") + 1
     found = spectrum(*_as_run(at, signal), lines=most).lines
     return sorted(line.frequency for line in found)[at.whole(n, len(found), "line")]
 
@@ -123,6 +129,8 @@ def _line(at: At, node: Call) -> float:
 def _cosine(at: At, node: Call) -> float:
     t, values = _along(at, node.arguments[0])
     rates = [at.number(argument) for argument in node.arguments[1:]]
+    if not np.isfinite(rates).all():
+        raise AnalysisError([Problem("an angular frequency of cosine(...) is not finite")])
     waves = [wave(w * t) for w in rates for wave in (np.cos, np.sin)]
     return float(np.linalg.lstsq(np.array(waves).T, values, rcond=None)[0][0])
 
