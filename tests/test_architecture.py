@@ -38,7 +38,7 @@ STAGES += ["missing", "search", "choose", "experiment", "results", "saved", "tra
 # as often as said; a pair that is not here takes nothing more. The numbers only fall.
 DEEP = {
     "analyse -> compile": 1,
-    "analyse -> solve": 3,
+    "analyse -> solve": 2,
     "cli -> analyse": 2,
     "cli -> data": 2,
     "cli -> paper": 7,

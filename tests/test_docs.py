@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 from tracewire.compile import compile
 from tracewire.diagram import read_text
-from tracewire.diagram.grammar import EFFECT, EVENT, INSIDE, SERIES, TOP
+from tracewire.diagram.grammar import EFFECT, EVENT, INSIDE, SERIES, SETTING, STATEMENT, TOP
+from tracewire.formula import QUANTITIES
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -55,6 +56,13 @@ def test_every_section_and_key_is_on_the_page() -> None:
     assert {key for key in keys if f"`{key}`" not in DIAGRAMS} == set()
 
 
+def test_every_quantity_and_key_of_a_statement_is_on_the_page() -> None:
+    page = (DOCS / "quantities.md").read_text(encoding="utf-8")
+    assert [name for name in QUANTITIES if f"| `{name}(" not in page] == []
+    keys = {*STATEMENT, *SETTING, "full", "diagram"}
+    assert {key for key in keys if f"`{key}`" not in page} == set()
+
+
 def rows() -> list[tuple[str, str]]:
     """(section, example) of the first table."""
     table = DIAGRAMS.split("\n## ")[0]
@@ -94,7 +102,7 @@ def test_the_examples_are_a_diagram(tmp_path: Path) -> None:
     examples = dict(rows())
     for elsewhere in ("include", "extends", "remove", "measured", "blocks"):
         del examples[elsewhere]
-    assert len(examples) == 12
+    assert len(examples) == 13
     text = "\n".join(examples.values()).replace("{k:", "{m: 1, c: 1, limit: 1, k:")
     blocks = re.findall(r"blocks: \{(.+)\}", dict(rows())["blocks"])[0]
     text += f"\nblocks:\n  {blocks}\n  v: {{type: integrator, of: force}}\n"

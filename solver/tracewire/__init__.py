@@ -18,6 +18,7 @@ if TYPE_CHECKING:
         floquet,
         growth_rate,
         invariant_drift,
+        judge,
         linearise,
         lyapunov,
         periodic_orbit,
@@ -84,6 +85,7 @@ __all__ = [
     "fminsearch",
     "growth_rate",
     "invariant_drift",
+    "judge",
     "linearise",
     "load",
     "load_library",
@@ -113,8 +115,8 @@ __all__ = [
 ]
 
 ROOM_OF = {
-    "analyse": "Plane bifurcation floquet growth_rate invariant_drift linearise lyapunov "
-    "periodic_orbit scalogram section spectrum stability_chart steady_state sweep",
+    "analyse": "Plane bifurcation floquet growth_rate invariant_drift judge linearise "
+    "lyapunov periodic_orbit scalogram section spectrum stability_chart steady_state sweep",
     "compile": "compile Model",
     "diagram": "Diagram DiagramBuilder read read_text write",
     "draw": "Drawing draw",

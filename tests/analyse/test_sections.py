@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tracewire.analyse import Plane, bifurcation, section, sweep
 from tracewire.analyse.clusters import count_clusters, is_irregular
-from tracewire.errors import AnalysisError, OptionError, SimulationError
+from tracewire.errors import AnalysisError, OptionError, SimulationError, TracewireError
 from tracewire.solve import simulate
 
 LOGISTIC = """
@@ -252,7 +252,7 @@ def test_a_sweep_has_the_shape_of_its_grid() -> None:
     found = sweep(
         made(OSCILLATOR),
         {"k": [1.0, 4.0, 9.0], "start.x": [1.0, 2.0]},
-        ["max(x)", "min(x)", "range(x)", "rms(x)", "mean(x)", "end(x)", "events"],
+        ["max(x)", "min(x)", "range(x)", "rms(x)", "mean(x)", "end(x)", "count()"],
         parameters={"c": 0.0},
         span=(0, 20 * math.pi),
         rtol=1e-9,
@@ -262,7 +262,7 @@ def test_a_sweep_has_the_shape_of_its_grid() -> None:
     assert found["rms(x)"] == pytest.approx(np.tile([1.0, 2.0], (3, 1)) / math.sqrt(2), rel=1e-3)
     assert found["mean(x)"] == pytest.approx(np.zeros((3, 2)), abs=1e-2)
     assert found["end(x)"] == pytest.approx(np.tile([1.0, 2.0], (3, 1)), abs=1e-5)
-    assert (found["events"] == 0).all()
+    assert (found["count()"] == 0).all()
     with pytest.raises(OptionError, match="unknown output 'max'"):
         found["max"]
 
@@ -292,18 +292,20 @@ def test_a_sweep_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.Monkey
 @pytest.mark.parametrize(
     ("grid", "outputs", "options", "said"),
     [
-        ({}, ["events"], {}, "there is no parameter to sweep"),
+        ({}, ["count()"], {}, "there is no parameter to sweep"),
         ({"k": [1]}, [], {}, "a sweep without outputs keeps nothing"),
-        ({"k": [1]}, ["most(x)"], {}, r"unknown output 'most\(x\)'"),
-        ({"k": [1]}, ["max x"], {}, "unknown output 'max x'"),
-        ({"k": [1]}, ["max(w)"], {}, "unknown signal 'w'"),
-        ({"K": [1]}, ["events"], {}, "unknown parameter or start 'K'"),
-        ({"k": [1]}, ["events"], {"tolerance": 1}, "unknown option 'tolerance'"),
+        ({"k": [1]}, ["most(x)"], {}, "unknown function 'most'"),
+        ({"k": [1]}, ["max x"], {}, "does not parse"),
+        ({"k": [1]}, ["x"], {}, "'x' is a signal, and a quantity is one number"),
+        ({"k": [1]}, ["multiplier(1)"], {}, "no number of a run"),
+        ({"k": [1]}, ["max(w)"], {}, "unknown signal or parameter 'w'"),
+        ({"K": [1]}, ["count()"], {}, "unknown parameter or start 'K'"),
+        ({"k": [1]}, ["count()"], {"tolerance": 1}, "unknown option 'tolerance'"),
         ({"k": [1]}, ["max(x)"], {"since": 99}, "fewer than two samples from 99 s on"),
     ],
 )
 def test_a_sweep_refuses_what_does_not_fit(
     grid: Any, outputs: Any, options: Any, said: str
 ) -> None:
-    with pytest.raises(OptionError, match=said):
+    with pytest.raises(TracewireError, match=said):
         sweep(made(OSCILLATOR), grid, outputs, **options)

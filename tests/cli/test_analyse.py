@@ -224,7 +224,7 @@ def test_sweep(call: Any, forced: Path, tmp_path: Path) -> None:
     table = tmp_path / "s.csv"
     data = call(
         *("sweep", forced, "--over", "omega=1:2:3", "--over", "start.x=0:1:2"),
-        *("--keep", "max(x)", "--keep", "events", "--since", "10", "--output", table, "--json"),
+        *("--keep", "max(x)", "--keep", "count()", "--since", "10", "--output", table, "--json"),
     ).data
     assert np.shape(data["values"]["max(x)"]) == (3, 2)
     assert len(rows_of(table)) == 6

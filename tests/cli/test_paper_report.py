@@ -6,19 +6,25 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tracewire.diagram import read_text
 from tracewire.paper import figure_of, reproduction
-from tracewire.paper.statement import Statement, above, below
 
-AGREES = Statement("C07 one", "It swings.", "Eq 8", "a number", lambda s: 1.0, above(0.5), "s")
-MISPRINT = Statement(
-    "C07 two", "It stops.", "Eq 9", "a number", lambda s: 2.0, below(0.0), erratum="A misprint."
-)
+SWING = """
+title: Pendulum
+span: [0, 20]
+blocks: {phi: {type: integrator, of: w, start: 1}, w: {type: expression, formula: -phi}}
+expect:
+  - {name: C07 one, says: It swings., source: Eq 8, that: "at(phi, 0)", above: 0.5, unit: s}
+  - {name: C07 two, says: It stops., source: Eq 9, that: "2*at(phi, 0)", below: 0,
+     erratum: A misprint.}
+"""
 
 
 @pytest.fixture(autouse=True)
 def two_statements(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(reproduction, "statements_of", lambda paper: (AGREES, MISPRINT))
+    diagram = read_text(SWING, Path("swing.yaml"))
+    monkeypatch.setattr(reproduction, "diagrams_of", lambda paper: (diagram,))
     monkeypatch.setattr(reproduction, "figures_of", lambda paper: (figure_of(paper, "18"),))
 
 

@@ -48,6 +48,10 @@ def test_a_parameter_is_no_label_column_comment_or_key(whole: Diagram) -> None:
         "printed: {stiff: 3.0e-3, hinge.slip: stiff/10}",
         "parameters: {stiff: {value: 2, fit: [0, 3]}, hinge.width: 2*T}",
         "- disc: {at: [sin(theta), -cos(theta)], radius: stiff}",
+        '- {that: "max(abs(theta))/stiff", is: stiff, within: 5 %, source: Table 1, name: swing,'
+        " unit: rad}",
+        '- {that: "at(theta, 2*T)/stiff", above: 0, run: {preset: printed, set: {stiff: 2},'
+        " samples: 20}}",
     ]
 
 

@@ -69,4 +69,8 @@ measured:
 scene:
   - rod: {from: [0, 0], to: ["min(sin(theta), 1)", -cos(theta)], color: blue}
   - disc: {at: [sin(theta), -cos(theta)], radius: k}
+expect:
+  - {that: "max(abs(theta))/k", is: k, within: 5 %, source: Table 1, name: swing, unit: rad}
+  - {that: "at(theta, 2*T)/k", above: 0, run: {preset: printed, set: {k: 2}, samples: 20}}
+  - {that: end(theta)/reference(end(theta)), between: [0, 1], reference: {over: {T: 0.2:0.4:3}}}
 """

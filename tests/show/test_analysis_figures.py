@@ -150,11 +150,11 @@ def test_a_sweep_is_a_line_or_a_map(tmp_path: Path) -> None:
     grid = {"k": np.linspace(1, 2, 3), "c": np.linspace(0, 1, 2), "omega": [1.0, 2.0]}
     model = made(OSCILLATOR)
     for names in (["k"], ["k", "c"]):
-        found = sweep(model, {name: grid[name] for name in names}, ["max(x)", "events"])
+        found = sweep(model, {name: grid[name] for name in names}, ["max(x)", "count()"])
         said = texts(show.plot_sweep(found, tmp_path / "a.svg"))
-        assert all(name in said for name in [*names, "max(x)", "events"])
+        assert all(name in said for name in [*names, "max(x)", "count()"])
     with pytest.raises(OptionError, match="a sweep over 3 parameters is no picture"):
-        show.plot_sweep(sweep(model, grid, ["events"]), tmp_path / "a.svg")
+        show.plot_sweep(sweep(model, grid, ["count()"]), tmp_path / "a.svg")
 
 
 def test_the_same_analysis_gives_the_same_file(tmp_path: Path) -> None:

@@ -76,8 +76,8 @@ def test_many_runs_are_the_same_to_the_last_bit(processes: Executor) -> None:
 def test_sweeps_and_charts_are_the_same_to_the_last_bit(processes: Executor) -> None:
     model = made(BALL)
     grid = {"restitution": RESTITUTION, "start.x": [5.0, 10.0]}
-    here = sweep(model, grid, ["max(x)", "events"])
-    there = sweep(model, grid, ["max(x)", "events"], executor=processes)
+    here = sweep(model, grid, ["max(x)", "count()"])
+    there = sweep(model, grid, ["max(x)", "count()"], executor=processes)
     assert all(np.array_equal(here[name], there[name]) for name in here.values)
     mathieu, x, y = made(MATHIEU), ("a", [0.5, 1.0, 1.5]), ("q", [0.0, 0.3])
     one = stability_chart(mathieu, x, y, np.pi)

@@ -12,15 +12,26 @@ from tracewire.analyse.plane import Plane
 from tracewire.analyse.scalogram import Scalogram, scalogram
 from tracewire.analyse.section import PoincareSection, section
 from tracewire.analyse.spectrum import Line, Spectrum, spectrum
+from tracewire.analyse.statements import (
+    VERDICTS,
+    Judge,
+    Judged,
+    Verdict,
+    counts_of,
+    judge,
+)
 from tracewire.analyse.steady_state import SteadyState, steady_state
 from tracewire.analyse.sweep import Sweep, sweep
 
 __all__ = [
+    "VERDICTS",
     "Bifurcation",
     "Branch",
     "Drift",
     "Floquet",
     "GrowthRate",
+    "Judge",
+    "Judged",
     "Line",
     "Linear",
     "Lyapunov",
@@ -32,10 +43,13 @@ __all__ = [
     "StabilityChart",
     "SteadyState",
     "Sweep",
+    "Verdict",
     "bifurcation",
+    "counts_of",
     "floquet",
     "growth_rate",
     "invariant_drift",
+    "judge",
     "linearise",
     "lyapunov",
     "periodic_orbit",

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tracewire.analyse.clusters import NEAR, count_clusters, is_irregular
+from tracewire.analyse.grid import grid_of
 from tracewire.analyse.partial import Partial, fingerprint
 from tracewire.analyse.plane import Plane, span_of
 from tracewire.analyse.section import extent_of, take_points
-from tracewire.analyse.sweep import grid_of
 from tracewire.analyse.turns import units_of
 from tracewire.analyse.work import Progress, Tell, interrupted
 from tracewire.compile import Model

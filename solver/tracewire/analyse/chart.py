@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tracewire.analyse.floquet import Tries
+from tracewire.analyse.grid import grid_of
 from tracewire.analyse.partial import Partial, fingerprint
-from tracewire.analyse.sweep import grid_of
 from tracewire.analyse.work import Tell, work_through
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem

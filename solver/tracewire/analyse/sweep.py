@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -14,27 +14,26 @@ from typing import Unpack
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tracewire.analyse.grid import grid_of
 from tracewire.analyse.partial import Partial, fingerprint
+from tracewire.analyse.quantities import (
+    Conditions,
+    Recorder,
+    Subject,
+    ask,
+    is_of_run,
+    measure,
+)
 from tracewire.analyse.work import Tell, work_through
 from tracewire.compile import Model
+from tracewire.diagram import quantity_problems
 from tracewire.errors import OptionError, Problem, unknown
+from tracewire.formula import Expression, parse_quantity
 from tracewire.result import Result
-from tracewire.solve import Halt, Run, simulate
-from tracewire.solve.task import START, Options
+from tracewire.solve import Halt, Options
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-MOST_POINTS = 1_000_000
-
-MEASURES: dict[str, Callable[[Vector, Vector], float]] = {
-    "end": lambda t, v: float(v[-1]),
-    "max": lambda t, v: float(v.max()),
-    "min": lambda t, v: float(v.min()),
-    "range": lambda t, v: float(np.ptp(v)),
-    "mean": lambda t, v: float(np.trapezoid(v, t) / (t[-1] - t[0])),
-    "rms": lambda t, v: math.sqrt(np.trapezoid(v * v, t) / (t[-1] - t[0])),
-}
-"""What an output may be of a signal, over the samples from `since` on."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -71,8 +70,8 @@ def sweep(
     """Simulate a model at each point of a grid, and keep a few numbers of each run.
 
     `grid` maps parameters, and `start.NAME` of start values, to values in SI. `outputs` are
-    end(s), max(s), min(s), range(s), mean(s), rms(s) of a signal s, over the samples from
-    the time `since` in s on, and `events`, the number of them. `options` are those of `simulate`.
+    quantities of a run, such as max(abs(x)), end(e)/at(e, 0) or count(impact), over the samples
+    from the time `since` in s on. `options` are those of `simulate`.
     Points are run in parallel, as in `simulate_many`; with `partial`, a .npz file, an interrupted
     sweep goes on where it was. Raises OptionError; the error of the first point where all of them
     fail.
@@ -85,9 +84,7 @@ def sweep(
     if unknown_options:
         raise OptionError(unknown_options)
     axes = grid_of(model, grid)
-    measures = [(name, *_measure(model, name)) for name in dict.fromkeys(outputs)]
-    signals = dict.fromkeys(signal for _, _, signal in measures if signal)
-    seen = replace(model, recorded=tuple(signals))
+    measures = {name: _quantity(model, name) for name in dict.fromkeys(outputs)}
     if not measures:
         what = "a sweep without outputs keeps nothing"
         raise OptionError([Problem(what, hint="Name one, such as 'max(x)'.")])
@@ -95,14 +92,17 @@ def sweep(
         "diagram": fingerprint(model),
         "kind": "sweep",
         "grid": [[name, values.tolist()] for name, values in axes.items()],
-        "outputs": [name for name, _, _ in measures],
+        "outputs": list(measures),
         "options": [since, sorted((name, _identity(value)) for name, value in options.items())],
     }
     shape = tuple(len(values) for values in axes.values())
     store = Partial(partial, identity, math.prod(shape), len(measures))
 
-    work_through(_Point(seen, axes, measures, since, options), store, workers, progress, executor)
-    values = {name: store.rows[:, n].reshape(shape) for n, (name, _, _) in enumerate(measures)}
+    recorder = Recorder(replace(model, recorded=()))
+    ask(list(measures.values()), Subject(recorder, Conditions(options, since)))
+    point = _Point(recorder.model, axes, tuple(measures.values()), since, options)
+    work_through(point, store, workers, progress, executor)
+    values = {name: store.rows[:, n].reshape(shape) for n, name in enumerate(measures)}
     errors = {
         tuple(int(i) for i in np.unravel_index(number, shape)): text
         for number, text in sorted(store.errors.items())
@@ -116,7 +116,7 @@ class _Point:
 
     model: Model
     axes: Mapping[str, Vector]
-    measures: Sequence[tuple[str, str, str]]
+    measures: tuple[Expression, ...]
     since: float | None
     options: Options
 
@@ -125,57 +125,25 @@ class _Point:
         place = np.unravel_index(number, shape)
         here = {n: float(v[i]) for (n, v), i in zip(self.axes.items(), place, strict=True)}
         own = {n: v for n, v in here.items() if n in self.model.flat.parameters}
-        starts = {n.removeprefix(START): v for n, v in here.items() if n not in own}
-        given = dict(self.options)
+        starts = {n.removeprefix("start."): v for n, v in here.items() if n not in own}
+        given = Options(**self.options)
         given["parameters"] = {**(self.options.get("parameters") or {}), **own}
         given["start"] = {**(self.options.get("start") or {}), **starts}
-        run = simulate(self.model, **given)  # type: ignore[arg-type]
-        return np.array([_number(run, kind, s, self.since) for _, kind, s in self.measures])
+        subject = Subject(Recorder(self.model), Conditions(given, self.since))
+        ask(self.measures, subject)
+        return np.array([measure(quantity, subject) for quantity in self.measures])
 
 
-def grid_of(model: Model, grid: Mapping[str, ArrayLike]) -> dict[str, Vector]:
-    """The axes of a grid as arrays. Raises OptionError."""
-    known = [*model.flat.parameters, *(START + name for name in model.states)]
-    problems = [unknown("parameter or start", name, known) for name in grid if name not in known]
-    axes = {name: np.array(values, dtype=float).ravel() for name, values in grid.items()}
-    for name, values in axes.items():
-        if not len(values) or not np.isfinite(values).all():
-            what = f"the axis '{name}' has no values, or some that are not finite"
-            problems.append(Problem(what, hint="Give an array such as numpy.linspace(0, 1, 11)."))
-    if not axes:
-        problems.append(Problem("there is no parameter to sweep", hint="Give one at least."))
-    if math.prod(len(values) for values in axes.values()) > MOST_POINTS:
-        count = math.prod(len(values) for values in axes.values())
-        what = f"a grid of {count} points is too large"
-        problems.append(Problem(what, hint=f"Give {MOST_POINTS} at most."))
-    if problems:
-        raise OptionError(problems)
-    return axes
-
-
-def _measure(model: Model, output: str) -> tuple[str, str]:
-    """The kind of an output and its signal. Raises OptionError."""
-    if output == "events":
-        return "events", ""
-    kind, _, rest = output.partition("(")
-    signal = rest.removesuffix(")").strip()
-    if kind.strip() not in MEASURES or not rest.endswith(")"):
-        known = ["events", *(f"{name}(SIGNAL)" for name in MEASURES)]
-        raise OptionError([unknown("output", output, known)])
-    signals = {*model.states, *model.flat.signals, *model.flat.inputs}
-    if signal not in signals:
-        raise OptionError([unknown("signal", signal, signals)])
-    return kind.strip(), signal
-
-
-def _number(run: Run, kind: str, signal: str, since: float | None) -> float:
-    if kind == "events":
-        return float(len(run.events))
-    chosen = run.t >= (-np.inf if since is None else since)
-    if chosen.sum() < 2:
-        what = f"there are fewer than two samples from {since} s on"
-        raise OptionError([Problem(what, hint="Give an earlier `since`, or a longer span.")])
-    return MEASURES[kind](run.t[chosen], run[signal][chosen])
+def _quantity(model: Model, output: str) -> Expression:
+    """An output as the quantity that it writes. Raises OptionError, FormulaError."""
+    quantity = parse_quantity(output)
+    if wrong := quantity_problems(quantity, model.diagram):
+        raise OptionError(wrong)
+    if not is_of_run(quantity):
+        what = f"'{output}' is no number of a run, and a sweep has runs only"
+        hint = "Take end(x), max(x), count(impact) and so on; `tracewire analyse` has the others."
+        raise OptionError([Problem(what, hint=hint)])
+    return quantity
 
 
 def _identity(option: object) -> str:

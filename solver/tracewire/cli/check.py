@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tracewire.cli.expect import check_expected
 from tracewire.cli.options import AsJson, Debug, Libraries, load_model
 from tracewire.cli.output import print_json, print_text, working
 from tracewire.errors import DiagramError, OptionError, Problem, TracewireError
@@ -27,6 +28,13 @@ def check(
             show_default=False,
         ),
     ],
+    expect: Annotated[
+        bool, typer.Option("--expect", help="Measure the statements of the section 'expect'.")
+    ] = False,
+    against: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="Measure the statements of this diagram instead."),
+    ] = None,
     library: Libraries = None,
     as_json: AsJson = False,
     debug: Debug = False,
@@ -36,11 +44,14 @@ def check(
     Everything that is wrong is told at once, with file, line and column. Of each measured series
     it tells what is done to the data (-), and what is odd about them (!). A measured file that is
     not there is a remark: the diagram can be run without. In a folder all files with `blocks:` or
-    `extends:` are checked.
+    `extends:` are checked. With --expect their statements are measured and told in a table; the
+    exit code is 1 where one of them does not hold.
 
     \b
     Examples:
       tracewire check pendulum.yaml
+      tracewire check --expect pendulum.yaml
+      tracewire check student.yaml --against lesson.yaml
       tracewire check diagrams/
       tracewire check - < pendulum.yaml
     """
@@ -48,6 +59,9 @@ def check(
     found: list[dict[str, Any]] = []
     code: type[TracewireError] = OptionError
     files = diagram_files(diagrams)
+    if expect or against is not None:
+        check_expected(files, against, library, as_json)
+        return
     for file in files:
         try:
             found.append(_contents(file, library, as_json))
@@ -66,13 +80,13 @@ def check(
 
 def _contents(file: str, library: Sequence[str] | None, quiet: bool) -> dict[str, Any]:
     """What is in a diagram, printed unless `quiet`. Raises TracewireError."""
-    from tracewire.compile import remarks_of, unit_problems
+    from tracewire.compile import remarks_of, statement_problems, unit_problems
     from tracewire.diagram import absent_series
     from tracewire.show.summary import contents, contents_text, series_contents
     from tracewire.solve import parameter_values
 
     model = load_model(file, library) if file != "-" else _from_stdin(library)
-    if problems := unit_problems(model.flat):
+    if problems := [*unit_problems(model.flat), *statement_problems(model)]:
         raise DiagramError(problems)
     for preset in ("", *model.flat.presets):  # they must be what the diagram requires
         parameter_values(model, {}, preset)

@@ -11,7 +11,7 @@ def write_report(paper: str, report: str | None, full: bool, as_json: bool) -> N
     report = report or f"paper_{paper}.html"
     check_target(report, (".md", ".html"), "report")
     with working(f"paper {paper}") as show:
-        from tracewire.paper.document import data_of, report_of, statements_table, summary
+        from tracewire.paper.document import data_of, report_of, summary, verdicts_table
         from tracewire.paper.reproduction import reproduce
 
         found = reproduce(paper, full=full, progress=stages(show))
@@ -20,7 +20,7 @@ def write_report(paper: str, report: str | None, full: bool, as_json: bool) -> N
     if as_json:
         print_json({**data_of(found), "written": [report]})
         return
-    print_table(statements_table(found.rows, f"paper {paper}", short=True))
+    print_table(verdicts_table(found.rows, f"paper {paper}", short=True))
     for table in found.tables:
         print_table(table)
     for row in found.rows:

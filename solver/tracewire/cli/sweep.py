@@ -41,9 +41,9 @@ def sweep(
         list[str],
         typer.Option(
             "--keep",
-            metavar="NUMBER",
-            help="end(x), max(x), min(x), range(x), mean(x), rms(x) of a signal, or "
-            "events. Repeatable.",
+            metavar="QUANTITY",
+            help="A number of each run, such as end(x), max(abs(x)), period(x) or "
+            "count(impact); docs/quantities.md has all. Repeatable.",
         ),
     ],
     since: Since = None,

@@ -13,6 +13,7 @@ from tracewire.compile.flat import (
 from tracewire.compile.lowered import Mode, Reset, Transition
 from tracewire.compile.model import Model, compile
 from tracewire.compile.remarks import remarks_of
+from tracewire.compile.statements import statement_problems
 
 __all__ = [
     "Flat",
@@ -28,5 +29,6 @@ __all__ = [
     "Transition",
     "compile",
     "remarks_of",
+    "statement_problems",
     "unit_problems",
 ]

@@ -35,6 +35,19 @@ def unit_problems(flat: Flat) -> list[Problem]:
     return _Units(flat).problems()
 
 
+def unit_of(flat: Flat, formula: Expression) -> tuple[Term | None, list[Problem]]:
+    """The unit of a formula over the names of a model, None where it may be any, and what
+    contradicts inside of it."""
+    units = _Units(flat)
+    units.problems()
+    units.found.clear()
+    units.where = Place()
+    term = units.term(formula)
+    known = None if term is None else units.resolved(term)
+    closed = known is not None and not any(name.startswith(OPEN) for name in known)
+    return (known if closed else None), units.found
+
+
 class _Units:
     def __init__(self, flat: Flat) -> None:
         self.flat = flat

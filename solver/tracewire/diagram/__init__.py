@@ -18,7 +18,9 @@ from tracewire.diagram.diagram import (
     Points,
     ScenePart,
     Series,
+    Setting,
     Shown,
+    Statement,
     Use,
     Value,
     Wire,
@@ -58,6 +60,7 @@ from tracewire.diagram.names import (
     states,
 )
 from tracewire.diagram.packages import package_subsystems, who_has
+from tracewire.diagram.quantity_names import EVENT_KINDS, is_quantity, quantity_problems
 from tracewire.diagram.read import read, read_readable, read_readable_text, read_text
 from tracewire.diagram.rename import renamed
 from tracewire.diagram.rewire import add_to_drive, rewired
@@ -66,6 +69,7 @@ from tracewire.diagram.write import write, written_out
 from tracewire.diagram.yaml_text import mapping_text, quoted
 
 __all__ = [
+    "EVENT_KINDS",
     "STDIN",
     "Array",
     "BlockUse",
@@ -85,8 +89,10 @@ __all__ = [
     "Proposal",
     "ScenePart",
     "Series",
+    "Setting",
     "Shown",
     "Signal",
+    "Statement",
     "SubsystemBuilder",
     "Use",
     "Value",
@@ -106,12 +112,14 @@ __all__ = [
     "find_signal",
     "find_state",
     "is_count",
+    "is_quantity",
     "laid_out",
     "load_stdin",
     "load_text",
     "mapping_text",
     "package_subsystems",
     "path_text",
+    "quantity_problems",
     "quoted",
     "read",
     "read_readable",

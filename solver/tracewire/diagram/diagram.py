@@ -253,15 +253,75 @@ class ScenePart:
 
 
 @dataclass(frozen=True)
+class Setting:
+    """How a statement is measured: what a run is given, and what an analysis needs beside that.
+
+    `preset`, `values` of parameters and `start` of states, as of a preset; `series`: as a measured
+    series is driven. The run goes from `begin` to `until`, its samples are those of the diagram or
+    `samples` evenly spaced ones, and those before `since` do not count. `options` are further ones
+    by their keys: `rtol` of the run, `period`, `skip` and so on of analyses. `over` has the values
+    of a parameter, in SI. `file` is another diagram. `full` replaces what it has where runs as
+    long as those of the source are asked for.
+    """
+
+    preset: str = ""
+    values: Mapping[str, Value] = field(default_factory=dict)
+    start: Mapping[str, Value] = field(default_factory=dict)
+    series: str = ""
+    begin: Value | None = None
+    until: Value | None = None
+    since: Value | None = None
+    samples: int | None = None
+    options: Mapping[str, Value | str] = field(default_factory=dict)
+    modulo: Mapping[str, Value] = field(default_factory=dict)
+    over: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    file: Path | None = None
+    full: Setting | None = None
+    place: Place = Place()
+
+
+@dataclass(frozen=True)
+class Statement:
+    """What a diagram must show: a quantity `that` lies where it is expected, measured in `run`.
+
+    Exactly one of these is given: `value` with `within`, a part of it where `relative`; `above`
+    or `below` or both, as formulas in the unit; `word` of a quantity that is one, such as stable.
+    A formula that reads parameters is in SI. `unit` and `factor` are those of value and bounds.
+    `name`, `says` (a sentence), `what` (the quantity in words) and `source` tell a reader what is
+    stated where. `erratum`: it cannot hold, as what is printed is wrong, and why. `reference` is
+    the run that the quantity calls so.
+    """
+
+    that: Expression
+    name: str
+    says: str = ""
+    what: str = ""
+    source: str = ""
+    value: Expression | None = None
+    within: float = 0.0
+    relative: bool = False
+    above: Expression | None = None
+    below: Expression | None = None
+    word: str = ""
+    unit: str = ""
+    factor: float = 1.0
+    erratum: str = ""
+    note: str = ""
+    run: Setting = Setting()
+    reference: Setting | None = None
+    place: Place = Place()
+
+
+@dataclass(frozen=True)
 class Diagram:
     """A diagram, or a subsystem of one, with everything that its file says.
 
     `file` and `text` are those of the file the diagram was read from; an edit of the diagram is an
     edit of that text. `library` holds the blocks that it may use. `effect`: a subsystem that may be
-    tried as a missing effect, and how. `scene` says how it is drawn as a mechanism. `counts` are
-    the parameters that say how many blocks there are; a run cannot change them. `variant`: which of
-    its bodies a subsystem has here, where it has several, which are `variants`. `sources` are the
-    other diagram files that it extends or includes.
+    tried as a missing effect, and how. `scene` says how it is drawn as a mechanism, and `expect`
+    what it must show. `counts` are the parameters that say how many blocks there are; a run cannot
+    change them. `variant`: which of its bodies, the `variants`, a subsystem has here. `sources` are
+    the other diagram files that it extends or includes.
     """
 
     name: str
@@ -289,6 +349,7 @@ class Diagram:
     variant: str = ""
     variants: tuple[str, ...] = ()
     sources: tuple[Path, ...] = ()
+    expect: tuple[Statement, ...] = ()
 
     def _repr_svg_(self) -> str:
         """The picture of the diagram, as a notebook shows it."""

@@ -242,6 +242,58 @@ _LIBRARIES = Key(
 )
 _INCLUDE = Key(Listed(TEXT, alone=True), "Files with further subsystems.")
 
+DIRECTIONS = ("up", "down", "both", "up_down", "down_up", "apart")
+SETTING = {
+    "preset": Key(Text(names="preset"), "The preset of the run."),
+    "set": Key(Mapped(FIXED, "parameter"), "Parameters of the run: {k: 2}."),
+    "start": Key(Mapped(FIXED, "state"), "Starts of states: {x: 0.1}."),
+    "series": Key(TEXT, "The measured series that drives the run."),
+    "from": Key(FIXED, "The begin of the run in s."),
+    "until": Key(FIXED, "The end of the run in s."),
+    "since": Key(FIXED, "The time from which on quantities are taken."),
+    "samples": Key(Number(low=2), "How many samples the run has."),
+    "rtol": Key(Number(above=0), "The relative tolerance of the run."),
+    "period": Key(FIXED, "Of an orbit or a section: the period in s."),
+    "phase": Key(FIXED, "Of a section: the phase at which points are taken."),
+    "length": Key(FIXED, "Of an analysis: its length in s."),
+    "transient": Key(FIXED, "Of an analysis: what is left out at the begin, in s."),
+    "interval": Key(FIXED, "Of exponents: the time between two orthonormalisations in s."),
+    "skip": Key(Number(low=0), "Points or periods that are left out at the begin."),
+    "keep": Key(Number(low=1), "Points or periods that are taken."),
+    "edge": Key(TEXT, "The event at which points of a section are taken."),
+    "guard": Key(TEXT, "The guard at which points of a section are taken."),
+    "method": Key(TEXT, "The method of integration."),
+    "direction": Key(Text(DIRECTIONS), "The direction of the crossing, or of a sweep."),
+    "modulo": Key(Mapped(FIXED, "state"), "What is one turn of a state: {phi: 2*pi}."),
+    "over": Key(
+        Mapped(Either((TEXT, Listed(TEXT))), "parameter"),
+        "The values of one parameter: {f: 0.3:0.9:800}.",
+    ),
+}
+REFERENCE = SETTING | {
+    "full": Key(Record(SETTING), "The setting of the longest runs."),
+    "diagram": Key(TEXT, "The file of another diagram, whose names these are."),
+}
+STATEMENT = {
+    "that": Key(Formula(signals=True), "The quantity, such as end(x).", required=True),
+    "is": Key(Formula(signals=True), "The value that is expected, or a word such as stable."),
+    "within": Key(TEXT, "Its tolerance, in the unit of the quantity or in %."),
+    "above": Key(Formula(signals=True), "The quantity is more than this."),
+    "below": Key(Formula(signals=True), "The quantity is less than this."),
+    "between": Key(Listed(Formula(signals=True), count=2), "The quantity lies between these."),
+    "unit": Key(UNIT, "The unit of the numbers; SI unless given."),
+    "name": Key(TEXT, "The name in tables; the quantity unless given."),
+    "says": Key(TEXT, "The statement in words."),
+    "what": Key(TEXT, "The quantity in words."),
+    "source": Key(TEXT, "Where it is stated: Table 3."),
+    "erratum": Key(TEXT, "Why the source is wrong; then it need not hold."),
+    "note": Key(TEXT, "What else is to be said."),
+    "run": Key(
+        Record(SETTING | {"full": Key(Record(SETTING), "The setting of the longest runs.")}),
+        "The setting of the run in which it is measured.",
+    ),
+    "reference": Key(Record(REFERENCE), "The setting of another run, or of another diagram."),
+}
 _PRESETS = Key(Mapped(Mapped(FIXED, "parameter")), "Named values of parameters: {free: {c: 0}}.")
 _EFFECT = Key(Record(EFFECT), "How a trace may add this subsystem as a missing effect.")
 VARIANT = {
@@ -279,6 +331,7 @@ TOP = {  # in the order in which `format` puts them
         Listed(Record({n: Key(_part(p), f"A {n}.") for n, p in KINDS.items()}, one=True)),
         "How the diagram is drawn as a mechanism: parts that signals move.",
     ),
+    "expect": Key(Listed(Record(STATEMENT)), "What the diagram must show: statements."),
 }
 INSIDE = {
     "title": _TITLE,

@@ -22,6 +22,7 @@ from tracewire.diagram.measured import read_measured
 from tracewire.diagram.packages import Packages
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.read_effect import read_effect
+from tracewire.diagram.read_expect import read_expect
 from tracewire.diagram.read_scene import read_scene
 from tracewire.diagram.replicate import counts_of, numbers_of, replicated
 from tracewire.diagram.sections import (
@@ -174,6 +175,8 @@ class _Reader:
             diagram = replace(diagram, measured=read_measured(given["measured"], body, diagram))
         if "scene" in given:
             diagram = replace(diagram, scene=read_scene(given["scene"], body))
+        if "expect" in given:
+            diagram = replace(diagram, expect=read_expect(given["expect"], body, diagram))
         return diagram
 
     def common(

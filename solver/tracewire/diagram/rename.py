@@ -7,10 +7,17 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from tracewire.diagram.diagram import BlockUse, Diagram
-from tracewire.diagram.grammar import OF_A_BLOCK, OF_KINDS, SHAPES, fitting, parts_of
+from tracewire.diagram.grammar import (
+    OF_A_BLOCK,
+    OF_KINDS,
+    REFERENCE,
+    SHAPES,
+    fitting,
+    parts_of,
+)
 from tracewire.diagram.outline import Outline, elsewhere
 from tracewire.diagram.rewrite import reread
-from tracewire.diagram.shapes import Formula, Mapped, Named, Shape, Text
+from tracewire.diagram.shapes import Formula, Mapped, Named, Record, Shape, Text
 from tracewire.diagram.splice import Change
 from tracewire.diagram.strict import Entries, Node, Scalar
 from tracewire.errors import OptionError, unknown
@@ -158,6 +165,8 @@ class _Names:
             if isinstance(found, Formula) or (isinstance(found, Text) and _is_path(found.names)):
                 yield from self.path(node)
             return
+        if found == Record(REFERENCE) and isinstance(node, Entries) and "diagram" in node.values:
+            return  # its names are those of another diagram
         for key, value, of in parts_of(found, node) if found is not None else ():
             if key is not None and of == Named("subsystem"):  # its inside is another diagram
                 if self.part.is_type and self.inside.subsystems.get(key.text) is self.part.inside:

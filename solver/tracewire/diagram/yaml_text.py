@@ -85,4 +85,14 @@ def _entry(begin: str, node: Node, indent: int, is_opened: bool) -> list[str]:
         return [line]
     if isinstance(node, Entries):
         return [begin, *_lines(node.values, indent + 2)]
-    return [begin, *(f"{' ' * (indent + 2)}- {inline(item)}" for item in node.items)]
+    items = (line for item in node.items for line in _item(item, indent + 2))
+    return [begin, *items]
+
+
+def _item(node: Node, indent: int) -> list[str]:
+    """The lines of an entry of a list."""
+    line = f"{' ' * indent}- {inline(node)}"
+    if len(line) <= WIDTH or not isinstance(node, Entries):
+        return [line]
+    first, *others = _lines(node.values, indent + 2)
+    return [f"{' ' * indent}- {first.lstrip()}", *others]

@@ -24,7 +24,15 @@ from tracewire.formula.expression import (
 )
 from tracewire.formula.functions import CONSTANTS, FUNCTIONS, OPERATIONS
 from tracewire.formula.order import evaluation_order
-from tracewire.formula.parse import is_name, name_hint, number_hint, parse, parse_condition
+from tracewire.formula.parse import (
+    is_name,
+    name_hint,
+    number_hint,
+    parse,
+    parse_condition,
+    parse_quantity,
+)
+from tracewire.formula.quantities import QUANTITIES, Quantity
 from tracewire.formula.text import number_text, to_text
 from tracewire.formula.unit_rules import Term, times, unit_term
 from tracewire.formula.units import Unit, quantity_hint, read_unit, same_quantity
@@ -37,10 +45,12 @@ __all__ = [
     "CONSTANTS",
     "FUNCTIONS",
     "OPERATIONS",
+    "QUANTITIES",
     "Call",
     "Expression",
     "Name",
     "Number",
+    "Quantity",
     "Term",
     "Unit",
     "dimension_of",
@@ -56,6 +66,7 @@ __all__ = [
     "number_text",
     "parse",
     "parse_condition",
+    "parse_quantity",
     "quantity_hint",
     "read_at_once",
     "read_unit",

@@ -13,6 +13,7 @@ from functools import lru_cache
 from tracewire.errors import FormulaError, Place, Problem, unknown
 from tracewire.formula.expression import Call, Expression, Name, Number
 from tracewire.formula.functions import CONSTANTS, FUNCTIONS
+from tracewire.formula.quantities import QUANTITIES, Quantity
 from tracewire.formula.units import read_unit
 
 MOST_CHARACTERS = 4000
@@ -42,6 +43,7 @@ LANGUAGE = (
     + ", ".join(name for name, function in FUNCTIONS.items() if not function.instead)
     + "."
 )
+OF_QUANTITIES = f"Quantities are: {', '.join(QUANTITIES)}."
 
 
 def is_name(text: str) -> bool:
@@ -99,9 +101,17 @@ def parse_condition(text: str, place: Place = Place()) -> Expression:
     return _read(text, place, condition=True)
 
 
-def _read(text: str, place: Place, condition: bool) -> Expression:
+def parse_quantity(text: str, place: Place = Place()) -> Expression:
+    """The quantity that `text` writes: a formula that knows the functions of QUANTITIES, too.
+
+    Raises FormulaError as `parse` does.
+    """
+    return _read(text, place, condition=False, quantity=True)
+
+
+def _read(text: str, place: Place, condition: bool, quantity: bool = False) -> Expression:
     try:
-        return _parse(text, condition)
+        return _parse(text, condition, quantity)
     except _Refused as refused:
         column = place.column + refused.column if place.column else 0
         at = Place(place.file, place.line, column, place.block)
@@ -111,7 +121,7 @@ def _read(text: str, place: Place, condition: bool) -> Expression:
 
 
 @lru_cache(maxsize=4096)
-def _parse(text: str, condition: bool) -> Expression:
+def _parse(text: str, condition: bool, quantity: bool) -> Expression:
     if len(text) > MOST_CHARACTERS:
         raise _Refused(f"it has {len(text)} characters, at most {MOST_CHARACTERS} are allowed")
     if not text.strip():
@@ -132,7 +142,7 @@ def _parse(text: str, condition: bool) -> Expression:
         ) from None
     except (ValueError, RecursionError, MemoryError):
         raise _Refused("it does not parse (nested too deeply, or no text)") from None
-    converter = _Converter(lead)
+    converter = _Converter(lead, quantity)
     return converter.condition(tree.body, 0) if condition else converter.value(tree.body, 0)
 
 
@@ -153,8 +163,8 @@ def _what_was_meant(text: str) -> _Refused | None:
 class _Converter:
     """Turns the nodes of Python's grammar into ours, counting them."""
 
-    def __init__(self, lead: int) -> None:
-        self.lead, self.count = lead, 0
+    def __init__(self, lead: int, quantity: bool) -> None:
+        self.lead, self.count, self.quantity = lead, 0, quantity
 
     def refuse(self, node: ast.AST, what: str, hint: str = LANGUAGE) -> _Refused:
         return _Refused(what, self.lead + getattr(node, "col_offset", 0), hint)
@@ -288,9 +298,14 @@ class _Converter:
             raise self.refuse(node, "only named functions can be called")
         name = node.func.id
         function = FUNCTIONS.get(name)
+        quantity = QUANTITIES.get(name) if self.quantity else None
+        if quantity is not None and (function is None or len(node.args) < function.least):
+            return self.call_quantity(node, name, quantity, depth)
         if function is None:
-            problem = unknown("function", name, FUNCTIONS)
-            raise self.refuse(node, problem.what, problem.hint or LANGUAGE)
+            known = FUNCTIONS | QUANTITIES if self.quantity else FUNCTIONS
+            problem = unknown("function", name, known)
+            hint = OF_QUANTITIES if self.quantity else LANGUAGE
+            raise self.refuse(node, problem.what, problem.hint or hint)
         if node.keywords or any(isinstance(argument, ast.Starred) for argument in node.args):
             raise self.refuse(node, f"arguments of {name} are given by position", "")
         given = len(node.args)
@@ -302,6 +317,29 @@ class _Converter:
         if function.reads and not isinstance(arguments[-1], Name):
             raise self.refuse(node, f"{name} reads {BY_NAME[function.reads]} by its name", "")
         return Call(name, arguments)
+
+    def call_quantity(self, node: ast.Call, name: str, known: Quantity, depth: int) -> Expression:
+        if node.keywords or any(isinstance(argument, ast.Starred) for argument in node.args):
+            raise self.refuse(node, f"arguments of {name} are given by position", "")
+        given, most = len(node.args), None if known.more else len(known.takes)
+        if given < known.least or (most is not None and given > most):
+            told = ", ".join(known.takes) or "nothing"
+            raise self.refuse(node, f"{name} takes ({told}), {given} given", f"It is {known.doc}.")
+        found: list[Expression] = []
+        for n, argument in enumerate(node.args):
+            match known.kind(n):
+                case "condition":
+                    found.append(self.condition(argument, depth + 1))
+                case "happening":
+                    found.append(self.convert(argument, depth + 1))
+                case "word" | "parameter":
+                    if not isinstance(argument, ast.Name | ast.Attribute):
+                        what = f"argument {n + 1} of {name} is a name"
+                        raise self.refuse(argument, what, f"It is {known.doc}.")
+                    found.append(Name(self.path(argument)))
+                case _:
+                    found.append(self.value(argument, depth + 1))
+        return Call(name, tuple(found))
 
 
 def is_condition(expression: Expression) -> bool:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 
 from tracewire.formula.expression import Call, Expression, Name, Number
 from tracewire.formula.functions import OPERATIONS
+from tracewire.formula.quantities import QUANTITIES, Quantity
 
 LARGEST_POWER = 100.0
 
@@ -37,6 +38,9 @@ def unit_term(node: Expression, named: Named, equal: Equal, strict: bool) -> Ter
     if isinstance(node, Name):
         return named(node.name)
     operation = OPERATIONS.get(node.function)
+    quantity = QUANTITIES.get(node.function) if operation is None else None
+    if quantity is not None:
+        return _of_quantity(node, quantity, named, equal, strict)
     if operation is not None and operation.reads:
         return None
     terms = [unit_term(argument, named, equal, strict) for argument in node.arguments]
@@ -72,6 +76,35 @@ def unit_term(node: Expression, named: Named, equal: Equal, strict: bool) -> Ter
         case "number":
             return _number(node, terms, equal)
     return None
+
+
+def _of_quantity(
+    node: Call, quantity: Quantity, named: Named, equal: Equal, strict: bool
+) -> Term | None:
+    """The unit of a quantity; of its arguments those that are signals and conditions are looked
+    at."""
+    seen = ("signal", "condition", "happening", "number", "parameter")
+    terms = {
+        n: unit_term(argument, named, equal, strict)
+        for n, argument in enumerate(node.arguments)
+        if quantity.kind(n) in seen
+    }
+    first = next((term for n, term in terms.items() if quantity.kind(n) == "signal"), None)
+    match quantity.unit:
+        case "kept" | "inside":
+            return first
+        case "kept s":
+            return None if first is None else times(first, {"s": 1.0})
+        case "parameter":
+            return next((t for n, t in terms.items() if quantity.kind(n) == "parameter"), None)
+        case "s":
+            return {"s": 1.0}
+        case "1/s":
+            return {"s": -1.0}
+        case "number":
+            return {}
+        case "any":
+            return None
 
 
 def _same(parts: Sequence[tuple[Expression, Term | None]], equal: Equal) -> Term | None:

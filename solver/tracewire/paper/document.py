@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 
+from tracewire.analyse import Judged
 from tracewire.paper.draw import draw
 from tracewire.paper.figure import PAPERS, PaperFigure
 from tracewire.paper.headers import read_headers
-from tracewire.paper.reproduction import Reproduction, Row
+from tracewire.paper.reproduction import Reproduction
 from tracewire.paper.setting import Amount
-from tracewire.show import Report, Table
+from tracewire.show import Report, Table, expected_text, measured_text, statement_data
 from tracewire.show.document import Figure, Section
 
 HEADER = ("statement", "the paper", "source", "measured", "expected", "verdict")
@@ -60,16 +60,14 @@ def summary(found: Reproduction) -> str:
     return f"{len(found.rows)} statement{plural}: {counts}. Measured in {found.seconds:.0f} s{how}."
 
 
-def statements_table(rows: Iterable[Row], title: str = "", *, short: bool = False) -> Table:
+def verdicts_table(rows: Iterable[Judged], title: str = "", *, short: bool = False) -> Table:
     """Rows of a reproduction as a table; `short` without what the paper says."""
     cells = []
     for row in rows:
         statement = row.statement
-        unit = f" {statement.unit}" if statement.unit else ""
-        measured = "-" if row.value is None else f"{_number(row.value)}{unit}"
-        expected = f"{statement.expected.text}{unit}"
         says = f"{statement.says} ({statement.what})"
-        cells.append((statement.name, says, statement.source, measured, expected, row.verdict))
+        numbers = measured_text(row), expected_text(row)
+        cells.append((statement.name, says, statement.source, *numbers, row.verdict))
     columns = [n for n in range(len(HEADER)) if not short or n not in (1, 2)]
     kept = tuple(tuple(cell[n] for n in columns) for cell in cells)
     return Table(title, tuple(HEADER[n] for n in columns), kept)
@@ -83,7 +81,7 @@ def data_of(found: Reproduction) -> dict[str, object]:
         "full": found.full,
         "seconds": found.seconds,
         "counts": dict(found.counts),
-        "statements": [_record(row) for row in found.rows],
+        "statements": [statement_data(row) for row in found.rows],
         "tables": [
             {"title": table.title, "header": table.header, "rows": table.rows}
             for table in found.tables
@@ -91,29 +89,10 @@ def data_of(found: Reproduction) -> dict[str, object]:
     }
 
 
-def _record(row: Row) -> dict[str, object]:
-    statement, bounds = row.statement, row.statement.expected
-    return {
-        "name": statement.name,
-        "system": statement.system,
-        "says": statement.says,
-        "source": statement.source,
-        "what": statement.what,
-        "unit": statement.unit,
-        "value": row.value,
-        "expected": bounds.text,
-        "low": bounds.low if math.isfinite(bounds.low) else None,
-        "high": bounds.high if math.isfinite(bounds.high) else None,
-        "verdict": row.verdict,
-        "why": row.why,
-        "seconds": row.seconds,
-    }
-
-
 def _tables(found: Reproduction) -> Iterable[Table]:
     for system in found.systems:
-        rows = [row for row in found.rows if row.statement.system == system]
-        yield statements_table(rows, system)
+        rows = [row for row in found.rows if row.system == system]
+        yield verdicts_table(rows, system)
 
 
 def _figure(figure: PaperFigure, amount: Amount) -> Figure:
@@ -122,20 +101,15 @@ def _figure(figure: PaperFigure, amount: Amount) -> Figure:
     return Figure(f"{figure.stem}.png", name, lambda path: draw(figure, [path], amount))
 
 
-def _point(row: Row) -> str:
+def _point(row: Judged) -> str:
     statement = row.statement
-    unit = f" {statement.unit}" if statement.unit else ""
-    value = "" if row.value is None else f" Measured: {statement.what} {_number(row.value)}{unit}."
+    value = "" if row.value is None else f" Measured: {statement.what} {measured_text(row)}."
     return f"{statement.name}, {statement.source}: {statement.says} {row.why}{value}"
 
 
-def _by_note(rows: Iterable[Row]) -> dict[str, str]:
+def _by_note(rows: Iterable[Judged]) -> dict[str, str]:
     """The names of the statements with each note."""
     found: dict[str, list[str]] = {}
     for row in rows:
         found.setdefault(row.why, []).append(row.statement.name)
     return {why: ", ".join(names) for why, names in found.items()}
-
-
-def _number(value: float) -> str:
-    return f"{value:.7g}" if abs(value) >= 1e-3 or value == 0 else f"{value:.2e}"

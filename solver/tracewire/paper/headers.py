@@ -9,6 +9,7 @@ from pathlib import Path
 from tracewire.shipped import shipped
 
 FOLDERS = {"a": "a_torsion", "b": "b_triple", "c": "c_review"}
+"""The folder of each paper's diagrams."""
 PARTS = ("Source", "Given", "Chosen", "What one sees", "Errata")
 NAMED = re.compile(r"^([A-Z]\d+\w*): |\((C\d+\w*)\)\.?$")
 PLACE = re.compile(r"\s*\(paper [ABC]((?:, [^()]*)?)\)")

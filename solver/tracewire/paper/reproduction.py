@@ -3,33 +3,17 @@
 from __future__ import annotations
 
 import time
-from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from tracewire.errors import TracewireError
+from tracewire.analyse import Judge, Judged, Verdict, counts_of
+from tracewire.diagram import Diagram
 from tracewire.paper.figure import PaperFigure
 from tracewire.paper.figures import figures_of
-from tracewire.paper.runs import Systems
-from tracewire.paper.statement import VERDICTS, Statement, Verdict
-from tracewire.paper.statements import DIAGRAMS, statements_of
+from tracewire.paper.identification import with_identification
+from tracewire.paper.statements import diagrams_of
 from tracewire.paper.tables import tables_of
 from tracewire.show import Table
-
-
-@dataclass(frozen=True)
-class Row:
-    """A statement with the number that was measured, and how long that took in s.
-
-    `value` is None where it could not be measured; `why` tells the reason of every verdict but
-    plain agreement, and what else the statement has to say.
-    """
-
-    statement: Statement
-    value: float | None
-    verdict: Verdict
-    why: str
-    seconds: float
 
 
 @dataclass(frozen=True)
@@ -42,7 +26,7 @@ class Reproduction:
     """
 
     paper: str
-    rows: tuple[Row, ...]
+    rows: tuple[Judged, ...]
     tables: tuple[Table, ...]
     figures: tuple[PaperFigure, ...]
     full: bool
@@ -51,59 +35,48 @@ class Reproduction:
     @property
     def counts(self) -> Mapping[Verdict, int]:
         """How many statements have each verdict, in the order of VERDICTS."""
-        found = Counter(row.verdict for row in self.rows)
-        return {verdict: found[verdict] for verdict in VERDICTS}
+        return counts_of(self.rows)
 
     @property
     def systems(self) -> tuple[str, ...]:
         """The systems in the order of their statements."""
-        return tuple(dict.fromkeys(row.statement.system for row in self.rows))
+        return tuple(dict.fromkeys(row.system for row in self.rows))
 
     @property
-    def open(self) -> tuple[Row, ...]:
+    def open(self) -> tuple[Judged, ...]:
         """The rows that neither agree nor show a wrong print."""
-        return tuple(row for row in self.rows if row.verdict in VERDICTS[2:])
+        return tuple(row for row in self.rows if not row.holds)
 
 
 def reproduce(
     paper: str,
     *,
     full: bool = False,
-    statements: Sequence[Statement] | None = None,
+    diagrams: Sequence[Diagram] | None = None,
     workers: int | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Reproduction:
     """Measure the statements of paper "a", "b" or "c" on the shipped diagrams.
 
-    `full` makes the runs as long and as fine as the paper's. `statements` are measured instead of
-    the paper's own, and then there are no tables and figures. `progress` is told what is done next,
-    in words that end on `(3 of 40)`.
+    `full` makes the runs as long and as fine as the paper's. The statements of `diagrams` are
+    measured instead of the paper's own, and then there are no tables and figures. `progress` is
+    told what is done next, in words that end on `(3 of 40)`.
     A statement that cannot be measured is a row that says why. Raises OptionError: no such paper.
     """
-    own = statements_of(paper)
-    chosen = own if statements is None else tuple(statements)
-    systems = Systems(DIAGRAMS[paper], full=full, workers=workers, tell=progress)
-    began = time.perf_counter()
-    rows = []
-    for n, statement in enumerate(chosen, start=1):
-        systems.tell(f"{statement.name} ({n} of {len(chosen)})")
-        rows.append(_row(statement, systems))
-    tables = tables_of(paper, systems) if statements is None else ()
-    figures = figures_of(paper) if statements is None else ()
-    return Reproduction(paper, tuple(rows), tables, figures, full, time.perf_counter() - began)
+    chosen = diagrams_of(paper) if diagrams is None else tuple(diagrams)
+    count = sum(len(diagram.expect) for diagram in chosen)
+    names = [statement.name for diagram in chosen for statement in diagram.expect]
 
+    def tell(what: str) -> None:
+        if progress is not None:
+            number = f" ({names.index(what) + 1} of {count})" if what in names else ""
+            progress(what + number)
 
-def _row(statement: Statement, systems: Systems) -> Row:
+    judge = Judge(full=full, workers=workers, tell=tell)
+    steps = with_identification(judge)
     began = time.perf_counter()
-    value: float | None = None
-    verdict: Verdict
-    try:
-        value = float(statement.measure(systems))
-        verdict = statement.judge(value)
-        told = [statement.erratum if verdict == "the print is wrong" else "", statement.note]
-    except TracewireError as error:
-        verdict, told = "could not be measured", [" ".join(str(error).split()), statement.note]
-    if verdict == "does not agree":
-        told = [f"{statement.expected.text} was expected.", *told]
-    why = " ".join(text for text in told if text)
-    return Row(statement, value, verdict, why, time.perf_counter() - began)
+    rows = tuple(row for diagram in chosen for row in judge.judge(diagram))
+    own = diagrams is None
+    tables = tables_of(paper, judge, steps, chosen) if own else ()
+    figures = figures_of(paper) if own else ()
+    return Reproduction(paper, rows, tables, figures, full, time.perf_counter() - began)

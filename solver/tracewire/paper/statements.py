@@ -1,32 +1,28 @@
-"""The statements of each paper, in the order of its systems."""
+"""The diagrams of each paper; their sections `expect` hold what it states."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from pathlib import Path
 
+from tracewire.diagram import Diagram, Statement, read
 from tracewire.errors import OptionError, unknown
 from tracewire.paper.figure import PAPERS
-from tracewire.paper.statement import Statement
+from tracewire.paper.headers import FOLDERS
+from tracewire.shipped import shipped
 
-DIAGRAMS: Mapping[str, str] = {"a": "a_torsion", "b": "b_triple", "c": "c_review"}
-"""The folder of each paper's diagrams."""
+
+def folder_of(paper: str) -> Path:
+    """The folder with the diagrams of paper "a", "b" or "c". Raises OptionError: no such paper."""
+    if paper not in FOLDERS:
+        raise OptionError([unknown("paper", paper, PAPERS)])
+    return shipped("diagrams") / "papers" / FOLDERS[paper]
+
+
+def diagrams_of(paper: str) -> tuple[Diagram, ...]:
+    """The diagrams of a paper, in the order of their files. Raises OptionError: no such paper."""
+    return tuple(read(file) for file in sorted(folder_of(paper).glob("*.yaml")))
 
 
 def statements_of(paper: str) -> tuple[Statement, ...]:
-    """The statements of paper "a", "b" or "c". Raises OptionError: no such paper."""
-    from tracewire.paper import (
-        statements_a,
-        statements_b,
-        statements_c_atwood,
-        statements_c_hill,
-        statements_c_pendulums,
-    )
-
-    if paper not in PAPERS:
-        raise OptionError([unknown("paper", paper, PAPERS)])
-    c = (
-        *statements_c_hill.STATEMENTS,
-        *statements_c_pendulums.STATEMENTS,
-        *statements_c_atwood.STATEMENTS,
-    )
-    return {"a": statements_a.STATEMENTS, "b": statements_b.STATEMENTS, "c": c}[paper]
+    """The statements of a paper, in the order of its diagrams. Raises OptionError."""
+    return tuple(statement for diagram in diagrams_of(paper) for statement in diagram.expect)

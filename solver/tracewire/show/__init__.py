@@ -33,6 +33,12 @@ if TYPE_CHECKING:
         plot_scalogram,
         plot_spectrum,
     )
+    from tracewire.show.statements import (
+        expected_text,
+        measured_text,
+        statement_data,
+        statements_table,
+    )
     from tracewire.show.sticking import held_intervals
     from tracewire.show.sweep_figures import plot_chart, plot_sweep
     from tracewire.show.table import Table, shown
@@ -46,6 +52,7 @@ __all__ = [
     "Report",
     "Table",
     "animate",
+    "expected_text",
     "extent_of",
     "fit_text",
     "fit_words",
@@ -56,6 +63,7 @@ __all__ = [
     "library_report",
     "library_script",
     "library_style",
+    "measured_text",
     "moved_parts",
     "optimplotfit",
     "optimplotfval",
@@ -86,6 +94,8 @@ __all__ = [
     "present",
     "report",
     "shown",
+    "statement_data",
+    "statements_table",
 ]
 
 FILE_OF = {
@@ -106,6 +116,7 @@ FILE_OF = {
     "scene": "Moved extent_of moved_parts",
     "several_runs": "plot_runs",
     "signal_figures": "plot_growth plot_invariants plot_lyapunov plot_scalogram plot_spectrum",
+    "statements": "expected_text measured_text statement_data statements_table",
     "sticking": "held_intervals",
     "presentation": "Presentation Presented present",
     "table": "Table shown",

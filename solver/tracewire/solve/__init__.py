@@ -132,9 +132,10 @@ from tracewire.solve.parallel import cores, crew, each
 from tracewire.solve.passage import Passage
 from tracewire.solve.run import Event, Run, Sensitivities, Statistics
 from tracewire.solve.runs import Runs
-from tracewire.solve.simulate import parameter_values, simulate
+from tracewire.solve.simulate import parameter_values, sample_times, simulate
 from tracewire.solve.space import release
 from tracewire.solve.spans import Span, SpanRuns, simulate_spans
+from tracewire.solve.task import Options
 
 __all__ = [
     "Driving",
@@ -143,6 +144,7 @@ __all__ = [
     "Held",
     "Interrupted",
     "Limits",
+    "Options",
     "Passage",
     "Run",
     "Runs",
@@ -157,6 +159,7 @@ __all__ = [
     "parameter_values",
     "refuse_delays",
     "release",
+    "sample_times",
     "simulate",
     "simulate_many",
     "simulate_spans",

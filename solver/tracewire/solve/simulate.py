@@ -296,6 +296,12 @@ def samples_of(
     return np.asarray(np.minimum(begin + every * np.arange(count + 1), end))
 
 
+def sample_times(model: Model, values: Mapping[str, float], span: tuple[float, float]) -> Vector:
+    """The sample times (N,) in s that a run over a span has by itself. Raises OptionError."""
+    begin, end = span_of(model, values, span, None)
+    return samples_of(model, values, begin, end, None)
+
+
 def tables_of(
     model: Model,
     values: Mapping[str, float],

@@ -1,0 +1,17 @@
+"""Quantities: what is told of a run, or of a motion, in a number, by its formula."""
+
+from tracewire.analyse.quantities.conditions import Conditions, conditions_of
+from tracewire.analyse.quantities.evaluate import Further, is_of_run
+from tracewire.analyse.quantities.measure import ask, measure
+from tracewire.analyse.quantities.subject import Recorder, Subject
+
+__all__ = [
+    "Conditions",
+    "Further",
+    "Recorder",
+    "Subject",
+    "ask",
+    "conditions_of",
+    "is_of_run",
+    "measure",
+]

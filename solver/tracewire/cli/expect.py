@@ -1,0 +1,65 @@
+"""`tracewire check --expect`: do diagrams show what their sections `expect` say?"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import typer
+
+from tracewire.cli.output import print_json, print_table, print_text, working
+from tracewire.cli.progress import stages
+from tracewire.errors import DiagramError, OptionError, Problem
+
+
+def check_expected(
+    files: Sequence[str],
+    against: str | None,
+    libraries: Sequence[str] | None,
+    as_json: bool,
+) -> None:
+    """Measure the statements of each diagram, or those of the diagram `against` on each; print a
+    table, and end with the exit code 1 where one fails. Raises OptionError, DiagramError.
+    """
+    from tracewire.analyse import Judge, counts_of
+    from tracewire.compile import statement_problems
+    from tracewire.diagram import Diagram, read
+    from tracewire.paper import with_identification
+    from tracewire.show import statement_data, statements_table
+
+    diagrams: list[Diagram] = [read(file, libraries or ()) for file in files]
+    lesson = None if against is None else read(against, libraries or ())
+    if not (lesson.expect if lesson is not None else any(d.expect for d in diagrams)):
+        where = against or ", ".join(files[:3])
+        hint = "Write expect: [{that: end(x), is: 2, within: 0.1}] in the diagram."
+        raise OptionError([Problem(f"there is no statement to check in {where}", hint=hint)])
+    rows = []
+    with working("measuring") as show:
+        judge = Judge(libraries=libraries or (), tell=stages(show))
+        with_identification(judge)
+        for diagram in diagrams:
+            if problems := statement_problems(judge.model(diagram)):
+                raise DiagramError(problems)
+            chosen = diagram.expect if lesson is None else lesson.expect
+            rows.append((diagram, judge.judge(diagram, chosen)))
+    every = [row for _, found in rows for row in found]
+    holds = all(row.holds for row in every)
+    if as_json:
+        data = [
+            {"file": str(diagram.file), "statements": [statement_data(row) for row in found]}
+            for diagram, found in rows
+        ]
+        print_json({"holds": holds, "counts": counts_of(every), "diagrams": data})
+    else:
+        for diagram, found in rows:
+            if not found:
+                continue
+            title = diagram.title or Path(diagram.file).stem
+            print_table(statements_table(found, title))
+            for row in found:
+                if not row.holds:
+                    print_text(f"{row.statement.place}: {row.statement.name}: {row.why}")
+        failed = sum(not row.holds for row in every)
+        print_text(f"{len(every) - failed} of {len(every)} statements hold")
+    if not holds:
+        raise typer.Exit(1)

@@ -1,0 +1,36 @@
+"""The units of statements: what a diagram expects is in the unit of its quantity."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from tracewire.compile.dimensions import unit_of
+from tracewire.compile.model import Model
+from tracewire.diagram import find_recorded
+from tracewire.errors import Problem
+from tracewire.formula import Name, dimension_of, dimension_text, read_unit, rename
+
+
+def statement_problems(model: Model) -> list[Problem]:
+    """Where the unit of a statement is not that of its quantity."""
+    found: list[Problem] = []
+    for statement in model.diagram.expect:
+        formula = rename(statement.that, lambda name: Name(_full(model, name)))
+        term, inside = unit_of(model.flat, formula)
+        found += [replace(problem, place=statement.place) for problem in inside]
+        given = dimension_of(read_unit(statement.unit).text) if statement.unit else None
+        if term is not None and given is not None and term != given:
+            what = (
+                f"'{statement.what}' is in {dimension_text(term) or 'no unit'}, and its unit is "
+                f"'{statement.unit}'"
+            )
+            hint = "Give the unit in which 'is' and the bounds are written."
+            found.append(Problem(what, statement.place, hint=hint))
+    return found
+
+
+def _full(model: Model, name: str) -> str:
+    flat = model.flat
+    if name in flat.parameters or name in flat.signals or name in model.states:
+        return name
+    return find_recorded(model.diagram, name) or name
