@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tracewire.shipped import shipped
 
 CART = """\
 title: A cart that is pushed
@@ -144,6 +145,13 @@ def test_a_force_with_the_wrong_sign_is_told(
     told = call("run", file)
     assert told.code == 0
     assert ("'x' grows from" in told.err and "Is a sign wrong?" in told.err) is said
+
+
+def test_a_wave_that_arrives_is_no_sign_of_a_wrong_sign(call: Any) -> None:
+    """The far end of a chain moves 1e-17 at first and 1e-2 in the end."""
+    chain = str(shipped("diagrams") / "gallery" / "chain.yaml")
+    told = call("run", chain, "--set", "chain_1.start=1e-6", "--span", "0", "5")
+    assert (told.code, told.err) == (0, "")
 
 
 def test_a_series_may_only_drive_a_run(call: Any, cart: Path) -> None:

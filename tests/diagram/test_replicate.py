@@ -104,6 +104,7 @@ def test_ends_and_all_of_a_row_in_other_sections(tmp_path: Path) -> None:
         "events: [{when: row.last.x - 1, set: {wall: row.first.x}}]\n"
         "presets: {far: {row.last.start: 1}}\n"
         "measured: {run: {file: a.csv, time: t, signals: {row.last.x: x}}}\n"
+        'expect: [{that: end(row.last.x), above: 0, source: "of row.last.x"}]\n'
     )
     diagram = read_text(text, tmp_path / "top.yaml", library=LIBRARY)
     assert list(diagram.record) == ["row_1.x", "row_2.x", "row_3.x", "row_3.v"]
@@ -112,6 +113,8 @@ def test_ends_and_all_of_a_row_in_other_sections(tmp_path: Path) -> None:
     )
     assert list(diagram.presets["far"]) == ["row_3.start"]
     assert list(diagram.measured["run"].channels) == ["row_3.x"]
+    assert diagram.expect[0].name == "end(row_3.x)"
+    assert diagram.expect[0].source == "of row.last.x"
 
 
 INSIDE = (

@@ -16,9 +16,12 @@ MOST = 10_000
 NEIGHBOURS = ("previous", "next", "first", "last")
 WORDS = (*NEIGHBOURS, "index")
 WORD = re.compile(rf"(?<![\w.])(?:(?:{'|'.join(NEIGHBOURS)})(?!\w)|index(?![\w.]))", re.ASCII)
-AS_WRITTEN = {"type", "unit", "label", "title", "file", "column", "replicate", "variant"}
+AS_WRITTEN = {
+    *("type", "unit", "label", "title", "file", "column", "replicate", "variant"),
+    *("name", "says", "what", "source", "erratum", "note"),
+}
 """Keys whose values name no signals."""
-READERS = ("outputs", "blocks", "events", "presets", "record", "measured", "scene")
+READERS = ("outputs", "blocks", "events", "presets", "record", "measured", "scene", "expect")
 """Sections in which `NAME.first`, `NAME.last` and `NAME.all` stand for blocks of a row."""
 
 

@@ -96,13 +96,17 @@ def overview(model: Model) -> dict[str, object]:
 
 
 def runaway_remarks(run: Run) -> list[str]:
-    """The recorded signals that grow without end: from the first tenth to the last by `RUNAWAY`."""
+    """The recorded signals that grow without end: from the first tenth to the last by `RUNAWAY`,
+    beside the largest signal of the unit, as a wave that arrives in a chain grows from nothing."""
     tenth = max(len(run.t) // 10, 1)
-    found = []
+    found, largest = [], dict[str, float]()
+    for name, values in run.signals.items():
+        unit, first = run.units.get(name, ""), float(np.abs(values[:tenth]).max())
+        largest[unit] = max(largest.get(unit, 0.0), first)
     for name, values in run.signals.items():
         size = np.abs(values)
         early, late = float(size[:tenth].max()), float(size[-tenth:].max())
-        if late > RUNAWAY * early > 0:
+        if early > 0 and late > RUNAWAY * largest[run.units.get(name, "")]:
             found.append(
                 f"'{name}' grows from {early:.3g} to {late:.3g} and does not stop. "
                 "Is a sign wrong? "
