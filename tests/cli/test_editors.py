@@ -44,7 +44,8 @@ def test_schema_has_the_blocks_of_a_library(call: Any, tmp_path: Path) -> None:
         "from tracewire.library import Block, Output\n"
         'own = Block(name="own", doc="One.", outputs=(Output("y", "1"),))\n'
     )
-    types = call("schema", "--library", tmp_path / "mine.py").data["then"]["properties"]["blocks"]
+    schema = call("schema", "--library", tmp_path / "mine.py").data
+    types = schema["else"]["then"]["properties"]["blocks"]
     assert "own" in types["additionalProperties"]["properties"]["type"]["else"]["enum"]
 
 

@@ -22,6 +22,8 @@ from tracewire.diagram.problems import Problems, clip
 from tracewire.errors import DiagramError, Place
 
 MOST_DEPTH = 60
+TOO_DEEP = f"nested deeper than {MOST_DEPTH} levels"
+FLATTER = "Use subsystems, or files of them with 'include'."
 MOST_KEY = 100
 MOST_VALUES = 10_000  # of a vector or matrix: 100 x 100 compiles in seconds, 500 x 500 in hours
 NUMBER = re.compile(r"[+-]?(?:(?:0|[1-9]\d*)(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?")
@@ -104,6 +106,8 @@ def compose(text: str, file: Path, problems: Problems) -> Node:
             what = "a tab stands where YAML needs blanks"
             hint = "Indent with blanks, never with tabs."
             raise DiagramError.one(what, place, hint=hint) from None
+        if "nesting depth" in said:  # the parser's own limit, of PyYAML 6.0.4 on
+            raise DiagramError.one(TOO_DEEP, place, hint=FLATTER) from None
         hint = BROKEN
         if spot and any(map(ELEMENT.search, text.splitlines()[place.line - 1 : place.line])):
             hint = f'{BROKEN} An element of a vector needs quotes between brackets: {{of: "q[1]"}}.'
@@ -199,8 +203,7 @@ class _Composer:
             self.put(Scalar(event.value, self.place(event), start, end, event.style or ""))
         elif isinstance(event, yaml.CollectionStartEvent):
             if len(self.open) == MOST_DEPTH:
-                hint = "Use subsystems, or files of them with 'include'."
-                raise self.stopped(f"nested deeper than {MOST_DEPTH} levels", event, hint)
+                raise self.stopped(TOO_DEEP, event, FLATTER)
             self.open.append(_Open(event))
         else:  # an alias: what it stands for is not read, so the rest would only mislead
             raise DiagramError(self.problems.found)
