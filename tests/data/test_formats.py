@@ -284,3 +284,9 @@ def test_a_group_of_a_measurement_file_has_its_own_time(tmp_path: Path) -> None:
     write_mf4(path)
     assert len(read(path, "slow", "time")) == 3
     assert len(read(path, "angle", "time")) == 10
+
+
+def test_a_sheet_of_notes_has_no_columns(tmp_path: Path) -> None:
+    notes = [["# remarks of the day"], ["# and more"]]
+    path = workbook(tmp_path / "run.xlsx", run=[["t", "x"], [0, 1], [1, 2]], notes=notes)
+    assert read_columns(path, {"x": "run/x"}, "run/t").values["x"].tolist() == [1.0, 2.0]

@@ -298,3 +298,10 @@ def test_a_base_that_is_no_yaml(folder: Path) -> None:
     (folder / "parts" / "base.yaml").write_text("a: [")
     with pytest.raises(DiagramError, match=r"base.yaml:2:1: this is not YAML"):
         extended(folder)
+
+
+def test_needed_libraries_are_merged_by_name(tmp_path: Path) -> None:
+    base = 'libraries: {tracewire: ">=0.1"}\nblocks: {y: {type: constant, value: 1}}\n'
+    (tmp_path / "base.yaml").write_text(base)
+    text = "extends: base.yaml\nlibraries: {tracewire: '>=0.0'}\n"
+    assert "libraries: {tracewire: '>=0.0'}" in written_out(read_text(text, tmp_path / "top.yaml"))

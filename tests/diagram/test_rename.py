@@ -205,3 +205,48 @@ def test_composed_diagrams_are_refused(file: str, name: str, words: str) -> None
     diagram = read(shipped("diagrams") / "gallery" / file)
     with pytest.raises(OptionError, match=re.escape(f"rename takes no diagram that {words}")):
         renamed(diagram, name, "another")
+
+
+SECTION = """\
+span: [0, 1]
+blocks:
+  x: {type: integrator, of: down, start: 1}
+  down: {type: gain, of: x, k: -1}
+  slip: {type: gain, of: x, k: 2}
+expect:
+  - {that: end(x), above: 0, run: {guard: x - 0.5, modulo: {x: 1}}}
+  - {that: "time(x - 0.5)", below: 1}
+"""
+
+
+def test_statements_follow() -> None:
+    text = renamed(read_text(SECTION), "x", "z").text
+    assert text == re.sub(r"\bx\b", "z", SECTION)
+
+
+@pytest.mark.parametrize(
+    ("statement", "old", "words"),
+    [
+        ("{that: count(slip), is: 0, within: 1}", "slip", "'slip' is a word of a statement"),
+        (
+            "{that: reference(end(x)), above: 0, reference: {diagram: a.yaml}}",
+            "x",
+            "a statement reads 'x' beside another diagram",
+        ),
+    ],
+)
+def test_what_means_something_else_in_a_statement_is_refused(
+    tmp_path: Path, statement: str, old: str, words: str
+) -> None:
+    (tmp_path / "a.yaml").write_text(SECTION)
+    diagram = read_text(f"{SECTION}  - {statement}\n", tmp_path / "b.yaml")
+    with pytest.raises(OptionError, match=re.escape(words)):
+        renamed(diagram, old, "w")
+
+
+def test_a_parameter_of_an_included_file_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "m.yaml").write_text("parameters: {k: 2}\n")
+    text = "include: m.yaml\nblocks: {y: {type: constant, value: k}}\n"
+    diagram = read_text(text, tmp_path / "a.yaml")
+    with pytest.raises(OptionError, match="'k' stands in a file that is included"):
+        renamed(diagram, "k", "stiff")

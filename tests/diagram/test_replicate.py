@@ -88,6 +88,24 @@ blocks:
     assert found == [("u", False), ("lag_1", True), ("lag_2", True)]
 
 
+def test_an_input_may_have_the_name_of_a_text_elsewhere() -> None:
+    """`source` and `note` are texts of a statement, and inputs here."""
+    text = """
+subsystems:
+  cell:
+    inputs: [source, note]
+    outputs: [x]
+    blocks: {x: {type: integrator, of: total}, total: {type: sum, of: [source, note]}}
+blocks:
+  wall: {type: integrator, of: row.last.x}
+  row: {type: cell, source: previous.x, note: wall, replicate: {count: 2, first: {source: wall}}}
+  end: {type: cell, source: row.last.x, note: row.first.x}
+"""
+    blocks = made(text).blocks
+    assert blocks["row_2"].inputs["source"][0].signal == "row_1.x"
+    assert blocks["end"].inputs["note"][0].signal == "row_1.x"
+
+
 def test_a_ring() -> None:
     text = TOP.replace("first: {left: wall}, last: {right: wall, k: k}", "%s")
     ring = made(text % "first: {left: last.x}, last: {right: first.x}")

@@ -23,3 +23,27 @@ def test_a_diagram_that_is_written_out_says_the_same(file: Path) -> None:
     assert said(again) == said(diagram)
     assert written_out(again) == text
     assert max(map(len, text.splitlines())) < 400
+
+
+def test_a_parameter_with_the_name_of_a_section_is_no_subsystem() -> None:
+    text = (
+        "parameters: {blocks: 5, k: 2}\npresets: {one: {blocks: 1, k: 3}}\n"
+        "blocks: {y: {type: constant, value: k*blocks}}\n"
+    )
+    again = read_text(written_out(read_text(text)))
+    assert again.parameters.keys() == {"blocks", "k"}
+    assert again.presets["one"].keys() == {"blocks", "k"}
+
+
+def test_files_of_a_base_are_named_from_where_the_changes_are(tmp_path: Path) -> None:
+    inside = tmp_path / "sub"
+    inside.mkdir()
+    plain = "blocks: {x: {type: integrator, of: y, start: 1}, y: {type: gain, of: x, k: -1}}\n"
+    (inside / "other.yaml").write_text(plain)
+    (inside / "base.yaml").write_text(
+        plain + 'expect: [{that: "end(x)/reference(end(x))", above: 0, '
+        "reference: {diagram: other.yaml}}]\n"
+    )
+    (tmp_path / "top.yaml").write_text("extends: sub/base.yaml\n")
+    text = written_out(read(tmp_path / "top.yaml"))
+    assert 'diagram: "sub/other.yaml"' in text

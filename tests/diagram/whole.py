@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 WHOLE = """\
-# Two bodies, to try every key.
+# Two bodies, to try most keys.
 title: Two bodies
 span: [0, 2*T]                      # s
 every: 0.01

@@ -119,7 +119,7 @@ def _heads_of_workbook(content: bytes, path: Path, form: Form, place: Place) -> 
         (lines,) = sheets.values()
         text = "\n".join(lines).encode()
         return _heads_of_text(text, path, Form("\t", ".", form.comment), place)
-    return _heads_of_groups(groups_of_sheets(sheets))
+    return _heads_of_groups(groups_of_sheets(sheets, form.comment))
 
 
 def _heads_of_matlab(content: bytes, path: Path, form: Form, place: Place) -> list[Head]:

@@ -34,7 +34,7 @@ def columns_of_workbook(content: bytes, path: Path, request: Request, place: Pla
         ((name, lines),) = sheets.items()
         file, heads = str(path), [want.removeprefix(f"{name}/") for want in request.names]
     else:
-        groups = groups_of_sheets(sheets)
+        groups = groups_of_sheets(sheets, request.comment)
         chosen = choose(groups, request.names, str(path), place)
         if len({group for group, _ in chosen}) > 1:
             what = f"the columns of '{path}' are in several sheets"
@@ -57,11 +57,15 @@ def columns_of_workbook(content: bytes, path: Path, request: Request, place: Pla
     return columns_of_lines(lines, file, inside, place)
 
 
-def groups_of_sheets(sheets: dict[str, list[str]]) -> list[Group]:
+def groups_of_sheets(sheets: dict[str, list[str]], comment: str) -> list[Group]:
     """The sheets with the names of their columns; one without a header has no columns."""
     found = []
     for name, lines in sheets.items():
-        layout = layout_of(lines, TABS, "#", ())
+        try:
+            layout = layout_of(lines, TABS, comment, ())
+        except IndexError:  # it has comments only
+            found.append(Group(name, ()))
+            continue
         names = () if isinstance(layout, Row) else layout.names
         columns = tuple(Column(head, lambda: np.zeros(0)) for head in names)
         found.append(Group(name, columns))

@@ -12,7 +12,10 @@ ADDED = ("include", "require", "events", "scene")
 """Lists without names: the entries of the changes come behind those of the base."""
 PORTS = ("inputs", "outputs")
 """Sections that may be lists of names as well as mappings."""
-NAMED = (*PORTS, "parameters", "blocks", "subsystems", "variants", "presets", "measured")
+NAMED = (
+    *(*PORTS, "libraries", "parameters", "blocks", "subsystems", "variants", "presets"),
+    "measured",
+)
 MAIN = ("value", "count", "column")
 """What a mapping stands for where a single text is given in its place: `k: 3`, `x: angle`."""
 

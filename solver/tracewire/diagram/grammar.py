@@ -260,8 +260,10 @@ SETTING = {
     "interval": Key(FIXED, "Of exponents: the time between two orthonormalisations in s."),
     "skip": Key(Number(low=0), "Points or periods that are left out at the begin."),
     "keep": Key(Number(low=1), "Points or periods that are taken."),
-    "edge": Key(TEXT, "The event at which points of a section are taken."),
-    "guard": Key(TEXT, "The guard at which points of a section are taken."),
+    "edge": Key(Text(names="signal"), "The event at which points of a section are taken."),
+    "guard": Key(
+        Formula(signals=True, condition=True), "The guard at which points of a section are taken."
+    ),
     "method": Key(TEXT, "The method of integration."),
     "direction": Key(Text(DIRECTIONS), "The direction of the crossing, or of a sweep."),
     "modulo": Key(Mapped(FIXED, "state"), "What is one turn of a state: {phi: 2*pi}."),

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 from tracewire.diagram.diagram import BlockUse, Diagram
 from tracewire.diagram.grammar import (
+    DIRECTIONS,
     OF_A_BLOCK,
     OF_KINDS,
     REFERENCE,
@@ -16,12 +17,13 @@ from tracewire.diagram.grammar import (
     parts_of,
 )
 from tracewire.diagram.outline import Outline, elsewhere
+from tracewire.diagram.quantity_names import EVENT_KINDS
 from tracewire.diagram.rewrite import reread
 from tracewire.diagram.shapes import Formula, Mapped, Named, Record, Shape, Text
 from tracewire.diagram.splice import Change
 from tracewire.diagram.strict import Entries, Node, Scalar
 from tracewire.errors import OptionError, unknown
-from tracewire.formula import is_name, name_hint
+from tracewire.formula import is_name, name_hint, to_text
 
 PATH = re.compile(r"(?<![\w.\\])[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*", re.ASCII)
 
@@ -48,6 +50,7 @@ def renamed(diagram: Diagram, old: str, new: str) -> Diagram:
     outline = Outline(diagram)
     _refuse_composed(outline)
     part = _find(outline, old)
+    _refuse_ambiguous(outline, part, new)
     _check(outline, part, new)
     found = reread(diagram, _changes(outline, part, new))
     # there and back must be the same text: else a place was taken that means something else
@@ -83,6 +86,9 @@ def _find(outline: Outline, path: str) -> _Part:
     where, _, name = path.rpartition(".")
     inside = _inside(outline, where)
     if name in _parts(inside):
+        if not _is_own(outline, inside, name):
+            what = f"'{name}' stands in a file that is included"
+            raise OptionError.one(what, inside.place, hint="Rename it there.")
         return _Part(inside, name)
     if name in inside.subsystems:
         own = inside.subsystems[name]
@@ -93,6 +99,20 @@ def _find(outline: Outline, path: str) -> _Part:
     raise OptionError(
         [unknown("name", path, known if not where else [f"{where}.{n}" for n in known])]
     )
+
+
+def _refuse_ambiguous(outline: Outline, part: _Part, new: str) -> None:
+    """Refuse names that are words of a statement, or of another diagram that one reads."""
+    what = ""
+    for statement in outline.top.expect if not part.is_type else ():
+        read = {*PATH.findall(to_text(statement.that))}
+        if words := read & {*EVENT_KINDS, *DIRECTIONS} & {part.name, new}:
+            what = f"'{min(words)}' is a word of a statement under 'expect', too"
+        others = statement.reference is not None and statement.reference.file is not None
+        if others and part.name in read:
+            what = f"a statement reads '{part.name}' beside another diagram"
+    if what:
+        raise OptionError.one(what, outline.top.place, hint="Rename by hand.")
 
 
 def _inside(outline: Outline, path: str) -> Diagram:
@@ -116,6 +136,12 @@ def _inside(outline: Outline, path: str) -> Diagram:
     if (inside.place, inside.variant) not in outline.nodes:
         raise elsewhere(inside)
     return inside
+
+
+def _is_own(outline: Outline, inside: Diagram, name: str) -> bool:
+    """Whether a part is written in the text of the diagram itself."""
+    parameter = inside.parameters.get(name)
+    return parameter is None or parameter.place.file == str(outline.top.file)
 
 
 def _parts(inside: Diagram) -> list[str]:

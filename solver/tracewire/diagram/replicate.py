@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from tracewire.diagram.body import Body
@@ -16,11 +16,16 @@ MOST = 10_000
 NEIGHBOURS = ("previous", "next", "first", "last")
 WORDS = (*NEIGHBOURS, "index")
 WORD = re.compile(rf"(?<![\w.])(?:(?:{'|'.join(NEIGHBOURS)})(?!\w)|index(?![\w.]))", re.ASCII)
-AS_WRITTEN = {
-    *("type", "unit", "label", "title", "file", "column", "replicate", "variant"),
-    *("name", "says", "what", "source", "erratum", "note"),
+OF_A_LINE = ("type", "unit", "label", "variant", "replicate")
+"""Keys of a block's line whose values name no signals; an input may have any other name."""
+WITHIN = ("unit", "file", "column")
+"""The same of what stands under a key of a block's line."""
+TEXTS = {
+    "measured": ("title", "unit", "file", "column"),
+    "expect": ("unit", "name", "says", "what", "source", "erratum", "note", "diagram"),
+    "scene": ("color",),
 }
-"""Keys whose values name no signals."""
+"""The same of other sections."""
 READERS = ("outputs", "blocks", "events", "presets", "record", "measured", "scene", "expect")
 """Sections in which `NAME.first`, `NAME.last` and `NAME.all` stand for blocks of a row."""
 
@@ -85,7 +90,7 @@ def replicated(entries: Entries, numbers: Mapping[str, float], body: Body) -> En
     sections = {**entries.values, "blocks": replace(blocks, keys=keys, values=values)}
     rows_outside = _Rows(lengths)
     found = {
-        name: rows_outside.written_out(node) if name in READERS and lengths else node
+        name: rows_outside.section(name, node) if name in READERS and lengths else node
         for name, node in sections.items()
     }
     return replace(entries, values=found)
@@ -156,7 +161,8 @@ def _replica(row: str, line: Entries, index: int, count: int, body: Body) -> Rep
         if isinstance(node, Entries):
             inner = {name: written(part, f"{key}.{name}") for name, _, part in node}
             return replace(node, values=inner)
-        if key.rpartition(".")[2] in AS_WRITTEN:
+        above, _, last = key.rpartition(".")
+        if last in (WITHIN if above else OF_A_LINE):
             return node
         for word in WORD.findall(node.text):
             if word not in names:
@@ -180,17 +186,32 @@ class _Rows:
         self.end = re.compile(rf"(?<![\w.])({names})\.(first|last)(?!\w)", re.ASCII)
         self.all = re.compile(rf"(-?)\s*({names})\.all(\.[\w.]+)?", re.ASCII)
 
-    def written_out(self, node: Node, key: str = "") -> Node:
-        """A node with the names of single blocks in place of `chain.last` and `chain.all`."""
+    def section(self, name: str, node: Node) -> Node:
+        """A section with the names of single blocks in place of `chain.last` and `chain.all`."""
+        if name != "blocks" or not isinstance(node, Entries):
+            return self.written_out(node, TEXTS.get(name, ()))
+        lines = {block: self.line(line) for block, _, line in node}
+        return replace(node, values=lines)
+
+    def line(self, line: Node) -> Node:
+        """The line of a block."""
+        if not isinstance(line, Entries):
+            return line
+        values = {
+            key: node if key in OF_A_LINE else self.written_out(node, WITHIN)
+            for key, _, node in line
+        }
+        return replace(line, values=values)
+
+    def written_out(self, node: Node, texts: Collection[str], key: str = "") -> Node:
+        """A node of a section; under the keys `texts` stand texts."""
         if isinstance(node, Items):
-            return replace(node, items=tuple(self.items(node, key)))
+            return replace(node, items=tuple(self.items(node, texts, key)))
         if isinstance(node, Entries):
             keys = {self.one(name): replace(k, text=self.one(name)) for name, k, _ in node}
-            values = {self.one(name): self.written_out(n, name) for name, _, n in node}
+            values = {self.one(name): self.written_out(n, texts, name) for name, _, n in node}
             return replace(node, keys=keys, values=values)
-        if key in AS_WRITTEN:
-            return node
-        return replace(node, text=self.one(node.text))
+        return node if key in texts else replace(node, text=self.one(node.text))
 
     def one(self, text: str) -> str:
         if "." not in text:
@@ -200,11 +221,11 @@ class _Rows:
     def number(self, found: re.Match[str]) -> int:
         return 1 if found[2] == "first" else self.lengths[found[1]]
 
-    def items(self, node: Items, key: str) -> Iterator[Node]:
+    def items(self, node: Items, texts: Collection[str], key: str) -> Iterator[Node]:
         for item in node.items:
             whole = self.all.fullmatch(item.text.strip()) if isinstance(item, Scalar) else None
             if whole is None or not isinstance(item, Scalar):
-                yield self.written_out(item, key)
+                yield self.written_out(item, texts, key)
                 continue
             sign, name, rest = whole[1], whole[2], whole[3] or ""
             for index in range(1, self.lengths[name] + 1):

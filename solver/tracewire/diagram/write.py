@@ -87,7 +87,8 @@ def _from(node: Node, folder: Path, file: str) -> Node:
     if not isinstance(node, Entries):
         return node
     values = {name: _from(part, folder, file) for name, _, part in node}
-    named = values.get("file")
-    if isinstance(named, Scalar) and named.place.file != file:
-        values["file"] = replace(named, text=path_text(named.path, folder), style='"')
+    for key in ("file", "diagram"):
+        named = values.get(key)
+        if isinstance(named, Scalar) and named.place.file != file:
+            values[key] = replace(named, text=path_text(named.path, folder), style='"')
     return replace(node, values=values)

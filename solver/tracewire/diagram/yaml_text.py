@@ -60,14 +60,29 @@ def document(sections: Mapping[str, Node]) -> str:
 
 def _sections(sections: Mapping[str, Node], indent: int) -> list[str]:
     order = ("remove", *INSIDE) if indent else TOP
-    parts = {name: sections[name] for name in order if name in sections}
-    return _lines(parts, indent, OPENED)
+    names = [*(name for name in order if name in sections), *(sections.keys() - {*order})]
+    found = []
+    for name in names:
+        node, begin = sections[name], f"{' ' * indent}{quoted(name)}:"
+        if name not in ("subsystems", "variants") or not isinstance(node, Entries):
+            found += _entry(begin, node, indent, name in OPENED)
+            continue
+        found.append(begin)
+        for part, _, body in node:
+            if isinstance(body, Entries) and body.keys:
+                found += [
+                    f"{' ' * (indent + 2)}{quoted(part)}:",
+                    *_sections(body.values, indent + 4),
+                ]
+            else:
+                found += _entry(f"{' ' * (indent + 2)}{quoted(part)}:", body, indent + 2, False)
+    return found
 
 
-def _lines(parts: Mapping[str, Node], indent: int, opened: tuple[str, ...] = ()) -> list[str]:
+def _lines(parts: Mapping[str, Node], indent: int) -> list[str]:
     found = []
     for name, node in parts.items():
-        found += _entry(f"{' ' * indent}{quoted(name)}:", node, indent, name in opened)
+        found += _entry(f"{' ' * indent}{quoted(name)}:", node, indent, False)
     return found
 
 
@@ -76,8 +91,6 @@ def _entry(begin: str, node: Node, indent: int, is_opened: bool) -> list[str]:
     if isinstance(node, Scalar):
         return [f"{begin} {_scalar(node, flow=False)}"]
     line = f"{begin} {inline(node)}"
-    if isinstance(node, Entries) and {"blocks", "variants"} & node.keys.keys():  # a subsystem
-        return [begin, *_sections(node.values, indent + 2)]
     empty = not (node.items if isinstance(node, Items) else node.keys)
     if isinstance(node, Items) and all(isinstance(item, Scalar) for item in node.items):
         is_opened = False

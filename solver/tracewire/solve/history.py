@@ -89,7 +89,7 @@ def grow(arrays: Arrays, table: Ints) -> None:
     SimulationError where that would be too much.
     """
     history = arrays.history
-    if 2 * history.pieces.size > MOST_NUMBERS:
+    if 2 * sum(getattr(history, name).size for name in GROWING) > MOST_NUMBERS:
         what = f"the past of what is delayed takes more than {8e-9 * MOST_NUMBERS:.0f} GB"
         t = arrays.progress.now[T]
         hint = "Loosen rtol, or shorten the longest delay."
