@@ -261,6 +261,96 @@ def test_a_fit_gives_a_parameter_and_its_criterion(tmp_path: Path) -> None:
     assert "the fit does not free 'c'; there are: w" in rows_found[2].why
 
 
+LINE = """
+span: [0, 3]
+every: 1
+inputs: {u: {default: 1}}
+parameters: {a: {value: 1, fit: [0, 10]}, b: 1}
+blocks:
+  x: {type: integrator, of: u, start: 0}
+  y: {type: expression, formula: a*b*t}
+presets: {twice: {b: 2}, half: {b: 0.5}}
+measured:
+  run: {file: run.csv, time: t, signals: {y: y}}
+"""
+
+
+@pytest.mark.parametrize("run", ["preset: twice", "set: {b: 2}"])
+def test_a_fit_holds_the_preset_and_the_values_of_its_setting(tmp_path: Path, run: str) -> None:
+    """y = a*b*t is 2 t: a is 1 where b is 2. The presets of the series give way."""
+    (tmp_path / "run.csv").write_text("t,y\n0,0\n1,2\n2,4\n3,6\n", "utf-8")
+    text = LINE.replace("signals: {y: y}}", "signals: {y: y}, preset: half}")
+    statement = f"that: fitted(a), is: 1, within: 1e-6, run: {{method: least_squares, {run}}}"
+    (row,) = judge(read_text(f"{text}expect: [{{{statement}}}]\n", tmp_path / "a.yaml"))
+    assert row.verdict == "agrees", row.why
+
+
+def test_a_fit_has_the_tolerance_of_its_setting(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from tracewire.analyse.quantities import subject
+
+    given: list[float] = []
+    fit = subject.fit
+    monkeypatch.setattr(subject, "fit", lambda *a, **k: given.append(k["rtol"]) or fit(*a, **k))
+    (tmp_path / "run.csv").write_text("t,y\n0,0\n1,2\n2,4\n3,6\n", "utf-8")
+    statement = "that: criterion(), below: 1e-6, run: {rtol: 1e-7}"
+    (row,) = judge(read_text(f"{LINE}expect: [{{{statement}}}]\n", tmp_path / "a.yaml"))
+    assert (row.verdict, given) == ("agrees", [1e-7])
+
+
+def test_a_series_drives_a_run_where_another_one_is_absent(tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text("t,y,u\n0,0,1\n1,2,1\n2,4,1\n3,6,1\n", "utf-8")
+    text = LINE.replace("signals: {y: y}", "signals: {y: y}, inputs: {u: u}")
+    text += "  other: {file: absent.csv, time: t, inputs: {u: u}}\n"
+    statement = "that: end(x), is: 3, within: 1e-9, run: {series: run}"
+    (row,) = judge(read_text(f"{text}expect: [{{{statement}}}]\n", tmp_path / "a.yaml"))
+    assert row.verdict == "agrees", row.why
+
+
+SWINGING = """
+span: [0, 10]
+parameters: {g: 1, size: 1}
+blocks:
+  x: {type: integrator, of: v, start: 1}
+  v: {type: expression, formula: (g/size - cos(t)*cos(t))*x}
+"""
+
+
+def test_the_edge_of_stability_is_found_from_its_phase_and_as_near_as_its_range() -> None:
+    """x' = (g/s - cos² t) x over pi is stable below g = s/2; over pi/2 from the phase pi/4 the mean
+    of cos² is 1/2 - 1/pi."""
+    edge = value_of(SWINGING, "stability_edge(g, 0, 1)", "run: {period: pi/2, phase: pi/4}")
+    assert edge == pytest.approx(0.5 - 1 / math.pi, abs=1e-7)
+    run = "run: {period: pi, set: {size: 1e-9}}"
+    edge = value_of(SWINGING, "stability_edge(g, 0, 1e-9)", run)
+    assert edge == pytest.approx(5e-10, rel=1e-6)
+
+
+def test_an_edge_of_stability_lies_between_two_values() -> None:
+    """At b = 0 the multiplier of x' = b x is exactly 1."""
+    text = """
+parameters: {b: 1}
+blocks: {x: {type: integrator, of: v, start: 1}, v: {type: expression, formula: b*x}}
+"""
+    row = row_of(text, "stability_edge(b, 0, 0)", "run: {period: 1}")
+    assert "'b' has the same stability at 0 and at 0. Give two values with the edge" in row.why
+
+
+def test_the_edge_of_stability_has_the_tolerance_of_its_setting(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    from tracewire.analyse.quantities import subject
+
+    given: list[float] = []
+    floquet = subject.floquet
+    monkeypatch.setattr(
+        subject, "floquet", lambda *a, **k: given.append(k["rtol"]) or floquet(*a, **k)
+    )
+    value_of(SWINGING, "stability_edge(g, 0, 1)", "run: {period: pi, rtol: 1e-7}")
+    assert set(given) == {1e-7}
+
+
 def test_statements_of_one_setting_share_a_run(monkeypatch: pytest.MonkeyPatch) -> None:
     from tracewire.analyse.quantities import subject
 
@@ -393,6 +483,7 @@ UNITS = [
 @pytest.mark.parametrize(("statement", "said"), UNITS)
 def test_the_unit_of_a_statement_is_that_of_its_quantity(statement: str, said: str) -> None:
     text = f"{OSCILLATOR}expect: [{{{statement}}}]\n"
-    found = statement_problems(compile(read_text(text, Path("a.yaml"))))
+    model = compile(read_text(text, Path("a.yaml")))
+    found = statement_problems(model, model.diagram.expect)
     assert [problem.place.line for problem in found] == ([15] if said else [])
     assert all(said in problem.what for problem in found)

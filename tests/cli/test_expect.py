@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 from typing import Any
 
@@ -98,6 +99,44 @@ def test_a_unit_that_is_not_that_of_the_quantity_is_refused(
     told = call("check", *options, diagram(tmp_path, statement))
     assert told.code == 2
     assert "swing.yaml:8:17: 'max(v)' is in m/s, and its unit is 'm'" in told.err
+
+
+def test_a_diagram_from_stdin_is_measured(call: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    content = (SWING + RIGHT).encode()
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(content)))
+    told = call("check", "--expect", "-")
+    assert (told.code, told.err) == (0, "")
+    assert told.out.splitlines()[-1] == "3 of 3 statements hold"
+
+
+def test_all_files_that_are_wrong_are_told(call: Any, tmp_path: Path) -> None:
+    unit = "expect: [{that: max(v), is: 2, within: 1, unit: m}]\n"
+    wrong = diagram(tmp_path, unit, "unit.yaml")
+    broken = diagram(tmp_path, "expect: [{that: max(q), above: 0}]\n", "name.yaml")
+    told = call("check", "--expect", wrong, broken, tmp_path / "lost.yaml")
+    assert (told.code, told.out) == (2, "")
+    assert "'max(v)' is in m/s, and its unit is 'm'" in told.err
+    assert "unknown signal or parameter 'q'" in told.err
+    assert "lost.yaml" in told.err
+
+
+def test_units_of_a_lesson_are_those_of_the_solution(call: Any, tmp_path: Path) -> None:
+    lesson = diagram(tmp_path, RIGHT, "lesson.yaml")
+    solution = tmp_path / "solution.yaml"
+    solution.write_text(SWING.replace("m/s", "rad/s").replace("unit: m}", "unit: rad}"), "utf-8")
+    told = call("check", solution, "--against", lesson)
+    assert told.code == 2
+    assert "lesson.yaml:9:12: 'max(v)' is in 1/s, and its unit is 'm/s'" in told.err
+
+
+def test_a_solution_that_lacks_a_signal_of_the_lesson_does_not_hold(
+    call: Any, tmp_path: Path
+) -> None:
+    lesson = diagram(tmp_path, RIGHT, "lesson.yaml")
+    solution = tmp_path / "solution.yaml"
+    solution.write_text(SWING.replace("v:", "rate:").replace("of: v", "of: rate"), encoding="utf-8")
+    told = call("check", solution, "--against", lesson)
+    assert told.code == 1 and "unknown signal 'v'" in told.out
 
 
 def test_a_sweep_keeps_quantities(call: Any, tmp_path: Path) -> None:

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from tracewire.cli.expect import check_expected
-from tracewire.cli.options import AsJson, Debug, Libraries, load_model
+from tracewire.cli.options import AsJson, Debug, Libraries, read_diagram
 from tracewire.cli.output import print_json, print_text, working
 from tracewire.errors import DiagramError, OptionError, Problem, TracewireError
-
-if TYPE_CHECKING:
-    from tracewire.compile import Model
 
 ENDINGS = (".yaml", ".yml")
 
@@ -80,13 +77,15 @@ def check(
 
 def _contents(file: str, library: Sequence[str] | None, quiet: bool) -> dict[str, Any]:
     """What is in a diagram, printed unless `quiet`. Raises TracewireError."""
-    from tracewire.compile import remarks_of, statement_problems, unit_problems
     from tracewire.diagram import absent_series
     from tracewire.show.summary import contents, contents_text, series_contents
     from tracewire.solve import parameter_values
 
-    model = load_model(file, library) if file != "-" else _from_stdin(library)
-    if problems := [*unit_problems(model.flat), *statement_problems(model)]:
+    with working(f"compiling {'stdin' if file == '-' else file}"):
+        from tracewire.compile import compile, remarks_of, statement_problems, unit_problems
+
+        model = compile(read_diagram(file, library))
+    if problems := [*unit_problems(model.flat), *statement_problems(model, model.diagram.expect)]:
         raise DiagramError(problems)
     for preset in ("", *model.flat.presets):  # they must be what the diagram requires
         parameter_values(model, {}, preset)
@@ -106,15 +105,6 @@ def _contents(file: str, library: Sequence[str] | None, quiet: bool) -> dict[str
     if not quiet:
         print_text(contents_text(found, measured))
     return {**found, "measured": measured}
-
-
-def _from_stdin(library: Sequence[str] | None) -> Model:
-    """The compiled model of the diagram that stdin has; its files are looked for from here."""
-    with working("compiling stdin"):
-        from tracewire.compile import compile
-        from tracewire.diagram import STDIN, load_stdin, read_text
-
-        return compile(read_text(load_stdin(), STDIN, library or ()))
 
 
 def diagram_files(paths: Sequence[str]) -> list[str]:

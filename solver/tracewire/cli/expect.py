@@ -7,9 +7,10 @@ from pathlib import Path
 
 import typer
 
+from tracewire.cli.options import read_diagram
 from tracewire.cli.output import print_json, print_table, print_text, working
 from tracewire.cli.progress import stages
-from tracewire.errors import DiagramError, OptionError, Problem
+from tracewire.errors import DiagramError, OptionError, Problem, TracewireError
 
 
 def check_expected(
@@ -23,25 +24,38 @@ def check_expected(
     """
     from tracewire.analyse import Judge, counts_of
     from tracewire.compile import statement_problems
-    from tracewire.diagram import Diagram, read
+    from tracewire.diagram import Diagram
     from tracewire.paper import with_identification
     from tracewire.show import statement_data, statements_table
 
-    diagrams: list[Diagram] = [read(file, libraries or ()) for file in files]
-    lesson = None if against is None else read(against, libraries or ())
+    lesson = None if against is None else read_diagram(against, libraries)
+    judge = Judge(libraries=libraries or ())
+    diagrams: list[Diagram] = []
+    problems: list[Problem] = []
+    code: type[TracewireError] = OptionError
+    with working("compiling"):
+        for file in files:
+            try:
+                diagram = read_diagram(file, libraries)
+                chosen = (lesson or diagram).expect
+                if wrong := statement_problems(judge.model(diagram), chosen):
+                    raise DiagramError(wrong)
+                diagrams.append(diagram)
+            except TracewireError as error:
+                problems += error.problems
+                code = type(error)
+    if problems:
+        raise code(problems)
     if not (lesson.expect if lesson is not None else any(d.expect for d in diagrams)):
         where = against or ", ".join(files[:3])
         hint = "Write expect: [{that: end(x), is: 2, within: 0.1}] in the diagram."
         raise OptionError([Problem(f"there is no statement to check in {where}", hint=hint)])
     rows = []
     with working("measuring") as show:
-        judge = Judge(libraries=libraries or (), tell=stages(show))
+        judge.tell = stages(show)
         with_identification(judge)
         for diagram in diagrams:
-            if problems := statement_problems(judge.model(diagram)):
-                raise DiagramError(problems)
-            chosen = diagram.expect if lesson is None else lesson.expect
-            rows.append((diagram, judge.judge(diagram, chosen)))
+            rows.append((diagram, judge.judge(diagram, (lesson or diagram).expect)))
     every = [row for _, found in rows for row in found]
     holds = all(row.holds for row in every)
     if as_json:

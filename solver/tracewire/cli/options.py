@@ -12,6 +12,7 @@ from tracewire.cli.project import with_project
 
 if TYPE_CHECKING:
     from tracewire.compile import Model
+    from tracewire.diagram import Diagram
 
 DiagramPath = Annotated[
     str, typer.Argument(metavar="DIAGRAM", help="A diagram file (YAML).", show_default=False)
@@ -28,6 +29,16 @@ Libraries = Annotated[
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
 Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
+
+
+def read_diagram(path: str, libraries: Sequence[str] | None = None) -> Diagram:
+    """The diagram of a file, or of stdin, -, whose files are looked for from here. Raises
+    DiagramError, BlockError, OptionError."""
+    from tracewire.diagram import STDIN, load_stdin, read, read_text
+
+    if path == "-":
+        return read_text(load_stdin(), STDIN, libraries or ())
+    return read(path, libraries or ())
 
 
 def load_model(

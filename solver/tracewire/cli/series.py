@@ -45,9 +45,11 @@ def read_series(model: Model, name: str) -> Conditions:
     from tracewire.residual import load_measured
 
     measured = load_measured(model, driving=True, series=[name])[0]
-    start = {state: value for state, value in measured.start.items() if value is not None}
-    # a series with start values begins at its first sample, one without at the diagram's start
-    span = (float(measured.t[0]), float(measured.t[-1])) if measured.start else None
     return Conditions(
-        dict(measured.inputs), start, measured.preset, span, dict(measured.parameters), measured
+        dict(measured.inputs),
+        measured.known_start,
+        measured.preset,
+        measured.span,
+        dict(measured.parameters),
+        measured,
     )

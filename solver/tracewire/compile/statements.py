@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 from tracewire.compile.dimensions import unit_of
 from tracewire.compile.model import Model
-from tracewire.diagram import find_recorded
+from tracewire.diagram import Statement, find_recorded
 from tracewire.errors import Problem
 from tracewire.formula import Name, dimension_of, dimension_text, read_unit, rename
 
 
-def statement_problems(model: Model) -> list[Problem]:
-    """Where the unit of a statement is not that of its quantity."""
+def statement_problems(model: Model, statements: Iterable[Statement]) -> list[Problem]:
+    """Where the unit of a statement is not that of its quantity in a model. A name that the model
+    does not have may be of any unit."""
     found: list[Problem] = []
-    for statement in model.diagram.expect:
+    for statement in statements:
         formula = rename(statement.that, lambda name: Name(_full(model, name)))
         term, inside = unit_of(model.flat, formula)
         found += [replace(problem, place=statement.place) for problem in inside]

@@ -123,6 +123,17 @@ class Measured:
         """The time t0 in s from which the drift of a sensor counts."""
         return float(self.t[0]) if self.drift_from is None else self.drift_from
 
+    @property
+    def known_start(self) -> dict[str, float]:
+        """The start values of states in SI that are not free."""
+        return {name: value for name, value in self.start.items() if value is not None}
+
+    @property
+    def span(self) -> tuple[float, float] | None:
+        """Begin and end in s of a run under its conditions: a series with start values begins at
+        its first sample, one without (None) at the diagram's start."""
+        return (float(self.t[0]), float(self.t[-1])) if self.start else None
+
     @cached_property
     def spreads(self) -> Mapping[str, float]:
         """The standard deviation of each measured signal."""

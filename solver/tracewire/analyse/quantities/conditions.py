@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, fields, replace
 from tracewire.analyse.plane import span_of
 from tracewire.compile import Model
 from tracewire.diagram import Setting, Value
-from tracewire.errors import OptionError, Problem, unknown
+from tracewire.errors import OptionError, unknown
 from tracewire.formula import evaluate
 from tracewire.residual import load_measured
 from tracewire.solve import Options, parameter_values
@@ -88,15 +88,15 @@ def _number(value: Value, values: Mapping[str, float]) -> float:
 
 
 def _of_series(model: Model, name: str) -> Options:
-    """What a run takes from a measured series. Raises OptionError, DataError."""
-    found = [one for one in load_measured(model, driving=True) if one.series == name]
-    if not found:
-        raise OptionError([Problem(f"the series '{name}' has no samples")])
-    first = found[0]
+    """What a run takes from a measured series, the first window of several. Raises OptionError,
+    DataError."""
+    if name not in model.diagram.measured:
+        raise OptionError([unknown("measured series", name, model.diagram.measured)])
+    first = load_measured(model, driving=True, series=[name])[0]
     options = Options(rtol=RTOL, preset=first.preset, parameters=dict(first.parameters))
-    options["start"] = {s: value for s, value in first.start.items() if value is not None}
-    if first.start:
-        options["span"] = (float(first.t[0]), float(first.t[-1]))
+    options["start"] = first.known_start
+    if first.span is not None:
+        options["span"] = first.span
     if first.inputs:
         options["inputs"] = dict(first.inputs)
     return options

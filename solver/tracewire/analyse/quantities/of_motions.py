@@ -9,14 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from tracewire.analyse.floquet import floquet
 from tracewire.analyse.quantities.evaluate import At, Value, full_name
 from tracewire.errors import AnalysisError, Problem
 from tracewire.formula import Call, Name, to_text
 
 Vector = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
-XTOL = 1e-9  # of the value at an edge
+XTOL = 1e-9  # of an edge, in parts of where it is looked for
 APART = 1e-2  # rad, or the unit of a state: motions whose section points differ by it are two
 SEED = 0
 MOST_STARTS = 10_000
@@ -33,24 +32,16 @@ def _multiplier(read: Callable[[At, int], float]) -> Callable[[At, Call], float]
 
 def _edge(at: At, node: Call) -> float:
     name, low, high = node.arguments
-    over, given = to_text(name), at.subject.conditions
-    period = float(at.subject.need("period", "an edge of stability"))
-    options = given.options
+    over = to_text(name)
 
     def margin(value: float) -> float:
-        return floquet(
-            at.subject.model,
-            period,
-            start=options.get("start"),
-            parameters={**(options.get("parameters") or {}), over: value},
-            preset=options.get("preset", ""),
-        ).margin
+        return at.subject.floquet_with({over: value}, "an edge of stability").margin
 
     first, last = at.number(low), at.number(high)
-    if margin(first) * margin(last) > 0:
+    if first == last or margin(first) * margin(last) > 0:
         what = f"'{over}' has the same stability at {first:g} and at {last:g}"
         raise AnalysisError([Problem(what, hint="Give two values with the edge between them.")])
-    return float(brentq(margin, first, last, xtol=XTOL))
+    return float(brentq(margin, first, last, xtol=XTOL * abs(last - first)))
 
 
 def _orbit_multiplier(at: At, node: Call) -> float:

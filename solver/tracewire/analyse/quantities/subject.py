@@ -169,10 +169,17 @@ class Subject:
     @cached_property
     def floquet(self) -> Floquet:
         """The multipliers of the motion through the start states. Raises AnalysisError."""
-        period = float(self.need("period", "a multiplier"))
-        begin = float(self.conditions.study.get("phase", 0.0))
-        start = self.conditions.options.get("start")
-        return floquet(self.model, period, begin=begin, start=start, **self._given)
+        return self.floquet_with({}, "a multiplier")
+
+    def floquet_with(self, more: Mapping[str, float], why: str) -> Floquet:
+        """The same with other values of some parameters, in SI; `why` needs its period."""
+        return floquet(
+            self.model,
+            float(self.need("period", why)),
+            begin=float(self.conditions.study.get("phase", 0.0)),
+            start=self.conditions.options.get("start"),
+            **{**self._given, "parameters": {**(self._given["parameters"] or {}), **more}},
+        )
 
     @cached_property
     def orbit(self) -> PeriodicOrbit:
@@ -259,13 +266,20 @@ class Subject:
 
     @cached_property
     def fit(self) -> Fit:
-        """The fit of the diagram to its measured series. Raises DataError, FitError."""
-        if not self.model.diagram.measured:
+        """The fit of the diagram to its measured series. Raises DataError, FitError.
+
+        A preset of the setting holds in all series, in place of theirs.
+        """
+        model, given = self.model, self._given
+        series = model.diagram.measured
+        if not series:
             raise AnalysisError([Problem("there is no measured series to fit")])
         self.tell("fit")
-        parameters = self.conditions.options.get("parameters")
-        method = str(self.conditions.study.get("method", "fminsearch"))
-        return fit(self.model, method=method, parameters=parameters)
+        preset = given.pop("preset")
+        if preset:  # free parameters, and those that follow them, begin with it
+            series = {name: replace(one, preset=preset) for name, one in series.items()}
+            model = replace(model, diagram=replace(model.diagram, measured=series))
+        return fit(model, method=str(self.conditions.study.get("method", "fminsearch")), **given)
 
 
 def _has(t: Vector, times: Vector) -> bool:
