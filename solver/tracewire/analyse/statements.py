@@ -67,11 +67,6 @@ class Judged:
     seconds: float
 
     @property
-    def system(self) -> str:
-        """The first word of its name: the id of a system, such as C15."""
-        return self.statement.name.split()[0]
-
-    @property
     def holds(self) -> bool:
         """Whether it is as stated, or as wrong as its erratum says."""
         return self.verdict in VERDICTS[:2]

@@ -10,6 +10,7 @@ from tracewire.paper.figure import PAPERS, PaperFigure
 from tracewire.paper.headers import read_headers
 from tracewire.paper.reproduction import Reproduction
 from tracewire.paper.setting import Amount
+from tracewire.paper.statements import system_of
 from tracewire.show import Report, Table, expected_text, measured_text, statement_data
 from tracewire.show.document import Figure, Section
 
@@ -81,7 +82,9 @@ def data_of(found: Reproduction) -> dict[str, object]:
         "full": found.full,
         "seconds": found.seconds,
         "counts": dict(found.counts),
-        "statements": [statement_data(row) for row in found.rows],
+        "statements": [
+            {"system": system_of(row.statement), **statement_data(row)} for row in found.rows
+        ],
         "tables": [
             {"title": table.title, "header": table.header, "rows": table.rows}
             for table in found.tables
@@ -91,7 +94,7 @@ def data_of(found: Reproduction) -> dict[str, object]:
 
 def _tables(found: Reproduction) -> Iterable[Table]:
     for system in found.systems:
-        rows = [row for row in found.rows if row.system == system]
+        rows = [row for row in found.rows if system_of(row.statement) == system]
         yield verdicts_table(rows, system)
 
 

@@ -11,7 +11,7 @@ from tracewire.diagram import Diagram
 from tracewire.paper.figure import PaperFigure
 from tracewire.paper.figures import figures_of
 from tracewire.paper.identification import with_identification
-from tracewire.paper.statements import diagrams_of
+from tracewire.paper.statements import diagrams_of, system_of
 from tracewire.paper.tables import tables_of
 from tracewire.show import Table
 
@@ -40,7 +40,7 @@ class Reproduction:
     @property
     def systems(self) -> tuple[str, ...]:
         """The systems in the order of their statements."""
-        return tuple(dict.fromkeys(row.system for row in self.rows))
+        return tuple(dict.fromkeys(system_of(row.statement) for row in self.rows))
 
     @property
     def open(self) -> tuple[Judged, ...]:

@@ -23,6 +23,6 @@ def diagrams_of(paper: str) -> tuple[Diagram, ...]:
     return tuple(read(file) for file in sorted(folder_of(paper).glob("*.yaml")))
 
 
-def statements_of(paper: str) -> tuple[Statement, ...]:
-    """The statements of a paper, in the order of its diagrams. Raises OptionError."""
-    return tuple(statement for diagram in diagrams_of(paper) for statement in diagram.expect)
+def system_of(statement: Statement) -> str:
+    """The system of a statement of a paper, such as C15: the first word of its name."""
+    return statement.name.split()[0]

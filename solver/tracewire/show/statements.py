@@ -57,7 +57,6 @@ def statement_data(row: Judged) -> dict[str, object]:
     statement, bounds = row.statement, row.bounds
     return {
         "name": statement.name,
-        "system": row.system,
         "says": statement.says,
         "source": statement.source,
         "what": statement.what,
