@@ -6,8 +6,10 @@ from pathlib import Path
 
 import pytest
 from diagram.small_library import made, refused
-from tracewire.diagram import read_text
+from tracewire.diagram import Value, read_text
+from tracewire.diagram.grammar import FIT_METHODS, SETTING
 from tracewire.errors import DiagramError
+from tracewire.fit.methods import METHODS
 from tracewire.formula import Call, Name, Number
 
 BASE = """\
@@ -108,6 +110,59 @@ WRONG = [
     ),
     (f"  - {{{LIKE}, reference: {{diagram: no.yaml}}}}", "there is no file 'no.yaml'"),
     (
+        f"  - {{{LIKE}, reference: {{diagram: a.yaml, series: no}}}}",
+        "5:61: 'series' cannot stand with 'diagram'. Leave it out, or write the statement in that",
+    ),
+    (
+        f"  - {{{LIKE}, reference: {{diagram: a.yaml, modulo: {{x: 1}}}}}}",
+        "'modulo' cannot stand with 'diagram'",
+    ),
+    (
+        f"  - {{{LIKE}, reference: {{diagram: a.yaml, over: {{k: 1:2:3}}}}}}",
+        "'over' cannot stand with 'diagram'",
+    ),
+    (
+        f"  - {{{LIKE}, reference: {{diagram: a.yaml, direction: sideways}}}}",
+        "unknown direction 'sideways'; there are: apart, both",
+    ),
+    (
+        f"  - {{{LIKE}, reference: {{diagram: a.yaml, full: {{rubbish: 1}}}}}}",
+        "unknown key of 'full' 'rubbish'",
+    ),
+    (
+        f"  - {{{LIKE}, reference: {{diagram: a.yaml, full: {{until: l}}}}}}",
+        "a value in the setting of another diagram is a number, and not 'l'",
+    ),
+    (
+        f"  - {{{LIKE}, run: {{over: {{l: 1:2:3}}}}}}",
+        "5:38: 'over' is of a bifurcation diagram, and the statement measures nothing of one. "
+        "Leave it out, or measure one of band_low, band_high, irregular_beside.",
+    ),
+    (
+        f"  - {{{LIKE}, run: {{method: shooting}}}}",
+        "'method' is of a fit, and the statement measures nothing of one",
+    ),
+    (
+        f"  - {{{LIKE}, reference: {{full: {{method: shooting}}}}}}",
+        "'method' is of a fit, and the statement measures nothing of one",
+    ),
+    (
+        "  - {that: fitted(l), above: 1, run: {method: rubbish}}",
+        "5:47: unknown method 'rubbish'; there are: fminsearch, growing",
+    ),
+    (
+        "  - {that: criterion(), above: 1, run: {start: {phi: 2}}}",
+        "5:41: 'start' cannot stand with a fit, whose runs are those of the measured series",
+    ),
+    (
+        "  - {that: criterion(), above: 1, run: {series: no}}",
+        "'series' cannot stand with a fit, whose runs are those of the measured series",
+    ),
+    (
+        "  - {that: 'band_low(sideways, 0.1)', above: 1}",
+        "unknown word of band_low 'sideways'; there are: down, up",
+    ),
+    (
         f"  - {{{LIKE}}}\n  - {{{LIKE}}}",
         "6:12: two statements are called 'end(phi)'. The other one",
     ),
@@ -136,8 +191,8 @@ def test_a_statement_has_its_quantity_its_bounds_and_its_setting() -> None:
         "    between: [1, 2*l]\n"
         "    source: Table 3\n"
         "    run: {preset: long, set: {l: {value: 40, unit: cm}}, until: 2*l, rtol: 1e-8,\n"
-        "          over: {l: [1, 2:3:3]}, modulo: {phi: 2*pi}, full: {samples: 9}}\n"
-        "  - {that: min(phi), below: 3}\n"
+        "          modulo: {phi: 2*pi}, full: {samples: 9}}\n"
+        "  - {that: 'band_low(up, 1)', below: 3, run: {over: {l: [1, 2:3:3]}}}\n"
     )
     first, second = made(BASE + text).expect
     assert first.that == Call("/", (Call("max", (Name("phi"),)), Name("l")))
@@ -145,9 +200,9 @@ def test_a_statement_has_its_quantity_its_bounds_and_its_setting() -> None:
     assert first.above == Number(1.0) and first.value is None
     run = first.run
     assert (run.preset, run.values["l"].factor, run.samples) == ("long", 0.01, None)
-    assert run.over == {"l": (1.0, 2.0, 2.5, 3.0)}
+    assert second.run.over == {"l": (1.0, 2.0, 2.5, 3.0)}
     assert run.full is not None and run.full.samples == 9
-    assert (second.name, second.what) == ("min(phi)", "min(phi)")
+    assert (second.name, second.what) == ("band_low(up, 1)", "band_low(up, 1)")
 
 
 def test_a_signal_inside_a_subsystem_and_an_element_are_names() -> None:
@@ -163,3 +218,35 @@ expect:
     assert len(read_text(text, Path("a.yaml")).expect) == 1
     with pytest.raises(DiagramError, match=r"unknown signal or parameter 's\.z'"):
         read_text(text.replace("s.y)", "s.z)"), Path("a.yaml"))
+
+
+def test_the_setting_of_another_diagram_has_what_a_run_and_its_analyses_read(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "other.yaml").write_text(BASE.removesuffix("expect:\n"), encoding="utf-8")
+    keys = "samples: 5, edge: hit, guard: x, direction: up, skip: 3, full: {samples: 9, until: 2}"
+    text = f"  - {{{LIKE}, reference: {{diagram: other.yaml, start: {{q: 1}}, {keys}}}}}\n"
+    (statement,) = made(BASE + text, tmp_path / "a.yaml").expect
+    found = statement.reference
+    assert found is not None and found.full is not None
+    assert found.file == tmp_path / "other.yaml"
+    assert (found.samples, found.full.samples, list(found.start)) == (5, 9, ["q"])
+    assert found.full.until == Value(Number(2.0), place=found.full.until.place)
+    assert {key: found.options[key] for key in ("edge", "guard", "direction")} == {
+        "edge": "hit",
+        "guard": "x",
+        "direction": "up",
+    }
+
+
+@pytest.mark.parametrize("key", SETTING)
+@pytest.mark.parametrize("beside", ["", "diagram: other.yaml, "])
+def test_every_key_of_a_setting_is_read_or_refused(key: str, beside: str, tmp_path: Path) -> None:
+    """A mapping that holds a list is no value of any of them."""
+    (tmp_path / "other.yaml").write_text("blocks: {}\n", encoding="utf-8")
+    text = f"  - {{{LIKE}, reference: {{{beside}{key}: {{x: [[]]}}}}}}"
+    assert refused(BASE + text, tmp_path / "a.yaml")
+
+
+def test_the_methods_of_a_fit_are_those_that_a_fit_has() -> None:
+    assert tuple(METHODS) == FIT_METHODS

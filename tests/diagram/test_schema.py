@@ -183,3 +183,12 @@ def test_the_modeline_names_the_schema_relative_to_the_file(tmp_path: Path) -> N
     assert other == "\ufeff# yaml-language-server: $schema=s.json\n# title\nblocks: {}\n"
     with pytest.raises(OptionError, match=r"only up to its blank. Write the schema into"):
         with_modeline(text, file, tmp_path / "my schemas" / "s.json")
+
+
+def test_a_statement_expects_one_thing() -> None:
+    def is_valid(statement: dict[str, Any]) -> bool:
+        return bool(VALIDATOR.is_valid({"blocks": {}, "expect": [{"that": "t", **statement}]}))
+
+    assert is_valid({"above": 1})
+    assert not is_valid({"above": 1, "between": [1, 2]})
+    assert not is_valid({})

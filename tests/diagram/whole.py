@@ -72,5 +72,6 @@ scene:
 expect:
   - {that: "max(abs(theta))/k", is: k, within: 5 %, source: Table 1, name: swing, unit: rad}
   - {that: "at(theta, 2*T)/k", above: 0, run: {preset: printed, set: {k: 2}, samples: 20}}
-  - {that: end(theta)/reference(end(theta)), between: [0, 1], reference: {over: {T: 0.2:0.4:3}}}
+  - {that: end(theta)/reference(end(theta)), between: [0, 1], reference: {since: 1}}
+  - {that: "band_low(up, 0.1)", below: 1, run: {over: {T: 0.2:0.4:3}}}
 """

@@ -243,6 +243,14 @@ _LIBRARIES = Key(
 _INCLUDE = Key(Listed(TEXT, alone=True), "Files with further subsystems.")
 
 DIRECTIONS = ("up", "down", "both", "up_down", "down_up", "apart")
+FIT_METHODS = (
+    "fminsearch",
+    "least_squares",
+    "growing_windows",
+    "multiple_shooting",
+    "shooting",
+    "multistart",
+)
 SETTING = {
     "preset": Key(Text(names="preset"), "The preset of the run."),
     "set": Key(Mapped(FIXED, "parameter"), "Parameters of the run: {k: 2}."),
@@ -260,11 +268,9 @@ SETTING = {
     "interval": Key(FIXED, "Of exponents: the time between two orthonormalisations in s."),
     "skip": Key(Number(low=0), "Points or periods that are left out at the begin."),
     "keep": Key(Number(low=1), "Points or periods that are taken."),
-    "edge": Key(Text(names="signal"), "The event at which points of a section are taken."),
-    "guard": Key(
-        Formula(signals=True, condition=True), "The guard at which points of a section are taken."
-    ),
-    "method": Key(TEXT, "The method of integration."),
+    "edge": Key(Text(names="signal"), "Of a section: points are taken where this signal jumps."),
+    "guard": Key(Formula(signals=True, condition=True), "Of a section: points are taken there."),
+    "method": Key(Text(FIT_METHODS), "Of a fit: its method."),
     "direction": Key(Text(DIRECTIONS), "The direction of the crossing, or of a sweep."),
     "modulo": Key(Mapped(FIXED, "state"), "What is one turn of a state: {phi: 2*pi}."),
     "over": Key(
@@ -276,6 +282,8 @@ REFERENCE = SETTING | {
     "full": Key(Record(SETTING), "The setting of the longest runs."),
     "diagram": Key(TEXT, "The file of another diagram, whose names these are."),
 }
+EXPECTED = ("is", "above", "below", "between")
+"""What a statement expects: one of these."""
 STATEMENT = {
     "that": Key(Formula(signals=True), "The quantity, such as end(x).", required=True),
     "is": Key(Formula(signals=True), "The value that is expected, or a word such as stable."),
@@ -333,7 +341,10 @@ TOP = {  # in the order in which `format` puts them
         Listed(Record({n: Key(_part(p), f"A {n}.") for n, p in KINDS.items()}, one=True)),
         "How the diagram is drawn as a mechanism: parts that signals move.",
     ),
-    "expect": Key(Listed(Record(STATEMENT)), "What the diagram must show: statements."),
+    "expect": Key(
+        Listed(Record(STATEMENT, some=EXPECTED, apart=True)),
+        "What the diagram must show: statements.",
+    ),
 }
 INSIDE = {
     "title": _TITLE,

@@ -22,6 +22,7 @@ from tracewire.formula import (
     Expression,
     Name,
     Number,
+    is_condition,
     to_text,
 )
 
@@ -35,6 +36,16 @@ def is_quantity(node: Call) -> bool:
         return False
     known = FUNCTIONS.get(node.function)
     return known is None or len(node.arguments) < known.least
+
+
+def quantities_in(node: Expression, reference: bool) -> set[str]:
+    """The functions of quantities in a part; with `reference` those inside of reference(...)."""
+    if not isinstance(node, Call):
+        return set()
+    if node.function == "reference":
+        return quantities_in(node.arguments[0], False) if reference else set()
+    inside = {name for part in node.arguments for name in quantities_in(part, reference)}
+    return inside | {node.function} if is_quantity(node) and not reference else inside
 
 
 def quantity_problems(
@@ -102,6 +113,8 @@ class _Names:
             return
         for n, argument in enumerate(node.arguments):
             match known.kind(n):
+                case "word" if known.words and to_text(argument) not in known.words:
+                    self.unknown(f"word of {node.function}", to_text(argument), list(known.words))
                 case "word":
                     pass
                 case "parameter" if node.function == "motions":
@@ -112,7 +125,7 @@ class _Names:
                         self.unknown("parameter", to_text(argument), there)
                 case "event":
                     self.event(argument)
-                case "happening" if not _is_condition(argument):
+                case "happening" if not is_condition(argument):
                     self.event(argument)
                 case "number":
                     self.check(argument, along=node.function == "at")
@@ -157,7 +170,3 @@ class _Names:
 
     def note(self, what: str, hint: str) -> None:
         self.problems.add(what, self.place, (), hint)
-
-
-def _is_condition(node: Expression) -> bool:
-    return isinstance(node, Call) and node.function in ("<", "<=", ">", ">=", "and", "or", "not")

@@ -6,17 +6,17 @@ from dataclasses import replace
 
 from tracewire.diagram.body import Body
 from tracewire.diagram.diagram import Diagram, Setting, Statement
-from tracewire.diagram.grammar import STATEMENT
+from tracewire.diagram.grammar import EXPECTED, STATEMENT
 from tracewire.diagram.problems import clip
-from tracewire.diagram.quantity_names import quantity_problems
+from tracewire.diagram.quantity_names import quantities_in, quantity_problems
 from tracewire.diagram.read_setting import read_setting
+from tracewire.diagram.setting_use import refuse_unused
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.errors import DiagramError, FormulaError, Place
 from tracewire.formula import QUANTITIES, Call, Expression, Unit, parse_quantity, to_text
 
 TEXTS = ("name", "says", "what", "source", "erratum", "note")
-BOUNDS = ("is", "above", "below", "between")
-WORDS = ("stable", "unstable", "neutral", "nonsmooth")
+VERDICTS = ("stable", "unstable", "neutral", "nonsmooth")
 EXAMPLE = '- {that: "end(x)", is: 0.0136, within: 1e-6, source: "Table 3"}'
 ONE_OF = "Write one of: is: 2 with within: 0.1 or within: 5 %; above: 1; below: 3; between: [1, 3]."
 
@@ -57,6 +57,9 @@ def _read_statement(node: Node, body: Body, diagram: Diagram) -> Statement | Non
     place = body.place(node_of_that)
     if wrong := quantity_problems(that, diagram, place, reference):
         body.problems.take(DiagramError(wrong))
+    for key, inside in (("run", False), ("reference", True)):
+        if key in given:
+            refuse_unused(given[key], body, quantities_in(that, reference=inside))
     texts = {key: body.text(given[key], f"'{key}'") or "" if key in given else "" for key in TEXTS}
     shown = to_text(that)
     base = Statement(
@@ -97,7 +100,7 @@ def _with_bounds(
 ) -> Statement | None:
     """The statement with what is expected of its quantity."""
     given, place = entries.values, base.place
-    there = [key for key in BOUNDS if key in given]
+    there = [key for key in EXPECTED if key in given]
     if len(there) != 1:
         what = f"a statement has {' and '.join(there)}" if there else "a statement expects nothing"
         body.problems.add(what, place, (), ONE_OF)
@@ -142,10 +145,10 @@ def _word(base: Statement, kind: str, node: Node, body: Body) -> Statement | Non
     text = body.text(node, f"'{kind}'") or ""
     if kind != "is":
         what = f"'{clip(base.what)}' is a word, and not {kind} anything"
-        body.problems.add(what, body.place(node), WORDS, "Write is: stable.")
+        body.problems.add(what, body.place(node), VERDICTS, "Write is: stable.")
         return None
-    if text not in WORDS:
-        body.problems.unknown("verdict", text, WORDS, body.place(node))
+    if text not in VERDICTS:
+        body.problems.unknown("verdict", text, VERDICTS, body.place(node))
         return None
     return replace(base, word=text)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from tracewire.diagram.body import Body
 from tracewire.diagram.diagram import Diagram, Setting, Value
-from tracewire.diagram.grammar import DIRECTIONS, SETTING
+from tracewire.diagram.grammar import DIRECTIONS, FIT_METHODS, SETTING
 from tracewire.diagram.names import find_parameter, find_state, parameters, states
 from tracewire.diagram.problems import clip
 from tracewire.diagram.quantities import read_above_zero, read_count
@@ -21,7 +21,8 @@ from tracewire.formula import Number, to_text
 TIMES = {"from": "begin", "until": "until", "since": "since"}
 OF_ANALYSES = ("period", "phase", "length", "transient", "interval")
 COUNTS = ("skip", "keep")
-WORDS = {"edge": (), "guard": (), "method": (), "direction": DIRECTIONS}
+WORDS_OF = {"edge": (), "guard": (), "method": FIT_METHODS, "direction": DIRECTIONS}
+"""What the text of a key may be; any text where there are none."""
 EXAMPLE = "{preset: free, set: {k: 2}, until: 10}"
 RANGE = re.compile(r"\s*(\S+?)\s*:\s*(\S+?)\s*:\s*(\d+)\s*")
 MOST_VALUES = 100_000
@@ -29,44 +30,58 @@ MOST_SAMPLES = 1_000_000
 
 
 def read_setting(
-    node: Node, body: Body, diagram: Diagram, reference: bool = False, full: bool = False
+    node: Node,
+    body: Body,
+    diagram: Diagram,
+    reference: bool = False,
+    full: bool = False,
+    other: bool = False,
 ) -> Setting:
-    """A setting. reference: it may be that of another diagram; full: of the longest runs."""
+    """A setting. reference: it may be that of another diagram; full: of the longest runs; other: of
+    another diagram, whose presets, parameters and states are looked up when it runs."""
     what = "'full'" if full else "'reference'" if reference else "'run'"
     entries = body.entries(node, what, EXAMPLE)
     if entries is None:
         return Setting()
     keys = [*SETTING, *([] if full else ["full"]), *(["diagram"] if reference else [])]
     body.check_keys(entries, keys, f"key of {what}")
-    given = entries.values
-    if reference and "diagram" in given:  # its names are those of the other diagram
-        return _of_another(entries.values, body, diagram)
+    other = other or (reference and "diagram" in entries.values)
     found: dict[str, object] = {"place": body.place(entries)}
     options: dict[str, Value | str] = {}
-    for key, value in given.items():
+    for key, name, value in entries:
         match key:
+            case _ if key not in keys:
+                continue  # noted above
+            case "series" | "modulo" | "over" if other:
+                hint = "Leave it out, or write the statement in that diagram."
+                body.problems.add(
+                    f"'{key}' cannot stand with 'diagram'", body.place(name), (), hint
+                )
+            case "diagram":
+                found["file"] = _file(value, body)
+                found["place"] = body.place(value)
+            case "preset" if other:
+                found["preset"] = body.text(value, "'preset'") or ""
             case "preset":
                 found["preset"] = _known(value, body, "preset", diagram.presets)
             case "series":
                 found["series"] = _known(value, body, "measured series", diagram.measured)
+            case "set" | "start" if other:
+                found["values" if key == "set" else key] = _plain(value, body, f"'{key}'")
             case "set":
                 found["values"] = read_settings(value, body, diagram, "'set'")
             case "start" | "modulo":
                 found[key] = _of_states(value, body, diagram, f"'{key}'")
             case "samples":
-                count = read_count(value, body, "'samples'")
-                if count is not None and not 2 <= count <= MOST_SAMPLES:
-                    what = f"'samples' must be 2 or more, and {MOST_SAMPLES} at most"
-                    body.problems.add(what, body.place(value))
-                found["samples"] = count
+                found["samples"] = _samples(value, body)
             case "over":
                 found["over"] = _read_over(value, body, diagram)
-            case "full" if not full:
-                found["full"] = read_setting(value, body, diagram, full=True)
+            case "full":
+                found["full"] = read_setting(value, body, diagram, full=True, other=other)
             case _ if key in TIMES:
                 found[TIMES[key]] = read_value(value, body, fit=False)
-            case _ if key in WORDS:
-                allowed = WORDS[key]
+            case _ if key in WORDS_OF:
+                allowed = WORDS_OF[key]
                 word = body.text(value, f"'{key}'") or ""
                 if allowed and word not in allowed:
                     body.problems.unknown(key, word, allowed, body.place(value))
@@ -75,46 +90,41 @@ def read_setting(
                 read = _read_option(key, value, body)
                 if read is not None:
                     options[key] = read
-    return replace(Setting(**found), options=options)  # type: ignore[arg-type]
+            case _:
+                raise AssertionError(key)
+    read_all = replace(Setting(**found), options=options)  # type: ignore[arg-type]
+    if other:
+        _refuse_parameters(read_all, body)
+    return read_all
 
 
-def _of_another(given: dict[str, Node], body: Body, diagram: Diagram) -> Setting:
-    """The setting of another diagram: its presets and parameters are looked up when it runs."""
-    node = given["diagram"]
+def _file(node: Node, body: Body) -> Path:
+    """The file of another diagram."""
     text = body.text(node, "'diagram'") or ""
     file = node.path if isinstance(node, Scalar) else Path()
     if not file.is_file():
         hint = "Name a file beside this diagram."
-        place = body.place(given["diagram"])
-        body.problems.add(f"there is no file '{clip(text)}'", place, (), hint)
-    preset = body.text(given["preset"], "'preset'") or "" if "preset" in given else ""
-    values = {
-        key: _plain(given[key], body, f"'{key}'") if key in given else {}
-        for key in ("set", "start")
-    }
-    options: dict[str, Value | str] = {}
-    for key in (*OF_ANALYSES, *COUNTS, "rtol"):
-        read = _read_option(key, given[key], body) if key in given else None
-        if read is not None:
-            options[key] = read
-    times = {n: read_value(given[k], body, fit=False) for k, n in TIMES.items() if k in given}
-    made = [*values["set"].values(), *values["start"].values(), *options.values(), *times.values()]
+        body.problems.add(f"there is no file '{clip(text)}'", body.place(node), (), hint)
+    return file
+
+
+def _refuse_parameters(setting: Setting, body: Body) -> None:
+    """Note the values in the setting of another diagram that read parameters."""
+    times = (setting.begin, setting.until, setting.since)
+    made = (*setting.values.values(), *setting.start.values(), *setting.options.values(), *times)
     for value in made:
         if isinstance(value, Value) and reads_parameters(value.formula):
             shown = clip(to_text(value.formula))
             what = f"a value in the setting of another diagram is a number, and not '{shown}'"
             body.problems.add(what, value.place, (), "Its parameters are not known here.")
-    return Setting(
-        preset,
-        values["set"],
-        values["start"],
-        begin=times.get("begin"),
-        until=times.get("until"),
-        since=times.get("since"),
-        options=options,
-        file=file,
-        place=body.place(given["diagram"]),
-    )
+
+
+def _samples(node: Node, body: Body) -> int | None:
+    count = read_count(node, body, "'samples'")
+    if count is not None and not 2 <= count <= MOST_SAMPLES:
+        what = f"'samples' must be 2 or more, and {MOST_SAMPLES} at most"
+        body.problems.add(what, body.place(node))
+    return count
 
 
 def _plain(node: Node, body: Body, what: str) -> dict[str, Value]:

@@ -25,6 +25,7 @@ from tracewire.formula.expression import (
 from tracewire.formula.functions import CONSTANTS, FUNCTIONS, OPERATIONS
 from tracewire.formula.order import evaluation_order
 from tracewire.formula.parse import (
+    is_condition,
     is_name,
     name_hint,
     number_hint,
@@ -59,6 +60,7 @@ __all__ = [
     "evaluate_along",
     "evaluation_order",
     "has_delay",
+    "is_condition",
     "is_name",
     "name_hint",
     "names_of",

@@ -12,7 +12,7 @@ from typing import Literal
 
 Argument = Literal["signal", "number", "condition", "event", "happening", "parameter", "word"]
 QuantityUnit = Literal["kept", "number", "s", "1/s", "kept s", "parameter", "inside", "any"]
-WORDS = {"band": ("up", "down")}
+BRANCHES = ("up", "down")
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,9 @@ class Quantity:
 
     unit: that of the first signal is `kept`, or times s; a `number`; s; 1/s; that of the
     `parameter`; that of what is `inside`, or `any`. text: it is a word, such as "stable".
-    study: it is no number of a run, and needs more of its setting than a run does.
+    study: it is no number of a run, and needs more of its setting than a run does. made_by: the
+    analysis that makes it, where a key of the setting is for that one only. words: what its first
+    argument, a word, may be; any that the caller knows where there are none.
     """
 
     takes: tuple[Argument, ...]
@@ -36,6 +38,8 @@ class Quantity:
     more: bool = False
     text: bool = False
     study: bool = False
+    made_by: Literal["", "bifurcation diagram", "fit"] = ""
+    words: tuple[str, ...] = ()
 
     @property
     def least(self) -> int:
@@ -122,17 +126,19 @@ QUANTITIES = {
     "section_count": Quantity((), "how many points a section has", study=True),
     "band_low": Quantity(("word", "number"),
         "band_low(down, gap): where the widest band of irregular motion begins, going down or up "
-        "`over` a parameter; bands nearer than gap are one", "any", study=True),
-    "band_high": Quantity(("word", "number"), "where it ends", "any", study=True),
+        "`over` a parameter; bands nearer than gap are one", "any", study=True,
+        made_by="bifurcation diagram", words=BRANCHES),
+    "band_high": Quantity(("word", "number"), "where it ends", "any", study=True,
+        made_by="bifurcation diagram", words=BRANCHES),
     "irregular_beside": Quantity(("word", "number"), "the part of the values that are irregular "
-        "outside of that band", study=True),
+        "outside of that band", study=True, made_by="bifurcation diagram", words=BRANCHES),
     "motions": Quantity(("number", "number", "parameter"),
         "motions(n, a, x, ...): how many motions n starts lead to, with states x within -a to a",
         study=True, more=True),
     # of fits
     "fitted": Quantity(("parameter",), "what a fit to the measured series makes of a parameter",
-        "parameter", study=True),
-    "criterion": Quantity((), "the criterion of that fit", study=True),
+        "parameter", study=True, made_by="fit"),
+    "criterion": Quantity((), "the criterion of that fit", study=True, made_by="fit"),
     "identification": Quantity(("word", "word"),
         "identification(M8, disk): a criterion after a step of paper A's identification", "any",
         study=True),

@@ -21,6 +21,7 @@ from tracewire.formula import (
     Expression,
     Name,
     Number,
+    is_condition,
     names_of,
     rename,
     to_text,
@@ -235,8 +236,3 @@ def formulas_in(node: Call) -> list[Expression]:
         if known.kind(n) in ("signal", "condition", "number")
         or (known.kind(n) == "happening" and is_condition(argument))
     ]
-
-
-def is_condition(node: Expression) -> bool:
-    """Whether a part of a quantity is true or false."""
-    return isinstance(node, Call) and node.function in ("<", "<=", ">", ">=", "and", "or", "not")

@@ -14,14 +14,13 @@ from tracewire.analyse.quantities.evaluate import (
     At,
     Value,
     full_name,
-    is_condition,
     of_states,
     other_of,
 )
 from tracewire.analyse.spectrum import spectrum
 from tracewire.diagram import EVENT_KINDS, is_quantity
 from tracewire.errors import AnalysisError, OptionError, Problem
-from tracewire.formula import CONSTANTS, Call, Expression, names_of, to_text
+from tracewire.formula import CONSTANTS, Call, Expression, is_condition, names_of, to_text
 from tracewire.solve import Event, Run
 
 Vector = NDArray[np.float64]
