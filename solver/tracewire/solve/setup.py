@@ -243,6 +243,7 @@ def new_arrays(
         rate=np.zeros(n),
         at=np.zeros(n),
         guards=np.zeros(modes),
+        paces=np.zeros(2),
     )
     watch = Watch(
         mode=ints(most),

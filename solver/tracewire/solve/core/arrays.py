@@ -104,7 +104,7 @@ class Trial(NamedTuple):
 
     `ends` holds t, h and h times the largest eigenvalue (0 where the method does not say);
     `stages` (16, n), `matrix` (n, n + 1), `factors` (n, n), `pivots` (n,), `at` (n,) and `guards`
-    (M,) are work space; `rate` (n,) is the rate where the step begins.
+    (M,) and `paces` (2,) are work space; `rate` (n,) is the rate where the step begins.
     """
 
     ends: Vector
@@ -120,6 +120,7 @@ class Trial(NamedTuple):
     rate: Vector
     at: Vector
     guards: Vector
+    paces: Vector
 
 
 class Watch(NamedTuple):

@@ -153,6 +153,7 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
     choose(core)
     if now[H] <= 0.0 and limit > now[T]:
         now[H] = _first_step(core, rate, limit)
+    longest = _longest_step(core, now[T], x)
     while now[T] < limit:
         if ints[STEPS] >= budget:
             ints[STAGE] = PAUSED_INSIDE
@@ -164,11 +165,14 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
             now[H] = min(now[H], longest_followed(core, now[T], x))
         if locate.passed(core, hit):  # so slowly that no step has seen it
             return _cross(core, PASSED)
-        longest = _longest_step(core, now[T], x)
         now[H] = min(now[H], longest)
-        status = _attempt(core, rate, limit)
-        if status == FINISHED and longest < np.inf and _outpaced(core):
-            continue
+        status, after = _attempt(core, rate, limit), longest
+        if status == FINISHED and longest < np.inf:
+            h = trial.ends[1]
+            after = _longest_step(core, trial.ends[0] + h, trial.x_end)
+            if h > 2.0 * after:  # the guards turn faster at its end than it can follow
+                now[H] = max(2.0 * after, h / 4)
+                continue
         if status == UNDEFINED:
             return _undefined(core)
         if status != FINISHED:
@@ -180,6 +184,7 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
             continue
         if how != NOTHING:
             return _crossed(core)
+        longest = after
         end = trial.ends[0] + trial.ends[1]
         sample_inside(core, method, end)
         last = end >= limit
@@ -187,6 +192,7 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
         copy(trial.x_end, x)
         if flow.counts[SLIDING] + flow.counts[RESTING]:
             pin(core, now[T], x)
+            longest = _longest_step(core, now[T], x)
         _remember(core, x)
         now[H] = max(now[H], trial.ends[1] * ratio) if last else trial.ends[1] * ratio
         if IMPLICIT[method] or flow.counts[SLIDING] + flow.counts[RESTING]:
@@ -257,7 +263,7 @@ def _longest_step(core: int, t: float, x: Vector) -> float:
     now = progress_of(core).now
     if now[PACED] == 0.0:
         return now[LONGEST]
-    paces, counts = np.empty(2), flow_of(core).counts
+    paces, counts = trial_of(core).paces, flow_of(core).counts
     evaluate(core, PACE, t, x, paces)
     pace = paces[0]
     if counts[SLIDING] + counts[RESTING]:  # until what is held breaks loose
@@ -265,19 +271,6 @@ def _longest_step(core: int, t: float, x: Vector) -> float:
     if not pace > 0.0:
         return min(now[LONGEST], LARGEST_PART * now[LENGTH])
     return min(now[LONGEST], max(TURN / pace, SMALLEST_PART * now[LENGTH]))
-
-
-@helper
-def _outpaced(core: int) -> bool:
-    """Whether the guards turn much faster at the end of a trial step than it can follow: if so, the
-    next one is shorter."""
-    trial, now = trial_of(core), progress_of(core).now
-    h = trial.ends[1]
-    longest = _longest_step(core, trial.ends[0] + h, trial.x_end)
-    if h <= 2.0 * longest:
-        return False
-    now[H] = max(2.0 * longest, h / 4)
-    return True
 
 
 @helper

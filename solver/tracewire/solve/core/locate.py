@@ -234,25 +234,36 @@ def _floors(core: int, out: Vector) -> None:
 def _is_quiet(core: int, count: int) -> bool:
     """Whether all margins are armed, none is below zero at a sample, and none may dip below it.
 
-    What rounding may explain is asked later. Nearly all steps are quiet; without branches the loop
-    takes several margins at a time.
+    What rounding may explain is asked later. Nearly all steps are quiet, and most margins vary less
+    than they are away from zero: no parabola through three of their samples comes near it.
     """
     watched = watch_of(core)
     rows, kind, armed = watched.rows, watched.kind, watched.armed
-    loud = 0
     for i in range(count):
-        floor = HELD_NOISE if kind[i] == FRACTION else 0.0
-        least = min(rows[0, i], 0.0) - floor
-        loud |= int(armed[i] == 0)
+        least, most = rows[0, i], rows[0, i]
         for k in range(1, SAMPLES):
-            loud |= int(rows[k, i] < least)
-        for k in range(1, SAMPLES - 1):
-            before, here, after = rows[k - 1, i], rows[k, i], rows[k + 1, i]
-            bend, slope = after - 2 * here + before, after - before
-            dips = int(slope * slope > bend * (8 * here - SLACK * bend))
-            dips &= int(abs(slope) <= EDGE * bend)
-            loud |= int(bend > 0) & dips & int(before > floor)
-    return loud == 0
+            least, most = min(least, rows[k, i]), max(most, rows[k, i])
+        if armed[i] == 0 or (2.0 * least <= most and not _stays_above(core, i, kind[i])):
+            return False
+    return True
+
+
+@helper
+def _stays_above(core: int, i: int, kind: int) -> bool:
+    """Whether a margin is above zero at all samples, and no parabola says that it may dip."""
+    rows = watch_of(core).rows
+    floor = HELD_NOISE if kind == FRACTION else 0.0
+    least = min(rows[0, i], 0.0) - floor
+    for k in range(1, SAMPLES):
+        if rows[k, i] < least:
+            return False
+    for k in range(1, SAMPLES - 1):
+        before, here, after = rows[k - 1, i], rows[k, i], rows[k + 1, i]
+        bend, slope = after - 2 * here + before, after - before
+        dips = slope * slope > bend * (8 * here - SLACK * bend)
+        if dips and bend > 0 and before > floor and abs(slope) <= EDGE * bend:
+            return False
+    return True
 
 
 @unit
