@@ -11,6 +11,7 @@ from tracewire.trace.choose import safeguards
 from tracewire.trace.choose.choice import Entrant, choose, log_scores
 from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.choose.unseen import (
+    better_unseen,
     prune_by_other_runs,
     raises_whole_runs,
     share_of_whole_runs,
@@ -23,15 +24,15 @@ HELD_OUT = {(): 100.0, (DRY,): 4.0, (DRIFT,): 60.0, (DRY, DRIFT): 2.0}
 """The mean squared residual on held-out blocks of the fitted record, by the effects of a model."""
 
 
-def prediction() -> Prediction:
-    """Four models, of which the largest is chosen."""
+def prediction(held_out: dict[tuple[str, ...], float] = HELD_OUT) -> Prediction:
+    """Models with so much left on held-out blocks, of which the best is chosen."""
     options, rng = TraceOptions(), np.random.default_rng(1)
-    ripple = 1 + 0.1 * rng.random((len(HELD_OUT), 1, 1, BLOCKS, 1))
-    errors = ripple * np.reshape(list(HELD_OUT.values()), (-1, 1, 1, 1, 1))
-    entrants = tuple(Entrant(frozenset(names), 2 + len(names)) for names in HELD_OUT)
+    ripple = 1 + 0.1 * rng.random((len(held_out), 1, 1, BLOCKS, 1))
+    errors = ripple * np.reshape(list(held_out.values()), (-1, 1, 1, 1, 1))
+    entrants = tuple(Entrant(frozenset(names), 2 + len(names)) for names in held_out)
     models: Any = tuple(
         SimpleNamespace(names=frozenset(names), trials=[names], numbers=2 + len(names))
-        for names in HELD_OUT
+        for names in held_out
     )
     groups = (tuple((block,) for block in range(BLOCKS)),)
     horizons: Any = SimpleNamespace(each=[SimpleNamespace(length=100)], groups=groups)
@@ -115,6 +116,30 @@ def run_of(left: dict[tuple[str, ...], float]) -> Any:
         windows=lambda sections, length: [length],
         options=TraceOptions(),
     )
+
+
+@pytest.mark.parametrize(("left", "better"), [(30.0, True), (47.0, False), (70.0, False)])
+def test_another_effect_that_does_better_on_unseen_runs_is_told(left: float, better: bool) -> None:
+    """The chosen one leaves 50 sigma there; a tenth less may be chance."""
+    drag = ("quad_drag @ forces",)
+    there, found = run_of({(DRY,): 50.0, drag: left}), prediction({(): 100, (DRY,): 4, drag: 16})
+    there.words = []
+    assert found.taken.names == {DRY}
+    assert better_unseen(there, found) == ([2] if better else [])
+    words = (
+        f"{drag[0]} predicts held-out blocks less well than {DRY}, but leaves 0.6 times its error"
+        " in whole unseen runs: these data do not decide between them"
+    )
+    assert there.words == ([words] if better else [])
+
+
+def test_a_rival_that_is_worse_in_windows_is_not_told() -> None:
+    drag = ("quad_drag @ forces",)
+    there, found = run_of({}), prediction({(): 100, (DRY,): 4, drag: 16})
+    left = {(DRY, WHOLE): 50.0, (drag[0], WHOLE): 30.0, (DRY, 100): 2.0, (drag[0], 100): 3.0}
+    there.bench.on = lambda names, windows: [np.full(WHOLE, left[names[0], windows[0]])]
+    there.words = []
+    assert better_unseen(there, found) == []
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.residual import Section
+from tracewire.trace.choose.choice import is_sure, log_scores
 from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.trial import Trial
@@ -75,6 +76,47 @@ def _whole_runs(search: Search, fewer: Trial, more: Trial) -> tuple[float, float
         return 0.0, 0.0, 0
     count = sum((s.end - s.first) * len(s.measured.values) for s in unseen)
     return float(before.sum()), float(after.sum()), count
+
+
+def better_unseen(search: Search, prediction: Prediction) -> list[int]:
+    """The numbers of the models with one effect of the chosen one exchanged that do better on
+    unseen data: no worse in windows of each horizon, and surely better in whole runs. They surely
+    beat the declared model, and have at most one number more.
+
+    What the fitted run prefers, another run may not: then neither names the effect alone.
+    """
+    options, taken = search.options, prediction.choice.taken
+    mine, totals = prediction.entrants[taken], log_scores(prediction.errors).mean(axis=(1, 2))
+    rivals = [
+        n
+        for n, one in enumerate(prediction.entrants)
+        if one.exchanges(mine)
+        and one.numbers <= mine.numbers + 1
+        and np.isfinite(totals[n]).all()
+        and is_sure(totals, 0, n, options)
+    ]
+    if not rivals:
+        return []
+    unseen = search.stretches.unseen
+    lengths = {horizon.length for horizon in prediction.horizons.each}
+    whole = max((section.end - section.first for section in unseen), default=0)
+
+    def error(number: int, length: int) -> float:
+        trial = prediction.models[number].trials[-1]
+        return float(np.sqrt(squares_on(search, unseen, trial, length).sum()))
+
+    found, most = [], error(taken, whole)
+    for n in rivals:
+        left = error(n, whole) / most
+        no_worse = all(error(n, length) <= error(taken, length) for length in lengths)
+        if no_worse and left < 1 / (1 + options.harm_few):
+            found.append(n)
+            search.words.append(
+                f"{joined(prediction.models[n].names)} predicts held-out blocks less well than"
+                f" {joined(prediction.taken.names)}, but leaves {left:.2g} times its error in whole"
+                " unseen runs: these data do not decide between them"
+            )
+    return found
 
 
 def prune_by_other_runs(search: Search, prediction: Prediction) -> Prediction:

@@ -13,7 +13,12 @@ from tracewire.trace.choose.heldout import Finalist
 from tracewire.trace.choose.noisy_inputs import noisy_inputs
 from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.choose.remainder import error_left, explained, held_out, remainders
-from tracewire.trace.choose.unseen import joined, prune_by_other_runs, raises_unseen
+from tracewire.trace.choose.unseen import (
+    better_unseen,
+    joined,
+    prune_by_other_runs,
+    raises_unseen,
+)
 from tracewire.trace.found import (
     Dependence,
     Explained,
@@ -191,7 +196,14 @@ def final_of(search: Search, prediction: Prediction) -> Final:
     best, declared = taken.trials[-1], prediction.models[0].trials[-1]
     rivals: dict[str, list[Rival]] = {str(effect): [] for effect in best.effects}
     blocks = prediction.horizons.count
-    for number, cost in prediction.choice.ties:
+    totals = log_scores(prediction.errors).mean(axis=(1, 2, 3))
+    known = {number for number, _ in prediction.choice.ties}
+    unseen = [
+        (number, float(totals[number] - totals[prediction.choice.taken]))
+        for number in better_unseen(search, prediction)
+        if number not in known
+    ]
+    for number, cost in (*prediction.choice.ties, *unseen):
         other = prediction.models[number]
         if taken.names < other.names:
             continue  # a refinement, if it is sure
@@ -214,8 +226,7 @@ def final_of(search: Search, prediction: Prediction) -> Final:
     search.words += _refined(prediction)
     own = search.bench.declared.flat.parameters
     dropped = (*taken.dropped, *(name for name in taken.vanished if name in own))
-    known = {name: tuple(found) for name, found in rivals.items()}
-    return Final(declared, ordered(best), known, dropped)
+    return Final(declared, ordered(best), {k: tuple(v) for k, v in rivals.items()}, dropped)
 
 
 def _refined(prediction: Prediction) -> list[str]:
