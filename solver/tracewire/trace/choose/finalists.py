@@ -415,23 +415,38 @@ class Pool:
         return self.options.hopeful * min(known, default=np.inf)
 
     def _exchange(self, size: int) -> None:
-        """The best models of a size with each effect exchanged for those that look most like it."""
-        screen, options = self.first[-1], self.options
-        rows = screen.visible()
-        for model in self.best(size, options.exchanged):
-            for name in sorted(model.names & rows.keys()):
-                alike = {
-                    other: screen.columns.likeness(rows[name].columns, row.columns)
-                    for other, row in rows.items()
-                    if other not in model.names
-                }
-                nearest = sorted(alike, key=lambda other: -alike[other])[: options.alike]
-                self._replaced(model, name, [rows[other].added for other in nearest])
+        """The best models of a size with each effect exchanged for those that may stand there."""
+        for model in self.best(size, self.options.exchanged):
+            for name in sorted(model.names):
+                self._replaced(model, name, self._instead_of(model, name))
+
+    def _instead_of(self, model: Finalist, name: str) -> list[Added]:
+        """The effects that promise the most in the place of one, at the values that the model has
+        with it: refitted without it these may be far away, and others look alike there."""
+        number = len(self.horizons.each) - 1
+        now = self.at(model, number)
+        kept = [effect for effect in now.effects if str(effect) != name]
+        fixed = now.windows.criterion.parameters
+        self.search.tell(f"screening effects in the place of {name}")
+        try:
+            bare = self.search.bench.fitted(
+                kept, now.windows.segments, now.length, now.values, fixed=fixed, steps=0
+            )
+        except FitError:
+            return []
+        count = self.options.alike
+        proposals = self.promising(number, self.search.screen(bare), count + 1, 0)
+        found = [row.added for proposal in proposals for row in proposal.rows]
+        return [one for one in found if str(one) not in model.names][:count]
 
     def _replaced(self, model: Finalist, name: str, others: Sequence[Added]) -> None:
+        """Refit a model with others in the place of an effect, from its values: also one that is
+        known and far behind, as its fit may have ended in another minimum."""
         for other in others:
             names = model.names - {name} | {str(other)}
-            if (names, model.dropped) in self.models or self.spent > self.options.most_steps:
+            known = self.models.get((names, model.dropped))
+            near = known is not None and known.rss <= self.options.hopeful * model.rss
+            if near or self.spent > self.options.most_steps:
                 continue
             self.search.tell(f"refitting with {' and '.join(sorted(names))}")
             trials: list[Trial] = []
@@ -447,7 +462,7 @@ class Pool:
                 trials.append(fitted)
                 begun = fitted.effects[-1]
             else:
-                self._kept(Finalist(tuple(reversed(trials)), model.dropped))
+                self._keep_better(Finalist(tuple(reversed(trials)), model.dropped))
 
     def _improves(self, size: int) -> bool:
         """Whether models of this size fit better than smaller ones by more than the tolerance."""
