@@ -125,26 +125,50 @@ def test_effects_are_told_the_surest_first() -> None:
     assert sure == sorted(sure, reverse=True)
 
 
-@pytest.mark.parametrize(("errors", "kept"), [(10.0, 1), (300.0, 2)])
-def test_a_drift_that_explains_next_to_nothing_is_left_out(
-    errors: float, kept: int, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("errors", "second", "ties", "told"),
+    [
+        (10.0, "viscous_drift", (), ""),
+        (300.0, "viscous_drift", (), None),
+        (10.0, "backlash", ("barrier",), ", as barrier would"),
+        (300.0, "backlash", ("barrier",), None),
+        (10.0, "backlash", (), None),
+    ],
+)
+def test_what_explains_next_to_nothing_and_may_be_another_law_is_a_refinement(
+    errors: float,
+    second: str,
+    ties: Sequence[str],
+    told: str | None,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Of 1e6 variances 10 standard errors explain 1e-4, 300 errors 9 %."""
+
+    class Effect(SimpleNamespace):
+        def __str__(self) -> str:
+            return str(self.candidate.effect)
+
     effects = [
-        SimpleNamespace(
+        Effect(
             candidate=SimpleNamespace(effect=name, coefficient=name, neutral=0.0),
             coefficient=errors,
         )
-        for name in ("coulomb", "viscous_drift")
+        for name in ("coulomb", second)
     ]
     best = SimpleNamespace(
-        effects=effects, s2=1.0, count=1000, standard_errors={"coulomb": 1.0, "viscous_drift": 1.0}
+        effects=effects, s2=1.0, count=1000, standard_errors={"coulomb": 1.0, second: 1.0}
     )
-    search = SimpleNamespace(options=OPTIONS, tell=lambda _: None)
+    search = SimpleNamespace(options=OPTIONS, tell=lambda _: None, words=[])
     finish = import_module("tracewire.trace.search.finish")
     monkeypatch.setattr(
         finish, "_refitted", lambda search, best, kept: SimpleNamespace(effects=kept)
     )
+    rivals = {second: [SimpleNamespace(added=name, tied=True) for name in ties]}
     declared = SimpleNamespace(s2=1001.0)
-    found = _without_trifles(search, best, declared)  # type: ignore[arg-type]
-    assert [e.candidate.effect for e in found.effects] == ["coulomb", "viscous_drift"][:kept]
+    found = _without_trifles(search, best, declared, rivals)  # type: ignore[arg-type]
+    assert [str(e) for e in found.effects] == ["coulomb", second][: 1 if told is not None else 2]
+    words = (
+        f"{second} would be a refinement: it takes only 0.01 % of the squared error that was"
+        f" missing{told}, so it may stand for anything, and is not named"
+    )
+    assert search.words == ([words] if told is not None else [])

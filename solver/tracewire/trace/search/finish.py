@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -52,7 +52,7 @@ def finished(search: Search, declared: Trial, best: Trial) -> Final:
         rivals[str(best.effects[number])] = found
     best = _opened_shapes(search, best)
     best = _common_phases(search, best)
-    best = _without_trifles(search, _pruned(search, best), declared)
+    best = _without_trifles(search, _pruned(search, best), declared, rivals)
     best, dropped = _dropped(search, best)
     return Final(declared, ordered(best), rivals, dropped)
 
@@ -254,18 +254,35 @@ def _errors_from_nothing(best: Trial, effect: Added) -> float:
     return float(abs(effect.coefficient - effect.candidate.neutral) / max(error, 1e-300))
 
 
-def _without_trifles(search: Search, best: Trial, declared: Trial) -> Trial:
-    """The best model without waves, drifts and their kin that explain next to nothing of what was
-    missing: what is left of laws that are only nearly right has the shape of some of them. An
-    effect of z standard errors takes about z^2 variances off the sum of squares."""
+def _without_trifles(
+    search: Search, best: Trial, declared: Trial, rivals: Mapping[str, Sequence[Rival]]
+) -> Trial:
+    """The best model without effects that explain next to nothing of what was missing and may stand
+    for anything: waves, drifts and their kin, and those with rivals that do as well. What is left
+    of laws that are only nearly right has the shape of some effect. One of z standard errors takes
+    about z^2 variances off the sum of squares."""
     options = search.options
-    excess = (declared.s2 - best.s2) * best.count
-    for effect in best.effects if len(best.effects) > 1 else ():
-        taken = _errors_from_nothing(best, effect) ** 2 * best.s2
-        if effect.candidate.effect in options.uncommon and taken < options.search.trifle * excess:
-            search.tell(f"trying without {effect}")
-            kept = [e for e in best.effects if str(e) != str(effect)]
-            best = _refitted(search, best, kept) or best
+    while len(best.effects) > 1:
+        excess = (declared.s2 - best.s2) * best.count
+        for effect in best.effects:
+            taken = _errors_from_nothing(best, effect) ** 2 * best.s2
+            ties = [str(rival.added) for rival in rivals.get(str(effect), ()) if rival.tied]
+            unsure = effect.candidate.effect in options.uncommon or ties
+            if unsure and taken < options.search.trifle * excess:
+                break
+        else:
+            return best
+        search.tell(f"trying without {effect}")
+        smaller = _refitted(search, best, [e for e in best.effects if e is not effect])
+        if smaller is None:
+            return best
+        best = smaller
+        as_well = f", as {' and '.join(ties)} would" if ties else ""
+        search.words.append(
+            f"{effect} would be a refinement: it takes only {100 * taken / excess:.2g} % of the"
+            f" squared error that was missing{as_well}, so it may stand for anything, and is not"
+            " named"
+        )
     return best
 
 
