@@ -286,7 +286,8 @@ TRUTHS: Mapping[str, Truth] = {
         "Two tanks in a row",
         hidden=("drive_quantiser @ drive.duty",),
         sizes={"drive_quantiser.step": 0.05},
-        words="a pump of twenty speeds; it gives 0.4 % less when it is warm besides",
+        words="a pump of twenty speeds; 3 % of the duties lie on the edge between two of them, and "
+        "it gives 0.4 % less when it is warm besides",
     ),
     "r39_ball": Truth(
         "Tennis ball that bounces",
@@ -322,6 +323,8 @@ TRUTHS: Mapping[str, Truth] = {
         "Linear motor with force ripple",
         words="nothing is hidden; a second wave of 0.4 % in the ripple and a seal that rubs more "
         "by 0.15 % near rest besides",
+        answers=(("cogging @ forces",),),
         clean=True,
+        bounds={("cogging @ forces", "pitch"): (0.0145, 0.0155)},
     ),
 }
