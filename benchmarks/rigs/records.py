@@ -8,11 +8,14 @@ from pathlib import Path
 
 from benchmarks.rigs import (
     actuators,
+    axes,
     benches,
     decays,
     drives,
+    households,
     labs,
     machines,
+    mounts,
     plants,
     servos,
     vibrations,
@@ -53,6 +56,18 @@ RECORDS: Mapping[str, Callable[[], Record]] = {
     "r30_magnets": decays.magnets,
     "r31_roll": decays.ship,
     "r32_chamber": actuators.chamber,
+    "r33_geophone": mounts.geophone,
+    "r34_hoist": axes.hoist,
+    "r35_levitator": axes.levitator,
+    "r36_drum": households.drum,
+    "r37_rheometer": mounts.rheometer,
+    "r38_tanks": households.tanks,
+    "r39_ball": households.ball,
+    "r40_fork": mounts.fork,
+    "r41_cure": mounts.cure,
+    "r42_rotors": axes.rotors,
+    "r43_carts": households.carts,
+    "r44_ripple": axes.ripple,
 }
 
 

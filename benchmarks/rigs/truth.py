@@ -249,4 +249,82 @@ TRUTHS: Mapping[str, Truth] = {
         words="nothing is hidden; a loss that grows by 0.08 % per K below the noise besides",
         clean=True,
     ),
+    "r33_geophone": Truth(
+        "Geophone on a shaker",
+        hidden=("barrier @ forces",),
+        sizes={"barrier.k": 45.0, "barrier.gap": 5.05e-4},
+        words="one stop 0.01 mm farther than the other, the springs harden by 0.1 % besides",
+    ),
+    "r34_hoist": Truth(
+        "Hoist of a mine",
+        hidden=("stiffness @ forces", "position_friction @ forces"),
+        sizes={"stiffness.k": -47.0, "position_friction.level": 260.0},
+        words="the ropes are a spring that pushes, the guides are worn every 9 m, beside 310 N "
+        "declared; the torque comes 5 ms late besides",
+    ),
+    "r35_levitator": Truth(
+        "Levitated globe, which falls without its controller",
+        hidden=("drive_gain @ drive.i",),
+        sizes={"drive_gain.gain": 0.07},
+        words="of the current; the iron saturates by 0.3 % and the coil is 0.2 ms late besides",
+    ),
+    "r36_drum": Truth(
+        "Washing machine that spins up",
+        hidden=("hysteresis @ forces",),
+        sizes={"hysteresis.level": 15.0, "hysteresis.deflection": 2.5e-3},
+        words="beside oil; the springs harden and the laundry settles by 0.4 % besides",
+        equal={"hysteresis @ forces": ("dahl @ forces",)},  # the same law with the exponent 1
+    ),
+    "r37_rheometer": Truth(
+        "Torsional rheometer",
+        hidden=("inertia @ tool",),
+        sizes={"inertia.m": 4.5e-6},
+        words="11 % of that declared; the wire is known, so that a gain of the torque is another "
+        "law; the liquid thins by 1 % besides",
+    ),
+    "r38_tanks": Truth(
+        "Two tanks in a row",
+        hidden=("drive_quantiser @ drive.duty",),
+        sizes={"drive_quantiser.step": 0.05},
+        words="a pump of twenty speeds; 3 % of the duties lie on the edge between two of them, and "
+        "it gives 0.4 % less when it is warm besides",
+    ),
+    "r39_ball": Truth(
+        "Tennis ball that bounces",
+        hidden=("quad_drag @ forces",),
+        sizes={"quad_drag.c": 1.15e-3},
+        words="6 % of the weight at the highest rate; it is harder deep in besides",
+    ),
+    "r40_fork": Truth(
+        "Tuning fork with a magnet",
+        words="nothing is hidden; a magnet that brakes less by 2 % at the largest deflection and "
+        "a hum of 50 Hz below the noise besides",
+        clean=True,
+    ),
+    "r41_cure": Truth(
+        "Resin that cures",
+        hidden=("stiffness_drift @ forces",),
+        sizes={"stiffness_drift.k": 7.2},
+        words="12 % of the spring in 50 s; it gets slower by 5 % besides",
+    ),
+    "r42_rotors": Truth(
+        "Seesaw with two rotors",
+        hidden=("drive_lag @ drive.u", "bias @ torques"),
+        sizes={"drive_lag.tau": 0.070, "bias.level": 0.011},
+        words="the thrust bends by 1 % and the air trembles besides",
+    ),
+    "r43_carts": Truth(
+        "Two carts on springs, moved by hand",
+        hidden=("barrier_lo @ first", "coulomb @ second"),
+        sizes={"barrier_lo.k": 48.0, "barrier_lo.gap": 0.021, "coulomb.level": 0.085},
+        words="the springs harden by 0.3 % besides",
+    ),
+    "r44_ripple": Truth(
+        "Linear motor with force ripple",
+        words="nothing is hidden; a second wave of 0.4 % in the ripple and a seal that rubs more "
+        "by 0.15 % near rest besides",
+        answers=(("cogging @ forces",),),
+        clean=True,
+        bounds={("cogging @ forces", "pitch"): (0.0145, 0.0155)},
+    ),
 }

@@ -80,3 +80,9 @@ def test_a_spring_that_drifts_is_named_with_its_period_or_not_at_all() -> None:
     assert judged("r10_stage", "null") == "right"
     assert judged("r10_stage", "effect", effect("parametric @ forces", period=47.1)) == "right"
     assert judged("r10_stage", "effect", effect("parametric @ forces", period=0.3)) == "wrong"
+
+
+def test_the_second_wave_of_a_force_ripple_is_named_with_its_pitch_or_not_at_all() -> None:
+    assert judged("r44_ripple", "null") == "right"
+    assert judged("r44_ripple", "effect", effect("cogging @ forces", pitch=0.0151)) == "right"
+    assert judged("r44_ripple", "effect", effect("cogging @ forces", pitch=0.02)) == "wrong"
