@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
+from typing import Any
 
 import pytest
 from hypothesis import settings
@@ -11,6 +12,35 @@ from hypothesis import settings
 # a busy machine is no fault of what is tested
 settings.register_profile("no deadline", deadline=None)
 settings.load_profile("no deadline")
+
+ABSENT = "the measured series are not here"
+"""Why a test is skipped that needs records which are not part of this project."""
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    text = "a test that is skipped has failed, unless it needs records that are not in the project"
+    parser.addoption("--none-skipped", action="store_true", help=text)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, Any, Any]:
+    """A report of a test, which has failed where it must not be skipped."""
+    return _none_skipped((yield), item.config)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(collector: pytest.Collector) -> Generator[None, Any, Any]:
+    """A report of a file, which is skipped as a whole where an import of it fails."""
+    return _none_skipped((yield), collector.config)
+
+
+def _none_skipped(report: Any, config: pytest.Config) -> Any:
+    """Where all that the tests need is installed, as in CI, a skip means that it is not."""
+    if report.outcome == "skipped" and config.getoption("none_skipped"):
+        _, _, reason = report.longrepr
+        if ABSENT not in reason:
+            report.outcome, report.longrepr = "failed", f"skipped under --none-skipped: {reason}"
+    return report
 
 
 @pytest.fixture(autouse=True)

@@ -48,6 +48,15 @@ def test_random_diagrams_are_drawn_without_faults(seed: int, depth: int, words: 
     assert faults(drawing) == []
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("first", range(0, 300, 30))
+def test_three_hundred_random_diagrams_are_drawn_without_faults(first: int) -> None:
+    for seed in range(first, first + 30):
+        depth, words = seed % 3, seed % 2 == 0
+        drawing = draw(read_text(text_of(seed)), depth, names=words, units=words)
+        assert faults(drawing) == [], f"seed {seed}, depth {depth}"
+
+
 @settings(max_examples=10)
 @given(st.integers(0, 10**6))
 def test_random_systems_are_drawn_without_faults(seed: int) -> None:

@@ -32,6 +32,9 @@ ADAPTIVE = [
 ]
 BACKENDS: tuple[Any, ...] = ("llvm", "quick", "python")
 Vector = NDArray[np.float64]
+# EXPLORE=1 make test ARGS=tests/solve/test_random_diagrams.py looks for new cases. What it finds
+# differs from run to run, as weak corners are known that it may hit; a find goes to test_shrunk.py.
+EXPLORING = "EXPLORE" in os.environ
 QUIET = [HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large]
 
 
@@ -142,16 +145,11 @@ def all_near(times: Iterable[float], others: Iterable[float], tolerance: float) 
 
 
 @given(wirings())
-@settings(max_examples=25, deadline=None, derandomize=True, suppress_health_check=QUIET)
+@settings(
+    max_examples=400 if EXPLORING else 25,
+    deadline=None,
+    derandomize=not EXPLORING,
+    suppress_health_check=QUIET,
+)
 def test_random_diagrams(wiring: Wiring) -> None:
-    check(wiring)
-
-
-# What it finds differs from run to run, as weak corners are known that it may hit; a find goes to
-# test_shrunk.py.
-@pytest.mark.slow
-@pytest.mark.skipif("EXPLORE" not in os.environ, reason="looks for new cases: EXPLORE=1 make test")
-@given(wirings())
-@settings(max_examples=400, deadline=None, suppress_health_check=QUIET)
-def test_many_random_diagrams(wiring: Wiring) -> None:
     check(wiring)
