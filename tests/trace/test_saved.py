@@ -51,6 +51,24 @@ def test_the_report_of_a_saved_trace_is_the_same(tmp_path: Path) -> None:
     assert report(again).markdown() == report(JUDGED).markdown()
 
 
+def test_effects_are_applied_by_choice(tmp_path: Path) -> None:
+    (name,) = (str(effect) for effect in FOUND.effects)
+    two = replace(
+        FOUND,
+        effects=(*FOUND.effects, replace(FOUND.effects[0], place="drive.u")),
+        find_diagram=lambda effects: replace(FOUND.diagram, title=" and ".join(effects)),
+    )
+    assert two.apply() == two.diagram == two.apply(effects=[name, str(two.effects[1])])
+    assert two.apply(effects=[]) == two.original
+    assert two.apply(effects=[name]).title == name
+    with pytest.raises(OptionError, match="unknown effect of the trace 'x'"):
+        two.apply(effects=["x", name])
+    again = tw.load(tw.save(two, tmp_path / "trace.json"))
+    assert again.apply(effects=[name, str(two.effects[1])]).text == two.diagram.text
+    with pytest.raises(OptionError, match="loaded is applied as a whole"):
+        again.apply(effects=[name])
+
+
 def test_the_file_is_plain_json_without_nan(tmp_path: Path) -> None:
     def refuse(text: str) -> None:
         raise AssertionError(text)

@@ -14,6 +14,8 @@ import pytest
 from tracewire.view import Service, open_server
 from tracewire.view.server import PageServer
 
+from benchmarks.view.chromium import Chromium
+
 SPRING = """\
 title: A mass on a spring
 span: [0, 10]
@@ -47,6 +49,13 @@ def spring(tmp_path: Path) -> Path:
 def service(spring: Path) -> Service:
     """What answers for that file."""
     return Service(spring)
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Chromium]:
+    """A browser without a window, one for all tests of a file."""
+    with Chromium() as running:
+        yield running
 
 
 @contextmanager

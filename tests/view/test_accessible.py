@@ -8,11 +8,12 @@ from typing import Any
 
 import pytest
 from tracewire.view import Service
+from view.browsing import needs_browser
 from view.conftest import serving
 
-from benchmarks.view.chromium import BROWSER, Chromium
+from benchmarks.view.chromium import Chromium
 
-pytestmark = pytest.mark.skipif(not BROWSER, reason="no Chromium here")
+pytestmark = needs_browser
 
 NEED_NAMES = {"button", "slider", "textbox", "combobox", "spinbutton", "searchbox", "image", "img"}
 # the ratio of each text to what is behind it, by WCAG 2: 4.5 is asked for
@@ -42,12 +43,6 @@ CONTRAST = """
 """
 
 
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Chromium]:
-    with Chromium() as running:
-        yield running
-
-
 @pytest.fixture(params=[False, True], ids=["edit", "present"])
 def page(browser: Chromium, spring: Path, request: pytest.FixtureRequest) -> Iterator[Chromium]:
     with serving(Service(spring, present=request.param)) as server:
@@ -66,6 +61,15 @@ def test_each_control_and_picture_has_a_name(page: Chromium) -> None:
     seen = [n for n in nodes if not n["ignored"] and n["role"]["value"] in NEED_NAMES]
     assert len(seen) > 15
     assert [n for n in seen if not n.get("name", {}).get("value")] == []
+
+
+def test_the_rules_of_axe_are_kept(page: Chromium) -> None:
+    axe = pytest.importorskip("axe_core_python")
+    page.run((Path(axe.__file__).parent / "axe.min.js").read_text(encoding="utf-8"))
+    found: Any = page.run("axe.run().then((all) => [all.violations, all.passes.length])")
+    broken = [(rule["id"], [node["html"] for node in rule["nodes"]]) for rule in found[0]]
+    assert broken == []
+    assert found[1] > 20
 
 
 def test_headings_regions_and_the_language_are_there(page: Chromium) -> None:

@@ -98,8 +98,9 @@ def test_a_fit_proposes_a_text_and_changes_no_file(pendulum: Service, lesson: Pa
     assert fitted["w0_squared"] == pytest.approx(alone.values["w0_squared"], rel=1e-5)
     assert fitted["c"] == pytest.approx(alone.values["c"], rel=1e-5)
     assert lesson.read_text(encoding="utf-8") == before
-    report: Any = pendulum.answer("report", {"id": job["id"]})
-    assert report["html"].startswith("<!") and "w0_squared" in report["html"]
+    assert proposal["effects"] == []
+    report = pendulum.report(job["id"])
+    assert report.startswith("<!") and "w0_squared" in report
 
 
 def read_values(text: str) -> dict[str, float]:
@@ -139,7 +140,7 @@ def test_a_fit_can_be_stopped_and_only_one_runs(
     [
         ("start", {"kind": "bake"}, "there is no work 'bake'"),
         ("proposal", {"id": "x"}, "no such result"),
-        ("report", {"id": "x"}, "no such result"),
+        ("proposal", {"effects": "all"}, "no list"),
     ],
 )
 def test_wrong_requests_are_told(

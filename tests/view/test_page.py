@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,38 +10,14 @@ from pathlib import Path
 import pytest
 from tracewire.view import Service
 from tracewire.view.server import PageServer
+from view.browsing import LAST, needs_browser, opened
 from view.conftest import SPRING, serving
 
-from benchmarks.view.chromium import BROWSER, Chromium
+from benchmarks.view.chromium import Chromium
 
-pytestmark = pytest.mark.skipif(not BROWSER, reason="no Chromium here")
+pytestmark = needs_browser
 
 ROOT = Path(__file__).parents[2]
-LAST = "document.body.dataset.shown"
-HELPERS = """
-window.set = (id, value) => {
-  const one = document.getElementById(id);
-  one.value = value;
-  one.dispatchEvent(new Event("input", {bubbles: true}));
-};
-window.choose = (id, value) => {
-  document.getElementById(id).value = value;
-  document.getElementById(id).dispatchEvent(new Event("change"));
-};
-window.text = (id) => document.getElementById(id).textContent;
-window.shows = (id) => {
-  const one = document.getElementById(id);
-  return one.checkVisibility({visibilityProperty: true});
-};
-window.painted = () =>
-  [...document.querySelectorAll("#plots canvas")].map((one) => one.toDataURL()).join();
-"""
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Chromium]:
-    with Chromium() as running:
-        yield running
 
 
 @pytest.fixture
@@ -58,15 +33,6 @@ def page(browser: Chromium, server: PageServer) -> Iterator[Chromium]:
     yield browser
     browser.open("about:blank")  # before its server ends
     assert browser.errors == []
-
-
-def opened(browser: Chromium, server: PageServer) -> None:
-    browser.open("about:blank")
-    browser.wait("location.href === 'about:blank'")
-    browser.errors.clear()
-    browser.open(server.address)
-    browser.wait(f"document.body && {LAST} === '1'")
-    browser.run(HELPERS)
 
 
 def test_the_page_shows_the_diagram_its_parameters_and_a_run(page: Chromium) -> None:
@@ -103,6 +69,47 @@ def test_only_the_newest_of_many_wishes_is_run(page: Chromium) -> None:
     assert int(page.run(LAST)) <= 4  # not fifty
 
 
+def test_of_a_thousand_moves_the_last_one_is_shown(page: Chromium) -> None:
+    page.run("""(async () => {
+      for (let n = 0; n < 1000; n++) {
+        set("p-k", (n * 37) % 1001);
+        if (n % 5 === 0) await new Promise((done) => setTimeout(done));
+      }
+      set("p-k", 100);
+    })()""")
+    page.wait("!document.getElementById('status').textContent.startsWith('simulating')")
+    page.wait("document.querySelector('#sliders input[type=number]').value === '1.8'")
+    time.sleep(0.5)
+    before, shown = page.run("painted()"), int(page.run(LAST))
+    page.run("set('p-k', 100)")  # alone: the curve of that value
+    page.wait(f"+{LAST} === {shown + 1}")
+    assert page.run("painted()") == before
+
+
+@pytest.mark.slow
+def test_a_diagram_of_three_hundred_blocks_is_shown_and_follows(
+    browser: Chromium, tmp_path: Path
+) -> None:
+    masses = range(100)
+    lines = "".join(
+        f"  x{n}: {{type: integrator, of: v{n}, start: {n % 7}}}\n"
+        f"  v{n}: {{type: integrator, of: a{n}}}\n"
+        f"  a{n}: {{type: expression, formula: -k*(x{n} - x{(n + 1) % 100})}}\n"
+        for n in masses
+    )
+    file = tmp_path / "chain.yaml"
+    file.write_text(f"span: [0, 2]\nrecord: [x0, x99]\nparameters: {{k: 5}}\nblocks:\n{lines}")
+    with serving(Service(file)) as server:
+        opened(browser, server)
+        browser.wait("document.querySelectorAll('#drawing [data-block]').length >= 300")
+        before = browser.run("painted()")
+        browser.run("set('p-k', 900)")
+        browser.wait(f"{LAST} === '2'")
+        assert browser.run("painted()") != before
+        browser.open("about:blank")
+    assert browser.errors == []
+
+
 def test_a_run_that_fails_hides_the_old_curves(page: Chromium) -> None:
     page.run(
         "set('source', document.getElementById('source').value.replace('-k*x', '-k/(x - 5*t)'))"
@@ -125,6 +132,9 @@ def test_a_mistake_is_told_at_its_line_while_one_types(page: Chromium) -> None:
     page.run("document.querySelector('#problems button').click()")
     caret = page.run("document.getElementById('source').selectionStart")
     assert SPRING[:caret].count("\n") == 10
+    page.run(f"set('source', {SPRING!r})")
+    page.wait("shows('plots')")
+    assert page.run("document.querySelectorAll('#problems li, #gutter .wrong').length") == 0
 
 
 def test_saving_writes_the_file_and_says_so(page: Chromium, spring: Path) -> None:
@@ -191,48 +201,6 @@ def test_two_pages_do_not_disturb_each_other(
     assert browser.run(fields) == "1.8"
     browser.page = first
     assert browser.run(fields) == "8.2"
-
-
-def test_text_of_a_diagram_stays_text(browser: Chromium, spring: Path) -> None:
-    bad = "<img src=x onerror=alert(1)><script>window.bad = 1</script>"
-    text = SPRING.replace("A mass on a spring", f"'{bad}'").replace("stiff:", '"<b>stiff</b>":')
-    spring.write_text(text, encoding="utf-8")
-    with serving(Service(spring)) as server:
-        browser.errors.clear()
-        browser.open(server.address)
-        browser.wait("document.title.startsWith('<img')")
-        browser.wait("!!document.querySelector('#drawing svg')")
-        assert browser.run("[window.bad, document.querySelectorAll('img').length]") == [None, 0]
-        assert browser.errors == []
-
-
-def test_a_server_that_has_ended_is_told(browser: Chromium, spring: Path) -> None:
-    with serving(Service(spring)) as server:
-        opened(browser, server)
-    browser.wait("shows('notice')", 10)
-    assert "has ended" in browser.run("text('notice')")
-
-
-def test_a_fit_is_proposed_and_taken_by_a_click(browser: Chromium, tmp_path: Path) -> None:
-    for file in (ROOT / "diagrams" / "lessons").glob("pendulum*"):
-        shutil.copy(file, tmp_path)
-    file = tmp_path / "pendulum.yaml"
-    before = file.read_text(encoding="utf-8")
-    with serving(Service(file)) as server:
-        opened(browser, server)
-        browser.run("choose('series', 'swing')")
-        browser.wait("text('criterion').startsWith('Criterion of swing: 291')")
-        assert browser.run("document.querySelectorAll('.uplot').length") == 3
-        browser.run("document.getElementById('fit').click()")
-        browser.wait("shows('proposal')")
-        assert "converged" in browser.run("text('proposal-words')")
-        browser.run("document.getElementById('accept').click()")
-        browser.wait("text('criterion') && !text('criterion').includes(': 291')")
-        assert not browser.run("shows('proposal')")
-        assert browser.run("text('saved')") == "not saved"
-        assert file.read_text(encoding="utf-8") == before
-        browser.open("about:blank")
-    assert browser.errors == []
 
 
 TYPE = """

@@ -12,8 +12,9 @@ from urllib.parse import urlsplit
 
 import pytest
 from tracewire.errors import OptionError
+from tracewire.show import report_script
 from tracewire.view import Service, open_server
-from tracewire.view.assets import FOLDER, POLICY, assets
+from tracewire.view.assets import FOLDER, POLICY, assets, report_policy, source_of
 from tracewire.view.server import PageServer
 from view.conftest import SPRING, serving
 
@@ -137,6 +138,41 @@ def test_a_port_that_is_taken_is_told(server: PageServer, service: Service) -> N
         open_server(service, server.server_port)
     with pytest.raises(OptionError, match="cannot be used"):
         open_server(service, 70000)
+
+
+def test_a_report_that_is_not_there_is_told(server: PageServer) -> None:
+    response, content = asked(server, "report-0123456789abcdef.html")
+    assert (response.status, b"no such result" in content) == (404, True)
+    assert asked(server, "report-.html")[0].status == 404
+    assert asked(server, path="/wrong/report-0123456789abcdef.html")[0].status == 403
+
+
+def test_a_report_runs_its_own_script_and_asks_for_nothing() -> None:
+    rules = dict(rule.partition(" ")[::2] for rule in report_policy().split("; "))
+    assert rules["default-src"] == "'none'" and "connect-src" not in rules
+    assert rules["sandbox"] == "allow-scripts"  # without allow-same-origin it is a stranger here
+    assert rules["script-src"] == source_of(report_script())
+    assert "unsafe" not in report_policy() and "self" not in report_policy()
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "../spring.yaml",
+        "..%2fspring.yaml",
+        "spring.yaml",
+        "page/main.js",
+        "report-../../spring.html",
+        "//spring.yaml",
+        "..\\spring.yaml",
+    ],
+)
+def test_no_file_but_those_of_the_page_is_given(
+    server: PageServer, spring: Path, name: str
+) -> None:
+    response, content = asked(server, name)
+    assert response.status == 404 and SPRING.encode()[:20] not in content
+    assert asked(server, path=f"/{server.token}{spring}")[0].status == 404
 
 
 def test_two_servers_have_different_tokens(service: Service, server: PageServer) -> None:

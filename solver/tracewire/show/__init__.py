@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from tracewire.show.bifurcation_figures import plot_bifurcation, plot_section
     from tracewire.show.comparison_figures import plot_comparisons
     from tracewire.show.diagnostic_figures import plot_diagnostics, plot_profiles
-    from tracewire.show.document import Report
+    from tracewire.show.document import Report, report_script, report_style
     from tracewire.show.event_rows import jump_times
     from tracewire.show.figures import group_signals, plot_run
     from tracewire.show.fit_figures import plot_fit, plot_residual
@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from tracewire.show.sweep_figures import plot_chart, plot_sweep
     from tracewire.show.table import Table, shown
     from tracewire.show.trace_summary import paragraph_of
+    from tracewire.show.trace_words import value_words
     from tracewire.show.uplot import library_script, library_style
 
 __all__ = [
@@ -93,9 +94,12 @@ __all__ = [
     "plot_sweep",
     "present",
     "report",
+    "report_script",
+    "report_style",
     "shown",
     "statement_data",
     "statements_table",
+    "value_words",
 ]
 
 FILE_OF = {
@@ -103,7 +107,7 @@ FILE_OF = {
     "bifurcation_figures": "plot_bifurcation plot_section",
     "comparison_figures": "plot_comparisons",
     "diagnostic_figures": "plot_diagnostics plot_profiles",
-    "document": "Report",
+    "document": "Report report_script report_style",
     "event_rows": "jump_times",
     "figures": "group_signals plot_run",
     "fit_figures": "plot_fit plot_residual",
@@ -122,6 +126,7 @@ FILE_OF = {
     "table": "Table shown",
     "sweep_figures": "plot_chart plot_sweep",
     "trace_summary": "paragraph_of",
+    "trace_words": "value_words",
     "uplot": "library_script library_style",
 }
 

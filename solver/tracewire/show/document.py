@@ -149,14 +149,24 @@ class Report:
             parts += [_html_figure(figure, drawn[figure.name]) for figure in section.figures]
         zooming = any(isinstance(d, Path) and _curves(d).is_file() for d in drawn.values())
         if zooming:
-            parts.append(f"<script>{scripts()}</script>")
-        look = STYLE + (style() if zooming else "")
+            parts.append(f"<script>{report_script()}</script>")
+        look = report_style(zooming)
         head = (
             f'<!doctype html><html lang="en"><head><meta charset="utf-8">'
             f'<meta name="viewport" content="width=device-width">'
             f"<title>{html.escape(self.title)}</title><style>{look}</style></head>"
         )
         return head + "<body>" + "\n".join(parts) + "</body></html>\n"
+
+
+def report_script() -> str:
+    """The script of an HTML report with curves that zoom; there is no other in it."""
+    return scripts()
+
+
+def report_style(zooming: bool) -> str:
+    """The style sheet of an HTML report, with curves that zoom or without."""
+    return STYLE + (style() if zooming else "")
 
 
 def _plain(text: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Literal
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.diagram import Diagram, difference
+from tracewire.errors import OptionError, unknown
 from tracewire.result import Result, plain
 from tracewire.trace.options import TraceOptions
 
@@ -289,7 +290,8 @@ class Found(Result):
     residual is at the noise. `options` is what the user asked for, with every threshold;
     `interrupted`: the user stopped the trace, and this is what was known by then.
 
-    `diagram` is the edited diagram. `units` are the SI units of signals and parameters by name,
+    `diagram` is the edited diagram, and `find_diagram` that with some of the effects; a trace that
+    was loaded has none. `units` are the SI units of signals and parameters by name,
     also of those that were added ('coulomb.level', 'offset.theta'), `users_units` the unit of a
     signal in the user's files and its factor to SI, where they are not to be taken from `original`.
     """
@@ -326,6 +328,7 @@ class Found(Result):
     noisy_inputs: tuple[LikelyInput, ...] = ()
     options: TraceOptions = field(default_factory=TraceOptions)
     users_units: Mapping[str, tuple[str, float]] = field(default_factory=dict)
+    find_diagram: Callable[[Collection[str]], Diagram] | None = field(default=None, repr=False)
 
     @cached_property
     def forces(self) -> tuple[Force, ...]:
@@ -342,11 +345,29 @@ class Found(Result):
         """The lines of the diagram that the trace would change, as a unified diff."""
         return difference(self.original, self.diagram)
 
-    def apply(self, diagram: Diagram | None = None) -> Diagram:
-        """The diagram with the effects added and its parameters refitted; comments are kept."""
+    def apply(
+        self, diagram: Diagram | None = None, effects: Collection[str] | None = None
+    ) -> Diagram:
+        """The diagram with the effects added and its parameters refitted; comments are kept.
+
+        effects: those to add, by their texts (`coulomb @ torque`); None adds all. The parameters
+        were refitted with all of them: after a choice, fit again. Raises OptionError: no such
+        effect, or a choice from a trace that was loaded; ValueError: another diagram.
+        """
         if diagram is not None and diagram.text != self.original.text:
             raise ValueError("the diagram has changed since it was traced: trace it again")
-        return self.diagram
+        known = [str(effect) for effect in self.effects]
+        wrong = [name for name in effects or () if name not in known]
+        if wrong:
+            raise OptionError([unknown("effect of the trace", name, known) for name in wrong])
+        if effects is None or set(effects) == set(known):
+            return self.diagram
+        if not effects:
+            return self.original
+        if self.find_diagram is None:
+            what = "a trace that was loaded is applied as a whole"
+            raise OptionError.one(what, hint="Apply all effects, or trace the diagram again.")
+        return self.find_diagram(effects)
 
 
 def data_of(found: Found) -> dict[str, Any]:

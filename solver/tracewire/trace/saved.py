@@ -25,6 +25,8 @@ from tracewire.result import plain
 from tracewire.trace.found import Force, Found
 from tracewire.trace.units import known_units, users_unit
 
+COMPUTED = frozenset({"find_forces", "find_diagram"})
+"""What a trace computes when it is asked for, and no file can hold."""
 KIND, VERSION = "a trace of tracewire", 1
 OTHER_KINDS = {
     "a fit of tracewire": "This is a saved fit: go on from it with `tracewire fit ... --resume`."
@@ -88,7 +90,7 @@ def to_data(found: Found) -> dict[str, Any]:
     except Exception as error:  # what a report shows beside the result must not cost the result
         forces = ()
         words = (*words, f"the needed force could not be computed: {error}")
-    held = {f.name: getattr(found, f.name) for f in fields(found) if f.name != "find_forces"}
+    held = {f.name: getattr(found, f.name) for f in fields(found) if f.name not in COMPUTED}
     # units follow from the diagram; where the file is loaded, its measured files may be missing
     signals = {*found.sigma, *(e.signal for e in found.errors)}
     users = {name: users_unit(found, name) for name in sorted(signals)}
@@ -106,7 +108,7 @@ def from_data(data: Mapping[str, Any], libraries: Iterable[str | Path] = ()) -> 
         "original": _diagram(data.get("original"), "original", libraries),
         "diagram": _diagram(data.get("diagram"), "diagram", libraries),
     }
-    return Found(**held | _fields(Found, data, "", skip=frozenset(held)))
+    return Found(**held | _fields(Found, data, "", skip=COMPUTED | frozenset(held)))
 
 
 def _kept(forces: tuple[Force, ...]) -> tuple[Force, ...]:

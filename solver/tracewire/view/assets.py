@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 
 from tracewire.draw import STYLE
-from tracewire.show import library_script, library_style
+from tracewire.show import library_script, library_style, report_script, report_style
 
 FOLDER = Path(__file__).parent / "page"
 KINDS = {
@@ -19,18 +19,24 @@ KINDS = {
     ".js": "text/javascript; charset=utf-8",
     ".svg": "image/svg+xml",
 }
-PICTURE = base64.b64encode(hashlib.sha256(STYLE.encode()).digest()).decode("ascii")
+
+
+def source_of(text: str) -> str:
+    """A script or style sheet inside of a page, as a policy names it: by its digest."""
+    digest = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode("ascii")
+    return f"'sha256-{digest}'"
+
+
+PICTURE = source_of(STYLE)
 """The digest of the style sheet inside of each picture of a diagram."""
+CLOSED = ("default-src 'none'", "base-uri 'none'", "form-action 'none'", "frame-ancestors 'none'")
 POLICY = "; ".join(
     (
-        "default-src 'none'",
+        *CLOSED,
         "script-src 'self'",
-        f"style-src 'self' 'sha256-{PICTURE}'",
+        f"style-src 'self' {PICTURE}",
         "img-src 'self' data:",
         "connect-src 'self'",
-        "base-uri 'none'",
-        "form-action 'none'",
-        "frame-ancestors 'none'",
     )
 )
 
@@ -41,6 +47,21 @@ class Asset:
 
     content: bytes
     kind: str
+
+
+@cache
+def report_policy() -> str:
+    """What a report may do: run its own script, which asks this server for nothing."""
+    styles = " ".join(source_of(report_style(zooming)) for zooming in (False, True))
+    return "; ".join(
+        (
+            *CLOSED,
+            "sandbox allow-scripts",
+            f"script-src {source_of(report_script())}",
+            f"style-src {styles}",
+            "img-src data:",
+        )
+    )
 
 
 @cache

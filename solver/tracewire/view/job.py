@@ -5,8 +5,9 @@ from __future__ import annotations
 import secrets
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from tracewire.compile import compile
@@ -24,8 +25,8 @@ KINDS = ("fit", "trace")
 class Job:
     """Work on the diagram of a version, in a thread of its own.
 
-    `text` tells how far it is. When it is `done`, `problems` or `proposal` is there: the words of
-    the result, the text of the diagram with it, and the names of the blocks that were added.
+    `text` tells how far it is. When it is `done`, `problems` or `result` is there, and `words`
+    says in sentences what the result is.
     """
 
     kind: str
@@ -35,7 +36,7 @@ class Job:
     text: str = "it begins"
     done: bool = False
     problems: tuple[Problem, ...] = ()
-    proposal: Mapping[str, Any] | None = None
+    words: tuple[str, ...] = ()
     result: Fit | Found | None = None
     began: float = field(default_factory=time.monotonic)
     ended: float | None = None
@@ -58,9 +59,41 @@ class Job:
         told = {"id": self.id, "kind": self.kind, "text": self.text, "done": self.done}
         return told | {"seconds": seconds}
 
+    def proposal(self, effects: Collection[str] | None = None) -> dict[str, Any]:
+        """The text of the diagram with the result, its words, and the blocks that it adds.
+
+        effects: those of a trace that are accepted, by their texts; None accepts all. Raises
+        OptionError: no such effect.
+        """
+        from tracewire.fit import Fit
+
+        if self.result is None:
+            raise OptionError(self.problems)
+        if isinstance(self.result, Fit):
+            text, added, told = self._fitted(self.result).text, [], []
+        else:
+            diagram = self.result.apply(effects=effects)
+            added = [name for name in diagram.blocks if name not in self.diagram.blocks]
+            kept = [e for e in self.result.effects if effects is None or str(e) in effects]
+            added += [effect.block for effect in kept if "." in effect.block]  # in a subsystem
+            text, told = diagram.text, _effects_told(self.result)
+        return {"words": self.words, "text": text, "added": added, "effects": told}
+
+    @cached_property
+    def report(self) -> str:
+        """The report of the result as an HTML page. Raises OptionError where there is none."""
+        from tracewire.show import report
+
+        if self.result is None:
+            raise OptionError(self.problems)
+        return report(self.result).html()
+
     def _work(self) -> None:
         try:
-            self.proposal = self._fitted() if self.kind == "fit" else self._traced()
+            if self.kind == "fit":
+                self._fit()
+            else:
+                self._trace()
         except TracewireError as error:
             self.problems = tuple(error.problems)
         except KeyboardInterrupt:
@@ -76,7 +109,7 @@ class Job:
         if self._stopped:
             raise KeyboardInterrupt
 
-    def _fitted(self) -> dict[str, Any]:
+    def _fit(self) -> None:
         from tracewire.fit import fit
         from tracewire.show import fit_text, fit_words
 
@@ -86,20 +119,35 @@ class Job:
 
         model = compile(self.diagram)
         found = fit(model, method="least_squares", parameters=self.values, progress=progress)
+        self.words = (fit_text(found), *fit_words(found))
         self.result = found
-        own = {n: v for n, v in found.values.items() if n in model.flat.parameters}
+
+    def _fitted(self, found: Fit) -> Diagram:
+        """The diagram with the values that the fit has found, and with those of the page."""
+        free = found.model.flat.parameters
+        own = {n: v for n, v in found.values.items() if n in free}
         sensors = {n: v for n, v in found.values.items() if n not in own}
         rest = {n: v for n, v in self.values.items() if n not in own}
-        edited = set_sensors(set_values(self.diagram, {**rest, **own}), sensors)
-        words = [fit_text(found), *fit_words(found)]
-        return {"words": words, "text": edited.text, "added": []}
+        return set_sensors(set_values(self.diagram, {**rest, **own}), sensors)
 
-    def _traced(self) -> dict[str, Any]:
+    def _trace(self) -> None:
         from tracewire.show import paragraph_of
         from tracewire.trace import trace
 
         found = trace(compile(self.diagram), progress=self._tell)
+        self.words = (paragraph_of(found),)
         self.result = found
-        added = [name for name in found.diagram.blocks if name not in self.diagram.blocks]
-        words = [paragraph_of(found)]
-        return {"words": words, "text": found.diagram.text, "added": added}
+
+
+def _effects_told(found: Found) -> list[dict[str, str]]:
+    """The effects of a trace as a page lists them: their texts, their blocks, their sizes."""
+    from tracewire.show import value_words
+
+    return [
+        {
+            "name": str(effect),
+            "block": effect.block,
+            "words": value_words(found, effect, effect.coefficient),
+        }
+        for effect in found.effects
+    ]

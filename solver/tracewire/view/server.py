@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import re
 import secrets
 import socket
 import socketserver
@@ -19,8 +20,8 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any, ClassVar
 from urllib.parse import urlsplit
 
-from tracewire.errors import OptionError
-from tracewire.view.assets import POLICY, Asset, assets
+from tracewire.errors import OptionError, TracewireError
+from tracewire.view.assets import KINDS, POLICY, Asset, assets, report_policy
 from tracewire.view.service import Service
 
 HOST = "127.0.0.1"
@@ -31,8 +32,9 @@ MOST_BYTES = 4_000_000
 """Of the body of a request."""
 IDLE = 60.0
 """Seconds after which a connection without a request is closed."""
+REPORT = re.compile(r"report-([0-9a-f]{1,64})\.html")
+"""The name of the report of a fit or a trace, by the id of that."""
 HEADERS = {
-    "Content-Security-Policy": POLICY,
     "X-Content-Type-Options": "nosniff",
     "X-Frame-Options": "DENY",
     "Referrer-Policy": "no-referrer",
@@ -112,8 +114,11 @@ class Handler(BaseHTTPRequestHandler):
         name = self._allowed()
         if name is None:
             return
+        report = REPORT.fullmatch(name)
         asset = self.assets.get(name)
-        if asset is None:
+        if report:
+            self._send_report(report[1])
+        elif asset is None:
             self._say(HTTPStatus.NOT_FOUND, "There is no such file in this page.")
         else:
             self._send(HTTPStatus.OK, asset.content, asset.kind)
@@ -149,11 +154,22 @@ class Handler(BaseHTTPRequestHandler):
         else:
             self._send(HTTPStatus.OK, json.dumps(answer).encode(), "application/json")
 
+    def _send_report(self, id: str) -> None:
+        """The report of a fit or a trace, under a policy of its own."""
+        try:
+            page = self.server.service.report(id)
+        except Exception as error:  # the page tells it, and the server goes on
+            ours = not isinstance(error, TracewireError)
+            text = f"internal error ({type(error).__name__}: {error})" if ours else str(error)
+            self._say(HTTPStatus.INTERNAL_SERVER_ERROR if ours else HTTPStatus.NOT_FOUND, text)
+            return
+        self._send(HTTPStatus.OK, page.encode(), KINDS[".html"], report_policy())
+
     def _allowed(self) -> str | None:
         """What is asked for behind the token; None where it is refused, which is said then."""
         hosts = {f"{name}:{self.server.server_port}" for name in NAMES}
         origin, site = self.headers.get("Origin"), self.headers.get("Sec-Fetch-Site")
-        _, token, *rest = [*urlsplit(self.path).path.split("/"), "", ""][:3]
+        _, token, *rest = [*urlsplit(self.path).path.split("/", 2), "", ""][:3]
         why = ""
         if self.headers.get("Host") not in hosts:
             why = "This server answers to its own name only."
@@ -169,8 +185,9 @@ class Handler(BaseHTTPRequestHandler):
     def _say(self, status: HTTPStatus, text: str) -> None:
         self._send(status, f"{text}\n".encode(), "text/plain; charset=utf-8")
 
-    def _send(self, status: HTTPStatus, content: bytes, kind: str) -> None:
+    def _send(self, status: HTTPStatus, content: bytes, kind: str, policy: str = POLICY) -> None:
         self.send_response(status)
+        self.send_header("Content-Security-Policy", policy)
         for name, value in HEADERS.items():
             self.send_header(name, value)
         self.send_header("Content-Type", kind)

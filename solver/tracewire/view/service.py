@@ -17,7 +17,7 @@ from tracewire.files import write_file, writing
 from tracewire.library import load_library
 from tracewire.solve import Limits
 from tracewire.view.comparison import comparison_of, conditions_of
-from tracewire.view.export import figure_of, script_of
+from tracewire.view.export import DRAWING, figure_of, script_of
 from tracewire.view.frame import Arrays, frame_of, packed, panels_of
 from tracewire.view.job import Job
 from tracewire.view.setting import Setting, setting_of
@@ -74,7 +74,6 @@ class Service:
             "start": self.start,
             "stop": self.stop,
             "proposal": self.proposal,
-            "report": self.report,
         }
         self._text()
 
@@ -274,26 +273,34 @@ class Service:
         return {}
 
     def proposal(self, request: Request) -> Answer:
-        """What a fit or trace that is done proposes, with the picture of the diagram by then."""
-        job = self._job
-        if job is None or not job.done or request.get("id") != job.id:
-            raise OptionError.one("there is no such result any more", hint="Begin it again.")
-        if job.proposal is None:
-            return told(job.problems)
-        version = read_version(str(job.proposal["text"]), self.file, self.library)
+        """What a fit or trace that is done proposes, with the picture of the diagram by then.
+
+        `effects` are the texts of those that are accepted of a trace; without it all are.
+        """
+        effects = request.get("effects")
+        if effects is not None and not (isinstance(effects, list) and all(map(_is_text, effects))):
+            raise OptionError.one("the accepted effects are no list", hint="Name them by texts.")
+        proposal = self._ended(request.get("id")).proposal(effects)
+        version = read_version(proposal["text"], self.file, self.library)
         if version.diagram is None:
             return told(version.problems)
-        picture = draw(version.diagram, measured=True, effects=job.proposal["added"])
-        return dict(job.proposal) | {"svg": picture.svg}
+        added = proposal["added"]
+        depth = max((name.count(".") for name in added), default=0)
+        picture = draw(version.diagram, depth, measured=True, effects=added)
+        return proposal | {"svg": picture.svg}
 
-    def report(self, request: Request) -> Answer:
-        """The report of a fit or trace that is done, as the text of one HTML file."""
+    def report(self, id: str) -> str:
+        """The report of a fit or trace that is done, as an HTML page. Raises OptionError."""
+        job = self._ended(id)
+        with DRAWING:
+            return job.report
+
+    def _ended(self, id: object) -> Job:
+        """The fit or trace of that id, which is done. Raises OptionError: it is another one."""
         job = self._job
-        if job is None or job.result is None or request.get("id") != job.id:
+        if job is None or not job.done or id != job.id:
             raise OptionError.one("there is no such result any more", hint="Begin it again.")
-        from tracewire.show import report  # with all that fits: a page opens sooner without it
-
-        return {"html": report(job.result).html()}
+        return job
 
     # --- what is kept -----------------------------------------------------------------------------
 
@@ -343,6 +350,10 @@ def record_of(problem: Problem) -> dict[str, Any]:
 def digest_of(text: str) -> str:
     """What tells two texts apart."""
     return hashlib.sha256(text.encode()).hexdigest()[:32]
+
+
+def _is_text(value: object) -> bool:
+    return isinstance(value, str)
 
 
 def _text_in(request: Request) -> str:

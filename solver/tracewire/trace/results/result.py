@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
+from tracewire.diagram import Diagram
 from tracewire.errors import TracewireError
 from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.choose.verdict import (
@@ -64,7 +66,7 @@ def result_of(
         find_forces=partial(_forces, search, best),
         words=tuple(search.words),
         original=bench.declared.diagram,
-        diagram=edited(bench.declared, best, values),
+        diagram=edited(bench.declared, best.effects, values),
         units=units,
         interrupted=interrupted,
         options=search.options,
@@ -73,7 +75,19 @@ def result_of(
         remainder_depends=judgement.remainder_depends,
         held_out=judgement.held_out,
         noisy_inputs=judgement.noisy_inputs,
+        find_diagram=partial(_with_some, search, final, values),
     )
+
+
+def _with_some(
+    search: Search, final: Final, values: Mapping[str, float], effects: Collection[str]
+) -> Diagram:
+    """The diagram with some of the effects, by their texts. A parameter that was dropped has its
+    declared value: the effect that stands for it may be among those left out."""
+    told = zip(final.best.effects, told_effects(search, final), strict=True)
+    kept = [added for added, effect in told if str(effect) in effects]
+    restored = {name: final.declared.values[name] for name in final.dropped}
+    return edited(search.bench.declared, kept, {**values, **restored})
 
 
 def _experiments(search: Search, final: Final) -> tuple[Experiment, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -127,13 +127,13 @@ def confusable(search: Search) -> tuple[tuple[str, ...], Matrix]:
     return tuple(str(row.candidate) for row in rows), matrix
 
 
-def edited(model: Model, best: Trial, values: Mapping[str, float]) -> Diagram:
-    """The original text with the effects and the refitted parameters."""
-    if not best.effects:
+def edited(model: Model, effects: Sequence[Added], values: Mapping[str, float]) -> Diagram:
+    """The original text with effects and with the refitted parameters."""
+    if not effects:
         return model.diagram
-    diagram = extend(model.diagram, [(e.candidate, e.values) for e in best.effects])
+    diagram = extend(model.diagram, [(e.candidate, e.values) for e in effects])
     own = {name: value for name, value in values.items() if name in model.flat.parameters}
     diagram = set_values(diagram, own) if own else diagram
-    added = {effect.candidate.coefficient for effect in best.effects}
+    added = {effect.candidate.coefficient for effect in effects}
     sensors = {n: v for n, v in values.items() if n.startswith(SENSED) and n not in added}
     return set_sensors(diagram, sensors) if sensors else diagram

@@ -1,7 +1,7 @@
 // Fits and traces: begun by a button, told while they run, and what they propose taken or refused.
 
 import {ask} from "./api.js";
-import {download, make, part} from "./page.js";
+import {make, part} from "./page.js";
 import {lost} from "./runner.js";
 
 export class Work {
@@ -14,7 +14,6 @@ export class Work {
     part("stop").addEventListener("click", () => ask("stop").catch(() => null));
     part("accept").addEventListener("click", () => this.accept());
     part("refuse").addEventListener("click", () => { this.close(); this.refused(); });
-    part("report").addEventListener("click", () => this.report());
   }
 
   async begin(kind) {
@@ -48,10 +47,41 @@ export class Work {
     this.busy(false);
     if (answer.problems) return this.tell(answer.problems.map((one) => one.text).join(" "));
     this.tell("");
-    this.text = answer.text;
     part("proposal-words").replaceChildren(...answer.words.map((text) => make("p", {textContent: text})));
+    this.list(answer.effects);
+    part("report").href = `report-${this.id}.html`;
     part("proposal").hidden = false;
+    this.propose(answer);
+  }
+
+  // what is proposed: its text, and its picture
+  propose(answer) {
+    this.text = answer.text;
     this.drawn(answer.svg);
+  }
+
+  // a box to tick for each effect of a trace
+  list(effects) {
+    this.boxes = effects.map((one) => make("input", {type: "checkbox", checked: true, value: one.name,
+      onchange: () => this.choose()}));
+    part("effects").replaceChildren(make("legend", {textContent: "Effects to take"}),
+      ...effects.map((one, n) => make("label", {}, this.boxes[n], `${one.name}: ${one.words}`)),
+      make("p", {id: "chosen", role: "status"}));
+    part("effects").hidden = !effects.length;
+  }
+
+  // the proposal with the effects that are ticked; the newest choice counts
+  async choose() {
+    const names = this.boxes.filter((box) => box.checked).map((box) => box.value);
+    const mine = this.choice = {};
+    part("accept").disabled = true;  // until the text is that of this choice
+    const answer = await ask("proposal", {id: this.id, effects: names}).catch(failed);
+    if (mine !== this.choice) return;
+    part("accept").disabled = !names.length || Boolean(answer.problems);
+    part("chosen").textContent = answer.problems ? answer.problems[0].text
+      : names.length && names.length < this.boxes.length
+        ? "The values were fitted with all effects. Take these, and fit again." : "";
+    if (!answer.problems) this.propose(answer);
   }
 
   accept() {
@@ -61,16 +91,11 @@ export class Work {
   }
 
   close() {
-    this.id = null;
+    this.id = this.choice = null;
+    part("accept").disabled = false;
     this.shown = false;
     part("proposal").hidden = true;
     this.tell("");
-  }
-
-  async report() {
-    const answer = await ask("report", {id: this.id}).catch(failed);
-    if (answer.problems) return this.tell(answer.problems[0].text);
-    download("report.html", answer.html, "text/html");
   }
 
   busy(on) {
