@@ -6,6 +6,7 @@ import hashlib
 import json
 import xml.etree.ElementTree as ET
 from base64 import b64encode
+from itertools import pairwise
 from pathlib import Path
 from threading import Thread
 
@@ -75,6 +76,24 @@ def test_the_way_forward_goes_right_and_feedback_goes_back_below() -> None:
     assert {n.id for n in drawing.graph.nodes if n.flipped} == {"friction", "height", "gravity"}
     assert place["gravity"].x < place["height"].x < place["theta"].x
     assert min(place[id].y for id in ("friction", "gravity")) > place["acceleration"].y
+
+
+def test_an_open_subsystem_in_a_feedback_leads_back() -> None:
+    drawing = draw(read(TORSION), 1)
+    place = drawing.layout.nodes
+    plate = node(drawing, "M_T")
+    assert plate.flipped and {inner.id for inner in plate.nodes if inner.flipped} == {
+        "M_T.friction",
+        "M_T.total",
+    }
+    assert place["M_T.total"].x < place["M_T.friction"].x < place["phi2_dot"].x
+    (forward,) = (wire for wire in plate.wires if wire.target.startswith("M_T.total"))
+    line = drawing.layout.wires[forward.id]
+    assert line[-1][0] < line[0][0]
+    closed = draw(read(TORSION))
+    assert {n.id for n in drawing.graph.nodes if n.flipped} == {
+        n.id for n in closed.graph.nodes if n.flipped
+    }
 
 
 def test_the_double_torsion_pendulum_looks_as_in_the_paper() -> None:
@@ -200,6 +219,9 @@ def test_the_curve_of_a_block_is_its_own_formula() -> None:
     flat = [x for x, y in line if y == 0.0]
     assert len(flat) > 3
     assert 0 < max(flat) < 1
+    (line,) = curve_of(LIBRARY["saturation"], {"low": -100.0, "high": 100.0})
+    assert max(abs(b[1] - a[1]) for a, b in pairwise(line)) < 0.2  # a ramp, and no jump
+    assert line[0][1] == -1.0 and [y for _, y in line].count(1.0) > 4
     (line,) = curve_of(LIBRARY["stiffness"], {"k": 5.0})
     assert all(y == pytest.approx(-x) for x, y in line)
 

@@ -12,7 +12,9 @@ from tracewire.formula import Expression, evaluate, names_of
 from tracewire.library import Block
 
 SCALES = tuple(10.0 ** (n / 3) for n in range(-12, 13))
-"""Ranges of the input that are tried, in its unit; the one with the sharpest bend counts."""
+"""Ranges of the input that are tried, in its unit; the one with the sharpest bend counts, less
+STEEP times the largest step between two samples: a ramp between two limits shall look like one."""
+STEEP = 0.3
 SAMPLES, COARSE = 32, 8  # even numbers: none is at 0, where a friction jumps
 JUMP = 0.6  # of the height of the curve, between two samples: it is drawn upright
 STRAIGHT = 1e-6
@@ -36,10 +38,10 @@ def curve_of(
     known = {**dict.fromkeys(ports, 0.0), **values}
     if not set(names_of(formula)) <= known.keys() | {"pi"} or along not in names_of(formula):
         return ()
-    best, sharpest = 0.0, -1.0
+    best, sharpest = 0.0, -2.0
     for scale in sorted(SCALES, key=lambda scale: abs(math.log10(scale))):
         coarse = _sampled(formula, along, known, scale, COARSE)
-        bend = _bend([y for _, y in coarse])
+        bend = _bend([y for _, y in coarse]) - STEEP * _step([y for _, y in coarse])
         if bend > sharpest + 0.02:
             best, sharpest = scale, bend
     return _scaled(_sampled(formula, along, known, best, SAMPLES)) if best else ()
@@ -78,6 +80,12 @@ def _bend(values: Sequence[float]) -> float:
     straight = [first + (last - first) * n / (len(values) - 1) for n in range(len(values))]
     most = max(abs(y - s) for y, s in zip(values, straight, strict=True)) / height
     return most if most > STRAIGHT else 0.0
+
+
+def _step(values: Sequence[float]) -> float:
+    """The largest step between two values that follow each other, as a part of the height."""
+    height = max(values, default=0.0) - min(values, default=0.0)
+    return max((abs(b - a) for a, b in pairwise(values)), default=0.0) / height if height else 0.0
 
 
 def _scaled(points: Sequence[tuple[float, float]]) -> tuple[Line, ...]:

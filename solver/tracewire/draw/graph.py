@@ -43,9 +43,10 @@ class Look:
 class Node:
     """A block of the picture. `id` is its full name, `name` what is written below it.
 
-    `details` are the lines of its tooltip. `flipped`: it is drawn from right to left. An open
-    subsystem has `nodes` and `wires` of its own, in which its own ports may end. `labels` are the
-    widths that the texts of its ports take on the side of inputs and on that of outputs.
+    `details` are the lines of its tooltip. `flipped`: it is drawn from right to left, and so is
+    all that is inside of it. An open subsystem has `nodes` and `wires` of its own, in which its own
+    ports may end. `labels` are the widths that the texts of its ports take on the side of inputs
+    and on that of outputs.
     """
 
     id: str

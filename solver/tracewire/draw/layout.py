@@ -160,9 +160,10 @@ def _child(node: Node, labels: dict[str, str], upside_down: bool) -> dict[str, A
     }
     if node.nodes:
         child["children"] = [_child(inner, labels, upside_down) for inner in node.nodes]
-        child["edges"] = _edges(node.nodes, node.wires)
+        child["edges"] = _edges(node.nodes, node.wires, node.flipped)
         top, bottom = (16, 30) if upside_down else (30, 16)
-        left, right = (max(width + 18, 34) for width in node.labels)
+        widths = node.labels[::-1] if node.flipped else node.labels
+        left, right = (max(width + 18, 34) for width in widths)
         options["elk.padding"] = f"[top={top},left={left},bottom={bottom},right={right}]"
         options["elk.nodeSize.constraints"] = "PORTS MINIMUM_SIZE"
         options["elk.nodeSize.minimum"] = f"({node.look.width},{node.look.height})"
@@ -190,22 +191,30 @@ def _port(
     return found
 
 
-def _edges(nodes: Sequence[Node], wires: Sequence[Connection]) -> list[dict[str, Any]]:
-    """The wires for ELK: one that goes from right to left is handed over the other way round."""
-    flipped = {port.id for node in nodes if node.flipped for port in node.ports}
-    return [
-        {
-            "id": f"wire {wire.id}",
-            "sources": [f"port {wire.target if _turned(wire, flipped) else wire.source}"],
-            "targets": [f"port {wire.source if _turned(wire, flipped) else wire.target}"],
-            "layoutOptions": STRAIGHT if wire.main and not wire.back else {},
-        }
-        for wire in wires
-    ]
+def _edges(
+    nodes: Sequence[Node], wires: Sequence[Connection], leftwards: bool = False
+) -> list[dict[str, Any]]:
+    """The wires for ELK: one that goes from right to left is handed over the other way round.
 
-
-def _turned(wire: Connection, flipped: set[str]) -> bool:
-    return wire.back or wire.source in flipped or wire.target in flipped
+    leftwards: they are those of a frame whose way forward goes from right to left.
+    """
+    back = {port.id for node in nodes if node.flipped != leftwards for port in node.ports}
+    found = []
+    for wire in wires:
+        ends = [f"port {wire.source}", f"port {wire.target}"]
+        against = wire.back or wire.source in back or wire.target in back
+        if against != leftwards:
+            ends.reverse()
+        straight = STRAIGHT if wire.main and not wire.back else {}
+        found.append(
+            {
+                "id": f"wire {wire.id}",
+                "sources": ends[:1],
+                "targets": ends[1:],
+                "layoutOptions": straight,
+            }
+        )
+    return found
 
 
 def _read(placed: dict[str, Any], graph: Graph) -> Layout:

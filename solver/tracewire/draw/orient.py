@@ -29,11 +29,17 @@ def oriented(
     back = paths.into_heads(way) | paths.closing(way)
     flipped = paths.feedback(way, back)
     return (
-        tuple(replace(node, flipped=node.id in flipped) for node in nodes),
+        tuple(turned_around(node) if node.id in flipped else node for node in nodes),
         tuple(
             replace(wire, back=wire.id in back, main=paths.leads_on(wire, way)) for wire in wires
         ),
     )
+
+
+def turned_around(node: Node) -> Node:
+    """A node drawn the other way round, with all that is inside of it where it is open."""
+    inside = tuple(turned_around(inner) for inner in node.nodes)
+    return replace(node, flipped=not node.flipped, nodes=inside)
 
 
 @dataclass(frozen=True)
@@ -167,9 +173,7 @@ class _Paths:
     def feedback(self, way: _Way, back: set[str]) -> set[str]:
         """The blocks all of whose outputs lead back, directly or over others of these."""
         flipped = {
-            id
-            for id, node in self.nodes.items()
-            if self.after[id] and self.before[id] and id not in way.blocks and not node.nodes
+            id for id in self.nodes if self.after[id] and self.before[id] and id not in way.blocks
         } - self.bound
         while True:
             kept = {

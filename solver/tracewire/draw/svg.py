@@ -102,7 +102,9 @@ def _wire(nodes: Mapping[str, Node], wire: Connection, layout: Layout) -> str:
     marks = {nodes[wire.source].mark, nodes[wire.target].mark} - {""}
     mark = wire.mark or ("effect" if "effect" in marks else "")
     kind = f"wire {mark}".strip()
-    head = arrow(line) if not nodes[wire.target].nodes or line[-1][0] > line[-2][0] else ""
+    reached = nodes[wire.target]
+    inwards = (line[-1][0] > line[-2][0]) != reached.flipped  # of a frame
+    head = arrow(line) if not reached.nodes or inwards else ""
     return (
         f'<g class="{kind}" data-signal={_attribute(wire.signal)}>'
         f'<path d="{path(line)}"/>{head}</g>'
