@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -336,6 +337,26 @@ def test_what_is_missing_is_drawn_over_one_and_two_variables(drawn: Any) -> None
     both = replace(UNEXPLAINED, missing=missing_of_two())
     panel = drawn(plot_missing, both).axes[0]
     assert (panel.get_xlabel(), panel.get_ylabel()) == ("theta [rad]", "omega [rad/s]")
+
+
+def no_labels_touch(figure: Any) -> bool:
+    """Whether the numbers and names of the first panel's lower axis stand apart."""
+    panel = figure.axes[0]
+    labels = [one for one in panel.get_xticklabels() if one.get_text()]
+    if any(one.get_rotation() for one in labels):  # slanted: their ends are as far as the columns
+        return True
+    boxes = sorted((one.get_window_extent() for one in labels), key=lambda box: box.x0)
+    return all(one.x1 < other.x0 for one, other in pairwise(boxes))
+
+
+def test_labels_of_maps_do_not_touch(drawn: Any) -> None:
+    missing = missing_of_two()
+    far = np.linspace(120000.1, 120000.9, missing.grid[0].size)
+    far_off = replace(missing, grid=(far, missing.grid[1]))
+    assert no_labels_touch(drawn(plot_missing, replace(UNEXPLAINED, missing=far_off)))
+    names = ("travel", "rate", "travel, rate", "rate, history", "travel, history")
+    sets = tuple(Dependence("torque", tuple(name.split(", ")), 0.5) for name in names)
+    assert no_labels_touch(drawn(plot_where, replace(UNEXPLAINED, dependences=sets)))
 
 
 def test_effects_that_are_alike_are_outlined(drawn: Any) -> None:

@@ -39,6 +39,11 @@ MOST_ALIKE = 16
 MOST_EXPERIMENTS = 3
 ALIKE_EVERYWHERE = 0.1
 """Where the best experiment separates two effects by less sigma than this, its map is empty."""
+SHORT = 9
+"""Letters of a label that stands level below its column; longer ones are slanted."""
+SLANTED: dict[str, Any] = {"rotation": 35, "ha": "right", "rotation_mode": "anchor"}
+MOST_NUMBERS = 5
+"""Steps of the axis of a map; numbers with many digits do not touch then."""
 FEW, CROWDED = 0.05, 10.0
 """Where the density of samples is less than this part of its largest, a map is pale. A body that
 rests piles them up: no density counts as more than this many times the median."""
@@ -74,7 +79,11 @@ def _plot_shares(
                 panel.text(column, row, text, ha="center", va="center", color=color)
         if best is not None and best[1] in sets and best[0] in places:
             _outline(panel, (sets.index(best[1]), places.index(best[0])))
-        panel.set_xticks(range(len(sets)), [cut(", ".join(names), 18) for names in sets])
+        labels = [cut(", ".join(names), 18) for names in sets]
+        if max(map(len, labels)) > SHORT:
+            panel.set_xticks(range(len(sets)), labels, **SLANTED)
+        else:
+            panel.set_xticks(range(len(sets)), labels)
         panel.set_yticks(range(len(places)), [cut(place) for place in places])
         panel.set_title("Share of the excess that a smooth function of these explains", loc="left")
         _bare(panel)
@@ -97,6 +106,7 @@ def plot_missing(found: Found, path: Path) -> Path:
             _draw_map(figure, panel, missing, label)
             panel.set_ylabel(_variable(found, missing, 1))
         panel.set_xlabel(_variable(found, missing, 0))
+        panel.locator_params(axis="x", nbins=MOST_NUMBERS)
         return save(figure, path)
 
 
@@ -127,7 +137,7 @@ def plot_confusable(found: Found, path: Path) -> Path:
                     _outline(panel, (column, row))
         labels = [cut(name, 34) for name in names]
         panel.set_yticks(range(size), labels)
-        panel.set_xticks(range(size), labels, rotation=35, ha="right", rotation_mode="anchor")
+        panel.set_xticks(range(size), labels, **SLANTED)
         panel.set_title(f"outlined: above {TIED}", loc="left", fontsize=9)
         _bare(panel)
         bar = figure.colorbar(picture, ax=panel, fraction=0.05, pad=0.02)
