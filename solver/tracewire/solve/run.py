@@ -70,6 +70,9 @@ class EventLog(Sequence[Event]):
     def __len__(self) -> int:
         return len(self._events)
 
+    def __iter__(self) -> Iterator[Event]:
+        return iter(self._events)
+
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Sequence) and self._events == tuple(other)
 

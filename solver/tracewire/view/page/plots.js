@@ -8,9 +8,13 @@ const MEASURED = "#4D4D4D";
 const GUTTER = 64;  // pixels, without the label
 const LABEL = 20;
 const MOST_ROWS = 8;
+const PAUSE = 250;  // ms without a new run after which curves are drawn in their full width
 
 const plain = (u, splits) => splits.map((v) => (v === null ? "" : String(+v.toPrecision(10))));
 const large = () => document.body.classList.contains("present");
+const wide = () => (large() ? 2.5 : 1.5);
+// one pixel of the screen: without a graphics card a browser paints wider curves many times slower
+const thin = () => 1 / (devicePixelRatio || 1);
 const font = () => `${large() ? 15 : 12}px sans-serif`;
 
 export class Plots {
@@ -25,6 +29,7 @@ export class Plots {
 
   show(head) {
     this.head = head;
+    this.follow();
     const rows = [...new Set(head.events.map((event) => event.block))].slice(0, MOST_ROWS);
     const measured = head.measured ? head.measured.signals : {};
     const panels = head.panels.map((p) => [p.unit, p.lines.map((l) => l.label)]);
@@ -47,6 +52,27 @@ export class Plots {
     });
     if (rows.length) this.plots[this.plots.length - 1].setData([this.span, [null, null]]);
     this.point(this.now);
+  }
+
+  // curves that follow a drag are thin until it pauses
+  follow() {
+    const now = performance.now();
+    const moving = now - (this.shownAt ?? -Infinity) < PAUSE;
+    this.shownAt = now;
+    clearTimeout(this.timer);
+    this.widen(moving ? thin() : wide());
+    if (moving) {
+      this.timer = setTimeout(() => {
+        this.widen(wide());
+        for (const plot of this.plots) plot.redraw(false);
+      }, PAUSE);
+    }
+  }
+
+  widen(width) {
+    for (const plot of this.plots) {
+      if (plot.panel) for (const line of plot.series.slice(1)) line.width = width;
+    }
   }
 
   build(head, rows) {
@@ -88,7 +114,7 @@ export class Plots {
     const made = this.options(this.tall(last), last, {label: names.length === 1 ? names[0] + unit : unit});
     const value = (u, v) => (v === null || v === undefined ? "" : shown(v, 5));
     made.series = [{label: "t", value}, ...panel.lines.map((line, n) => ({
-      label: line.label, stroke: COLORS[n % 4], width: large() ? 2.5 : 1.5, value, points: {show: false},
+      label: line.label, stroke: COLORS[n % 4], width: wide(), value, points: {show: false},
     }))];
     made.legend = {live: true};
     made.hooks.drawClear = [(u) => backdrop(u, u.panel)];
@@ -114,7 +140,7 @@ export class Plots {
 
   strip(rows) {
     const splits = rows.map((_, n) => n);
-    const made = this.options(20 * rows.length + 62, true, {
+    const made = this.options((large() ? 26 : 20) * rows.length + (large() ? 70 : 62), true, {
       splits: () => splits,
       values: () => rows.map((row) => (row.length > 9 ? `${row.slice(0, 8)}…` : row)),
       ticks: {show: false}, grid: {show: false}, size: GUTTER + LABEL,
