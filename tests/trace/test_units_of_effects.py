@@ -7,7 +7,8 @@ from dataclasses import replace
 import pytest
 from show.traces import FOUND
 from tracewire.diagram import read_text
-from tracewire.trace.units import unit_at, unit_of_effect
+from tracewire.trace import FoundEffect
+from tracewire.trace.units import unit_at, unit_of, unit_of_effect
 
 CART = """\
 blocks:
@@ -69,3 +70,12 @@ def test_where_the_place_has_no_unit_none_is_made_up() -> None:
 def test_sensors_and_drives_have_the_unit_of_their_signal() -> None:
     found = replace(FOUND, units={"theta": "rad", "F": "N"})
     assert (unit_at(found, "sensor.theta"), unit_at(found, "drive.F")) == ("rad", "N")
+
+
+@pytest.mark.parametrize(
+    ("term", "unit"), [("offset", "rad"), ("drift", "rad/s"), ("delay", "s"), ("gain", "")]
+)
+def test_what_a_sensor_adds_has_its_unit(term: str, unit: str) -> None:
+    found = replace(FOUND, units={"theta": "rad"})
+    effect = FoundEffect(f"sensor_{term}", "sensor.theta", {term: 0.1})
+    assert unit_of(found, effect, term) == unit

@@ -92,7 +92,8 @@ def _units_of(found: Found, place: Place) -> tuple[str, str, str]:
 def unit_of(found: Found, effect: FoundEffect, name: str) -> str:
     """The SI unit of a parameter of an effect; '' where it has none, or where it is not known."""
     if not effect.block:
-        return found.units.get(f"{name}.{effect.place.partition('.')[2]}", "")
+        signal = effect.place.partition(".")[2]
+        return found.units.get(f"{name}.{signal}", "") or _unit_of_sensor(found, signal, name)
     own = found.units.get(f"{effect.block}.{name}", "")
     return own or unit_of_effect(found, effect.name, effect.place, name)
 
@@ -102,14 +103,18 @@ def unit_of_power(found: Found, power: Power) -> str:
     if found.units.get(power.coefficient):
         return found.units[power.coefficient]
     if power.name.startswith("sensor_"):
-        signal = power.place.partition(".")[2]
-        unit = found.units.get(signal, "")
-        text = SENSOR_TERMS[coefficient_of(power)].unit
-        if "{}" in text and not unit:
-            return ""
-        inner = text.startswith("1/") and ("/" in unit or " " in unit)
-        return text.format(f"({unit})" if inner else unit)
+        return _unit_of_sensor(found, power.place.partition(".")[2], coefficient_of(power))
     return unit_of_effect(found, power.name, power.place, coefficient_of(power))
+
+
+def _unit_of_sensor(found: Found, signal: str, term: str) -> str:
+    """The SI unit of an offset, gain ... of a sensor; '' where that of its signal is not known."""
+    unit = found.units.get(signal, "")
+    text = SENSOR_TERMS[term].unit
+    if "{}" in text and not unit:
+        return ""
+    inner = text.startswith("1/") and ("/" in unit or " " in unit)
+    return text.format(f"({unit})" if inner else unit)
 
 
 def coefficient_of(power: Power) -> str:
