@@ -5,13 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 from textwrap import dedent
 
+import numpy as np
 import pytest
 from tracewire.compile import compile
 from tracewire.diagram import read, read_text
+from tracewire.solve import simulate
 from tracewire.trace.candidates.candidates import extend, find_candidates
 from tracewire.trace.candidates.levels import Level, Levels
 from tracewire.trace.candidates.places import Place, find_places, untried
 from tracewire.trace.options import TraceOptions
+from tracewire.trace.screen.probe import probed
 
 OPTIONS = TraceOptions()
 
@@ -258,13 +261,51 @@ DEEPER = """
     [
         ("w: -w}", "w: -w}\n          twin: {type: cart, u: u, w: w}"),
         ("w: -w}", "w: -w, replicate: 1}"),
-        ("\n          body: {type: cart, u: u, w: -w}\n        subsystems:", DEEPER),
     ],
-    ids=["two uses", "a row", "deeper"],
+    ids=["two uses", "a row"],
 )
 def test_what_an_effect_would_change_elsewhere_is_no_place(old: str, new: str) -> None:
     assert old in CART
     assert not [place for place in places(CART.replace(old, new)) if place.kind == "sum"]
+
+
+SHALLOW = "\n          body: {type: cart, u: u, w: -w}\n        subsystems:"
+
+
+def test_a_sum_two_levels_deep_is_a_place() -> None:
+    text = CART.replace(SHALLOW, DEEPER)
+    diagram = read_text(dedent(text))
+    model = compile(diagram, backend="quick")
+    place = find_places(model)[0]
+    # u goes through both ports; in the innermost diagram it has two names, of which one is taken
+    assert place == Place(
+        *("body.c.force", "sum", "cart.force", "body.c.x", "body.c.v", "body.c.a"),
+        *((), ("u",), "body.c"),
+    )
+    found = find_candidates(model, [place], LEVELS, OPTIONS.candidate)
+    known = {candidate.effect: candidate for candidate in found}
+    assert known["viscous"].coefficient == "body.c.viscous.c"
+    new = extend(diagram, [(known["viscous"], {"c": 0.25})])
+    assert "      viscous: {type: viscous, rate: v, c: {value: 0.25, fit:" in new.text
+    assert "body.c.viscous.c" in compile(new, backend="quick").flat.parameters
+    probe, ((name,),) = probed(diagram, [place], 1)
+    push = {"probe_input_0": ([0, 1], [1, 1])}
+    run = simulate(compile(probe), span=(0, 1), parameters={name: 1.0}, inputs=push)
+    # x'' = 2 (-x + 1), from rest
+    assert run["body.c.x"][-1] == pytest.approx(1.0 - np.cos(np.sqrt(2.0)), abs=1e-6)
+
+
+def test_two_definitions_of_one_name_are_no_places() -> None:
+    text = CART.replace(SHALLOW, DEEPER).replace(
+        "blocks: {c: {type: cart, u: u, w: u}}",
+        """blocks: {c: {type: cart, u: u}}
+            subsystems:
+              cart:
+                inputs: [u]
+                outputs: [x]
+                blocks: {x: {type: integrator, of: f}, f: {type: sum, of: [u, -x]}}""",
+    )
+    assert not [place for place in places(text) if place.kind == "sum"]
 
 
 def test_a_sum_of_an_included_file_is_no_place(tmp_path: Path) -> None:

@@ -24,7 +24,7 @@ class Place:
     text of the diagram, the measured signal, or the input or source block. Signals of a sum: the
     rate `v`, the coordinate `q` whose rate that is, the acceleration `a` that v is the integral of
     ('' where there is none), and `others`, (q, v) of the sums of other rates. `drive` holds the
-    drives of the diagram, at a drive itself only that. `within` is the block of the subsystem that
+    drives of the diagram, at a drive itself only that. `within` is the path of the subsystem that
     a sum stands in, '' at the top; its signals have their names of the flat equations.
     """
 
@@ -47,7 +47,7 @@ def find_places(model: Model) -> list[Place]:
     another place of the same state says nothing new and is left out. Where the diagram itself says
     which sum is the place of a rate (`place: {q: ..., v: ...}`), that sum is the only one; it may
     name a coordinate alone, where nothing has a rate (see `untried`). A sum
-    inside a subsystem is a place where that is the only block of its type (see `opened`). Sums of
+    inside subsystems is a place where each is the only block of its type (see `opened`). Sums of
     vectors are not tried.
 
     Drives: the named inputs that something reads, and the blocks whose output depends on nothing
@@ -152,7 +152,7 @@ def _seen_from(model: Model, place: Place) -> Place:
 
 def _is_reached(name: str, block: FlatBlock, inside: Collection[str]) -> bool:
     """Whether an effect can be added to a sum: at the top, or inside one of these subsystems."""
-    if split_index(name)[1] or block.definition.count(".") > 1:
+    if split_index(name)[1]:
         return False
     return "." not in block.definition or name.rpartition(".")[0] in inside
 

@@ -9,7 +9,7 @@ import numpy as np
 from tracewire.diagram import Diagram, add_addend, add_to_drive
 from tracewire.errors import OptionError
 from tracewire.formula import number_text
-from tracewire.trace.candidates.inside import local_name
+from tracewire.trace.candidates.inside import diagram_at, local_name
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.found import Missing
 
@@ -68,8 +68,7 @@ def add_table(diagram: Diagram, place: Place, missing: Missing, file: str) -> Di
         known = ", ".join(name for name, signal in signals.items() if signal)
         what = f"a table cannot be wired to {names[0]}"
         raise OptionError.one(what, hint=f"At '{place.name}' it can be wired to {known}.")
-    use = diagram.blocks.get(place.within)
-    inside = use.subsystem if use is not None and use.subsystem is not None else diagram
+    inside = diagram_at(diagram, place.within)
     taken = {*inside.blocks, *inside.parameters, *inside.inputs, *inside.subsystems}
     name = "missing"
     while name in taken:
