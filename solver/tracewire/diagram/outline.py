@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from tracewire.diagram.choose import NUMBER, is_chosen, side_by_side
 from tracewire.diagram.diagram import BlockUse, Diagram, Value
 from tracewire.diagram.extend import with_variant
+from tracewire.diagram.files import load
 from tracewire.diagram.names import find_parameter, parameters, split_index
 from tracewire.diagram.packages import Packages
 from tracewire.diagram.problems import Problems
@@ -33,7 +34,9 @@ class Spot:
 class Outline:
     """The nodes of a diagram, found by the names of its parts.
 
-    `root` has those of the files that it extends and includes, too; `own` those of its text only.
+    `root` has those of the files that it extends and includes, too; `own` those of its text only,
+    and `base` those of the diagram that it extends. `definitions` has the subsystems by their path,
+    each with the body that is used; `bodies` has all bodies, and `removed` what one takes away.
     """
 
     def __init__(self, diagram: Diagram) -> None:
@@ -45,7 +48,13 @@ class Outline:
             raise DiagramError.one("a diagram must be a mapping", own.place)
         self.root, self.own = root, own
         self.included = sources.all_included(own)
+        extends = own.values.get("extends")
+        self.base: Entries | None = None
+        if isinstance(extends, Scalar):
+            self.base = sources.tree(load(extends.path), extends.path)
         self.definitions: dict[str, tuple[Diagram, Entries]] = {"": (diagram, root)}
+        self.bodies: dict[str, list[tuple[Diagram, Entries]]] = {"": [(diagram, root)]}
+        self.removed: dict[tuple[Place, str], Node] = {}
         self.nodes: dict[tuple[Place, str], Entries] = {(diagram.place, ""): root}
         self.uses, self.used = _count_uses(diagram)
         self._define("", diagram, root)
@@ -57,9 +66,14 @@ class Outline:
                 inner = f"{path}.{name}" if path else name
                 usual = diagram.subsystems[name]
                 known = self.used.get(usual.place, usual)  # the variant that is used, if one is
-                for variant in usual.variants or ("",):
+                self.bodies[inner] = []
+                for variant, one in (usual.bodies or {"": known}).items():
                     body = with_variant(node, variant, Problems()) if variant else node
                     self.nodes[usual.place, variant] = body
+                    self.bodies[inner].append((one, body))
+                    changes = _part(node, "variants", variant) if variant else None
+                    if isinstance(changes, Entries) and "remove" in changes.values:
+                        self.removed[usual.place, variant] = changes.values["remove"]
                 if usual.variants:
                     at = replace(node.place, block=usual.place.block)
                     self.nodes[at, ""] = side_by_side(name, node)

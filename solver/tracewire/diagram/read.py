@@ -198,9 +198,11 @@ class _Reader:
             for name, definition in scope.definitions.items()
             if (diagram := self.diagram(definition)) is not None
         }
-        for name, diagram in subsystems.items():
-            for variant in diagram.variants:  # what is wrong in one that nothing uses is told, too
-                self.diagram(scope.definitions[name], Choice(variant))
+        for name, diagram in subsystems.items():  # what is wrong in one without a use is told, too
+            bodies = {v: self.diagram(scope.definitions[name], Choice(v)) for v in diagram.variants}
+            known = {variant: body for variant, body in bodies.items() if body is not None}
+            if known:
+                subsystems[name] = replace(diagram, bodies=known)
         return Diagram(
             name=name,
             file=scope.file,
