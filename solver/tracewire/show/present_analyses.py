@@ -115,7 +115,7 @@ def _linear_parts(found: Linear) -> list[Part]:
     except AnalysisError as error:  # a delay that feeds itself has none; the matrices are right
         return [*tables, str(error)]
     for time, matrix in sorted(found.delays.terms().items()) if found.delays is not None else ():
-        tables.append(table(f"A of states {time:.6g} s ago", matrix, found.states, found.states))
+        tables.append(table(f"A, {time:.6g} s ago", matrix, found.states, found.states))
         name = "rightmost characteristic roots"
     listed = ", ".join(map(complex_text, eigenvalues))
     return [
