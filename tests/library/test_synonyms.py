@@ -32,11 +32,39 @@ TEACHERS = {
 """The names that teachers reach for first."""
 
 
-COMMON = """
-INTEGRAL_m GAINBLK_f SUMMATION BIGSOM_f CONST_m PRODUCT GENSIN_f GENSQR_f STEP_FUNCTION RAMP SATURATION
-DEADBAND HYSTHERESIS BACKLASH SWITCH2_m MUX DEMUX CLR DLR CLSS TIME_DELAY DOLLAR SAMPHOLD_m QUANT_f
-RELATIONALOP EXPRESSION SINBLK_f ABS_VALUE LOOKUP_f CSCOPE CLOCK_c
-""".split()
+COMMON = [
+    "INTEGRAL_m",
+    "GAINBLK_f",
+    "SUMMATION",
+    "BIGSOM_f",
+    "CONST_m",
+    "PRODUCT",
+    "GENSIN_f",
+    "GENSQR_f",
+    "STEP_FUNCTION",
+    "RAMP",
+    "SATURATION",
+    "DEADBAND",
+    "HYSTHERESIS",
+    "BACKLASH",
+    "SWITCH2_m",
+    "MUX",
+    "DEMUX",
+    "CLR",
+    "DLR",
+    "CLSS",
+    "TIME_DELAY",
+    "DOLLAR",
+    "SAMPHOLD_m",
+    "QUANT_f",
+    "RELATIONALOP",
+    "EXPRESSION",
+    "SINBLK_f",
+    "ABS_VALUE",
+    "LOOKUP_f",
+    "CSCOPE",
+    "CLOCK_c",
+]
 """What a diagram of a driven and controlled mechanism is made of in Xcos."""
 
 
