@@ -116,6 +116,11 @@ def test_a_block_is_described_by_a_name_of_another_tool(name: str, told: str) ->
     assert describe(library(), name).startswith(told)
 
 
+def test_a_name_that_means_something_else_elsewhere_is_explained() -> None:
+    told = describe(library(), "BACKLASH")
+    assert "The Backlash of Simulink and Xcos is 'play_operator' here" in told
+
+
 def test_a_description_names_the_block_in_other_tools() -> None:
     assert "Also known as Simulink" not in describe(library(), "integrator")
     assert "INTEGRAL_m, INTEGRAL_f (Xcos)" in describe(library(), "integrator")

@@ -285,6 +285,11 @@ Sources: the block libraries of Simulink R2023, of Modelica 4.0 and of Xcos 2023
 """
 
 SENSOR = "It is a number of a measured signal: signals: {{x: {{column: x, {0}: ...}}}}."
+OTHERWISE: dict[str, str] = {
+    "backlash": "The Backlash of Simulink and Xcos is 'play_operator' here, and teeth with play"
+    " between two bodies are 'elastic_gear'.",
+}
+"""Blocks here that have the name of another one elsewhere, and what that is here."""
 INSTEAD: dict[str, str] = {
     "logical operator, LOGICAL_OP, LOGIC, logic": "Use 'and', 'or', 'xor' or 'not'.",
     "MinMax, MAXMIN": "Use 'min' or 'max', which take two signals or more.",
