@@ -110,18 +110,65 @@ def test_the_diagram_can_say_which_sum_is_the_place() -> None:
     ]
 
 
-def test_a_sum_of_vectors_is_no_place() -> None:
+@pytest.mark.parametrize("given", ["", ", place: {q: x, v: v}"])
+def test_each_element_of_a_sum_of_vectors_is_a_place(given: str) -> None:
     found = places(
-        """
+        f"""
         blocks:
-          x: {type: integrator, of: v, start: [1, 2]}
-          v: {type: integrator, of: force}
-          force: {type: sum, of: [spring, same], place: {q: x, v: v}}
-          same: {type: sum, of: [spring]}
-          spring: {type: stiffness, of: x, k: 1}
+          x: {{type: integrator, of: v, start: [1, 2]}}
+          v: {{type: integrator, of: force}}
+          force: {{type: sum, of: [spring, same]{given}}}
+          same: {{type: sum, of: [spring]}}
+          spring: {{type: stiffness, of: x, k: 1}}
         """
     )
-    assert found == []
+    one, two = ("x[0]", "v[0]"), ("x[1]", "v[1]")
+    assert found == [
+        Place("force[0]", "sum", "force", *one, "force[0]", (two,), element=(0, 2)),
+        Place("force[1]", "sum", "force", *two, "force[1]", (one,), element=(1, 2)),
+    ]
+
+
+ROWS = """
+parameters: {k: 3}
+blocks:
+  x: {type: integrator, of: v, start: [1, 0]}
+  v: {type: integrator, of: a}
+  a: {type: gain, of: force, k: [2, 4]}
+  force: {type: sum, of: [spring]}
+  spring: {type: gain, of: x, k: -k}
+"""
+
+
+def test_an_effect_at_an_element_is_written_with_a_gain_that_makes_a_vector_of_it() -> None:
+    diagram = read_text(ROWS)
+    model = compile(diagram, backend="quick")
+    found = find_places(model)
+    known = {
+        (c.effect, c.place.name): c
+        for c in find_candidates(model, found, LEVELS, OPTIONS.candidate)
+    }
+    viscous = known["viscous", "force[1]"]
+    assert viscous.coefficient == "viscous_force_1.c"
+    new = extend(diagram, [(viscous, {"c": 0.25})])
+    assert "of: [spring, viscous_force_1_alone]" in new.text
+    lines = new.text.splitlines()
+    at = next(n for n, line in enumerate(lines) if "viscous_force_1:" in line)
+    assert lines[at].startswith('  viscous_force_1: {type: viscous, rate: "v[1]", c: {value: 0.25,')
+    assert lines[at + 1] == (
+        "  viscous_force_1_alone: {type: gain, of: viscous_force_1, k: [0, 1]}"
+    )
+    run = simulate(compile(new, record=["x"]), span=(0, 1), start={"x[1]": 1.0, "x[0]": 1.0})
+    # x0'' = -6 x0, and x1'' = -12 x1 - x1'
+    assert run["x[0]"][-1] == pytest.approx(np.cos(np.sqrt(6.0)), abs=1e-5)
+    w = np.sqrt(12.0 - 0.25)
+    damped = np.exp(-0.5) * (np.cos(w) + 0.5 / w * np.sin(w))
+    assert run["x[1]"][-1] == pytest.approx(damped, abs=1e-5)
+    probe, names = probed(diagram, found, 1)
+    push = {"probe_input_0": ([0, 1], [1, 1])}
+    run = simulate(compile(probe), span=(0, 1), parameters={names[1][0]: 1.0}, inputs=push)
+    assert run["x[0]"][-1] == pytest.approx(np.cos(np.sqrt(6.0)), abs=1e-5)
+    assert run["x[1]"][-1] == pytest.approx((1 - np.cos(np.sqrt(12.0))) / 3, abs=1e-5)
 
 
 def test_a_sum_in_an_algebraic_loop_is_a_place() -> None:

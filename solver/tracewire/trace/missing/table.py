@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tracewire.diagram import Diagram, add_addend, add_to_drive
+from tracewire.diagram import Diagram, add_addend, add_to_drive, quoted
 from tracewire.errors import OptionError
 from tracewire.formula import number_text
 from tracewire.trace.candidates.inside import diagram_at, local_name
@@ -74,12 +74,14 @@ def add_table(diagram: Diagram, place: Place, missing: Missing, file: str) -> Di
     while name in taken:
         name += "_"
     column = names[0].replace(" ", "_")
+    read = local_name(diagram, place.within, signals[names[0]])
     line = (
-        f"{{type: table, of: {local_name(diagram, place.within, signals[names[0]])}, "
+        f"{{type: table, of: {quoted(read) if '[' in read else read}, "
         f"points: {{file: {file}, x: {column}, y: torque}}}}   # empirical: no law"
     )
-    add = add_to_drive if place.kind == "drive" else add_addend
-    return add(diagram, place.definition, name, line)
+    if place.kind == "drive":
+        return add_to_drive(diagram, place.definition, name, line)
+    return add_addend(diagram, place.definition, name, line, element=place.element)
 
 
 def wires_of(place: Place) -> Mapping[str, str]:

@@ -55,6 +55,11 @@ def _added(diagram: Diagram, place: Place, name: str, formula: Expression) -> Di
         formula = Call("+", (Name(place.definition), formula))
         diagram = rewired(diagram, place.definition, name)
     else:
+        if place.element is not None:
+            number, count = place.element
+            nothing = Number(0.0)
+            parts = (formula if n == number else nothing for n in range(count))
+            formula = Call("stack", tuple(parts))
         within = place.within.split(".") if place.within else []
         diagram = _led_in(diagram, within, place.definition.rpartition(".")[2], name)
     probe = BlockUse(name, "expression", {}, {"formula": formula})
