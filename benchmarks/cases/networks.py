@@ -1,4 +1,4 @@
-"""Generated diagrams of 1000 and 10 000 blocks: compile time by phase, time per evaluation."""
+"""Diagrams of many blocks: compile time by phase, time per evaluation, time per block and step."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import tracewire as tw
+from tracewire.shipped import shipped
 
 from benchmarks.cases.paper_a import DIAGRAM
 from benchmarks.measure import Entrant, in_turn, least, seconds_of
@@ -18,6 +19,7 @@ from benchmarks.systems.network import Network, network
 from benchmarks.table import Promise, Result, ratio, seconds
 
 SIZES = (1000, 10_000)
+LENGTHS = (50, 200)
 PROMISED = {0: 0.1, 1000: 0.5, 10_000: 10.0}  # s; 0 is the paper's model
 POINTER = ctypes.POINTER(ctypes.c_double)
 FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_double, *[POINTER] * 5)
@@ -41,9 +43,27 @@ def measure(options: Options) -> Iterator[Result]:
         rows.append((name, *map(seconds, parts), seconds(total)))
         promises.append(Promise(f"compile, {name}", total, PROMISED[size], "s", True))
     yield Result("Compile, by phase", (*PHASES, "sum"), rows, promises)
+    yield _chains(options)
     rows = [row for size in sizes for row in _evaluations(models[size], network(size), options)]
     columns = ("rates of", "states", "time", "time / tracewire", "largest difference")
     yield Result("One evaluation of the right-hand side", columns, rows)
+
+
+def _chains(options: Options) -> Result:
+    """The chain of pendulums of the gallery, with more of them."""
+    text = (shipped("diagrams") / "gallery" / "chain.yaml").read_text("utf-8")
+    rows, promises = [], []
+    for count in LENGTHS[:1] if options.quick else LENGTHS:
+        model, parts = _phases(text.replace("n: 10 ", f"n: {count} "), 1.0, None)
+        run = tw.simulate(model)
+        time_of_run = least(lambda model=model: tw.simulate(model), options.seconds_each / 10)
+        blocks, steps = len(model.flat.blocks), run.statistics.steps
+        each = 1e9 * time_of_run / (blocks * steps)
+        shown = (str(blocks), str(steps), seconds(time_of_run), f"{each:.0f} ns")
+        rows.append((f"{count} pendulums", seconds(sum(parts)), *shown))
+        promises.append(Promise(f"compile, {count} pendulums", sum(parts), 5.0, "s", True))
+    columns = ("to the first run", "blocks", "steps", "run of 40 s", "time per block and step")
+    return Result("A row of blocks", columns, rows, promises)
 
 
 def _phases(text: str, end: float, file: Path | None) -> tuple[tw.Model, list[float]]:

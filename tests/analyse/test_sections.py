@@ -247,6 +247,28 @@ def test_a_section_of_lorenz_is_irregular_and_one_of_a_saw_is_too() -> None:
 SIDE = '  side: {type: expression, formula: "sign(z - 27)"}\n'
 
 
+ROW = """
+span: [0, 1]
+parameters: {k: 1}
+record: [chain.all]
+blocks:
+  one: {type: constant, value: k}
+  chain: {type: integrator, of: previous, replicate: {count: 3, first: {of: one}}}
+"""
+
+
+def test_a_sweep_knows_the_ends_of_a_row() -> None:
+    """The chain integrates k once, twice and three times: k t, k t^2/2, k t^3/6."""
+    keep = ["end(chain.first)", "end(chain.last) - end(chain_2)"]
+    found = sweep(made(ROW), {"k": [1.0, 6.0]}, keep)
+    assert found[keep[0]] == pytest.approx([1.0, 6.0], abs=1e-9)
+    assert found[keep[1]] == pytest.approx([1 / 6 - 1 / 2, -2.0], abs=1e-9)
+    run = simulate(made(ROW))
+    assert np.array_equal(run["chain.last"], run["chain_3"])
+    with pytest.raises(TracewireError, match=r"unknown signal or parameter 'other\.last'"):
+        sweep(made(ROW), {"k": [1.0]}, ["end(other.last)"])
+
+
 def test_a_sweep_has_the_shape_of_its_grid() -> None:
     """Of a free oscillator: x(t) = cos(sqrt(k) t) from 1, so that rms^2 is a half."""
     found = sweep(

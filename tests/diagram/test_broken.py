@@ -17,7 +17,7 @@ MESSAGES = {
         "Did you mean 'integrator'?",
     ),
     "unknown_parameter.yaml": (
-        "4:42: block 'column': unknown input or parameter of 'gain' 'gian'; there are: guess, k, ",
+        "4:42: block 'column': unknown input or parameter of 'gain' 'gian'; there are: k, of",
     ),
     "unconnected_input.yaml": (
         "4:3: block 'omega': input 'of' is not connected. Write of: signal.",

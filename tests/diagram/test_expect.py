@@ -159,6 +159,15 @@ WRONG = [
         "'series' cannot stand with a fit, whose runs are those of the measured series",
     ),
     (
+        "  - {that: fitted(l) - end(phi), above: 1, run: {start: {phi: 2}}}",
+        "5:50: 'start' would hold in the run and not in the fit of one statement. Write two "
+        "statements, or use 'preset' or 'set', which hold in both.",
+    ),
+    (
+        "  - {that: criterion() + end(phi), above: 1, run: {series: no}}",
+        "'series' would hold in the run and not in the fit of one statement",
+    ),
+    (
         "  - {that: 'band_low(sideways, 0.1)', above: 1}",
         "unknown word of band_low 'sideways'; there are: down, up",
     ),

@@ -63,8 +63,11 @@ BLOCKS = [
     ("a: {type: gian}", "Did you mean 'gain'?"),
     (
         "a: {type: gain, of: a, kk: 1}",
-        "unknown input or parameter of 'gain' 'kk'; there are: guess, k, label, of, place, "
-        "replicate, type, unit",
+        "unknown input or parameter of 'gain' 'kk'; there are: k, of",
+    ),
+    (
+        "a: {type: gain, of: a, k: 1, units: m}",
+        "unknown input or parameter of 'gain' 'units'; there are: k, of, unit. Did you mean 'unit'",
     ),
     ("a: {type: gain, of: i, k: 1, unit: foo}", "'foo' is not a unit"),
     ("a: {type: gain, k: 1}", "1:10: block 'a': input 'of' is not connected. Write of: signal."),

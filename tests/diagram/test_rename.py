@@ -193,18 +193,120 @@ def test_a_part_of_an_included_file_is_renamed_there(tmp_path: Path) -> None:
             renamed(diagram, path, "y")
 
 
-@pytest.mark.parametrize(
-    ("file", "name", "words"),
-    [
-        ("servo_without_friction.yaml", "voltage", "extends another one"),
-        ("chain.yaml", "wall", "has rows of blocks (replicate)"),
-        ("cart_with_variants.yaml", "spring", "has variants"),
-    ],
-)
-def test_composed_diagrams_are_refused(file: str, name: str, words: str) -> None:
-    diagram = read(shipped("diagrams") / "gallery" / file)
-    with pytest.raises(OptionError, match=re.escape(f"rename takes no diagram that {words}")):
-        renamed(diagram, name, "another")
+ROWS = """\
+parameters: {n: 3, k: 2}
+record: [chain.all.phi, chain_2.omega]
+blocks:
+  wall: {type: constant, value: 0}
+  chain:
+    type: pendulum
+    left: previous.phi
+    right: next.phi
+    k: k*index
+    replicate: {count: n, first: {left: wall, start: k}, last: {right: wall}}
+  other: {type: sum, of: [chain.all.phi, -chain_1.phi, chain.last.omega]}
+subsystems:
+  pendulum:
+    inputs: [left, right]
+    outputs: [phi, omega]
+    parameters: {k: 1, start: 0}
+    blocks:
+      phi: {type: integrator, of: omega, start: start}
+      omega: {type: integrator, of: alpha}
+      alpha: {type: expression, formula: k*(left - 2*phi + right)}
+"""
+
+
+def test_a_row_and_its_blocks_follow() -> None:
+    diagram = read_text(ROWS)
+    assert renamed(diagram, "chain", "link").text == ROWS.replace("chain", "link")
+    expected = re.sub(r"\bphi\b", "angle", ROWS)
+    for path in ("pendulum.phi", "chain.phi", "chain_2.phi"):
+        assert renamed(diagram, path, "angle").text == expected
+    assert renamed(diagram, "n", "length").text == re.sub(r"\bn\b", "length", ROWS)
+    top, inside = ROWS.split("subsystems:")
+    new = re.sub(r"\bk\b", "stiff", top).replace("    stiff: stiff*index", "    k: stiff*index")
+    assert renamed(diagram, "k", "stiff").text == f"{new}subsystems:{inside}"
+    new = re.sub(r"\bstart\b", "begin", inside).replace("begin: begin}", "start: begin}")
+    top = top.replace("start: k", "begin: k")
+    assert renamed(diagram, "chain.start", "begin").text == f"{top}subsystems:{new}"
+
+
+BODIES = """\
+parameters: {law: 1}
+presets: {b: {law: 2, drag.c: 3, drag.dry_body.level: 1}}
+blocks:
+  v: {type: integrator, of: drag.force}
+  drag: {type: friction, rate: v, variant: law, c: 4}
+subsystems:
+  friction:
+    inputs: [rate]
+    outputs: {force: total}
+    parameters: {c: 2, level: 1}
+    blocks: {total: {type: sum, of: [law]}}
+    variants:
+      wet: {blocks: {law: {type: viscous, rate: rate, c: c}}}
+      dry:
+        parameters: {level: 7}
+        remove: [total]
+        blocks:
+          law: {type: dry_friction, rate: rate, slip: level, stick: c}
+          total: {type: sum, of: [law]}
+"""
+
+
+def test_all_bodies_of_a_subsystem_follow() -> None:
+    diagram = read_text(BODIES)
+    assert renamed(diagram, "friction.c", "d").text == (
+        BODIES.replace("c: 4", "d: 4")
+        .replace("drag.c", "drag.d")
+        .replace("{c: 2", "{d: 2")
+        .replace("c: c}", "c: d}")
+        .replace("stick: c", "stick: d")
+    )
+    assert renamed(diagram, "drag.total", "sum_1").text == BODIES.replace("total", "sum_1")
+    assert renamed(diagram, "friction.level", "z").text == re.sub(r"\blevel\b", "z", BODIES)
+    own, law = BODIES.split("subsystems:")
+    assert renamed(diagram, "law", "w").text == f"{own.replace('law', 'w')}subsystems:{law}"
+    inner = law.replace("law", "w")
+    assert renamed(diagram, "friction.law", "w").text == f"{own}subsystems:{inner}"
+    assert renamed(diagram, "friction", "f").text == BODIES.replace("friction", "f").replace(
+        "dry_f,", "dry_friction,"
+    )
+
+
+@pytest.mark.parametrize("text", [ROWS, BODIES], ids=["rows", "variants"])
+def test_there_and_back_of_what_is_composed(text: str) -> None:
+    diagram = read_text(text)
+    names = [n for n in parts(diagram) if not re.search(r"chain_\d", n)]
+    for path in [*names, *(["chain"] if "chain" in text else [])]:
+        where, _, name = path.rpartition(".")
+        there = renamed(diagram, path, f"{name}_zz")
+        assert there.text != text
+        assert renamed(there, f"{where}.{name}_zz".lstrip("."), name).text == text
+
+
+def test_a_diagram_that_extends_another_one(tmp_path: Path) -> None:
+    (tmp_path / "base.yaml").write_text(
+        "parameters: {k: 1, c: 1}\nblocks:\n  x: {type: integrator, of: f, start: 1}\n"
+        "  f: {type: sum, of: [spring]}\n  spring: {type: gain, of: x, k: -k}\n"
+    )
+    text = (
+        "extends: base.yaml\nparameters: {d: 3}\nblocks:\n  f: {of: [spring, drag]}\n"
+        "  drag: {type: gain, of: x, k: -d}\n  spring: {type: gain, of: x, k: -2*k}\n"
+    )
+    diagram = read_text(text, tmp_path / "top.yaml")
+    assert renamed(diagram, "drag", "w").text == text.replace("drag", "w")
+    assert renamed(diagram, "d", "w").text == text.replace("d: 3", "w: 3").replace("-d}", "-w}")
+    for name, line in (("x", 3), ("k", 1), ("f", 4), ("spring", 5)):
+        with pytest.raises(OptionError) as caught:
+            renamed(diagram, name, "w")
+        words = f"base.yaml:{line}:"
+        assert words in str(caught.value)
+        assert "stands in a diagram that this one extends. Rename it there" in str(caught.value)
+    own = text.replace("  spring", "  loose") + "remove: [spring]\n"
+    changed = read_text(own.replace("[spring, drag]", "[loose]"), tmp_path / "top.yaml")
+    assert "  tight: {type" in renamed(changed, "loose", "tight").text
 
 
 SECTION = """\

@@ -34,6 +34,7 @@ BLOCKS = "blocks: {}\n"
         ("# only a comment\n", "the file is empty"),
         ("---\n", "the file is empty"),
         ("title: [a\nblocks: {}", "2:7: this is not YAML: while parsing a flow sequence"),
+        ("blocks: {a: {of: [b, - c]}}", "A minus stands at its name, without a blank: [a, -b]."),
         ("title: 'a", "this is not YAML: while scanning a quoted scalar"),
         ("blocks:\n\ta: {}", "2:1: a tab stands where YAML needs blanks"),
         ("title: a: b", "1:9: this is not YAML: mapping values are not allowed"),

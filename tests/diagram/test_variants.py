@@ -2,9 +2,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from diagram.alike import said
 from diagram.small_library import LIBRARY, refused
+from tracewire.compile import compile
 from tracewire.diagram import (
     Diagram,
     add_addend,
@@ -13,7 +15,8 @@ from tracewire.diagram import (
     set_variants,
     written_out,
 )
-from tracewire.errors import OptionError
+from tracewire.errors import OptionError, SimulationError
+from tracewire.solve import simulate
 
 FRICTION = """
 subsystems:
@@ -130,7 +133,16 @@ MESSAGES = {
     "no such variant": (
         FRICTION + BLOCKS.replace("cubic", "qubic"),
         "<text>:21:44: block 'drag': unknown variant of 'friction' 'qubic'; there are: cubic, "
-        "linear, none. Did you mean 'cubic'?",
+        "linear, none. Did you mean 'cubic'? Or name a parameter of this diagram that has the "
+        "number of one, from 1.",
+    ),
+    "a variant and a parameter of one name": (
+        FRICTION + BLOCKS + "parameters: {cubic: 1}",
+        "'cubic' is a variant of 'friction' and a parameter here. Rename the parameter.",
+    ),
+    "a choice that a fit would change": (
+        FRICTION + BLOCKS.replace("cubic", "kind") + "parameters: {kind: {value: 1, fit: [1, 3]}}",
+        "'kind' chooses a variant of 'drag', and a fit cannot change it. Take 'fit' away.",
     ),
     "a subsystem without variants": (
         whole(*BODIES["linear"]).replace("rate: v", "rate: v, variant: x"),
@@ -163,8 +175,8 @@ MESSAGES = {
     ),
     "a preset": (
         FRICTION + BLOCKS + "presets: {dry: {drag.variant: none}}",
-        "'drag.variant' is no parameter: a variant is chosen when the diagram is read. Write "
-        "variant: ... in the block, or in a diagram that extends this one.",
+        "'drag.variant' is no parameter: a variant is chosen when the diagram is read. Name a "
+        "parameter in the block, variant: law, which has its number, and set that.",
     ),
 }
 
@@ -187,3 +199,57 @@ def test_messages_of_a_choice(name: str, variant: str, message: str) -> None:
     with pytest.raises(OptionError) as error:
         set_variants(made(FRICTION + BLOCKS), {name: variant})
     assert message in str(error.value)
+
+
+CHOSEN = """
+parameters: {kind: 1}
+presets: {slow: {kind: 2}, none: {drag.variant: 3}}
+blocks:
+  v: {type: integrator, of: drag.force, start: 0.5}
+  drag: {type: friction, rate: v, variant: kind}
+"""
+
+
+def test_a_parameter_chooses_the_body() -> None:
+    model = compile(made(FRICTION + CHOSEN))
+    t = np.linspace(0.0, 2.0, 21)
+    exact = {
+        "": 0.5 * np.exp(2.0 * t),  # the block gives -2 v, and the sum its negative
+        "slow": 0.5 / np.sqrt(1.0 + 2.0 * 3.0 * 0.25 * t),  # v' = -3 v^3
+        "none": np.full(21, 0.5),
+    }
+    for preset, v in exact.items():
+        run = simulate(model, preset=preset, times=t, rtol=1e-10)
+        assert np.allclose(run["v"], v, rtol=0.0, atol=1e-7), preset
+    several = simulate(model, parameters={"kind": 2.0, "drag.b": 1.0}, span=(0.0, 2.0))
+    assert several["v"][-1] == pytest.approx(0.5 / np.sqrt(2.0), abs=1e-6)
+
+
+def test_edits_of_a_subsystem_whose_body_a_parameter_chooses() -> None:
+    diagram = made(FRICTION + CHOSEN)
+    new = set_values(diagram, {"kind": 2.0, "drag.c": 5.0, "drag.b": 4.0})
+    assert new.text == diagram.text.replace("kind: 1", "kind: 2").replace("c: 2", "c: 5").replace(
+        "value: 3", "value: 4"
+    )
+    assert said(made(written_out(diagram))) == said(diagram)
+    for path, name in (("drag.variant", "kind"), ("drag.cubic_body.b", "b")):
+        with pytest.raises(OptionError) as error:
+            set_values(diagram, {path: 2.0})
+        assert f"is given by the parameter '{name}'. Change that one." in str(error.value)
+
+
+def test_a_parameter_that_bodies_give_other_values_stays_with_its_body() -> None:
+    text = FRICTION.replace("remove: [total]", "parameters: {c: 7}\n        remove: [total]")
+    inside = made(text + CHOSEN).blocks["drag"].subsystem
+    assert inside is not None and [*inside.parameters] == ["variant", "b"]
+    with pytest.raises(OptionError, match="which several blocks are"):
+        set_values(made(text + CHOSEN), {"drag.linear_body.c": 3.0})
+    assert "c: 9" in set_values(made(text + CHOSEN), {"drag.none_body.c": 9.0}).text
+
+
+def test_a_number_without_a_variant_is_refused_by_the_run() -> None:
+    model = compile(made(FRICTION + CHOSEN))
+    for number in (0.0, 4.0, 1.5):
+        with pytest.raises(SimulationError) as error:
+            simulate(model, parameters={"kind": number}, span=(0.0, 1.0))
+        assert "It is the number of a variant: 1 linear, 2 cubic, 3 none." in str(error.value)

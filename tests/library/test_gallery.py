@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles import dead_time
 from solve.models import LIMITS
 from tracewire.compile import compile
 from tracewire.diagram import read, read_text, set_variants
@@ -117,3 +118,15 @@ def test_each_variant_of_the_friction_brakes_the_cart_as_its_law_says() -> None:
     t = viscous.t
     exact = 0.2 * np.exp(-decay * t) * (np.cos(rate * t) + decay / rate * np.sin(rate * t))
     assert viscous["x"] == pytest.approx(exact, abs=1e-6)
+
+
+def test_a_sampled_controller_with_a_dead_time_is_exact() -> None:
+    """Limits, teeth with play and two dry frictions: against scipy, restarted at each switch."""
+    model = compile(read(GALLERY / "motor_with_dead_time.yaml"))
+    run = simulate(model, times=np.arange(1001) / 1000, limits=LIMITS)
+    exact = dead_time.integrated(1.0, 1e-3)
+    assert {event.kind for event in run.events} >= {"stick", "slip", "crossing"}
+    assert run["motor_angle"] == pytest.approx(exact[:, dead_time.MOTOR_ANGLE], abs=1e-6)
+    assert run["load_angle"] == pytest.approx(exact[:, dead_time.LOAD_ANGLE], abs=1e-6)
+    near = simulate(model, times=run.t, rtol=1e-9, limits=LIMITS)
+    assert near["load_angle"] == pytest.approx(exact[:, dead_time.LOAD_ANGLE], abs=1e-9)

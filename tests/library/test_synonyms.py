@@ -32,6 +32,52 @@ TEACHERS = {
 """The names that teachers reach for first."""
 
 
+COMMON = [
+    "INTEGRAL_m",
+    "GAINBLK_f",
+    "SUMMATION",
+    "BIGSOM_f",
+    "CONST_m",
+    "PRODUCT",
+    "GENSIN_f",
+    "GENSQR_f",
+    "STEP_FUNCTION",
+    "RAMP",
+    "SATURATION",
+    "DEADBAND",
+    "HYSTHERESIS",
+    "BACKLASH",
+    "SWITCH2_m",
+    "MUX",
+    "DEMUX",
+    "CLR",
+    "DLR",
+    "CLSS",
+    "TIME_DELAY",
+    "DOLLAR",
+    "SAMPHOLD_m",
+    "QUANT_f",
+    "RELATIONALOP",
+    "EXPRESSION",
+    "SINBLK_f",
+    "ABS_VALUE",
+    "LOOKUP_f",
+    "CSCOPE",
+    "CLOCK_c",
+]
+"""What a diagram of a driven and controlled mechanism is made of in Xcos."""
+
+
+def test_28_of_31_common_blocks_of_xcos_are_known_by_their_names() -> None:
+    known = [name for name in COMMON if find_synonym(name, [*library()])]
+    assert (len(COMMON), len(known) >= 28) == (31, True)
+    assert all(find_instead(name) for name in COMMON if name not in known)
+
+
+def test_there_are_at_least_160_blocks() -> None:
+    assert len([*library()]) >= 160
+
+
 @pytest.mark.parametrize("name", TEACHERS)
 def test_the_names_that_teachers_reach_for_first_are_known(name: str) -> None:
     assert f"\n{TEACHERS[name]}: " in "\n" + describe(library(), name)
@@ -68,6 +114,11 @@ def test_every_synonym_is_of_a_block_and_of_one_alone() -> None:
 )
 def test_a_block_is_described_by_a_name_of_another_tool(name: str, told: str) -> None:
     assert describe(library(), name).startswith(told)
+
+
+def test_a_name_that_means_something_else_elsewhere_is_explained() -> None:
+    told = describe(library(), "BACKLASH")
+    assert "The Backlash of Simulink and Xcos is 'play_operator' here" in told
 
 
 def test_a_description_names_the_block_in_other_tools() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from importlib import import_module
 from typing import Any
 
@@ -11,9 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.analyse import verdict
+from tracewire.analyse.characteristic import characteristic_roots
 from tracewire.analyse.equilibrium import is_steady, state_sizes, told_rates
-from tracewire.compile import Model
+from tracewire.analyse.internal_delays import InternalDelays
+from tracewire.compile import Model, at_rest
 from tracewire.errors import AnalysisError, OptionError, Problem, unknown
+from tracewire.formula import to_text
 from tracewire.result import Result
 from tracewire.solve import Passage
 
@@ -31,7 +35,7 @@ class Linear(Result):
 
     A (n, n), B (n, p), C (q, n), D (q, p) in SI; `states`, `inputs` (p) and `outputs` (q) name the
     rows and columns. `rates` (n,) are those at x: zero at a steady state; `told` says in words
-    those that are not.
+    those that are not. `delays` has the further matrices of a model with delays, None without.
     """
 
     states: tuple[str, ...]
@@ -45,10 +49,18 @@ class Linear(Result):
     C: Matrix
     D: Matrix
     told: str = ""
+    delays: InternalDelays | None = None
 
-    @property
+    @cached_property
     def eigenvalues(self) -> Complexes:
-        """The eigenvalues (n,) of A in 1/s, those of the largest real part first."""
+        """The eigenvalues (n,) of A in 1/s, those of the largest real part first.
+
+        With delays the characteristic roots of which there is no end: the rightmost ones. Raises
+        AnalysisError where a delay feeds itself without a state.
+        """
+        terms = {} if self.delays is None else self.delays.terms()
+        if terms:
+            return characteristic_roots(self.A, terms)
         found = np.linalg.eigvals(self.A).astype(np.complex128)
         return found[np.lexsort((-found.imag, -found.real))]
 
@@ -57,11 +69,28 @@ class Linear(Result):
         """Whether the steady state is stable; "not a steady state" where rates are not zero."""
         return NOT_STEADY if self.told else verdict.of_eigenvalues(self.eigenvalues)
 
+    def transfer(self, s: complex) -> Complexes:
+        """The transfer function (q, p) at a complex s in 1/s, with exp(-s T) of the delays."""
+        one = np.eye(len(self.x))
+        d = self.delays
+        if d is None:
+            inner = np.linalg.solve(s * one - self.A, self.B.astype(np.complex128))
+            return np.asarray(self.C @ inner + self.D)
+        late = np.diag(np.exp(-s * d.times))
+        late = np.linalg.solve(np.eye(len(d.times)) - late @ d.D22, late)  # w of what x and u give
+        x = np.linalg.solve(s * one - self.A - d.B2 @ late @ d.C2, self.B + d.B2 @ late @ d.D21)
+        w = late @ (d.C2 @ x + d.D21)
+        return np.asarray(self.C @ x + self.D + d.D12 @ w)
+
     def to_control(self) -> Any:
         """The same as a StateSpace of python-control; stop.v is called `stop_v` there.
 
-        Raises AnalysisError where it is not installed.
+        Raises AnalysisError where it is not installed, or there are delays, which it does not know.
         """
+        if self.delays is not None:
+            what = "python-control has no delays"
+            hint = "Put pade_delay in their place, or take the matrices of `delays`."
+            raise AnalysisError([Problem(what, hint=hint)])
         try:
             control = import_module("control")
         except ImportError:
@@ -90,6 +119,9 @@ def linearise(
 ) -> Linear:
     """Linearise a model: exact derivatives of its rates and signals, from the tape.
 
+    A delay stays one, beside the matrices: see `InternalDelays`. At the states of `at` it gives
+    what goes into it, as after a rest there.
+
     `at` gives states by name in place of the start values, `t` in s is the time. `inputs` names
     what B and D are about: parameters, measured inputs of the diagram, or signals, which are then
     taken as given from outside. `outputs` names the rows of C and D, the recorded signals unless
@@ -98,12 +130,24 @@ def linearise(
     Raises AnalysisError at a nonsmooth point, with the guards that are at their level there;
     OptionError for names that do not exist.
     """
-    shown = with_outputs(model, outputs)
-    names = _inputs(model, inputs)
-    passage = Passage(model, length=1.0, begin=t, parameters=parameters, start=at, preset=preset)
+    rest = at_rest(model) if model.lowered.delays else None
+    settled, cut = (model, model) if rest is None else (rest.settled, rest.opened)
+    shown = with_outputs(cut, outputs)
+    names = _inputs(cut, inputs)
+    passage = Passage(settled, length=1.0, begin=t, parameters=parameters, start=at, preset=preset)
     refuse_nonsmooth(passage)
     x, n = passage.x, len(model.states)
-    seen = Passage(shown, length=1.0, begin=t, parameters=parameters, start=at, preset=preset)
+    ports: tuple[str, ...] = ()
+    given, times = dict(parameters or {}), np.zeros(0)
+    if rest is not None:
+        known = replace(settled, recorded=(*rest.signals, *rest.times))
+        ports, m = rest.outputs, len(rest.outputs)
+        there = Passage(known, length=1.0, begin=t, parameters=given, start=at, preset=preset)
+        values = there.value("outputs", 2 * m, x, t)
+        given |= dict(zip(ports, values[:m].tolist(), strict=True))
+        times = values[m:]
+        shown = replace(shown, recorded=(*shown.recorded, *rest.signals))
+    seen = Passage(shown, length=1.0, begin=t, parameters=given, start=at, preset=preset)
     q = len(shown.recorded)
 
     def slopes(of: str, by: Sequence[str], rows: int) -> Matrix:
@@ -113,21 +157,37 @@ def linearise(
         return seen.value(function, rows * len(by), x, t).reshape(rows, len(by))
 
     sizes = state_sizes(passage)
+    by_x, by_u, by_w = (slopes("outputs", by, q) for by in (model.states, names, ports))
+    q -= len(ports)
+    delays = None
+    if rest is not None:
+        delays = InternalDelays(
+            signals=tuple(to_text(cut.flat.signals[name]) for name in rest.signals),
+            times=times,
+            B2=slopes("rhs", ports, n),
+            C2=by_x[q:],
+            D12=by_w[:q],
+            D21=by_u[q:],
+            D22=by_w[q:],
+        )
     found = Linear(
         states=model.states,
         inputs=names,
-        outputs=shown.recorded,
+        outputs=shown.recorded[:q],
         t=t,
         x=x,
         rates=passage.rates(),
         A=slopes("rhs", model.states, n),
         B=slopes("rhs", names, n),
-        C=slopes("outputs", model.states, q),
-        D=slopes("outputs", names, q),
+        C=by_x[:q],
+        D=by_u[:q],
         told="" if is_steady(passage, sizes) else told_rates(passage, sizes),
+        delays=delays,
     )
-    for name in "ABCD":
-        if not np.isfinite(getattr(found, name)).all():
+    parts: list[tuple[object, str]] = [(found, name) for name in "ABCD"]
+    parts += [(delays, name) for name in ("B2", "C2", "D12", "D21", "D22") if delays is not None]
+    for of, name in parts:
+        if not np.isfinite(getattr(of, name)).all():
             what = f"the matrix {name} is not finite at this state"
             hint = "Look for a root or a division whose slope has no end there."
             raise AnalysisError([Problem(what, hint=hint)])

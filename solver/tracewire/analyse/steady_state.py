@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from tracewire.analyse import verdict
 from tracewire.analyse.drive import is_driven
 from tracewire.analyse.equilibrium import find_equilibrium
-from tracewire.analyse.linearise import nonsmooth
-from tracewire.compile import Model
+from tracewire.analyse.linearise import linearise, nonsmooth
+from tracewire.compile import Model, at_rest
 from tracewire.errors import AnalysisError, Problem
 from tracewire.result import Result
 from tracewire.solve import Passage
@@ -27,9 +27,10 @@ class SteadyState(Result):
     """States `x` (n,) in SI at which all rates are zero.
 
     `residual` is the largest rate that is left there; `eigenvalues` (n,) in 1/s those of the
-    Jacobian, the largest real part first; `verdict` stable, unstable or neutral. At a nonsmooth
-    point, such as a body that sticks, there are no eigenvalues, the verdict is "nonsmooth", and
-    `guards` says why.
+    Jacobian, the largest real part first; `verdict` stable, unstable or neutral. With delays the
+    eigenvalues are the rightmost characteristic roots, and the Jacobian counts delayed states at
+    once. At a nonsmooth point, such as a body that sticks, there are no eigenvalues, the verdict is
+    "nonsmooth", and `guards` says why.
     """
 
     states: tuple[str, ...]
@@ -65,8 +66,9 @@ def steady_state(
     Raises AnalysisError: a model whose rates change with time by themselves has none, the start
     lies beyond a contact, or the search has not found one, with the rates that are left.
     """
+    rest = at_rest(model).settled if model.lowered.delays else model
     passage = Passage(
-        model, length=1.0, begin=t, parameters=parameters, start=guess, preset=preset, rtol=1e-9
+        rest, length=1.0, begin=t, parameters=parameters, start=guess, preset=preset, rtol=1e-9
     )
     if is_driven(passage, _span(model, passage)):
         what = "the rates change with time by themselves: this model has no steady state"
@@ -77,8 +79,12 @@ def steady_state(
     guards = tuple(nonsmooth(passage))
     jacobian = passage.jacobian()
     none = np.empty(0, dtype=np.complex128)
-    eigenvalues = none if guards else np.linalg.eigvals(jacobian).astype(np.complex128)
-    eigenvalues = eigenvalues[np.lexsort((-eigenvalues.imag, -eigenvalues.real))]
+    eigenvalues = none
+    if not guards:
+        at = dict(zip(model.states, x.tolist(), strict=True))
+        eigenvalues = linearise(
+            model, at=at, t=t, outputs=(), parameters=parameters, preset=preset
+        ).eigenvalues
     said = "nonsmooth" if guards else verdict.of_eigenvalues(eigenvalues)
     units = {state.name: state.unit for state in model.flat.states}
     return SteadyState(model.states, x, left, jacobian, eigenvalues, said, guards, units)

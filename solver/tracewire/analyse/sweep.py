@@ -26,7 +26,7 @@ from tracewire.analyse.quantities import (
 )
 from tracewire.analyse.work import Tell, work_through
 from tracewire.compile import Model
-from tracewire.diagram import quantity_problems
+from tracewire.diagram import quantity_problems, row_ends
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.formula import Expression, parse_quantity
 from tracewire.result import Result
@@ -136,7 +136,7 @@ class _Point:
 
 def _quantity(model: Model, output: str) -> Expression:
     """An output as the quantity that it writes. Raises OptionError, FormulaError."""
-    quantity = parse_quantity(output)
+    quantity = parse_quantity(row_ends(model.diagram, output))
     if wrong := quantity_problems(quantity, model.diagram):
         raise OptionError(wrong)
     if not is_of_run(quantity):

@@ -13,9 +13,11 @@ from tracewire.compile.flat import (
 from tracewire.compile.lowered import Mode, Reset, Transition
 from tracewire.compile.model import Model, compile
 from tracewire.compile.remarks import remarks_of
+from tracewire.compile.rest import AtRest, at_rest
 from tracewire.compile.statements import statement_problems
 
 __all__ = [
+    "AtRest",
     "Flat",
     "FlatBlock",
     "FlatEvent",
@@ -27,6 +29,7 @@ __all__ = [
     "Model",
     "Reset",
     "Transition",
+    "at_rest",
     "compile",
     "remarks_of",
     "statement_problems",

@@ -114,13 +114,7 @@ class _Flattener:
             units=self.units,
             shown=self.shown,
             memories=tuple(self.memories),
-            require=(
-                *(
-                    replace(known, formula=rename(known.formula, scope.resolve))
-                    for known in top.require
-                ),
-                *self.require,
-            ),
+            require=tuple(self.require),
         )
 
     def add_samples(self) -> None:
@@ -172,6 +166,10 @@ class _Flattener:
         self, diagram: Diagram, path: str, definition: str, inputs: Mapping[str, Expression]
     ) -> None:
         scope = _Scope(diagram, path, inputs)
+        self.require += [
+            replace(known, formula=rename(known.formula, scope.resolve))
+            for known in diagram.require
+        ]
         for name, count in diagram.counts.items():
             hint = f"'{name}' says how many blocks there are: change it in the diagram."
             for relation in (">=", "<="):  # formulas have no equality

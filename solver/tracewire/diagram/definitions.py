@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from tracewire.diagram.body import Body
+from tracewire.diagram.choose import side_by_side
 from tracewire.diagram.diagram import Diagram
 from tracewire.diagram.extend import variants_of, with_variant
 from tracewire.diagram.grammar import INSIDE, TOP, VARIANT
@@ -60,9 +61,13 @@ class Definition:
 
 @dataclass(frozen=True)
 class Choice:
-    """What a line chooses of the subsystem that it uses; '' is the first variant."""
+    """What a line chooses of the subsystem that it uses; '' is the first variant.
+
+    `number` is the parameter of the line's diagram that has the number of the variant, if one has.
+    """
 
     variant: str = ""
+    number: str = ""
     counts: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -148,6 +153,8 @@ class Definitions:
                 ports = {"inputs", "outputs"} & changes.keys.keys()
                 what = "section of a variant"
                 body.check_keys(changes, VARIANT, what, hint=hint if ports else "")
+        if choice.number:
+            return side_by_side(definition.name, entries)
         usual = next(iter(definition.variants), "")
         variant = choice.variant or usual
         return with_variant(entries, variant, self.problems) if variant else entries
@@ -156,26 +163,39 @@ class Definitions:
         self, definition: Definition, line: Entries, scope: Scope, place: Place
     ) -> Choice | None:
         """What a line chooses of a subsystem; None with a problem noted."""
-        variant = self._variant(definition, line, place)
+        variant = self._variant(definition, line, scope, place)
         if variant is None:
             return None
-        return Choice(variant, self._counts(definition, line, scope, variant))
+        number = variant if variant not in definition.variants else ""
+        bodies = definition.variants if number else (variant,)
+        counts: dict[str, float] = {}
+        for body in bodies:
+            counts |= self._counts(definition, line, scope, body)
+        return Choice("" if number else variant, number, counts)
 
-    def _variant(self, definition: Definition, line: Entries, place: Place) -> str | None:
-        """The variant that a line names; '' where it names none, None where there is no such."""
+    def _variant(
+        self, definition: Definition, line: Entries, scope: Scope, place: Place
+    ) -> str | None:
+        """The variant that a line names, or the parameter that has the number of one.
+
+        '' where it names none, None where there is no such.
+        """
         node = line.values.get("variant")
         if node is None or not isinstance(definition.node, Entries):
             return ""
         known = definition.variants
         name = Body(self.problems).text(node, "'variant'")
-        if name is None or name in known:
+        at = replace(node.place, block=place.block)
+        if name in known and name in scope.numbers:
+            what = f"'{name}' is a variant of '{definition.name}' and a parameter here"
+            self.problems.add(what, at, (), "Rename the parameter.")
+        elif name is None or name in known or (known and name in scope.numbers):
             return name
-        if known:
-            at = replace(node.place, block=place.block)
-            self.problems.unknown(f"variant of '{definition.name}'", name, known, at)
+        elif known:
+            hint = "Or name a parameter of this diagram that has the number of one, from 1."
+            self.problems.unknown(f"variant of '{definition.name}'", name, known, at, hint)
         else:
             what = f"the subsystem '{definition.name}' has no variants"
-            at = replace(node.place, block=place.block)
             self.problems.add(what, at, (), "Take 'variant' away.")
         return None
 

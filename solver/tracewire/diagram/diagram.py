@@ -320,8 +320,9 @@ class Diagram:
     edit of that text. `library` holds the blocks that it may use. `effect`: a subsystem that may be
     tried as a missing effect, and how. `scene` says how it is drawn as a mechanism, and `expect`
     what it must show. `counts` are the parameters that say how many blocks there are; a run cannot
-    change them. `variant`: which of its bodies, the `variants`, a subsystem has here. `sources` are
-    the other diagram files that it extends or includes.
+    change them. `variant`: which of its bodies, the `variants`, a subsystem has here; `bodies` has
+    all of them, at the definition. `sources` are the other diagram files that it extends or
+    includes.
     """
 
     name: str
@@ -348,6 +349,7 @@ class Diagram:
     counts: Mapping[str, float] = field(default_factory=dict)
     variant: str = ""
     variants: tuple[str, ...] = ()
+    bodies: Mapping[str, Diagram] = field(default_factory=dict)
     sources: tuple[Path, ...] = ()
     expect: tuple[Statement, ...] = ()
 

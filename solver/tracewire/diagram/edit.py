@@ -29,27 +29,40 @@ from tracewire.errors import DiagramError, OptionError, unknown
 
 
 def add_addend(
-    diagram: Diagram, sum_name: str, block_name: str, block_line: str, negative: bool = False
+    diagram: Diagram,
+    sum_name: str,
+    block_name: str,
+    block_line: str,
+    negative: bool = False,
+    element: tuple[int, int] | None = None,
 ) -> Diagram:
     """The diagram with a new block, on a line behind the sum's, and its output in the sum.
 
     sum_name: the sum by its definition: `torque` at the top, `bearing.total` for the sum `total` in
     the definition of the subsystem `bearing`.
     block_line: what stands behind the name, such as `{type: viscous, rate: omega, c: 0}`.
-    negative: the sum takes the output away.
+    negative: the sum takes the output away. element: the number of the element that it is added to,
+    and how many there are, of a sum of vectors: a gain makes a vector of it.
     """
     diagram, inside, blocks, name = _own_sum(diagram, sum_name)
     port, node = _addends(inside.blocks[name], inside, blocks)
     line = block_line.strip().removeprefix(f"{block_name}:").strip()
     text = diagram.text
-    wire = f"-{block_name}" if negative else block_name
+    added, more = block_name, []
+    if element is not None:
+        added = f"{block_name}_alone"
+        shares = ", ".join(str(int(n == element[0])) for n in range(element[1]))
+        gain = f"{{type: gain, of: {block_name}, k: [{shares}]}}"
+        more = [entry_after(text, blocks, name, added, gain)]
+    wire = f"-{added}" if negative else added
     if isinstance(node, Items):
         wired = item_last(text, node, wire)
     else:
         assert isinstance(node, Scalar)
         wired = replaced(node, f"[{text[node.start : node.end]}, {wire}]")
-    new = reread(diagram, [entry_after(text, blocks, name, block_name, line), wired])
-    _expect(new, sum_name, port, [*_signals(inside.blocks[name], port), block_name])
+    # what is put at one place stands in the text in the reverse order
+    new = reread(diagram, [*more, entry_after(text, blocks, name, block_name, line), wired])
+    _expect(new, sum_name, port, [*_signals(inside.blocks[name], port), added])
     return new
 
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Sequence
 
 from tracewire.diagram.diagram import Array, BlockUse, Diagram, Value
 from tracewire.formula import Name
 from tracewire.library import Block, Event, Library
 
+ROW_END = re.compile(r"(?<![\w.])([A-Za-z_]\w*)\.(first|last)(?!\w)", re.ASCII)
 INDEX = re.compile(r"\s*\[\s*(\d+(?:\s*,\s*\d+)*)\s*\]$")
 
 
@@ -73,8 +75,22 @@ def find_signal(diagram: Diagram, name: str) -> str | None:
     return head if use.subsystem is None and len(outputs) == 1 else f"{head}.{port}"
 
 
+def row_ends(diagram: Diagram, text: str) -> str:
+    """A path or formula with the blocks in place of the ends of rows: chain.last.x is chain_9.x."""
+    if ".first" not in text and ".last" not in text:
+        return text
+    lengths = Counter(use.row for use in diagram.blocks.values() if use.row)
+
+    def block(found: re.Match[str]) -> str:
+        row, end = found[1], found[2]
+        return f"{row}_{1 if end == 'first' else lengths[row]}" if row in lengths else found[0]
+
+    return ROW_END.sub(block, text)
+
+
 def find_recorded(diagram: Diagram, path: str) -> str | None:
     """The full name of a signal or state by its path, which may lead into subsystems, or None."""
+    path = row_ends(diagram, path)
     found = find_signal(diagram, path) or find_state(diagram, path)
     if found is not None:
         return found

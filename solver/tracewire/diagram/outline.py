@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from tracewire.diagram.choose import NUMBER, is_chosen, side_by_side
 from tracewire.diagram.diagram import BlockUse, Diagram, Value
 from tracewire.diagram.extend import with_variant
+from tracewire.diagram.files import load
 from tracewire.diagram.names import find_parameter, parameters, split_index
 from tracewire.diagram.packages import Packages
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.sources import Sources
 from tracewire.diagram.strict import Entries, Items, Node, Scalar, compose
 from tracewire.errors import DiagramError, OptionError, Place, TracewireError, unknown
-from tracewire.formula import Number
+from tracewire.formula import Number, to_text
 
 
 @dataclass(frozen=True)
@@ -32,7 +34,9 @@ class Spot:
 class Outline:
     """The nodes of a diagram, found by the names of its parts.
 
-    `root` has those of the files that it extends and includes, too; `own` those of its text only.
+    `root` has those of the files that it extends and includes, too; `own` those of its text only,
+    and `base` those of the diagram that it extends. `definitions` has the subsystems by their path,
+    each with the body that is used; `bodies` has all bodies, and `removed` what one takes away.
     """
 
     def __init__(self, diagram: Diagram) -> None:
@@ -44,7 +48,13 @@ class Outline:
             raise DiagramError.one("a diagram must be a mapping", own.place)
         self.root, self.own = root, own
         self.included = sources.all_included(own)
+        extends = own.values.get("extends")
+        self.base: Entries | None = None
+        if isinstance(extends, Scalar):
+            self.base = sources.tree(load(extends.path), extends.path)
         self.definitions: dict[str, tuple[Diagram, Entries]] = {"": (diagram, root)}
+        self.bodies: dict[str, list[tuple[Diagram, Entries]]] = {"": [(diagram, root)]}
+        self.removed: dict[tuple[Place, str], Node] = {}
         self.nodes: dict[tuple[Place, str], Entries] = {(diagram.place, ""): root}
         self.uses, self.used = _count_uses(diagram)
         self._define("", diagram, root)
@@ -56,9 +66,17 @@ class Outline:
                 inner = f"{path}.{name}" if path else name
                 usual = diagram.subsystems[name]
                 known = self.used.get(usual.place, usual)  # the variant that is used, if one is
-                for variant in usual.variants or ("",):
+                self.bodies[inner] = []
+                for variant, one in (usual.bodies or {"": known}).items():
                     body = with_variant(node, variant, Problems()) if variant else node
                     self.nodes[usual.place, variant] = body
+                    self.bodies[inner].append((one, body))
+                    changes = _part(node, "variants", variant) if variant else None
+                    if isinstance(changes, Entries) and "remove" in changes.values:
+                        self.removed[usual.place, variant] = changes.values["remove"]
+                if usual.variants:
+                    at = replace(node.place, block=usual.place.block)
+                    self.nodes[at, ""] = side_by_side(name, node)
                 self.definitions[inner] = known, self.nodes[usual.place, known.variant]
                 self._define(inner, known, self.definitions[inner][1])
 
@@ -106,6 +124,10 @@ class Outline:
                 what = f"'{path}' belongs to a block of the row '{use.row}', which have one line"
                 hint = "Make it a parameter of the diagram, and name that in the line."
                 raise OptionError.one(what, use.place, hint=hint)
+            given = use.settings.get(rest)
+            if isinstance(given, Value) and (rest == NUMBER or is_chosen(inside)):
+                what = f"'{path}' is given by the parameter '{to_text(given.formula)}'"
+                raise OptionError.one(what, use.place, hint="Change that one.")
             setting, index = split_index(rest)
             if setting in use.settings and use.subsystem is None:
                 node = line.values[setting]
@@ -117,7 +139,9 @@ class Outline:
             assert use.subsystem is not None
             entries = self._entries(use.subsystem)
             shared = self.uses[use.subsystem.place] > 1
-            if rest in use.subsystem.parameters:
+            if is_chosen(inside):  # the line of a body stands in no text
+                shared = self.uses[inside.place] > 1 or self._bodies_with(inside, use, rest) > 1
+            if rest in use.subsystem.parameters and not (shared and is_chosen(inside)):
                 node = _part(entries, "parameters", rest)
                 return Spot(rest, node, value, value.factor, line if shared else None)
             if shared:
@@ -126,6 +150,17 @@ class Outline:
                 raise OptionError.one(what, use.subsystem.place, hint=hint)
             inside = use.subsystem
         return Spot(rest, _part(entries, "parameters", rest), value, value.factor)
+
+    def _bodies_with(self, chosen: Diagram, use: BlockUse, name: str) -> int:
+        """How many bodies have the very parameter that the body of a line has."""
+        assert use.subsystem is not None
+        parts = [
+            self.nodes[use.subsystem.place, v].values.get("parameters") for v in chosen.variants
+        ]
+        nodes = [part.values.get(name) for part in parts if isinstance(part, Entries)]
+        own = self._entries(use.subsystem).values.get("parameters")
+        node = own.values.get(name) if isinstance(own, Entries) else None
+        return sum(each is node for each in nodes) if node is not None else len(nodes)
 
     def is_own(self, node: Node) -> bool:
         """Whether a node stands in the diagram's own text."""

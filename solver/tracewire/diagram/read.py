@@ -8,6 +8,7 @@ from pathlib import Path
 
 from tracewire.diagram.body import Body
 from tracewire.diagram.check import check_names
+from tracewire.diagram.choose import NUMBER, with_number
 from tracewire.diagram.definitions import (
     USUAL,
     Choice,
@@ -15,7 +16,7 @@ from tracewire.diagram.definitions import (
     Definitions,
     Scope,
 )
-from tracewire.diagram.diagram import Diagram
+from tracewire.diagram.diagram import Diagram, Value
 from tracewire.diagram.files import load
 from tracewire.diagram.loops import check_parameters
 from tracewire.diagram.measured import read_measured
@@ -44,6 +45,7 @@ from tracewire.diagram.sources import MOST_LEVELS, Sources
 from tracewire.diagram.strict import Entries
 from tracewire.diagram.uses import read_blocks
 from tracewire.errors import DiagramError, Place, Problem
+from tracewire.formula import names_of
 from tracewire.library import Block, Library, load_library
 
 MOST_BLOCKS = 100_000
@@ -196,9 +198,11 @@ class _Reader:
             for name, definition in scope.definitions.items()
             if (diagram := self.diagram(definition)) is not None
         }
-        for name, diagram in subsystems.items():
-            for variant in diagram.variants:  # what is wrong in one that nothing uses is told, too
-                self.diagram(scope.definitions[name], Choice(variant))
+        for name, diagram in subsystems.items():  # what is wrong in one without a use is told, too
+            bodies = {v: self.diagram(scope.definitions[name], Choice(v)) for v in diagram.variants}
+            known = {variant: body for variant, body in bodies.items() if body is not None}
+            if known:
+                subsystems[name] = replace(diagram, bodies=known)
         return Diagram(
             name=name,
             file=scope.file,
@@ -223,6 +227,13 @@ class _Reader:
             if diagram.parameters[name].fit is not None:
                 what = f"'{name}' says how many blocks there are, and a fit cannot change it"
                 self.problems.add(what, diagram.parameters[name].place, (), "Take 'fit' away.")
+        for use in diagram.blocks.values():
+            chosen = use.settings.get(NUMBER) if use.subsystem is not None else None
+            for name in names_of(chosen.formula) if isinstance(chosen, Value) else ():
+                if name in diagram.parameters and diagram.parameters[name].fit is not None:
+                    what = f"'{name}' chooses a variant of '{use.name}', and a fit cannot change it"
+                    place = diagram.parameters[name].place
+                    self.problems.add(what, place, (), "Take 'fit' away.")
         self.sizes[id(diagram)] = sum(
             1 + (self.sizes[id(use.subsystem)] if use.subsystem else 0)
             for use in diagram.blocks.values()
@@ -259,11 +270,12 @@ class _Reader:
 
     def diagram(self, definition: Definition, choice: Choice = USUAL) -> Diagram | None:
         """The diagram of a subsystem; None where it is none, or is just being read."""
-        variant = choice.variant or next(iter(definition.variants), "")
+        variant = "" if choice.number else choice.variant or next(iter(definition.variants), "")
         key = (variant, *sorted(choice.counts.items()))
         if key in definition.diagrams or definition in self.stack:
             return definition.diagrams.get(key)
-        self.stack.append(definition)
+        if not choice.number:  # else it has blocks that are its own bodies
+            self.stack.append(definition)
         outer, path = definition.scope, definition.path
         body = Body(self.problems, path)
         entries = self.definitions.entries(definition, choice, body)
@@ -274,12 +286,15 @@ class _Reader:
             scope = Scope(outer.file, outer.text, path, outer, numbers=numbers, counts=counted)
             scope.definitions = self.definitions.define(entries, scope)
             entries = replicated(entries, numbers, body)
-            diagram = self.common(entries, body, scope, definition.name, body.place(definition.key))
+            at = body.place(entries if choice.number else definition.key)
+            diagram = self.common(entries, body, scope, definition.name, at)
             if "effect" in entries.values:
                 effect = read_effect(entries.values["effect"], body, diagram)
                 diagram = replace(diagram, effect=effect)
             diagram = replace(diagram, variant=variant, variants=definition.variants)
+            diagram = with_number(diagram) if choice.number else diagram
             self.finish(diagram, body)
         definition.diagrams[key] = diagram
-        self.stack.pop()
+        if not choice.number:
+            self.stack.pop()
         return diagram

@@ -11,6 +11,8 @@ from tracewire.formula import QUANTITIES
 
 ONLY_FOR = {"over": "bifurcation diagram", "method": "fit"}
 OF_FITS = ("preset", "set", "rtol", "method")
+APART = ("start", "series")
+"""What a run may have, and a fit in the same statement would not."""
 
 
 def refuse_unused(node: Node, body: Body, quantities: Collection[str]) -> None:
@@ -31,4 +33,8 @@ def refuse_unused(node: Node, body: Body, quantities: Collection[str]) -> None:
         elif made_by == {"fit"} and key in SETTING and key not in OF_FITS:
             what = f"'{key}' cannot stand with a fit, whose runs are those of the measured series"
             hint = "Leave it out, or change the series."
+            body.problems.add(what, body.place(place), (), hint)
+        elif "fit" in made_by and key in APART:
+            what = f"'{key}' would hold in the run and not in the fit of one statement"
+            hint = "Write two statements, or use 'preset' or 'set', which hold in both."
             body.problems.add(what, body.place(place), (), hint)

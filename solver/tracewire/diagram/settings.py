@@ -113,7 +113,7 @@ def _explain(diagram: Diagram, path: str, place: Place, body: Body) -> None:
     inside, head = diagram, path
     if path.endswith(".variant"):
         what = f"'{clip(path)}' is no parameter: a variant is chosen when the diagram is read"
-        hint = "Write variant: ... in the block, or in a diagram that extends this one."
+        hint = "Name a parameter in the block, variant: law, which has its number, and set that."
         body.problems.add(what, place, (), hint)
         return
     while "." in head:

@@ -111,6 +111,8 @@ def compose(text: str, file: Path, problems: Problems) -> Node:
         hint = BROKEN
         if spot and any(map(ELEMENT.search, text.splitlines()[place.line - 1 : place.line])):
             hint = f'{BROKEN} An element of a vector needs quotes between brackets: {{of: "q[1]"}}.'
+        elif spot and text[spot.index + mark :].startswith("- "):
+            hint = "A minus stands at its name, without a blank: [a, -b]."
         raise DiagramError.one(f"this is not YAML: {said}", place, hint=hint) from None
     except yaml.YAMLError as error:
         what = f"this is not YAML: {clip(str(error))}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from difflib import get_close_matches
 
 from tracewire.diagram.arrays import read_array, read_formulas
 from tracewire.diagram.body import Body, Reference
@@ -50,9 +51,7 @@ def _read_block(name: str, key: Scalar, line: Node, body: Body, find: Find) -> B
     if kind is None:
         return replace(unread, unit=unit, local=local)
     ports, parameters = _shape(kind)
-    body.check_keys(
-        entries, (*ports, *parameters, *OF_A_BLOCK), f"input or parameter of '{type_name}'", name
-    )
+    _check_keys(entries, (*ports, *parameters), type_name, body, name)
     inputs: dict[str, tuple[Wire, ...]] = {}
     for port in ports.values():
         if port.name in entries.values:
@@ -75,6 +74,18 @@ def _read_block(name: str, key: Scalar, line: Node, body: Body, find: Find) -> B
     return BlockUse(
         name, type_name, inputs, settings, unit, local, inside, guess, place, shown, row
     )
+
+
+def _check_keys(
+    entries: Entries, own: tuple[str, ...], type_name: str, body: Body, name: str
+) -> None:
+    """Note the keys of a line that its block does not have; of those that all blocks have only one
+    that is spelled alike is named."""
+    for key, at, _ in entries:
+        if key not in own and key not in OF_A_BLOCK:
+            near = get_close_matches(key, OF_A_BLOCK, n=1)
+            kind = f"input or parameter of '{type_name}'"
+            body.problems.unknown(kind, key, (*own, *near), body.place(at, name))
 
 
 def _read_guess(node: Node, inside: Diagram | None, body: Body, name: str) -> Value | Array | None:

@@ -10,7 +10,7 @@ from tracewire.library.declare import Block
 from tracewire.library.effect import SCALES, SYMBOLS, Effect, Shape
 from tracewire.library.load import Library
 from tracewire.library.parts import ByMode, Event, Input, Mode, Output, Parameter, Transition
-from tracewire.library.synonyms import find_instead, find_synonym, other_names
+from tracewire.library.synonyms import OTHERWISE, find_instead, find_synonym, other_names
 
 MOST_VALUES = 8
 
@@ -104,6 +104,8 @@ def describe_origin(name: str, block: Block) -> list[str]:
     found = [] if block.effect is None else [_effect(block)]
     if others := other_names(name):
         found.append(f"Also known as {'; '.join(others)}.")
+    if name in OTHERWISE:
+        found.append(OTHERWISE[name])
     if block.source:
         found.append(f"Source: {block.source}")
     return [*found, f"Declared in {block.place}."]

@@ -139,7 +139,12 @@ NAMES: dict[str, dict[Tool, str]] = {
     },
     "pade_delay": {"Modelica": "PadeDelay", "": "pade"},
     "play_operator": {"": "gear play, hysteresis play"},
-    "power": {"Xcos": "POWBLK", "": "pow, exponent"},
+    "exp": {"Xcos": "EXPBLK_m"},
+    "log": {"Xcos": "LOGBLK_f"},
+    "sin": {"Xcos": "SINBLK_f"},
+    "cos": {"Xcos": "COSBLK_f"},
+    "tan": {"Xcos": "TANBLK_f"},
+    "power": {"Xcos": "POWBLK, POWBLK_f", "": "pow, exponent"},
     "prbs": {"Simulink": "PN Sequence", "": "pseudo random binary sequence, random binary"},
     "product": {"Simulink": "Product", "Modelica": "Product", "Xcos": "PRODUCT, PROD_f"},
     "pulse": {
@@ -280,15 +285,25 @@ Sources: the block libraries of Simulink R2023, of Modelica 4.0 and of Xcos 2023
 """
 
 SENSOR = "It is a number of a measured signal: signals: {{x: {{column: x, {0}: ...}}}}."
+OTHERWISE: dict[str, str] = {
+    "backlash": "The Backlash of Simulink and Xcos is 'play_operator' here, and teeth with play"
+    " between two bodies are 'elastic_gear'.",
+}
+"""Blocks here that have the name of another one elsewhere, and what that is here."""
 INSTEAD: dict[str, str] = {
     "logical operator, LOGICAL_OP, LOGIC, logic": "Use 'and', 'or', 'xor' or 'not'.",
     "MinMax, MAXMIN": "Use 'min' or 'max', which take two signals or more.",
-    "scope, CSCOPE, CMSCOPE, display, to workspace, plot, sink": (
+    "scope, CSCOPE, CMSCOPE, CSCOPXY, TOWS_c, display, to workspace, plot, sink": (
         "A run keeps the signals that the section 'record' names; --figure draws them."
     ),
-    "from file, inport, in, input": (
+    "from file, inport, in, input, IN_f": (
         "Signals from outside stand in the section 'inputs', and a measured series binds them."
     ),
+    "outport, out, output, OUT_f": (
+        "A subsystem lists its signals in 'outputs'; at the top 'record' names what a run keeps."
+    ),
+    "CLOCK_c, CLKCINPUT, CEVENTSCOPE": "A sampled block has its own 'period' and 'offset'.",
+    "TRIGFUN": "Use 'sin', 'cos', 'tan' and so on, or an 'expression'.",
     "subsystem, superblock, SUPER_f": (
         "Define it in the section 'subsystems', and use its name as the type."
     ),

@@ -22,6 +22,7 @@ from tracewire.analyse import (
     SteadyState,
     Sweep,
 )
+from tracewire.errors import AnalysisError
 from tracewire.show.bifurcation_figures import plot_bifurcation, plot_section
 from tracewire.show.plane_figures import plot_orbit
 from tracewire.show.presentation import Part, Presentation
@@ -36,6 +37,7 @@ from tracewire.show.style import with_unit
 from tracewire.show.sweep_figures import plot_chart, plot_sweep
 from tracewire.show.table import Table
 
+DELAYS = ("signals", "times", "B2", "C2", "D12", "D21", "D22")
 VALUE = frozenset({2})
 
 
@@ -97,7 +99,7 @@ def _linear_parts(found: Linear) -> list[Part]:
         rows = tuple(
             (row, *map(precise, line)) for row, line in zip(down, matrix.tolist(), strict=True)
         )
-        head = ("rate of" if name in "AB" else "signal", *across)
+        head = ("rate of" if name[0] in "AB" else "signal", *across)
         return Table(name, head, rows, frozenset(range(1, 1 + len(across))))
 
     matrices = (
@@ -106,16 +108,32 @@ def _linear_parts(found: Linear) -> list[Part]:
         ("C", found.C, found.states, found.outputs),
         ("D", found.D, found.inputs, found.outputs),
     )
-    listed = ", ".join(complex_text(value) for value in found.eigenvalues.tolist())
-    verdict = f"{found.verdict}: {found.told}" if found.told else found.verdict
-    tables = [table(*matrix) for matrix in matrices if matrix[1].size]
-    return [*tables, f"eigenvalues [1/s]: {listed}", verdict]
+    tables: list[Part] = [table(*matrix) for matrix in matrices if matrix[1].size]
+    name = "eigenvalues"
+    try:
+        eigenvalues, verdict = found.eigenvalues.tolist(), found.verdict
+    except AnalysisError as error:  # a delay that feeds itself has none; the matrices are right
+        return [*tables, str(error)]
+    for time, matrix in sorted(found.delays.terms().items()) if found.delays is not None else ():
+        tables.append(table(f"A, {time:.6g} s ago", matrix, found.states, found.states))
+        name = "rightmost characteristic roots"
+    listed = ", ".join(map(complex_text, eigenvalues))
+    return [
+        *tables,
+        f"{name} [1/s]: {listed}",
+        f"{verdict}: {found.told}" if found.told else verdict,
+    ]
 
 
 def _linear_data(found: Linear) -> dict[str, Any]:
     names = ("states", "inputs", "outputs", "t", "x", "rates", "A", "B", "C", "D")
     data = {name: getattr(found, name) for name in names}
-    return data | {"eigenvalues": pairs(found.eigenvalues), "verdict": found.verdict}
+    if found.delays is not None:
+        data["delays"] = {name: getattr(found.delays, name) for name in DELAYS}
+    try:
+        return data | {"eigenvalues": pairs(found.eigenvalues), "verdict": found.verdict}
+    except AnalysisError as error:
+        return data | {"eigenvalues": None, "verdict": None, "error": str(error)}
 
 
 # --- periodic motions ---------------------------------------------------------------------------

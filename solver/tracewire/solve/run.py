@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
-from tracewire.diagram import Shown
+from tracewire.diagram import Shown, row_ends
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.extras import import_extra
 from tracewire.files import replacing, write_rows
@@ -166,6 +166,8 @@ class Run(Result):
         return replace(self, shown=shown)
 
     def __getitem__(self, name: str) -> Vector:
+        if name not in self.signals and self.model is not None:
+            name = row_ends(self.model.diagram, name)
         if name not in self.signals:
             hint = "Add it to `record:` of the diagram, or to `record=` of compile."
             raise OptionError([unknown("recorded signal", name, self.signals, hint=hint)])

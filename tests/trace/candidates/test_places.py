@@ -5,13 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 from textwrap import dedent
 
+import numpy as np
 import pytest
 from tracewire.compile import compile
 from tracewire.diagram import read, read_text
+from tracewire.solve import simulate
 from tracewire.trace.candidates.candidates import extend, find_candidates
 from tracewire.trace.candidates.levels import Level, Levels
 from tracewire.trace.candidates.places import Place, find_places, untried
 from tracewire.trace.options import TraceOptions
+from tracewire.trace.screen.probe import probed
 
 OPTIONS = TraceOptions()
 
@@ -107,18 +110,65 @@ def test_the_diagram_can_say_which_sum_is_the_place() -> None:
     ]
 
 
-def test_a_sum_of_vectors_is_no_place() -> None:
+@pytest.mark.parametrize("given", ["", ", place: {q: x, v: v}"])
+def test_each_element_of_a_sum_of_vectors_is_a_place(given: str) -> None:
     found = places(
-        """
+        f"""
         blocks:
-          x: {type: integrator, of: v, start: [1, 2]}
-          v: {type: integrator, of: force}
-          force: {type: sum, of: [spring, same], place: {q: x, v: v}}
-          same: {type: sum, of: [spring]}
-          spring: {type: stiffness, of: x, k: 1}
+          x: {{type: integrator, of: v, start: [1, 2]}}
+          v: {{type: integrator, of: force}}
+          force: {{type: sum, of: [spring, same]{given}}}
+          same: {{type: sum, of: [spring]}}
+          spring: {{type: stiffness, of: x, k: 1}}
         """
     )
-    assert found == []
+    one, two = ("x[0]", "v[0]"), ("x[1]", "v[1]")
+    assert found == [
+        Place("force[0]", "sum", "force", *one, "force[0]", (two,), element=(0, 2)),
+        Place("force[1]", "sum", "force", *two, "force[1]", (one,), element=(1, 2)),
+    ]
+
+
+ROWS = """
+parameters: {k: 3}
+blocks:
+  x: {type: integrator, of: v, start: [1, 0]}
+  v: {type: integrator, of: a}
+  a: {type: gain, of: force, k: [2, 4]}
+  force: {type: sum, of: [spring]}
+  spring: {type: gain, of: x, k: -k}
+"""
+
+
+def test_an_effect_at_an_element_is_written_with_a_gain_that_makes_a_vector_of_it() -> None:
+    diagram = read_text(ROWS)
+    model = compile(diagram, backend="quick")
+    found = find_places(model)
+    known = {
+        (c.effect, c.place.name): c
+        for c in find_candidates(model, found, LEVELS, OPTIONS.candidate)
+    }
+    viscous = known["viscous", "force[1]"]
+    assert viscous.coefficient == "viscous_force_1.c"
+    new = extend(diagram, [(viscous, {"c": 0.25})])
+    assert "of: [spring, viscous_force_1_alone]" in new.text
+    lines = new.text.splitlines()
+    at = next(n for n, line in enumerate(lines) if "viscous_force_1:" in line)
+    assert lines[at].startswith('  viscous_force_1: {type: viscous, rate: "v[1]", c: {value: 0.25,')
+    assert lines[at + 1] == (
+        "  viscous_force_1_alone: {type: gain, of: viscous_force_1, k: [0, 1]}"
+    )
+    run = simulate(compile(new, record=["x"]), span=(0, 1), start={"x[1]": 1.0, "x[0]": 1.0})
+    # x0'' = -6 x0, and x1'' = -12 x1 - x1'
+    assert run["x[0]"][-1] == pytest.approx(np.cos(np.sqrt(6.0)), abs=1e-5)
+    w = np.sqrt(12.0 - 0.25)
+    damped = np.exp(-0.5) * (np.cos(w) + 0.5 / w * np.sin(w))
+    assert run["x[1]"][-1] == pytest.approx(damped, abs=1e-5)
+    probe, names = probed(diagram, found, 1)
+    push = {"probe_input_0": ([0, 1], [1, 1])}
+    run = simulate(compile(probe), span=(0, 1), parameters={names[1][0]: 1.0}, inputs=push)
+    assert run["x[0]"][-1] == pytest.approx(np.cos(np.sqrt(6.0)), abs=1e-5)
+    assert run["x[1]"][-1] == pytest.approx((1 - np.cos(np.sqrt(12.0))) / 3, abs=1e-5)
 
 
 def test_a_sum_in_an_algebraic_loop_is_a_place() -> None:
@@ -258,13 +308,51 @@ DEEPER = """
     [
         ("w: -w}", "w: -w}\n          twin: {type: cart, u: u, w: w}"),
         ("w: -w}", "w: -w, replicate: 1}"),
-        ("\n          body: {type: cart, u: u, w: -w}\n        subsystems:", DEEPER),
     ],
-    ids=["two uses", "a row", "deeper"],
+    ids=["two uses", "a row"],
 )
 def test_what_an_effect_would_change_elsewhere_is_no_place(old: str, new: str) -> None:
     assert old in CART
     assert not [place for place in places(CART.replace(old, new)) if place.kind == "sum"]
+
+
+SHALLOW = "\n          body: {type: cart, u: u, w: -w}\n        subsystems:"
+
+
+def test_a_sum_two_levels_deep_is_a_place() -> None:
+    text = CART.replace(SHALLOW, DEEPER)
+    diagram = read_text(dedent(text))
+    model = compile(diagram, backend="quick")
+    place = find_places(model)[0]
+    # u goes through both ports; in the innermost diagram it has two names, of which one is taken
+    assert place == Place(
+        *("body.c.force", "sum", "cart.force", "body.c.x", "body.c.v", "body.c.a"),
+        *((), ("u",), "body.c"),
+    )
+    found = find_candidates(model, [place], LEVELS, OPTIONS.candidate)
+    known = {candidate.effect: candidate for candidate in found}
+    assert known["viscous"].coefficient == "body.c.viscous.c"
+    new = extend(diagram, [(known["viscous"], {"c": 0.25})])
+    assert "      viscous: {type: viscous, rate: v, c: {value: 0.25, fit:" in new.text
+    assert "body.c.viscous.c" in compile(new, backend="quick").flat.parameters
+    probe, ((name,),) = probed(diagram, [place], 1)
+    push = {"probe_input_0": ([0, 1], [1, 1])}
+    run = simulate(compile(probe), span=(0, 1), parameters={name: 1.0}, inputs=push)
+    # x'' = 2 (-x + 1), from rest
+    assert run["body.c.x"][-1] == pytest.approx(1.0 - np.cos(np.sqrt(2.0)), abs=1e-6)
+
+
+def test_two_definitions_of_one_name_are_no_places() -> None:
+    text = CART.replace(SHALLOW, DEEPER).replace(
+        "blocks: {c: {type: cart, u: u, w: u}}",
+        """blocks: {c: {type: cart, u: u}}
+            subsystems:
+              cart:
+                inputs: [u]
+                outputs: [x]
+                blocks: {x: {type: integrator, of: f}, f: {type: sum, of: [u, -x]}}""",
+    )
+    assert not [place for place in places(text) if place.kind == "sum"]
 
 
 def test_a_sum_of_an_included_file_is_no_place(tmp_path: Path) -> None:

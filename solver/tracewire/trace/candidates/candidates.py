@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 
 from tracewire.compile import Model
@@ -31,6 +32,7 @@ __all__ = [
     "without_defaults",
 ]
 
+NO_NAME = re.compile(r"\W+", re.ASCII)
 RANGES = {"rates": "slowest", "drives": "least"}
 """The scales that are ranges: by the name of their largest size that of their least one."""
 
@@ -69,7 +71,8 @@ def find_candidates(
             if kind.effect.place != place.kind:
                 continue
             plain = name.rpartition(".")[2]  # a block of a package has the name of that in front
-            wanted = f"{plain}_{place.name.rpartition('.')[2]}" if several[place.kind] else plain
+            at = NO_NAME.sub("_", place.name.rpartition(".")[2]).strip("_")  # force_0 of force[0]
+            wanted = f"{plain}_{at}" if several[place.kind] else plain
             for of, signals in _wirings(kind.effect, place, places):
                 block = f"{wanted}_{of}" if of else wanted
                 block = free_name(f"{place.within}.{block}" if place.within else block, names)

@@ -49,9 +49,12 @@ def extend(diagram: Diagram, chosen: Sequence[tuple[Candidate, Mapping[str, floa
         first: Mapping[str, float] = next(iter(candidate.own.values()), {})
         parts += [f"{name}: {{value: {number_text(value)}}}" for name, value in first.items()]
         line = f"{{{', '.join(parts)}}}"
-        add = add_to_drive if candidate.place.kind == "drive" else add_addend
         name = candidate.block.removeprefix(f"{within}.") if within else candidate.block
-        diagram = add(diagram, candidate.place.definition, name, line)
+        if candidate.place.kind == "drive":
+            diagram = add_to_drive(diagram, candidate.place.definition, name, line)
+        else:
+            element = candidate.place.element
+            diagram = add_addend(diagram, candidate.place.definition, name, line, element=element)
         known = {n: own for n, own in _own(candidate, values).items() if n in diagram.measured}
         if known:
             fit = {f"{candidate.block}.{name}": candidate.limits[name] for name in candidate.each}

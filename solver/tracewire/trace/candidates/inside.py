@@ -3,44 +3,78 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 
 from tracewire.diagram import BlockUse, Diagram, find_signal
+from tracewire.errors import Place
 
 
 def opened(diagram: Diagram) -> dict[str, BlockUse]:
-    """The blocks at the top whose subsystems may get an effect, by name.
+    """The blocks whose subsystems may get an effect, by their path, at any depth.
 
     An effect is added to the text of a definition. So that has to be in the diagram's own text or
-    in one that it extends, and no other block may be made from it.
+    in one that it extends, no other block may be made from it, and no other definition may have
+    its name. A body that a parameter chooses has no block of its own in the text.
     """
-    uses = Counter(_definitions(diagram))
-    return {
-        name: use
-        for name, use in diagram.blocks.items()
-        if use.subsystem is not None
-        and not use.row
-        and use.subsystem.file == diagram.file
-        and uses[use.subsystem.place] == 1
-    }
+    uses = Counter(_used(diagram))
+    names = Counter(name for name, _ in {*_defined(diagram)})
+
+    def of(inside: Diagram, path: str) -> Iterator[tuple[str, BlockUse]]:
+        for name, use in inside.blocks.items():
+            sub = use.subsystem
+            if sub is None or use.row or sub.file != diagram.file or uses[sub.place] > 1:
+                continue
+            if sub.variants and not sub.variant:
+                continue
+            if names[sub.name] == 1:
+                yield path + name, use
+            yield from of(sub, f"{path}{name}.")
+
+    return dict(of(diagram, ""))
 
 
-def _definitions(diagram: Diagram) -> list[object]:
-    inside = [use.subsystem for use in diagram.blocks.values() if use.subsystem is not None]
-    return [place for sub in inside for place in (sub.place, *_definitions(sub))]
+def _used(diagram: Diagram) -> Iterator[Place]:
+    for use in diagram.blocks.values():
+        if use.subsystem is not None:
+            yield use.subsystem.place
+            yield from _used(use.subsystem)
+
+
+def _defined(diagram: Diagram) -> Iterator[tuple[str, Place]]:
+    for inside in diagram.subsystems.values():
+        yield inside.name, inside.place
+        yield from _defined(inside)
+
+
+def diagram_at(diagram: Diagram, within: str) -> Diagram:
+    """The diagram in which a place stands, by the path of the block that its subsystem is."""
+    for name in within.split(".") if within else ():
+        inside = diagram.blocks[name].subsystem
+        assert inside is not None
+        diagram = inside
+    return diagram
 
 
 def local_name(diagram: Diagram, within: str, name: str) -> str:
     """A signal of the flat equations as a block inside a subsystem names it; '' where it cannot.
 
-    within: the block that the subsystem is, '' for the diagram itself.
+    within: the path of the block that the subsystem is, '' for the diagram itself.
     """
     if not within or name in ("", "t"):
         return name
-    use = diagram.blocks[within]
+    head, _, rest = within.partition(".")
+    use = diagram.blocks[head]
     assert use.subsystem is not None
-    own = name.removeprefix(f"{within}.")
-    if own != name:
-        return own if find_signal(use.subsystem, own) == own else ""
+    own = name.removeprefix(f"{head}.")
+    if own == name:
+        own = _port(diagram, use, name)
+    if rest or not own:
+        return local_name(use.subsystem, rest, own)
+    return own if find_signal(use.subsystem, own) == own else ""
+
+
+def _port(diagram: Diagram, use: BlockUse, name: str) -> str:
+    """The input of a block that carries a signal of the diagram around it; '' where none does."""
     for port, wires in use.inputs.items():
         for wire in wires:
             if find_signal(diagram, wire.signal) == name and not (wire.negative or wire.index):

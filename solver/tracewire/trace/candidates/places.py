@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from tracewire.compile import Flat, FlatBlock, FlatState, Model
-from tracewire.diagram import Diagram, find_signal, split_index
+from tracewire.diagram import Diagram, element_name, find_signal, split_index
 from tracewire.formula import Name, names_of
 from tracewire.trace.candidates.inside import local_name, opened
 
@@ -24,8 +24,9 @@ class Place:
     text of the diagram, the measured signal, or the input or source block. Signals of a sum: the
     rate `v`, the coordinate `q` whose rate that is, the acceleration `a` that v is the integral of
     ('' where there is none), and `others`, (q, v) of the sums of other rates. `drive` holds the
-    drives of the diagram, at a drive itself only that. `within` is the block of the subsystem that
-    a sum stands in, '' at the top; its signals have their names of the flat equations.
+    drives of the diagram, at a drive itself only that. `within` is the path of the subsystem that
+    a sum stands in, '' at the top; its signals have their names of the flat equations. `element`
+    is the number of an element, and how many there are, of a sum of vectors.
     """
 
     name: str
@@ -37,6 +38,7 @@ class Place:
     others: tuple[tuple[str, str], ...] = ()
     drive: tuple[str, ...] = ()
     within: str = ""
+    element: tuple[int, int] | None = None
 
 
 def find_places(model: Model) -> list[Place]:
@@ -47,8 +49,8 @@ def find_places(model: Model) -> list[Place]:
     another place of the same state says nothing new and is left out. Where the diagram itself says
     which sum is the place of a rate (`place: {q: ..., v: ...}`), that sum is the only one; it may
     name a coordinate alone, where nothing has a rate (see `untried`). A sum
-    inside a subsystem is a place where that is the only block of its type (see `opened`). Sums of
-    vectors are not tried.
+    inside subsystems is a place where each is the only block of its type (see `opened`). Each
+    element of a sum of vectors is a place; sums of matrices are not tried.
 
     Drives: the named inputs that something reads, and the blocks whose output depends on nothing
     but the time (sine, square, step, ramp, table, a formula of t) and that something reads.
@@ -96,20 +98,18 @@ def _sums(flat: Flat, drives: tuple[str, ...], inside: Collection[str]) -> list[
     states = {state.name: state for state in flat.states}
     nearest: dict[str, tuple[int, str]] = {}
     for state in flat.states:
-        if split_index(state.name)[1]:
-            continue
         for name, distance in _sums_behind(flat, names_of(state.rate)):
             if name not in nearest or distance < nearest[name][0]:
                 nearest[name] = (distance, state.name)
     told = {
-        name: block
+        name: _local(flat, name, block)
         for name, block in flat.blocks.items()
         if block.type == "sum"
         and {"q", "v"} & block.local.keys()
         and _is_reached(name, block, inside)
     }
-    taken = {block.local["v"] for block in told.values() if "v" in block.local}
-    rates = {n: (b.local.get("v", ""), b.local.get("q", "")) for n, b in told.items()}
+    taken = {local["v"] for local in told.values() if "v" in local}
+    rates = {n: (local.get("v", ""), local.get("q", "")) for n, local in told.items()}
     for name, (_, fed) in nearest.items():
         if name in told or fed in taken or not _is_reached(name, flat.blocks[name], inside):
             continue
@@ -127,6 +127,7 @@ def _sums(flat: Flat, drives: tuple[str, ...], inside: Collection[str]) -> list[
             tuple(body for body in bodies if body != (q, v)),
             drives,
             name.rpartition(".")[0],
+            _element(flat, name),
         )
         for name, (v, q) in rates.items()
     ]
@@ -152,9 +153,19 @@ def _seen_from(model: Model, place: Place) -> Place:
 
 def _is_reached(name: str, block: FlatBlock, inside: Collection[str]) -> bool:
     """Whether an effect can be added to a sum: at the top, or inside one of these subsystems."""
-    if split_index(name)[1] or block.definition.count(".") > 1:
-        return False
     return "." not in block.definition or name.rpartition(".")[0] in inside
+
+
+def _local(flat: Flat, name: str, block: FlatBlock) -> dict[str, str]:
+    """The local signals that the diagram gives a sum: of an element those of its number."""
+    index = split_index(name)[1]
+    return {s: element_name(n, index) if n in flat.shapes else n for s, n in block.local.items()}
+
+
+def _element(flat: Flat, name: str) -> tuple[int, int] | None:
+    """Of an element of a vector its number, and how many there are."""
+    vector, index = split_index(name)
+    return (index[0], flat.shapes[vector][0]) if index else None
 
 
 def _at_top(name: str, block: FlatBlock) -> bool:
@@ -221,7 +232,7 @@ def _sums_behind(flat: Flat, names: tuple[str, ...]) -> Iterator[tuple[str, int]
         block = flat.blocks.get(name)
         if block is not None and block.type not in PASSED:
             continue
-        if block is not None and block.type == "sum" and not split_index(name)[1]:
+        if block is not None and block.type == "sum" and len(split_index(name)[1]) < 2:
             yield name, distance
         queue.extend((read, distance + 1) for read in names_of(formula))
 

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tracewire.diagram import Diagram, add_addend, add_to_drive
+from tracewire.diagram import Diagram, add_addend, add_to_drive, quoted
 from tracewire.errors import OptionError
 from tracewire.formula import number_text
-from tracewire.trace.candidates.inside import local_name
+from tracewire.trace.candidates.inside import diagram_at, local_name
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.found import Missing
 
@@ -68,19 +68,20 @@ def add_table(diagram: Diagram, place: Place, missing: Missing, file: str) -> Di
         known = ", ".join(name for name, signal in signals.items() if signal)
         what = f"a table cannot be wired to {names[0]}"
         raise OptionError.one(what, hint=f"At '{place.name}' it can be wired to {known}.")
-    use = diagram.blocks.get(place.within)
-    inside = use.subsystem if use is not None and use.subsystem is not None else diagram
+    inside = diagram_at(diagram, place.within)
     taken = {*inside.blocks, *inside.parameters, *inside.inputs, *inside.subsystems}
     name = "missing"
     while name in taken:
         name += "_"
     column = names[0].replace(" ", "_")
+    read = local_name(diagram, place.within, signals[names[0]])
     line = (
-        f"{{type: table, of: {local_name(diagram, place.within, signals[names[0]])}, "
+        f"{{type: table, of: {quoted(read) if '[' in read else read}, "
         f"points: {{file: {file}, x: {column}, y: torque}}}}   # empirical: no law"
     )
-    add = add_to_drive if place.kind == "drive" else add_addend
-    return add(diagram, place.definition, name, line)
+    if place.kind == "drive":
+        return add_to_drive(diagram, place.definition, name, line)
+    return add_addend(diagram, place.definition, name, line, element=place.element)
 
 
 def wires_of(place: Place) -> Mapping[str, str]:

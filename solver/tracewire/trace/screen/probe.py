@@ -54,18 +54,29 @@ def _added(diagram: Diagram, place: Place, name: str, formula: Expression) -> Di
     if place.kind == "drive":
         formula = Call("+", (Name(place.definition), formula))
         diagram = rewired(diagram, place.definition, name)
-    elif place.within:
-        use = diagram.blocks[place.within]
-        assert use.subsystem is not None
-        port = InputPort(name, default=Value(Number(0.0)))
-        inside = replace(use.subsystem, inputs={**use.subsystem.inputs, name: port})
-        inside = _wired(inside, place.definition.rpartition(".")[2], name)
-        use = replace(use, subsystem=inside, inputs={**use.inputs, name: (Wire(name),)})
-        diagram = replace(diagram, blocks={**diagram.blocks, place.within: use})
     else:
-        diagram = _wired(diagram, place.definition, name)
+        if place.element is not None:
+            number, count = place.element
+            nothing = Number(0.0)
+            parts = (formula if n == number else nothing for n in range(count))
+            formula = Call("stack", tuple(parts))
+        within = place.within.split(".") if place.within else []
+        diagram = _led_in(diagram, within, place.definition.rpartition(".")[2], name)
     probe = BlockUse(name, "expression", {}, {"formula": formula})
     return replace(diagram, blocks={**diagram.blocks, name: probe})
+
+
+def _led_in(diagram: Diagram, within: Sequence[str], sum_name: str, signal: str) -> Diagram:
+    """The diagram with one more signal in a sum, through an input of each subsystem around it."""
+    if not within:
+        return _wired(diagram, sum_name, signal)
+    use = diagram.blocks[within[0]]
+    assert use.subsystem is not None
+    port = InputPort(signal, default=Value(Number(0.0)))
+    inside = replace(use.subsystem, inputs={**use.subsystem.inputs, signal: port})
+    inside = _led_in(inside, within[1:], sum_name, signal)
+    use = replace(use, subsystem=inside, inputs={**use.inputs, signal: (Wire(signal),)})
+    return replace(diagram, blocks={**diagram.blocks, within[0]: use})
 
 
 def _wired(diagram: Diagram, sum_name: str, signal: str) -> Diagram:
