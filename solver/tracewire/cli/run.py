@@ -153,8 +153,7 @@ def run(
     for case in cases:
         what = f"simulating {diagram}" + (f" with {case.name}" if case.name else "")
         with working(what) as show:
-            from tracewire.solve import Interrupted, parameter_values, simulate
-            from tracewire.solve.simulate import DEFAULT_SAMPLES
+            from tracewire.solve import DEFAULT_SAMPLES, Interrupted, parameter_values, simulate
 
             own = {**given.parameters, **parameters, **case.parameters}
             known = parameter_values(model, own, case.preset or given.preset)

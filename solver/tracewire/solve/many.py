@@ -15,12 +15,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, SimulationError, TracewireError, unknown
-from tracewire.solve.execute import Tell
+from tracewire.solve.integrator import Tell
 from tracewire.solve.interrupt import Interrupted, until_interrupted
 from tracewire.solve.observers import Observer, Section
+from tracewire.solve.options import START, Options, refuse_unknown_options
 from tracewire.solve.parallel import crew, each
 from tracewire.solve.runs import Runs
-from tracewire.solve.task import START, Options, Outcome, Row, Task
+from tracewire.solve.task import Outcome, Row, Task
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -51,13 +52,7 @@ def simulate_many(
     A row that fails does not end the others. Raises OptionError for arguments that do not fit, the
     error of the first row where all of them fail, and Interrupted with the rows that are done.
     """
-    unknown_options = [
-        unknown("option", name, Options.__annotations__)
-        for name in options
-        if name not in Options.__annotations__
-    ]
-    if unknown_options:
-        raise OptionError(unknown_options)
+    refuse_unknown_options(options)
     table = _rows(model, rows)
     observers = _observers(observe)
     outcomes: dict[int, Outcome] = {}

@@ -1,0 +1,124 @@
+"""The arrays of runs, kept with the model: to make them takes as long as a short run."""
+
+from __future__ import annotations
+
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import Model
+from tracewire.solve.core.arrays import Arrays, table_of
+from tracewire.solve.history import GROWING, has_grown
+from tracewire.solve.once_per_model import once_per_model
+from tracewire.solve.problem import InitialValueProblem
+from tracewire.solve.sensitivities import new_sensitivity
+from tracewire.solve.setup import new_arrays, new_flow, new_progress, plan_of
+
+Vector = NDArray[np.float64]
+Records = Literal["signals", "states", "both"]
+"""What a sample has: the recorded signals, the states, or the states behind the signals."""
+MOST = 16  # kinds of workspaces that a model keeps
+MOST_NUMBERS = 500_000  # of samples and tables; larger arrays are not kept
+ONLY_WRITTEN = ("address", "c", "k", "log", "stiff", "times", *GROWING)
+"""What is written before each run, or not read before the run has written it."""
+
+
+class Kind(NamedTuple):
+    """Which runs a workspace fits: the number of samples and what they have, the numbers in the
+    tables, the sensitivities, and the parameters that move with these."""
+
+    samples: int
+    records: Records
+    tables: int
+    asked: tuple[str, ...]
+    moved: tuple[str, ...]
+
+
+class Workspace:
+    """The arrays of one run, and their table for the core.
+
+    `block` is the memory of all that a run changes, `first` what was there before.
+    """
+
+    def __init__(self, kind: Kind, arrays: Arrays) -> None:
+        self.kind = kind
+        self.arrays, self.block = _in_one_block(arrays)
+        self.table, self.first = table_of(self.arrays), self.block.copy()
+        self.address: int = self.table.__array_interface__["data"][0]
+
+    def renew(self) -> None:
+        """Let the arrays be as they were before their run."""
+        self.block[:] = self.first
+
+    def keep(self) -> None:
+        """Let them be before each further run as they are now."""
+        self.first[:] = self.block
+
+
+def _in_one_block(arrays: Arrays) -> tuple[Arrays, Vector]:
+    """The arrays with all that a run changes in one block of memory, and that block."""
+    groups: list[Any] = list(arrays)
+    fields = [
+        (number, name, array)
+        for number, group in enumerate(groups)
+        for name, array in group._asdict().items()
+        if group is not arrays.plan and name not in ONLY_WRITTEN
+    ]
+    block = np.empty(sum(array.size for *_, array in fields))
+    first = 0
+    for number, name, array in fields:
+        part = block[first : first + array.size].view(array.dtype).reshape(array.shape)
+        part[...] = array
+        groups[number] = groups[number]._replace(**{name: part})
+        first += array.size
+    return Arrays(*groups), block
+
+
+def acquire(problem: InitialValueProblem, records: Records) -> Workspace:
+    """A workspace that fits a problem: one that is kept and free, or a new one."""
+    moved = problem.moving.names
+    kind = Kind(len(problem.times), records, len(problem.tables), problem.sensitivities, moved)
+    try:
+        space = _kept(problem.model)[kind].pop()  # at once, as another thread may want it too
+    except (KeyError, IndexError):
+        return _new_workspace(problem.model, kind)
+    space.renew()
+    return space
+
+
+def _new_workspace(model: Model, kind: Kind) -> Workspace:
+    signals, n = len(model.recorded), len(model.states)
+    plan = plan_of(model)
+    direct = {
+        "signals": plan.direct,
+        "states": np.arange(n),
+        "both": np.append(plan.direct, np.arange(n)),
+    }
+    plan = plan._replace(direct=direct[kind.records])
+    progress = new_progress(model, kind.samples, len(plan.direct))
+    columns = n if kind.records == "states" else signals
+    sensitivity = new_sensitivity(model, progress, kind.asked, kind.moved, columns)
+    flow = new_flow(model, kind.tables)
+    return Workspace(kind, new_arrays(model, flow, plan, progress, sensitivity))
+
+
+def give_back(model: Model, space: Workspace) -> None:
+    """Let the next run have a workspace; nobody may look into its arrays any more."""
+    kept = _kept(model)
+    size = space.arrays.progress.samples.size + space.arrays.sensitivity.samples.size
+    if size + space.kind.tables > MOST_NUMBERS or has_grown(space.arrays):
+        return
+    if space.kind not in kept and len(kept) >= MOST:
+        kept.clear()
+    kept.setdefault(space.kind, []).append(space)
+
+
+def release(model: Model) -> None:
+    """Free the memory that runs of a model keep for the next one."""
+    _kept(model).clear()
+
+
+@once_per_model
+def _kept(model: Model) -> dict[Kind, list[Workspace]]:
+    return {}
