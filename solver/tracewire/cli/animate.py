@@ -10,8 +10,9 @@ import typer
 
 from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries
 from tracewire.cli.output import check_target, note, print_json, print_text, telling, working
+from tracewire.cli.records import Preset, Start, Values
 from tracewire.cli.series import SeriesName, read_series
-from tracewire.cli.setting import Preset, Rtol, Start, Values
+from tracewire.cli.setting import Rtol
 from tracewire.cli.values import parameter_values_of, start_values_of
 from tracewire.files import writing
 
@@ -65,17 +66,23 @@ def animate(
         from tracewire.diagram import read
         from tracewire.show import animate as film_of
         from tracewire.show import frame_times
-        from tracewire.solve import parameter_values, simulate
+        from tracewire.solve import Options, parameter_values, simulate, with_options
 
         plain = compile(read(diagram, library or ()))
         model = compile(plain.diagram, plain.read_by_scene)
-    given = read_series(model, series)
-    own = {**given.parameters, **parameter_values_of(model, values or ())}
-    known = parameter_values(model, own, preset or given.preset)
-    starts = {**given.start, **start_values_of(model, start or ())}
+    given, _ = read_series(model, series)
+    own = Options(
+        parameters=parameter_values_of(model, values or ()),
+        start=start_values_of(model, start or ()),
+        preset=preset,
+        span=span,
+        rtol=rtol,
+    )
+    options = with_options(given, own)
+    known = parameter_values(model, options.get("parameters") or {}, options.get("preset", ""))
     from tracewire.cli.one_run import evenly
 
-    begin, end = (span or given.span) or evenly(model, known, None, 1).tolist()
+    begin, end = options.get("span") or evenly(model, known, None, 1).tolist()
     times = frame_times(model, (begin, end), target, speed=speed, fps=fps, width=width)
     finer = max(FINER, math.ceil(SAMPLES / len(times)))
     samples = np.interp(
@@ -83,17 +90,8 @@ def animate(
     )
     what = f"simulating {diagram}"
     with working(what) as show:
-        run = simulate(
-            model,
-            parameters=own,
-            start=starts,
-            preset=preset or given.preset,
-            span=(begin, end),
-            times=samples,
-            rtol=rtol,
-            inputs=given.inputs,
-            progress=telling(what, show),
-        )
+        options |= Options(span=(begin, end), times=samples)
+        run = simulate(model, **options, progress=telling(what, show))
     for warning in run.warnings:
         note(f"warning: {warning}")
     with working(f"drawing {target}") as show, writing(target):

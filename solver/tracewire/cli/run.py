@@ -145,33 +145,37 @@ def run(
         from tracewire.formula import Number
 
         model = replace(model, flat=replace(model.flat, every=Number(every)))
-    given = read_series(model, series)
-    within = span or given.span
+    from tracewire.solve import (
+        DEFAULT_SAMPLES,
+        Interrupted,
+        Options,
+        parameter_values,
+        simulate,
+        with_options,
+    )
+
+    given, measured = read_series(model, series)
+    given = with_options(
+        given,
+        Options(
+            parameters=parameters, start=starts, span=span, method=method, rtol=rtol, atol=atol
+        ),
+    )
     # a figure of a quick swing needs more points than a table of it
     finer = (figure or report) is not None and model.flat.every is None
     runs = {}
     for case in cases:
         what = f"simulating {diagram}" + (f" with {case.name}" if case.name else "")
         with working(what) as show:
-            from tracewire.solve import DEFAULT_SAMPLES, Interrupted, parameter_values, simulate
-
-            own = {**given.parameters, **parameters, **case.parameters}
-            known = parameter_values(model, own, case.preset or given.preset)
-            times = evenly(model, known, within, FINER * (DEFAULT_SAMPLES - 1)) if finer else None
+            own = Options(parameters=case.parameters, start=case.start, preset=case.preset)
+            options = with_options(given, own)
+            if finer:
+                values_of_case = options.get("parameters") or {}
+                known = parameter_values(model, values_of_case, options.get("preset", ""))
+                steps = FINER * (DEFAULT_SAMPLES - 1)
+                options["times"] = evenly(model, known, options.get("span"), steps)
             try:
-                result = simulate(
-                    model,
-                    parameters=own,
-                    start={**given.start, **starts, **case.start},
-                    span=within,
-                    times=times,
-                    method=method,
-                    rtol=rtol,
-                    atol=atol,
-                    preset=case.preset or given.preset,
-                    inputs=given.inputs,
-                    progress=telling(what, show),
-                )
+                result = simulate(model, **options, progress=telling(what, show))
             except Interrupted as error:
                 raise _kept(error, output or f"{Path(diagram).stem}.interrupted.npz") from error
         runs[case.name] = result.in_units(units)
@@ -187,10 +191,10 @@ def run(
             from tracewire.show import plot_run, plot_runs
 
             if len(runs) > 1:
-                plot_runs(runs, figure, given.measured)
+                plot_runs(runs, figure, measured)
             else:
-                plot_run(result, figure, given.measured)
-    write_report(result, report, measured=given.measured)
+                plot_run(result, figure, measured)
+    write_report(result, report, measured=measured)
     written = [path for path in (output, figure, report) if path is not None]
 
     if finer:

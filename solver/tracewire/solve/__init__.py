@@ -131,14 +131,14 @@ from tracewire.solve.interrupt import Halt, Interrupted, until_interrupted
 from tracewire.solve.limits import Limits, beyond_budget
 from tracewire.solve.many import simulate_many
 from tracewire.solve.observers import Section
-from tracewire.solve.options import START, Options, refuse_unknown_options, with_row
+from tracewire.solve.options import START, Options, refuse_unknown_options, with_options, with_row
 from tracewire.solve.parallel import cores, crew, each
 from tracewire.solve.parameters import parameter_values
 from tracewire.solve.passage import Passage
 from tracewire.solve.problem import InitialValueProblem, initial_value_problem
 from tracewire.solve.run import Event, Run, Sensitivities, Statistics
 from tracewire.solve.runs import Runs
-from tracewire.solve.sample_times import DEFAULT_SAMPLES, sample_times
+from tracewire.solve.sampling import DEFAULT_SAMPLES, sample_times
 from tracewire.solve.simulate import simulate
 from tracewire.solve.spans import Span, SpanRuns, simulate_spans
 from tracewire.solve.workspace import release
@@ -178,6 +178,7 @@ __all__ = [
     "simulate_spans",
     "until_interrupted",
     "values_at",
+    "with_options",
     "with_points",
     "with_row",
 ]

@@ -29,7 +29,8 @@ def set_to(arrays: Arrays, problem: InitialValueProblem) -> None:
     progress.x[:], progress.times[:] = problem.start, problem.times
     progress.given[:] = tolerance.atol
     follows = ABSOLUTE * tolerance.rtol  # till the core knows of what size the states are
-    progress.atol[:] = np.where(tolerance.atol > 0, tolerance.atol, follows)
+    np.copyto(progress.atol, tolerance.atol)
+    progress.atol[tolerance.atol <= 0] = follows
     progress.ints[METHOD] = -1 if problem.method == "auto" else NAMES.index(problem.method)
     if problem.sensitivities:
         _set_sensitivities(arrays, problem)

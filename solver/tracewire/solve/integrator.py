@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 
@@ -37,7 +38,8 @@ from tracewire.solve.interrupt import Halt, Interrupted, until_interrupted
 from tracewire.solve.problem import InitialValueProblem
 from tracewire.solve.run import EventLog, Run, Statistics
 from tracewire.solve.sensitivities import recorded, undefined
-from tracewire.solve.workspace import Records, Workspace, acquire, give_back
+from tracewire.solve.setup import Records
+from tracewire.solve.workspace import Workspace, acquire, give_back
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -61,6 +63,9 @@ def next_budget(budget: int, steps: int, seconds: float) -> int:
 
 class Integrator:
     """The solution of a problem as it is computed: it goes to a stop, and on from there.
+
+    At a stop, `t` and `x` are the time in s and the states, and `run` is the run up to there.
+    Modes, slides, contacts and memories go on over a stop.
 
     `records` says what is kept at the sample times. `progress` is told about ten times a second how
     far it is; `halt` says whether the user wants to stop, and Ctrl-C does where none is given.
@@ -97,24 +102,19 @@ class Integrator:
         """The states (n,) there: the right limit."""
         return self.arrays.progress.x.copy()
 
-    def go_to(self, end: float) -> None:
-        """Go on to the time `end` in s; what happens there has happened then.
+    def go_to(self, end: float | None = None) -> None:
+        """Go on to the time `end` in s, that of the span unless given; what happens there has
+        happened then.
 
-        Raises SimulationError where that cannot be, Interrupted where the user does not want it.
+        Raises OptionError for an end that is behind; SimulationError where it cannot go on;
+        Interrupted where the user does not want it: a `halt` that is given is the business of the
+        caller, else Ctrl-C is heard here.
         """
-        last = self.problem.span[1]
-        if not self.t <= end <= last:
-            what = f"a run at t = {self.t:g} s with an end at {last:g} s cannot go to {end:g} s"
-            raise OptionError([Problem(what, hint="Give a time between, or a longer span.")])
+        end = self.problem.span[1] if end is None else end
+        if not self.t <= end < math.inf:
+            what = f"a run that is at t = {self.t:.9g} s cannot go to {end:.9g} s"
+            raise OptionError([Problem(what, hint="Give a later time.")])
         self.arrays.progress.now[END] = end
-        self.go_on()
-
-    def go_on(self) -> None:
-        """Integrate to the end.
-
-        Raises SimulationError where that cannot be, Interrupted where the user does not want it;
-        a `halt` that is given is the business of the caller, else Ctrl-C is heard here.
-        """
         library()  # before the clock of the run begins
         if self.halt is not None:
             if not self.advance(self.halt):

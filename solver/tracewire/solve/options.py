@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TypedDict
+from typing import TypedDict, cast
 
 from numpy.typing import ArrayLike
 
@@ -44,7 +44,17 @@ def with_row(model: Model, options: Options, row: Mapping[str, float]) -> Option
     `start.NAME` of start values."""
     parameters = {name: float(row[name]) for name in row if name in model.flat.parameters}
     start = {n.removeprefix(START): float(row[n]) for n in row if n not in parameters}
+    return with_options(options, Options(parameters=parameters, start=start))
+
+
+def with_options(options: Options, more: Options) -> Options:
+    """The options with others over them: values of parameters and states by name, all else as a
+    whole, where it is given."""
+    said = {name: value for name, value in more.items() if value is not None}
+    if not more.get("preset"):
+        said.pop("preset", None)
     given = Options(**options)
-    given["parameters"] = {**(options.get("parameters") or {}), **parameters}
-    given["start"] = {**(options.get("start") or {}), **start}
+    given |= cast(Options, said)
+    given["parameters"] = {**(options.get("parameters") or {}), **(more.get("parameters") or {})}
+    given["start"] = {**(options.get("start") or {}), **(more.get("start") or {})}
     return given

@@ -168,7 +168,6 @@ class Passage:
         Raises SimulationError where it cannot go on, Interrupted where the user stops it.
         """
         progress = self.arrays.progress
-        progress.now[END] = end
         times = np.asarray(inner, dtype=float)
         if len(progress.times):
             progress.times[:] = times if len(times) else np.inf
@@ -177,7 +176,7 @@ class Passage:
         self._integrator.forget()
         if end > progress.now[T]:
             try:
-                self._integrator.go_on()
+                self._integrator.go_to(end)
             except Interrupted as error:
                 what = f"interrupted at t = {self.t:.9g} s, on the way to {end:g} s"
                 raise Interrupted([Problem(what)]) from error

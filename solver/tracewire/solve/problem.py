@@ -16,7 +16,7 @@ from tracewire.solve.core.methods import NAMES
 from tracewire.solve.limits import Limits
 from tracewire.solve.options import Options, with_row
 from tracewire.solve.parameters import parameter_values
-from tracewire.solve.sample_times import ascending, samples_of, span_of
+from tracewire.solve.sampling import ascending, samples_of, span_of
 from tracewire.solve.sensitivities import Moving, checked, moving_with
 from tracewire.solve.setup import constants_of, declared_start, default_modes
 from tracewire.solve.tables import packed, tables_follow, tables_of
@@ -130,12 +130,11 @@ def start_of(model: Model, constants: Vector, tables: Vector, given: Mapping[str
     names = model.states
     problems = [unknown("state", name, names) for name in given if name not in names]
     x = declared_start(model, default_modes(model), constants, tables)
-    for n, name in enumerate(names):
+    for n, name in enumerate(names if given else ()):
         if name in given:
             x[n] = given[name]
-    problems += [
-        Problem(f"the start of '{names[n]}' is {x[n]}") for n in np.flatnonzero(~np.isfinite(x))
-    ]
+    bad = [] if np.isfinite(x).all() else np.flatnonzero(~np.isfinite(x)).tolist()
+    problems += [Problem(f"the start of '{names[n]}' is {x[n]}") for n in bad]
     if problems:
         raise OptionError(problems)
     return x

@@ -36,6 +36,8 @@ SAID = {
 def checked(model: Model, names: Sequence[str]) -> tuple[str, ...]:
     """The names of what is asked for, each once. Raises OptionError for what does not exist."""
     asked = tuple(dict.fromkeys([names] if isinstance(names, str) else names))
+    if not asked:
+        return ()
     known = model.parameters, {START + state for state in model.states}
     strange = [name for name in asked if not any(name in names for names in known)]
     if strange:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import ctypes
+from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +17,6 @@ from tracewire.solve.core.arrays import (
     Flow,
     Plan,
     Progress,
-    Sensitivity,
     Trial,
     Watch,
 )
@@ -28,15 +30,33 @@ from tracewire.solve.core.codes import (
 )
 from tracewire.solve.core.flow import FREE, FUNCTIONS
 from tracewire.solve.core.locate import SAMPLES
-from tracewire.solve.core.memory import invoke
+from tracewire.solve.core.memory import MODEL_FUNCTION
 from tracewire.solve.core.methods import METHODS
 from tracewire.solve.history import new_history
 from tracewire.solve.once_per_model import once_per_model
+from tracewire.solve.sensitivities import new_sensitivity
 
 Vector = NDArray[np.float64]
 MOST_STIFF = 64  # mode combinations of a run that are remembered as stiff
 LOG_VALUES = 1_000_000  # numbers that the log of the core may hold before it is emptied
 NOTHING: Vector = np.zeros(1)
+ADDRESSED = ctypes.c_char * 0
+MOST_FUNCTIONS = 256  # of models that are called in turn
+
+
+Records = Literal["signals", "states", "both"]
+"""What a sample has: the recorded signals, the states, or the states behind the signals."""
+
+
+class Kind(NamedTuple):
+    """Which runs a workspace fits: the number of samples and what they have, the numbers in the
+    tables, the sensitivities, and the parameters that move with these."""
+
+    samples: int
+    records: Records
+    tables: int
+    asked: tuple[str, ...]
+    moved: tuple[str, ...]
 
 
 @once_per_model
@@ -89,18 +109,39 @@ def constants_of(model: Model, values: Mapping[str, float]) -> Vector:
     """What a model computes from its parameters alone."""
     parameters = np.array([*values.values(), 0.0])  # never empty
     constants = np.zeros(max(1, model.sizes.constants))
-    invoke(model.address("prepare"), 0.0, parameters, NOTHING, NOTHING, NOTHING, constants)
+    _call(model.address("prepare"), parameters, NOTHING, NOTHING, NOTHING, constants)
     return constants
 
 
 def declared_start(model: Model, modes: Vector, constants: Vector, tables: Vector) -> Vector:
     """The start values (n,) of the states, as the diagram says."""
     out = np.zeros(model.sizes.states)
-    invoke(model.address("starts"), 0.0, NOTHING, modes, constants, tables, out)
+    _call(model.address("starts"), NOTHING, modes, constants, tables, out)
     return out
 
 
-def new_flow(model: Model, numbers: int) -> Flow:
+def _call(address: int, x: Vector, m: Vector, c: Vector, k: Vector, out: Vector) -> None:
+    """Call the function of a model at an address, at t = 0."""
+    # by far the fastest way from an array to its address
+    data = [ADDRESSED.from_buffer(array.data) for array in (x, m, c, k, out)]
+    _function_at(address)(0.0, *data)
+
+
+@lru_cache(maxsize=MOST_FUNCTIONS)
+def _function_at(address: int) -> Callable[..., None]:
+    """What Python calls; to make it takes longer than the call."""
+    return MODEL_FUNCTION(address)
+
+
+def _plan_for(model: Model, records: Records) -> Plan:
+    """The plan of a model with what its samples have."""
+    plan, states = plan_of(model), np.arange(len(model.states))
+    if records == "signals":
+        return plan
+    return plan._replace(direct=states if records == "states" else np.append(plan.direct, states))
+
+
+def _new_flow(model: Model, numbers: int) -> Flow:
     """The field of a model, with its modes as they are by default; its tables have `numbers`."""
     sizes, count = model.sizes, len(model.modes)
     return Flow(
@@ -114,7 +155,7 @@ def new_flow(model: Model, numbers: int) -> Flow:
     )
 
 
-def new_progress(model: Model, count: int, columns: int) -> Progress:
+def _new_progress(model: Model, count: int, columns: int) -> Progress:
     """A run that has not begun, with `count` samples of `columns` numbers."""
     n, modes = model.sizes.states, len(model.modes)
     width = LOG_HEAD + 2 * n
@@ -142,11 +183,14 @@ def new_progress(model: Model, count: int, columns: int) -> Progress:
     return progress
 
 
-def new_arrays(
-    model: Model, flow: Flow, plan: Plan, progress: Progress, sensitivity: Sensitivity
-) -> Arrays:
-    """All arrays of a run."""
-    n, modes = len(progress.x), len(plan.kind)
+def new_arrays(model: Model, kind: Kind) -> Arrays:
+    """The arrays of a run that has not begun."""
+    n, modes = len(model.states), len(model.modes)
+    plan = _plan_for(model, kind.records)
+    flow = _new_flow(model, kind.tables)
+    progress = _new_progress(model, kind.samples, len(plan.direct))
+    columns = n if kind.records == "states" else len(model.recorded)
+    sensitivity = new_sensitivity(model, progress, kind.asked, kind.moved, columns)
     most = 3 * modes  # a guard has two levels at most, and held it has a force or two fractions
 
     def ints(size: int) -> NDArray[np.int64]:
@@ -184,7 +228,7 @@ def new_arrays(
         how=np.full(modes, -1),
         to=np.zeros(modes),
         up=ints(modes),
-        x=np.zeros(len(progress.x)),
+        x=np.zeros(n),
         m=np.zeros(len(flow.m)),
         bound=ints(modes),
         due=ints(len(plan.resets)),

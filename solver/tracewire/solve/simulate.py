@@ -74,7 +74,7 @@ def simulate(
     )
     integrator = Integrator(problem, progress=progress)
     try:
-        integrator.go_on()
+        integrator.go_to()
     except Interrupted as error:
         error.run = integrator.run
         raise

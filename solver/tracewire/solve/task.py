@@ -26,8 +26,8 @@ from tracewire.solve.observers import (
 )
 from tracewire.solve.options import Options, with_row
 from tracewire.solve.problem import InitialValueProblem, initial_value_problem
+from tracewire.solve.setup import Records
 from tracewire.solve.simulate import refuse_nan
-from tracewire.solve.workspace import Records
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -112,7 +112,7 @@ class Task:
         every = np.union1d(times, marks)
         records: Records = "both" if len(marks) else "signals"
         integrator = Integrator(replace(problem, times=every), records=records, halt=halt)
-        integrator.go_on()
+        integrator.go_to()
         columns, recorded = len(model.recorded), integrator.progress.samples
         points = np.empty((0, 1 + len(model.states)))
         if section is not None and section.guard:

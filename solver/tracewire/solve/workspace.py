@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,27 +12,13 @@ from tracewire.solve.core.arrays import Arrays, table_of
 from tracewire.solve.history import GROWING, has_grown
 from tracewire.solve.once_per_model import once_per_model
 from tracewire.solve.problem import InitialValueProblem
-from tracewire.solve.sensitivities import new_sensitivity
-from tracewire.solve.setup import new_arrays, new_flow, new_progress, plan_of
+from tracewire.solve.setup import Kind, Records, new_arrays
 
 Vector = NDArray[np.float64]
-Records = Literal["signals", "states", "both"]
-"""What a sample has: the recorded signals, the states, or the states behind the signals."""
 MOST = 16  # kinds of workspaces that a model keeps
 MOST_NUMBERS = 500_000  # of samples and tables; larger arrays are not kept
 ONLY_WRITTEN = ("address", "c", "k", "log", "stiff", "times", *GROWING)
 """What is written before each run, or not read before the run has written it."""
-
-
-class Kind(NamedTuple):
-    """Which runs a workspace fits: the number of samples and what they have, the numbers in the
-    tables, the sensitivities, and the parameters that move with these."""
-
-    samples: int
-    records: Records
-    tables: int
-    asked: tuple[str, ...]
-    moved: tuple[str, ...]
 
 
 class Workspace:
@@ -82,25 +68,9 @@ def acquire(problem: InitialValueProblem, records: Records) -> Workspace:
     try:
         space = _kept(problem.model)[kind].pop()  # at once, as another thread may want it too
     except (KeyError, IndexError):
-        return _new_workspace(problem.model, kind)
+        return Workspace(kind, new_arrays(problem.model, kind))
     space.renew()
     return space
-
-
-def _new_workspace(model: Model, kind: Kind) -> Workspace:
-    signals, n = len(model.recorded), len(model.states)
-    plan = plan_of(model)
-    direct = {
-        "signals": plan.direct,
-        "states": np.arange(n),
-        "both": np.append(plan.direct, np.arange(n)),
-    }
-    plan = plan._replace(direct=direct[kind.records])
-    progress = new_progress(model, kind.samples, len(plan.direct))
-    columns = n if kind.records == "states" else signals
-    sensitivity = new_sensitivity(model, progress, kind.asked, kind.moved, columns)
-    flow = new_flow(model, kind.tables)
-    return Workspace(kind, new_arrays(model, flow, plan, progress, sensitivity))
 
 
 def give_back(model: Model, space: Workspace) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,6 +16,7 @@ from tracewire.formula import evaluate
 Vector = NDArray[np.float64]
 DEFAULT_SAMPLES = 1001
 MOST_SAMPLES = 10_000_000
+MOST_SPANS = 64  # whose default times are kept
 
 
 def ascending(times: ArrayLike) -> Vector:
@@ -57,7 +59,7 @@ def samples_of(
             raise OptionError([Problem(what, hint="Give a longer span, or other times.")])
         return times
     if model.flat.every is None:
-        return np.linspace(begin, end, DEFAULT_SAMPLES)
+        return _default_times(begin, end).copy()
     every = evaluate(model.flat.every, values)
     if not every > 0 or (end - begin) / every > MOST_SAMPLES:
         what = f"an output every {every:g} s from {begin:g} to {end:g} s cannot be kept"
@@ -67,6 +69,11 @@ def samples_of(
         raise OptionError([Problem(what, hint="Give a smaller `every`, or a longer span.")])
     count = math.floor((end - begin) / every * (1 + 1e-12))
     return np.asarray(np.minimum(begin + every * np.arange(count + 1), end))
+
+
+@lru_cache(maxsize=MOST_SPANS)
+def _default_times(begin: float, end: float) -> Vector:
+    return np.linspace(begin, end, DEFAULT_SAMPLES)
 
 
 def sample_times(model: Model, values: Mapping[str, float], span: tuple[float, float]) -> Vector:
