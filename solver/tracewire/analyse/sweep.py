@@ -24,13 +24,13 @@ from tracewire.analyse.quantities import (
     is_of_run,
     measure,
 )
-from tracewire.analyse.work import Tell, work_through
+from tracewire.analyse.work import work_through
 from tracewire.compile import Model
 from tracewire.diagram import quantity_problems
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.formula import Expression, parse_quantity
 from tracewire.result import Result
-from tracewire.solve import Halt, Options, refuse_unknown_options, with_row
+from tracewire.solve import Halt, Options, Tell, refuse_unknown_options, with_row
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]

@@ -8,9 +8,9 @@ from typing import Annotated
 
 import typer
 
-from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries
+from tracewire.cli.options import AsJson, Debug, DiagramPath
 from tracewire.cli.output import check_target, note, print_json, print_text, telling, working
-from tracewire.cli.records import Preset, Start, Values
+from tracewire.cli.records import Given, Span
 from tracewire.cli.series import SeriesName, read_series
 from tracewire.cli.setting import Rtol
 from tracewire.cli.values import parameter_values_of, start_values_of
@@ -23,6 +23,7 @@ SAMPLES, FINER = 2000, 4
 
 def animate(
     diagram: DiagramPath,
+    *,
     output: Annotated[
         str | None,
         typer.Option(
@@ -37,15 +38,10 @@ def animate(
     ] = 1.0,
     fps: Annotated[float, typer.Option(metavar="N", help="Pictures in a second.")] = 25.0,
     width: Annotated[int, typer.Option(metavar="PIXELS", help="The width of the film.")] = 480,
-    preset: Preset = "",
-    values: Values = None,
-    start: Start = None,
-    span: Annotated[
-        tuple[float, float] | None, typer.Option(metavar="FROM TO", help="From and to, in s.")
-    ] = None,
+    given: Given,
+    span: Span = None,
     series: SeriesName = "",
     rtol: Rtol = 1e-6,
-    library: Libraries = None,
     as_json: AsJson = False,
     debug: Debug = False,
 ) -> None:
@@ -68,17 +64,17 @@ def animate(
         from tracewire.show import frame_times
         from tracewire.solve import Options, parameter_values, simulate, with_options
 
-        plain = compile(read(diagram, library or ()))
+        plain = compile(read(diagram, given.library or ()))
         model = compile(plain.diagram, plain.read_by_scene)
-    given, _ = read_series(model, series)
+    conditions, _ = read_series(model, series)
     own = Options(
-        parameters=parameter_values_of(model, values or ()),
-        start=start_values_of(model, start or ()),
-        preset=preset,
+        parameters=parameter_values_of(model, given.values or ()),
+        start=start_values_of(model, given.start or ()),
+        preset=given.preset,
         span=span,
         rtol=rtol,
     )
-    options = with_options(given, own)
+    options = with_options(conditions, own)
     known = parameter_values(model, options.get("parameters") or {}, options.get("preset", ""))
     from tracewire.cli.one_run import evenly
 

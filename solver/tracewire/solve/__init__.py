@@ -132,10 +132,11 @@ from tracewire.solve.limits import Limits, beyond_budget
 from tracewire.solve.many import simulate_many
 from tracewire.solve.observers import Section
 from tracewire.solve.options import START, Options, refuse_unknown_options, with_options, with_row
-from tracewire.solve.parallel import cores, crew, each
+from tracewire.solve.parallel import carry_out, cores
 from tracewire.solve.parameters import parameter_values
 from tracewire.solve.passage import Passage
 from tracewire.solve.problem import InitialValueProblem, initial_value_problem
+from tracewire.solve.progress import PartProgress, Tell
 from tracewire.solve.run import Event, Run, Sensitivities, Statistics
 from tracewire.solve.runs import Runs
 from tracewire.solve.sampling import DEFAULT_SAMPLES, sample_times
@@ -155,6 +156,7 @@ __all__ = [
     "Interrupted",
     "Limits",
     "Options",
+    "PartProgress",
     "Passage",
     "Run",
     "Runs",
@@ -163,10 +165,10 @@ __all__ = [
     "Span",
     "SpanRuns",
     "Statistics",
+    "Tell",
     "beyond_budget",
+    "carry_out",
     "cores",
-    "crew",
-    "each",
     "initial_value_problem",
     "parameter_values",
     "refuse_delays",

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +35,7 @@ from tracewire.solve.failures import failure, too_long, too_many_events
 from tracewire.solve.history import grow
 from tracewire.solve.interrupt import Halt, Interrupted, until_interrupted
 from tracewire.solve.problem import InitialValueProblem
+from tracewire.solve.progress import Tell
 from tracewire.solve.run import EventLog, Run, Statistics
 from tracewire.solve.sensitivities import recorded, undefined
 from tracewire.solve.setup import Records
@@ -43,8 +43,6 @@ from tracewire.solve.workspace import Workspace, acquire, give_back
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-Tell = Callable[[float, float], object]
-"""Is told how far the work is: the part that is done, 0 to 1, and the seconds that are left."""
 PAUSE = 0.1  # s between two pauses, about
 FIRST_WORK = 20_000  # signals times steps before the first pause
 GROWTH = 8
@@ -114,8 +112,15 @@ class Integrator:
         if not self.t <= end < math.inf:
             what = f"a run that is at t = {self.t:.9g} s cannot go to {end:.9g} s"
             raise OptionError([Problem(what, hint="Give a later time.")])
-        self.arrays.progress.now[END] = end
+        progress = self.arrays.progress
+        progress.now[END] = end
         library()  # before the clock of the run begins
+        self._go_on()
+        if end < self.problem.span[1]:  # the core takes the stop for the end of all samples
+            progress.ints[SAMPLED] = np.searchsorted(progress.times, end, side="right")
+
+    def _go_on(self) -> None:
+        """Integrate to the stop; Ctrl-C is heard here unless there is a `halt`."""
         if self.halt is not None:
             if not self.advance(self.halt):
                 raise self.interrupted()

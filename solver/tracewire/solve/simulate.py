@@ -10,10 +10,11 @@ from numpy.typing import ArrayLike, NDArray
 from tracewire.compile import Model
 from tracewire.errors import Problem, SimulationError
 from tracewire.solve.failures import place_of
-from tracewire.solve.integrator import Integrator, Tell
+from tracewire.solve.integrator import Integrator
 from tracewire.solve.interrupt import Interrupted
 from tracewire.solve.limits import Limits
 from tracewire.solve.problem import initial_value_problem
+from tracewire.solve.progress import Tell
 from tracewire.solve.run import Run
 
 Vector = NDArray[np.float64]
