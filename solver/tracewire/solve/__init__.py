@@ -103,12 +103,12 @@ times a second; there Ctrl-C is heard, and raises `Interrupted`, which carries t
 left limits), resets, modes and transitions, resets of guards that were carried over, one sample.
 
 **How it runs.** `initial_value_problem` checks the arguments of a run and gives them as numbers
-(`problem`). An `Integrator` is given a problem: it takes arrays that fit (`workspace`, made by
-`setup`), sets them to the numbers (`begin`), lets the core go on, to a stop or to the end, takes
-what the core logs (`event_log`), and finds words for what went wrong (`failures`). `core` holds all
-of the above as functions that are compiled when the package is built (`core_build`);
-`core_library` loads their machine code, which calls that of a model by address. `simulate` is one
-run; `simulate_many` runs the same problem with rows of values in threads (`task`); `Passage` stops
+(`problem`). An `Integrator` is given a problem: it takes arrays that fit, set to the numbers
+(`workspace`, made by `setup`), lets the core go on, to a stop or to the end, takes what the core
+logs (`event_log`), and finds words for what went wrong (`failures`). `core` holds all of the above
+as functions that are compiled when the package is built (`core_build`); `core_library` loads their
+machine code, which calls that of a model by address. `simulate` is one run; `simulate_many` runs
+the same problem with rows of values in threads (`task`); `Passage` stops
 where an analysis looks at it; `simulate_spans` lets the core go from one short run to the next.
 
 **Delays.** What is read with a delay is kept over each step, as polynomials through its values in

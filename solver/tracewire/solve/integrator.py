@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, SimulationError
-from tracewire.solve.begin import set_to
 from tracewire.solve.core.arrays import Arrays, Progress
 from tracewire.solve.core.codes import (
     BUDGET,
@@ -83,7 +82,6 @@ class Integrator:
         self.arrays: Arrays = self.workspace.arrays
         self.log = Log(problem.model, problem.sensitivities)
         self.begin, self.seconds = problem.span[0], 0.0
-        set_to(self.arrays, problem)
 
     @property
     def progress(self) -> Progress:

@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, unknown
-from tracewire.solve.begin import set_to
 from tracewire.solve.core.arrays import Arrays
 from tracewire.solve.core.codes import (
     BUDGET,
@@ -34,7 +33,9 @@ from tracewire.solve.history import refuse_delays
 from tracewire.solve.integrator import Integrator
 from tracewire.solve.interrupt import Halt, Interrupted
 from tracewire.solve.options import START
-from tracewire.solve.problem import initial_value_problem, start_of
+from tracewire.solve.problem import initial_value_problem
+from tracewire.solve.setup import start_of
+from tracewire.solve.workspace import set_to
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
-from tracewire.errors import OptionError, Problem, unknown
+from tracewire.errors import OptionError, unknown
 from tracewire.options import options_of
 from tracewire.solve.core.methods import NAMES
 from tracewire.solve.limits import Limits
@@ -18,7 +18,7 @@ from tracewire.solve.options import Options, with_row
 from tracewire.solve.parameters import parameter_values
 from tracewire.solve.sampling import ascending, samples_of, span_of
 from tracewire.solve.sensitivities import Moving, checked, moving_with
-from tracewire.solve.setup import constants_of, declared_start, default_modes
+from tracewire.solve.setup import constants_of, start_of
 from tracewire.solve.tables import packed, tables_follow, tables_of
 from tracewire.solve.tolerance import Tolerance, longest_step, tolerance_of
 
@@ -91,6 +91,7 @@ def _problem(
     parameters, preset = given.get("parameters") or {}, given.get("preset", "")
     values = parameter_values(model, parameters, preset)
     asked = checked(model, sensitivities)
+    moving = moving_with(model, asked, values, parameters, preset)
     times = given.get("times")
     known = None if times is None else ascending(times)
     begin, end = span_of(model, values, given.get("span"), known)
@@ -104,7 +105,6 @@ def _problem(
     tolerance = tolerance_of(model, rtol, atol, method, step, end - begin, longest)
     if tables is None:
         tables = packed(tables_of(model, values, given.get("inputs") or {}))
-    moving = moving_with(model, asked, values, parameters, preset)
     constants = constants_of(model, values)
     start = start_of(model, constants, tables, given.get("start") or {})
     return InitialValueProblem(
@@ -123,18 +123,3 @@ def _problem(
         start=start,
         sampled=sampled,
     )
-
-
-def start_of(model: Model, constants: Vector, tables: Vector, given: Mapping[str, float]) -> Vector:
-    """The start states (n,): the diagram's, changed by `given`. Raises OptionError."""
-    names = model.states
-    problems = [unknown("state", name, names) for name in given if name not in names]
-    x = declared_start(model, default_modes(model), constants, tables)
-    for n, name in enumerate(names if given else ()):
-        if name in given:
-            x[n] = given[name]
-    bad = [] if np.isfinite(x).all() else np.flatnonzero(~np.isfinite(x)).tolist()
-    problems += [Problem(f"the start of '{names[n]}' is {x[n]}") for n in bad]
-    if problems:
-        raise OptionError(problems)
-    return x

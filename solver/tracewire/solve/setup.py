@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
+from tracewire.errors import OptionError, Problem, unknown
 from tracewire.solve.core.arrays import (
     Arrays,
     Crossings,
@@ -113,11 +114,20 @@ def constants_of(model: Model, values: Mapping[str, float]) -> Vector:
     return constants
 
 
-def declared_start(model: Model, modes: Vector, constants: Vector, tables: Vector) -> Vector:
-    """The start values (n,) of the states, as the diagram says."""
-    out = np.zeros(model.sizes.states)
-    _call(model.address("starts"), NOTHING, modes, constants, tables, out)
-    return out
+def start_of(model: Model, constants: Vector, tables: Vector, given: Mapping[str, float]) -> Vector:
+    """The start states (n,): the diagram's, changed by `given`. Raises OptionError."""
+    names = model.states
+    problems = [unknown("state", name, names) for name in given if name not in names]
+    x = np.zeros(len(names))
+    _call(model.address("starts"), NOTHING, default_modes(model), constants, tables, x)
+    for n, name in enumerate(names if given else ()):
+        if name in given:
+            x[n] = given[name]
+    bad = [] if np.isfinite(x).all() else np.flatnonzero(~np.isfinite(x)).tolist()
+    problems += [Problem(f"the start of '{names[n]}' is {x[n]}") for n in bad]
+    if problems:
+        raise OptionError(problems)
+    return x
 
 
 def _call(address: int, x: Vector, m: Vector, c: Vector, k: Vector, out: Vector) -> None:

@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, SimulationError, unknown
-from tracewire.solve.begin import least_peak
 from tracewire.solve.core.arrays import Spans, table_of
 from tracewire.solve.core.codes import BUDGET, FINISHED, HISTORY_FULL, LOG_FULL, PAUSED
 from tracewire.solve.core.spans import INSIDE, LEFT, SPAN
@@ -29,7 +28,7 @@ from tracewire.solve.problem import InitialValueProblem, initial_value_problem
 from tracewire.solve.run import Sensitivities
 from tracewire.solve.sensitivities import recorded
 from tracewire.solve.simulate import refuse_nan
-from tracewire.solve.workspace import Workspace
+from tracewire.solve.workspace import Workspace, least_peak
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
