@@ -66,6 +66,15 @@ def test_other_values_are_checked_as_the_first_ones() -> None:
         problem.with_values({"start.x": np.nan})
     with pytest.raises(OptionError, match="unknown state 'y'; there are: x"):
         problem.with_values({"start.y": 1.0})
+    with pytest.raises(OptionError, match="unknown parameter or start 'x'; there are: T, k, k2, s"):
+        problem.with_values({"x": 1.0})
+
+
+def test_an_option_that_does_not_exist_is_refused() -> None:
+    with pytest.raises(
+        OptionError, match=r"unknown option 'spam'; there are: .*Did you mean 'span'"
+    ):
+        initial_value_problem(made(BALL), spam=(0, 1))  # type: ignore[call-arg]
 
 
 def test_a_problem_that_is_not_sampled_does_not_look_at_the_time_between_samples() -> None:

@@ -22,7 +22,7 @@ from tracewire.errors import OptionError, unknown
 from tracewire.formula import Expression, evaluation_order, names_of, to_text
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Model:
     """A diagram compiled to a flat ODE with events; parameters and start values stay arguments.
 

@@ -41,7 +41,12 @@ def refuse_unknown_options(given: Mapping[str, object]) -> None:
 
 def with_row(model: Model, options: Options, row: Mapping[str, float]) -> Options:
     """The options with the values of a row over those that they have: of parameters, and
-    `start.NAME` of start values."""
+    `start.NAME` of start values. Raises OptionError for a name that is neither."""
+    flat = model.flat
+    wrong = [name for name in row if name not in flat.parameters and not name.startswith(START)]
+    if wrong:
+        known = [*flat.parameters, *(START + name for name in model.states)]
+        raise OptionError([unknown("parameter or start", name, known) for name in wrong])
     parameters = {name: float(row[name]) for name in row if name in model.flat.parameters}
     start = {n.removeprefix(START): float(row[n]) for n in row if n not in parameters}
     return with_options(options, Options(parameters=parameters, start=start))

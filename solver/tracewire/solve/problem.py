@@ -14,7 +14,7 @@ from tracewire.errors import OptionError, unknown
 from tracewire.options import options_of
 from tracewire.solve.core.methods import NAMES
 from tracewire.solve.limits import Limits
-from tracewire.solve.options import Options, with_row
+from tracewire.solve.options import Options, refuse_unknown_options, with_row
 from tracewire.solve.parameters import parameter_values
 from tracewire.solve.sampling import ascending, samples_of, span_of
 from tracewire.solve.sensitivities import Moving, checked, moving_with
@@ -77,6 +77,7 @@ def initial_value_problem(
     Raises OptionError for options that do not fit; SimulationError for values that do not meet what
     the diagram requires.
     """
+    refuse_unknown_options(given)
     return _problem(model, given, sensitivities, sampled)
 
 
