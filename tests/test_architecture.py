@@ -37,16 +37,13 @@ STAGES += ["missing", "search", "choose", "experiment", "results", "saved", "tra
 # A room is used by the others through its face, what its `__init__` names. These pairs take more,
 # as often as said; a pair that is not here takes nothing more. The numbers only fall.
 DEEP = {
-    "analyse -> compile": 1,
-    "analyse -> solve": 2,
+    "analyse -> solve": 1,
     "cli -> analyse": 2,
     "cli -> data": 2,
     "cli -> paper": 7,
     "cli -> show": 11,
-    "cli -> solve": 1,
     "cli -> trace": 3,
     "paper -> show": 16,
-    "residual -> solve": 1,
     "show -> fit": 2,
     "show -> trace": 2,
     "solve -> compile": 1,

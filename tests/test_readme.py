@@ -70,12 +70,14 @@ def test_the_python_example_of_the_readme_works(here: Path) -> None:
 
 
 @pytest.mark.slow
-def test_the_example_of_the_page_on_python_works(
+def test_the_examples_of_the_page_on_python_work(
     here: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    (example,) = fenced("python", (ROOT / "docs/python.md").read_text(encoding="utf-8"))
     names: dict[str, object] = {}
-    exec(compile(example, "python.md", "exec"), names)
+    for example in fenced("python", (ROOT / "docs/python.md").read_text(encoding="utf-8")):
+        exec(compile(example, "python.md", "exec"), names)
+    assert names["integrator"].t == 5.0  # type: ignore[attr-defined]
+    assert names["more"].start.tolist()[0] == 0.3  # type: ignore[attr-defined]
     assert names["fitted"].values["c"] == pytest.approx(0.1, rel=1e-3)  # type: ignore[attr-defined]
     assert "<Run: Pendulum" in capsys.readouterr().out
     assert all((here / figure).is_file() for figure in ("run.png", "bench.svg"))

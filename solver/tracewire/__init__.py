@@ -39,11 +39,14 @@ if TYPE_CHECKING:
     from tracewire.show import animate, optimplotfit, optimplotfval, optimplotx, present, report
     from tracewire.solve import (
         Held,
+        InitialValueProblem,
+        Integrator,
         Interrupted,
         Limits,
         Run,
         Runs,
         Section,
+        initial_value_problem,
         simulate,
         simulate_many,
     )
@@ -60,7 +63,9 @@ __all__ = [
     "Fit",
     "Found",
     "Held",
+    "InitialValueProblem",
     "Input",
+    "Integrator",
     "Interrupted",
     "Limits",
     "Measured",
@@ -84,6 +89,7 @@ __all__ = [
     "floquet",
     "fminsearch",
     "growth_rate",
+    "initial_value_problem",
     "invariant_drift",
     "judge",
     "linearise",
@@ -125,7 +131,8 @@ ROOM_OF = {
     "library": "Block Effect Input Output Parameter State load_library",
     "residual": "Measured Sensor load_measured",
     "show": "animate optimplotfit optimplotfval optimplotx present report",
-    "solve": "Held Interrupted Limits Run Runs Section simulate simulate_many",
+    "solve": "Held InitialValueProblem Integrator Interrupted Limits Run Runs Section "
+    "initial_value_problem simulate simulate_many",
     "trace": "Found TraceOptions load save trace",
 }
 

@@ -16,7 +16,7 @@ from tracewire.solve import Interrupted
 
 @pytest.fixture(autouse=True)
 def _tell_each(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tracewire.analyse.work.OFTEN", 0.0)
+    monkeypatch.setattr("tracewire.solve.progress.OFTEN", 0.0)
 
 
 class Stop:

@@ -27,13 +27,13 @@ CHILD = """
 import signal, sys
 signal.signal(signal.SIGINT, signal.default_int_handler)
 from tracewire.cli import main
-from tracewire.solve import execute
-usual = execute.next_budget
+from tracewire.solve import integrator
+usual = integrator.next_budget
 def begun(budget, steps, seconds):
     if budget > 5000:
         print("begun", flush=True)
     return usual(budget, steps, seconds)
-execute.next_budget = begun
+integrator.next_budget = begun
 sys.exit(main(sys.argv[1:]))
 """
 

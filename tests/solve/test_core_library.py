@@ -10,7 +10,7 @@ from scipy.integrate import DOP853
 from solve.models import BALL
 from tracewire import compile, read_text, simulate
 from tracewire.errors import SimulationError
-from tracewire.solve import execute
+from tracewire.solve import integrator
 from tracewire.solve.core import integrate
 from tracewire.solve.core.methods import dop853_coefficients as written
 from tracewire.solve.core_library import library
@@ -39,7 +39,7 @@ def test_python_and_machine_code_agree_to_the_last_bit(
 ) -> None:
     model = compile(read_text(text))
     run = simulate(model, method=method)
-    monkeypatch.setattr(execute, "library", lambda: replace(library(), advance=by_python))
+    monkeypatch.setattr(integrator, "library", lambda: replace(library(), advance=by_python))
     same = simulate(model, method=method)
     assert same.events == run.events
     assert run.events

@@ -21,8 +21,8 @@ from tracewire.errors import DiagramError, OptionError, SimulationError
 from tracewire.solve import (
     Passage,
     Span,
-    execute,
     history,
+    integrator,
     simulate,
     simulate_many,
     simulate_spans,
@@ -261,7 +261,7 @@ def test_back_ends_and_python_give_the_same_bits(monkeypatch: pytest.MonkeyPatch
 
     options: dict[str, Any] = {"times": [0, 1.1, 1.5], "rtol": 1e-3, "sensitivities": ["start.x"]}
     run = simulate(made(STEPS), **options)
-    monkeypatch.setattr(execute, "library", lambda: replace(library(), advance=by_python))
+    monkeypatch.setattr(integrator, "library", lambda: replace(library(), advance=by_python))
     slow = simulate(made(STEPS), **options)
     assert np.array_equal(run["x"], slow["x"])
     assert np.array_equal(run.sensitivities["start.x"]["x"], slow.sensitivities["start.x"]["x"])

@@ -17,8 +17,8 @@ from tracewire.compile import Model, compile
 from tracewire.diagram import read
 from tracewire.errors import SimulationError
 from tracewire.fit import fit
-from tracewire.solve import Interrupted, Limits, Run, execute, simulate, simulate_many
-from tracewire.solve.execute import PAUSE, next_budget
+from tracewire.solve import Interrupted, Limits, Run, integrator, simulate, simulate_many
+from tracewire.solve.integrator import PAUSE, next_budget
 
 PENDULUM = Path(__file__).parents[2] / "diagrams/papers/a_torsion/pendulum.yaml"
 STICKING = OSCILLATOR.replace("coulomb, rate: v, level: 0.1", "dry_friction, rate: v, slip: 0.1")
@@ -59,8 +59,8 @@ blocks:
 
 
 def paused(monkeypatch: pytest.MonkeyPatch, steps: int) -> None:
-    monkeypatch.setattr(execute, "first_budget", lambda model: steps)
-    monkeypatch.setattr(execute, "next_budget", lambda budget, done, seconds: steps)
+    monkeypatch.setattr(integrator, "first_budget", lambda model: steps)
+    monkeypatch.setattr(integrator, "next_budget", lambda budget, done, seconds: steps)
 
 
 @pytest.mark.parametrize("budget", [1, 7, 1000])
@@ -95,7 +95,7 @@ def test_the_next_pause_comes_in_time() -> None:
 
 def test_progress_is_told_while_a_run_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     paused(monkeypatch, 10)
-    monkeypatch.setattr(execute, "PAUSE", 0.0)
+    monkeypatch.setattr(integrator, "PAUSE", 0.0)
     told: list[tuple[float, float]] = []
     simulate(made(BALL), progress=lambda part, left: told.append((part, left)))
     parts = [part for part, _ in told]
@@ -124,7 +124,7 @@ def after(parts: int) -> Callable[[float, float], None]:
 
 def interrupted(monkeypatch: pytest.MonkeyPatch, model: Model, **options: Any) -> Interrupted:
     paused(monkeypatch, 40)
-    monkeypatch.setattr(execute, "PAUSE", 0.0)
+    monkeypatch.setattr(integrator, "PAUSE", 0.0)
     with pytest.raises(Interrupted) as caught:
         simulate(model, progress=after(5), **options)
     return caught.value
@@ -150,7 +150,7 @@ def test_an_interrupted_run_is_the_first_part_of_the_whole(monkeypatch: pytest.M
 
 def test_an_interrupt_at_the_very_end_is_not_lost(monkeypatch: pytest.MonkeyPatch) -> None:
 
-    model, code = made(BALL), execute.library()
+    model, code = made(BALL), integrator.library()
     whole = simulate(model)
 
     def last(core: int) -> int:
@@ -159,7 +159,7 @@ def test_an_interrupt_at_the_very_end_is_not_lost(monkeypatch: pytest.MonkeyPatc
         return status
 
     paused(monkeypatch, 10**9)
-    monkeypatch.setattr(execute, "library", lambda: replace(code, advance=last))
+    monkeypatch.setattr(integrator, "library", lambda: replace(code, advance=last))
     with pytest.raises(Interrupted, match="interrupted at t = 12 s") as caught:
         simulate(model)
     assert caught.value.run is not None
@@ -180,7 +180,7 @@ def test_who_handles_the_signal_himself_keeps_that(monkeypatch: pytest.MonkeyPat
     heard: list[int] = []
     signal.signal(signal.SIGINT, lambda number, frame: heard.append(number))
     paused(monkeypatch, 10)
-    monkeypatch.setattr(execute, "PAUSE", 0.0)
+    monkeypatch.setattr(integrator, "PAUSE", 0.0)
     run = simulate(made(BALL), progress=after(2))
     assert run.t[-1] == 12
     assert heard == [signal.SIGINT]

@@ -17,8 +17,8 @@ import pytest
 from solve.models import BALL, made
 from tracewire import Interrupted, Plane, Run, bifurcation, simulate_many, stability_chart, sweep
 from tracewire.errors import OptionError, SimulationError, TracewireError
+from tracewire.solve import PartProgress, carry_out
 from tracewire.solve.interrupt import Halt
-from tracewire.solve.parallel import crew, each
 
 MATHIEU = """
 span: [0, 10]
@@ -53,14 +53,34 @@ def killed(number: int, halt: Halt) -> int:
     return number
 
 
-def test_a_job_is_done_for_each_number_and_may_fail(processes: Executor) -> None:
-    for executor in (None, processes):
-        with crew(squared, Halt(), 2, executor) as made:
-            found = {number: result for (number,), result in each(made, [(n,) for n in range(9)])}
-        assert sorted(found) == list(range(9))
-        assert isinstance(found[5], TracewireError)
-        assert "five is refused" in str(found[5])
-        assert [found[n] for n in (0, 2, 8)] == [0, 4, 64]
+@pytest.mark.parametrize("here", [True, False])
+def test_a_job_is_done_for_each_number_and_may_fail(processes: Executor, here: bool) -> None:
+    found = {}
+
+    def take(arguments: tuple[int], result: int | TracewireError) -> None:
+        found[arguments[0]] = result
+
+    executor = None if here else processes
+    assert not carry_out(squared, [(n,) for n in range(9)], take, workers=2, executor=executor)
+    assert sorted(found) == list(range(9))
+    assert isinstance(found[5], TracewireError)
+    assert "five is refused" in str(found[5])
+    assert [found[n] for n in (0, 2, 8)] == [0, 4, 64]
+
+
+def test_a_task_that_follows_from_another_is_done_behind_it() -> None:
+    order: list[tuple[int, object]] = []
+
+    def take(arguments: tuple[int], result: object) -> tuple[int] | None:
+        order.append((arguments[0], result))
+        return (arguments[0] + 10,) if arguments[0] < 20 else None
+
+    told: list[float] = []
+    progress = PartProgress(lambda part, left: told.append(part), 6, 0)
+    stopped = carry_out(squared, [(1,), (2,)], take, workers=1, progress=progress)
+    assert not stopped
+    assert order == [(1, 1), (11, 121), (21, 441), (2, 4), (12, 144), (22, 484)]
+    assert told[-1] == 1.0
 
 
 def test_many_runs_are_the_same_to_the_last_bit(processes: Executor) -> None:
@@ -109,13 +129,12 @@ def test_what_cannot_be_sent_is_told(processes: Executor) -> None:
 def test_a_worker_that_is_killed_is_told() -> None:
     done: set[int] = set()
 
+    def take(arguments: tuple[int], result: object) -> None:
+        done.add(arguments[0])
+
     def work() -> None:
-        with (
-            ProcessPoolExecutor(1, get_context("spawn")) as pool,
-            crew(killed, Halt(), None, pool) as made,
-        ):
-            for (number,), _ in each(made, [(n,) for n in range(9)]):
-                done.add(number)
+        with ProcessPoolExecutor(1, get_context("spawn")) as pool:
+            carry_out(killed, [(n,) for n in range(9)], take, executor=pool)
 
     with pytest.raises(SimulationError, match=r"a worker of the executor has ended .* new exec"):
         work()

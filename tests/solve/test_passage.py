@@ -99,7 +99,7 @@ def test_a_passage_begins_anew_with_other_parameters() -> None:
     model = MODELS["driven"]
     used = Passage(model, length=1.0, parameters={"level": 0.0}, tangents=True, **TIGHT)
     used.go_to(7.3)
-    used.begin_with({"f": 1.1}, begin=0.5, length=2.0, x=None)
+    used.begin_with({"f": 1.1}, begin=0.5, length=2.0)
     used.go_to(4.0)
     fresh = Passage(
         model, length=2.0, begin=0.5, parameters={"level": 0.0, "f": 1.1}, tangents=True, **TIGHT

@@ -17,12 +17,20 @@ from tracewire.analyse.partial import Partial, fingerprint
 from tracewire.analyse.plane import Plane, span_of
 from tracewire.analyse.section import extent_of, take_points
 from tracewire.analyse.turns import units_of
-from tracewire.analyse.work import Progress, Tell, interrupted
+from tracewire.analyse.work import interrupted
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, TracewireError, unknown
 from tracewire.options import options_of
 from tracewire.result import Result
-from tracewire.solve import Halt, Interrupted, Passage, crew, parameter_values, until_interrupted
+from tracewire.solve import (
+    Halt,
+    Interrupted,
+    PartProgress,
+    Passage,
+    Tell,
+    carry_out,
+    parameter_values,
+)
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -254,9 +262,9 @@ def _carry_out(
     progress: Tell | None,
 ) -> None:
     """Go through the chains side by side, through the values of each one after the other."""
-    tell = Progress(progress, len(store.done), store.resumed)
     n, first = len(work.model.states), work.keep * len(work.model.states)
     firsts: list[TracewireError] = []
+    coming: dict[int, list[tuple[int, float]]] = {}
 
     def after(number: int, carried: Carried) -> Carried:
         """What a value carries to the next."""
@@ -265,40 +273,43 @@ def _carry_out(
         kept = store.rows[number]
         return float(kept[-1]), kept[first : first + n].copy()
 
-    with until_interrupted() as halt, crew(work.value, halt, workers, executor) as made:
-        began: list[tuple[list[tuple[int, float]], Carried]] = []
-        for chain in chains:
-            carried: Carried = None
-            rest = list(chain)
-            while rest and store.done[rest[0][0]]:
-                carried = after(rest.pop(0)[0], carried)
-            began.append((rest, carried))
-        ready = [(rest, carried) for rest, carried in reversed(began) if rest]
-        going: dict[int, list[tuple[int, float]]] = {}
-        try:
-            while (ready and not halt.asked) or made.waiting:
-                if halt.asked:
-                    made.drop()
-                while ready and made.has_room and not halt.asked:
-                    rest, carried = ready.pop()
-                    number, value = rest.pop(0)
-                    going[number] = rest
-                    made.submit([(number, value, carried)])
-                for (number, _, carried), result in made.done():
-                    rest = going.pop(number)
-                    if isinstance(result, Interrupted):
-                        continue
-                    if isinstance(result, TracewireError):
-                        firsts.append(result)
-                        store.put(number, np.full(work.width, np.nan), str(result))
-                    else:
-                        store.put(number, result)
-                    tell.step()
-                    if rest:
-                        ready.append((rest, after(number, carried)))
-        finally:
-            store.write()
-    if halt.asked:
+    def begun(rest: list[tuple[int, float]], carried: Carried) -> tuple[int, float, Carried] | None:
+        """The next value of a chain."""
+        if not rest:
+            return None
+        number, value = rest.pop(0)
+        coming[number] = rest
+        return number, value, carried
+
+    def take(
+        arguments: tuple[Any, ...], result: Vector | TracewireError
+    ) -> tuple[int, float, Carried] | None:
+        number, _, carried = arguments
+        if isinstance(result, Interrupted):
+            return None
+        if isinstance(result, TracewireError):
+            firsts.append(result)
+            store.put(number, np.full(work.width, np.nan), str(result))
+        else:
+            store.put(number, result)
+        return begun(coming.pop(number), after(number, carried))
+
+    tasks = []
+    for chain in chains:
+        carried: Carried = None
+        rest = list(chain)
+        while rest and store.done[rest[0][0]]:
+            carried = after(rest.pop(0)[0], carried)
+        task = begun(rest, carried)
+        tasks += [] if task is None else [task]
+    shown = PartProgress(progress, len(store.done), store.resumed)
+    try:
+        stopped = carry_out(
+            work.value, tasks, take, workers=workers, executor=executor, progress=shown
+        )
+    finally:
+        store.write()
+    if stopped:
         raise interrupted(store)
     if firsts and len(store.errors) == len(store.done):
         raise firsts[0]

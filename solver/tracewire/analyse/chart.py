@@ -13,11 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 from tracewire.analyse.floquet import Tries
 from tracewire.analyse.grid import grid_of
 from tracewire.analyse.partial import Partial, fingerprint
-from tracewire.analyse.work import Tell, work_through
+from tracewire.analyse.work import work_through
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem
 from tracewire.result import Result
-from tracewire.solve import Halt
+from tracewire.solve import Halt, Tell
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
-from tracewire.compile.differentiate import gradients
 from tracewire.diagram import find_recorded
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.formula import CONSTANTS, evaluate, names_of, parse
@@ -59,23 +58,6 @@ def is_driven(passage: Passage, span: float) -> bool:
         driven = driven or bool(np.any(change > 1e-9 * (1.0 + np.abs(before))))
     passage.begin_at(t, x)
     return driven
-
-
-def is_linear(model: Model) -> bool:
-    """Whether the rates are linear in the states at each time, with no event that reads a state."""
-    found = model.kept.get("linear")
-    if found is None:
-        found = model.kept["linear"] = _is_linear(model)
-    return bool(found)
-
-
-def _is_linear(model: Model) -> bool:
-    low = model.lowered
-    if low.resets or low.transitions or any(mode.timed is None for mode in low.modes):
-        return False
-    found = gradients(low.tape, low.rates, low.states)
-    slopes = [entry for gradient in found for entry in gradient.values()]
-    return "state" not in low.tape.leaves(slopes)
 
 
 def rising_edges(

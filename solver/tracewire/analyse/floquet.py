@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.analyse import verdict
-from tracewire.analyse.drive import is_linear, number, period_of
+from tracewire.analyse.drive import number, period_of
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, Problem
 from tracewire.result import Result
@@ -125,7 +125,7 @@ class Tries:
         rtol: float,
     ) -> None:
         self.model, self.period, self.begin = model, period, begin
-        self.linear = is_linear(model)
+        self.linear = model.is_linear
         self.points = 0 if self.linear else POINTS
         self.given = dict(parameters or {})
         self.make = partial(
@@ -149,7 +149,7 @@ class Tries:
         since = number(self.model, self.begin, values, "begin")
         try:
             passage = self.free.pop()  # at once: another thread may want it too
-            passage.begin_with(given, begin=since, length=length, x=None)
+            passage.begin_with(given, begin=since, length=length)
         except IndexError:
             passage = self.make(length=length, begin=since, parameters=given)
         found = self._of(passage, since, length)

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, unknown
-from tracewire.solve.task import START
+from tracewire.solve import START
 
 Vector = NDArray[np.float64]
 MOST_POINTS = 1_000_000

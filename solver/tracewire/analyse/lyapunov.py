@@ -10,11 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tracewire.analyse.plane import span_of
-from tracewire.analyse.work import Progress, Tell
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, OptionError, Problem
 from tracewire.result import Result
-from tracewire.solve import Passage, parameter_values, until_interrupted
+from tracewire.solve import PartProgress, Passage, Tell, parameter_values, until_interrupted
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -122,7 +121,7 @@ def lyapunov(
         directions = passage.tangents @ np.linalg.qr(random)[0]
         growth = np.empty((steps, n))
         whole: float | None = 0.0
-        told = Progress(progress, steps, 0)
+        told = PartProgress(progress, steps, 0)
         for i in range(-turning, steps):
             passage.tangents = directions
             before, a = passage.modes, passage.t

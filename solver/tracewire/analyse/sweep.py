@@ -24,13 +24,13 @@ from tracewire.analyse.quantities import (
     is_of_run,
     measure,
 )
-from tracewire.analyse.work import Tell, work_through
+from tracewire.analyse.work import work_through
 from tracewire.compile import Model
 from tracewire.diagram import quantity_problems, row_ends
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.formula import Expression, parse_quantity
 from tracewire.result import Result
-from tracewire.solve import Halt, Options
+from tracewire.solve import Halt, Options, Tell, refuse_unknown_options, with_row
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -76,13 +76,7 @@ def sweep(
     sweep goes on where it was. Raises OptionError; the error of the first point where all of them
     fail.
     """
-    unknown_options = [
-        unknown("option", name, Options.__annotations__)
-        for name in options
-        if name not in Options.__annotations__
-    ]
-    if unknown_options:
-        raise OptionError(unknown_options)
+    refuse_unknown_options(options)
     axes = grid_of(model, grid)
     measures = {name: _quantity(model, name) for name in dict.fromkeys(outputs)}
     if not measures:
@@ -124,11 +118,7 @@ class _Point:
         shape = tuple(len(values) for values in self.axes.values())
         place = np.unravel_index(number, shape)
         here = {n: float(v[i]) for (n, v), i in zip(self.axes.items(), place, strict=True)}
-        own = {n: v for n, v in here.items() if n in self.model.flat.parameters}
-        starts = {n.removeprefix("start."): v for n, v in here.items() if n not in own}
-        given = Options(**self.options)
-        given["parameters"] = {**(self.options.get("parameters") or {}), **own}
-        given["start"] = {**(self.options.get("start") or {}), **starts}
+        given = with_row(self.model, self.options, here)
         subject = Subject(Recorder(self.model), Conditions(given, self.since))
         ask(self.measures, subject)
         return np.array([measure(quantity, subject) for quantity in self.measures])

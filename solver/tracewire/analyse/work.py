@@ -2,38 +2,18 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from concurrent.futures import Executor
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.analyse.partial import Partial
 from tracewire.errors import Problem, TracewireError
-from tracewire.solve import Halt, Interrupted, crew, each, until_interrupted
+from tracewire.solve import Halt, Interrupted, PartProgress, Tell, carry_out
 
 Vector = NDArray[np.float64]
-Tell = Callable[[float, float], object]
-OFTEN = 0.1  # s between two tellings, at least
-
-
-class Progress:
-    """Tells the part of a work that is done, 0 to 1, and the seconds that are left."""
-
-    def __init__(self, tell: Tell | None, total: int, done: int) -> None:
-        self.tell, self.total, self.first, self.done = tell, total, done, done
-        self.began, self.told = time.monotonic(), -1.0
-
-    def step(self) -> None:
-        """One more is done."""
-        self.done += 1
-        seconds = time.monotonic() - self.began
-        if self.tell is None or (seconds - self.told < OFTEN and self.done < self.total):
-            return
-        self.told = seconds
-        left = seconds * (self.total - self.done) / (self.done - self.first)
-        self.tell(self.done / self.total, left)
 
 
 def work_through(
@@ -49,25 +29,29 @@ def work_through(
     all fail, and Interrupted where the user stops the work; what is done is in the file then.
     """
     missing = [(number,) for number in np.flatnonzero(~partial.done).tolist()]
-    tell = Progress(progress, len(partial.done), len(partial.done) - len(missing))
-    first: TracewireError | None = None
-    with until_interrupted() as halt, crew(point, halt, workers, executor) as made:
-        try:
-            for (number,), result in each(made, missing):
-                if isinstance(result, Interrupted):
-                    continue
-                if isinstance(result, TracewireError):
-                    first = first or result
-                    partial.put(number, None, str(result))
-                else:
-                    partial.put(number, result)
-                tell.step()
-        finally:
-            partial.write()
-    if halt.asked:
+    first: list[TracewireError] = []
+
+    def take(arguments: tuple[Any, ...], result: Vector | TracewireError) -> None:
+        (number,) = arguments
+        if isinstance(result, Interrupted):
+            return
+        if isinstance(result, TracewireError):
+            first.append(result)
+            partial.put(number, None, str(result))
+        else:
+            partial.put(number, result)
+
+    shown = PartProgress(progress, len(partial.done), len(partial.done) - len(missing))
+    try:
+        stopped = carry_out(
+            point, missing, take, workers=workers, executor=executor, progress=shown
+        )
+    finally:
+        partial.write()
+    if stopped:
         raise interrupted(partial)
-    if first is not None and len(partial.errors) == len(partial.done):
-        raise first
+    if first and len(partial.errors) == len(partial.done):
+        raise first[0]
 
 
 def interrupted(partial: Partial) -> Interrupted:

@@ -9,6 +9,7 @@ from tracewire.cli.analyse_orbits import chart, floquet, orbit
 from tracewire.cli.analyse_planes import polar, portrait
 from tracewire.cli.analyse_sections import bifurcation, lyapunov, section
 from tracewire.cli.analyse_signals import growth, invariants, scalogram, spectrum
+from tracewire.cli.records import with_fields
 
 analyse = typer.Typer(
     help="Analyse a diagram: steady states, orbits and their stability, exponents, spectra.",
@@ -21,4 +22,4 @@ _motion = (portrait, polar, spectrum, scalogram, growth, invariants)
 _stability = (steady, linearise, orbit, floquet, chart)
 _chaos = (section, bifurcation, lyapunov)
 for _kind in (*_motion, *_stability, *_chaos):
-    analyse.command()(_kind)
+    analyse.command()(with_fields(_kind))

@@ -6,29 +6,19 @@ from typing import Annotated
 
 import typer
 
-from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries
+from tracewire.cli.options import DiagramPath
 from tracewire.cli.output import working
-from tracewire.cli.setting import (
-    OutputFile,
-    Preset,
-    Start,
-    Values,
-    read_setting,
-    tell,
-)
+from tracewire.cli.records import Given, Target
+from tracewire.cli.setting import read_setting, tell
 
 Time = Annotated[float, typer.Option("--time", metavar="T", help="The time in s.")]
 
 
 def steady(
     diagram: DiagramPath,
-    preset: Preset = "",
-    values: Values = None,
-    start: Start = None,
-    output: OutputFile = None,
-    library: Libraries = None,
-    as_json: AsJson = False,
-    debug: Debug = False,
+    *,
+    given: Given,
+    target: Target,
 ) -> None:
     """Find a steady state near the start values, and tell whether it is stable.
 
@@ -37,17 +27,18 @@ def steady(
       tracewire analyse steady pendulum.yaml --start phi=3
       tracewire analyse steady triple.yaml --set q=0 --json
     """
-    setting = read_setting(diagram, library, preset, values, start, output=output)
+    setting = read_setting(diagram, given, target)
     with working("searching"):
         from tracewire.analyse import steady_state
 
         found = steady_state(setting.model, guess=setting.start, **setting.options)
     columns = {"state": list(found.states), "value": found.x}
-    tell(found, as_json=as_json, columns=columns, output=output)
+    tell(found, target, columns)
 
 
 def linearise(
     diagram: DiagramPath,
+    *,
     inputs: Annotated[
         list[str] | None,
         typer.Option(
@@ -69,13 +60,8 @@ def linearise(
         bool, typer.Option("--steady", help="At the steady state near the start values.")
     ] = False,
     time: Time = 0.0,
-    preset: Preset = "",
-    values: Values = None,
-    start: Start = None,
-    output: OutputFile = None,
-    library: Libraries = None,
-    as_json: AsJson = False,
-    debug: Debug = False,
+    given: Given,
+    target: Target,
 ) -> None:
     """Linearise a diagram: dx' = A dx + B du, dy = C dx + D du around the start values.
 
@@ -87,7 +73,7 @@ def linearise(
       tracewire analyse linearise pendulum.yaml --input torque --signal phi
       tracewire analyse linearise pendulum.yaml --steady --output matrices.npz
     """
-    setting = read_setting(diagram, library, preset, values, start, output=output)
+    setting = read_setting(diagram, given, target)
     with working("linearising"):
         from tracewire.analyse import linearise as linearise_model
         from tracewire.analyse import steady_state
@@ -99,6 +85,6 @@ def linearise(
             setting.model, at=at, t=time, inputs=inputs or (), outputs=outputs, **setting.options
         )
     columns = {"A": found.A, "B": found.B, "C": found.C, "D": found.D, "x": found.x}
-    if output is not None and output.endswith(".csv"):
+    if target.output is not None and target.output.endswith(".csv"):
         columns = {name: found.A[:, n] for n, name in enumerate(found.states)}  # A alone
-    tell(found, as_json=as_json, columns=columns, output=output)
+    tell(found, target, columns)

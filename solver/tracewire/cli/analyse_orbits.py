@@ -2,55 +2,30 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from tracewire.cli.executors import ExecutorAddress, executor_at
-from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries
+from tracewire.cli.executors import executor_at
+from tracewire.cli.options import DiagramPath
 from tracewire.cli.output import telling, working
-from tracewire.cli.setting import (
-    Begin,
-    FigureFile,
-    Modulo,
-    OutputFile,
-    PartialFile,
-    Period,
-    Preset,
-    Rtol,
-    Start,
-    TwoStates,
-    Values,
-    Workers,
-    number_or_formula,
-    read_setting,
-    tell,
-    values_of,
-)
+from tracewire.cli.records import FigureTarget, Given, PeriodOptions, Target, Work
+from tracewire.cli.setting import Modulo, Rtol, TwoStates, read_setting, tell, values_of
 from tracewire.errors import OptionError, Problem
-
-if TYPE_CHECKING:
-    pass
 
 
 def orbit(
     diagram: DiagramPath,
-    period: Period,
-    begin: Begin = "0",
+    *,
+    motion: PeriodOptions,
     skip: Annotated[
         int, typer.Option(metavar="N", help="Periods to simulate before the search begins.")
     ] = 0,
     turns: Modulo = None,
     plane: TwoStates = None,
-    preset: Preset = "",
-    values: Values = None,
-    start: Start = None,
+    given: Given,
     rtol: Rtol = 1e-10,
-    figure: FigureFile = None,
-    output: OutputFile = None,
-    library: Libraries = None,
-    as_json: AsJson = False,
-    debug: Debug = False,
+    target: FigureTarget,
 ) -> None:
     """Find a periodic orbit near the start values by shooting, and tell whether it is stable.
 
@@ -61,7 +36,7 @@ def orbit(
       tracewire analyse orbit triple.yaml --period 1/f --begin 0.5/f --skip 30 --set f=0.6
       tracewire analyse orbit van_der_pol.yaml --period 6 --skip 3 --figure cycle.png
     """
-    setting = read_setting(diagram, library, preset, values, start, figure=figure, output=output)
+    setting, (period, begin) = read_setting(diagram, given, target), motion.times
     from tracewire.cli.values import start_values_of
 
     modulo = start_values_of(setting.model, turns or (), "--modulo")
@@ -70,8 +45,8 @@ def orbit(
 
         found = periodic_orbit(
             setting.model,
-            number_or_formula(period),
-            begin=number_or_formula(begin),
+            period,
+            begin=begin,
             skip=skip,
             guess=setting.start,
             modulo=modulo,
@@ -80,29 +55,16 @@ def orbit(
         )
     columns = {"t": found.t} | {n: found.motion[:, i] for i, n in enumerate(found.states)}
     x, y = plane or ("", "")
-    tell(
-        found,
-        as_json=as_json,
-        figure=figure,
-        look={"x": x, "y": y},
-        columns=columns,
-        output=output,
-        warnings=found.floquet.warnings,
-    )
+    tell(found, target, columns, look={"x": x, "y": y}, warnings=found.floquet.warnings)
 
 
 def floquet(
     diagram: DiagramPath,
-    period: Period,
-    begin: Begin = "0",
-    preset: Preset = "",
-    values: Values = None,
-    start: Start = None,
+    *,
+    motion: PeriodOptions,
+    given: Given,
     rtol: Rtol = 1e-10,
-    output: OutputFile = None,
-    library: Libraries = None,
-    as_json: AsJson = False,
-    debug: Debug = False,
+    target: Target,
 ) -> None:
     """The Floquet multipliers of the periodic motion through the start values.
 
@@ -114,24 +76,25 @@ def floquet(
       tracewire analyse floquet mathieu.yaml --period pi --set a=1 --set q=0.2
       tracewire analyse floquet meissner.yaml --period 2*pi/omega --json
     """
-    setting = read_setting(diagram, library, preset, values, start, output=output)
+    setting, (period, begin) = read_setting(diagram, given, target), motion.times
     with working("following one period"):
         from tracewire.analyse import floquet as floquet_of
 
         found = floquet_of(
             setting.model,
-            number_or_formula(period),
-            begin=number_or_formula(begin),
+            period,
+            begin=begin,
             start=setting.start,
             rtol=rtol,
             **setting.options,
         )
     columns = {"re": found.multipliers.real, "im": found.multipliers.imag}
-    tell(found, as_json=as_json, columns=columns, output=output, warnings=found.warnings)
+    tell(found, target, columns, warnings=found.warnings)
 
 
 def chart(
     diagram: DiagramPath,
+    *,
     over: Annotated[
         list[str],
         typer.Option(
@@ -140,20 +103,11 @@ def chart(
             help="A parameter and its values; give two, first across, then up.",
         ),
     ],
-    period: Period,
-    begin: Begin = "0",
-    preset: Preset = "",
-    values: Values = None,
-    start: Start = None,
+    motion: PeriodOptions,
+    given: Given,
     rtol: Rtol = 1e-9,
-    workers: Workers = None,
-    executor: ExecutorAddress = "",
-    partial: PartialFile = None,
-    figure: FigureFile = None,
-    output: OutputFile = None,
-    library: Libraries = None,
-    as_json: AsJson = False,
-    debug: Debug = False,
+    work: Work,
+    target: FigureTarget,
 ) -> None:
     """A stability chart over two parameters, from Floquet multipliers at each point.
 
@@ -162,26 +116,26 @@ def chart(
       tracewire analyse chart mathieu.yaml --over a=-1:6:141 --over q=0:3:61 --period pi
                 --figure tongues.png --partial tongues.npz
     """
-    setting = read_setting(diagram, library, preset, values, start, figure=figure, output=output)
+    setting, (period, begin) = read_setting(diagram, given, target), motion.times
     grid = values_of(setting.model, over)
     if len(grid) != 2:
         what = f"--over names {len(grid)} parameter{'s' * (len(grid) != 1)}, and a chart has two"
         raise OptionError([Problem(what, hint="Give --over a=0:5:101 --over q=0:2:41.")])
     across, up = grid.items()
-    with executor_at(executor) as pool, working("charting") as show:
+    with executor_at(work.executor) as pool, working("charting") as show:
         from tracewire.analyse import stability_chart
 
         found = stability_chart(
             setting.model,
             across,
             up,
-            number_or_formula(period),
-            begin=number_or_formula(begin),
+            period,
+            begin=begin,
             start=setting.start,
             rtol=rtol,
-            workers=workers,
+            workers=work.workers,
             executor=pool,
-            partial=partial,
+            partial=work.partial,
             progress=telling("charting", show),
             **setting.options,
         )
@@ -189,4 +143,4 @@ def chart(
 
     xs, ys = np.meshgrid(found.x, found.y)
     columns = {found.x_name: xs, found.y_name: ys, "radius": found.radius}
-    tell(found, as_json=as_json, figure=figure, columns=columns, output=output)
+    tell(found, target, columns)

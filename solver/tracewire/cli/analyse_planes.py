@@ -3,22 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tracewire.cli.one_run import Every, Signal, Since, Span, run_of
-from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries
-from tracewire.cli.setting import (
-    FigureFile,
-    OutputFile,
-    Preset,
-    Rtol,
-    Start,
-    Values,
-    read_setting,
-    tell_parts,
-)
+from tracewire.cli.one_run import Signal, run_of
+from tracewire.cli.options import DiagramPath
+from tracewire.cli.records import FigureFile, FigureTarget, Given, Sampling, Since, Target
+from tracewire.cli.setting import Rtol, read_setting, tell_parts
 
 if TYPE_CHECKING:
     from tracewire.solve import Run
@@ -28,22 +21,30 @@ CURVE = 10_000
 """Steps of a curve in a plane: with the 1000 of a run its turns are polygons."""
 
 
+@dataclass(frozen=True)
+class PortraitTarget(FigureTarget):
+    """A figure in any case."""
+
+    figure: FigureFile = "portrait.png"
+
+
+@dataclass(frozen=True)
+class PolarTarget(FigureTarget):
+    """A figure in any case."""
+
+    figure: FigureFile = "polar.png"
+
+
 def portrait(
     diagram: DiagramPath,
+    *,
     x: Signal,
     y: Signal,
-    figure: FigureFile = "portrait.png",
     since: Since = None,
-    span: Span = None,
-    every: Every = None,
-    preset: Preset = "",
-    values: Values = None,
-    start: Start = None,
+    sampling: Sampling,
+    given: Given,
     rtol: Rtol = 1e-6,
-    output: OutputFile = None,
-    library: Libraries = None,
-    as_json: AsJson = False,
-    debug: Debug = False,
+    target: PortraitTarget,
 ) -> None:
     """Draw a phase portrait: one signal of a run over another.
 
@@ -53,17 +54,16 @@ def portrait(
       tracewire analyse portrait duffing.yaml x v --span 0 400 --since 200
     """
     names = (x, y)
-    setting = read_setting(
-        diagram, library, preset, values, start, names, figure=figure, output=output
-    )
-    run = run_of(setting, span, every, rtol, steps=CURVE)
+    setting = read_setting(diagram, given, target, names)
+    run = run_of(setting, sampling, rtol, steps=CURVE)
     from tracewire.show import plot_portrait
 
-    _tell_plane(run, names, since, plot_portrait, figure, output, as_json=as_json)
+    _tell_plane(run, names, since, plot_portrait, target)
 
 
 def polar(
     diagram: DiagramPath,
+    *,
     radius: Annotated[
         str, typer.Argument(metavar="RADIUS", help="The signal of the distance from the pivot.")
     ],
@@ -71,18 +71,11 @@ def polar(
         str,
         typer.Argument(metavar="ANGLE", help="The signal of the angle from the downward vertical."),
     ],
-    figure: FigureFile = "polar.png",
     since: Since = None,
-    span: Span = None,
-    every: Every = None,
-    preset: Preset = "",
-    values: Values = None,
-    start: Start = None,
+    sampling: Sampling,
+    given: Given,
     rtol: Rtol = 1e-6,
-    output: OutputFile = None,
-    library: Libraries = None,
-    as_json: AsJson = False,
-    debug: Debug = False,
+    target: PolarTarget,
 ) -> None:
     """Draw the path of a body in the plane, from its distance and angle, the pivot at the centre.
 
@@ -91,13 +84,11 @@ def polar(
       tracewire analyse polar atwood.yaml l phi --set mu=3 --figure orbit.svg
     """
     names = (radius, angle)
-    setting = read_setting(
-        diagram, library, preset, values, start, names, figure=figure, output=output
-    )
-    run = run_of(setting, span, every, rtol, steps=CURVE)
+    setting = read_setting(diagram, given, target, names)
+    run = run_of(setting, sampling, rtol, steps=CURVE)
     from tracewire.show import plot_polar
 
-    _tell_plane(run, names, since, plot_polar, figure, output, as_json=as_json)
+    _tell_plane(run, names, since, plot_polar, target)
 
 
 def _tell_plane(
@@ -105,10 +96,7 @@ def _tell_plane(
     names: tuple[str, str],
     since: float | None,
     plot: Callable[..., object],
-    figure: str | None,
-    output: str | None,
-    *,
-    as_json: bool,
+    target: Target,
 ) -> None:
     """Draw and write two signals of a run."""
     first = -float("inf") if since is None else since
@@ -126,4 +114,4 @@ def _tell_plane(
             if chosen.any()
         },
     }
-    tell_parts(data, [], draw, as_json=as_json, figure=figure, columns=columns, output=output)
+    tell_parts(data, [], draw, target, columns)

@@ -2,45 +2,38 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated
 
 import typer
 
-from tracewire.cli.one_run import Every, Signal, Since, Span, run_of
-from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries
-from tracewire.cli.setting import (
-    FigureFile,
-    OutputFile,
-    Preset,
-    Rtol,
-    Start,
-    Values,
-    read_setting,
-    tell,
-    tell_parts,
-)
+from tracewire.cli.one_run import Signal, run_of
+from tracewire.cli.options import DiagramPath
+from tracewire.cli.records import FigureFile, FigureTarget, Given, Sampling, Since
+from tracewire.cli.setting import Rtol, read_setting, tell, tell_parts
+
+
+@dataclass(frozen=True)
+class ScalogramTarget(FigureTarget):
+    """A figure in any case."""
+
+    figure: FigureFile = "scalogram.png"
 
 
 def spectrum(
     diagram: DiagramPath,
+    *,
     signal: Signal,
-    since: Since = None,
     window: Annotated[str, typer.Option(help="hann, flattop, blackman or boxcar.")] = "hann",
     high: Annotated[
         float | None, typer.Option(metavar="HZ", help="The highest frequency of the figure.")
     ] = None,
     lines: Annotated[int, typer.Option(metavar="N", help="Lines to tell.")] = 8,
-    span: Span = None,
-    every: Every = None,
-    preset: Preset = "",
-    values: Values = None,
-    start: Start = None,
+    since: Since = None,
+    sampling: Sampling,
+    given: Given,
     rtol: Rtol = 1e-6,
-    figure: FigureFile = None,
-    output: OutputFile = None,
-    library: Libraries = None,
-    as_json: AsJson = False,
-    debug: Debug = False,
+    target: FigureTarget,
 ) -> None:
     """The amplitude spectrum of a signal, in its unit, and its largest lines.
 
@@ -49,25 +42,18 @@ def spectrum(
       tracewire analyse spectrum coupled.yaml phi1 --span 0 200 --every 0.02 --figure lines.png
       tracewire analyse spectrum triple.yaml psi1 --since 100 --lines 3 --json
     """
-    setting = read_setting(
-        diagram, library, preset, values, start, [signal], figure=figure, output=output
-    )
-    run = run_of(setting, span, every, rtol)
+    setting = read_setting(diagram, given, target, [signal])
+    run = run_of(setting, sampling, rtol)
     from tracewire.analyse import spectrum as spectrum_of
 
     found = spectrum_of(run, signal, since=since, window=window, lines=lines)
-    tell(
-        found,
-        as_json=as_json,
-        figure=figure,
-        look={"high": high},
-        columns={"frequency": found.frequency, "amplitude": found.amplitude},
-        output=output,
-    )
+    columns = {"frequency": found.frequency, "amplitude": found.amplitude}
+    tell(found, target, columns, look={"high": high})
 
 
 def scalogram(
     diagram: DiagramPath,
+    *,
     signal: Signal,
     low: Annotated[float | None, typer.Option(metavar="HZ", help="The lowest frequency.")] = None,
     high: Annotated[float | None, typer.Option(metavar="HZ", help="The highest frequency.")] = None,
@@ -75,17 +61,10 @@ def scalogram(
         float, typer.Option(help="More tell frequencies apart, fewer tell times.")
     ] = 6.0,
     since: Since = None,
-    span: Span = None,
-    every: Every = None,
-    preset: Preset = "",
-    values: Values = None,
-    start: Start = None,
+    sampling: Sampling,
+    given: Given,
     rtol: Rtol = 1e-6,
-    figure: FigureFile = "scalogram.png",
-    output: OutputFile = None,
-    library: Libraries = None,
-    as_json: AsJson = False,
-    debug: Debug = False,
+    target: ScalogramTarget,
 ) -> None:
     """Draw which frequencies a signal has at which times: Morlet's wavelet transform.
 
@@ -93,39 +72,31 @@ def scalogram(
     Example:
       tracewire analyse scalogram ramp.yaml phi --low 0.1 --high 3 --figure ramp.png
     """
-    setting = read_setting(
-        diagram, library, preset, values, start, [signal], figure=figure, output=output
-    )
-    run = run_of(setting, span, every, rtol)
+    setting = read_setting(diagram, given, target, [signal])
+    run = run_of(setting, sampling, rtol)
     from tracewire.analyse import scalogram as scalogram_of
 
     found = scalogram_of(run, signal, low=low, high=high, waves=waves, since=since)
 
     columns = {"t": found.t, "ridge": found.ridge}
-    if output is not None and output.endswith(".npz"):
+    if target.output is not None and target.output.endswith(".npz"):
         columns |= {"frequency": found.frequency, "amplitude": found.amplitude}
-    tell(found, as_json=as_json, figure=figure, columns=columns, output=output)
+    tell(found, target, columns)
 
 
 def growth(
     diagram: DiagramPath,
+    *,
     signal: Signal,
     by: Annotated[str, typer.Option(help="peaks of a wave, or size of a norm.")] = "peaks",
     beat: Annotated[
         float | None, typer.Option(metavar="T", help="Of a signal that beats: the period in s.")
     ] = None,
     since: Since = None,
-    span: Span = None,
-    every: Every = None,
-    preset: Preset = "",
-    values: Values = None,
-    start: Start = None,
+    sampling: Sampling,
+    given: Given,
     rtol: Rtol = 1e-8,
-    figure: FigureFile = None,
-    output: OutputFile = None,
-    library: Libraries = None,
-    as_json: AsJson = False,
-    debug: Debug = False,
+    target: FigureTarget,
 ) -> None:
     """How fast an oscillation grows or decays: the rate in 1/s with its standard error.
 
@@ -134,27 +105,20 @@ def growth(
       tracewire analyse growth hill.yaml x --since 2
       tracewire analyse growth mathieu.yaml y --beat 6.283 --figure growth.png
     """
-    setting = read_setting(
-        diagram, library, preset, values, start, [signal], figure=figure, output=output
-    )
-    run = run_of(setting, span, every, rtol)
+    setting = read_setting(diagram, given, target, [signal])
+    run = run_of(setting, sampling, rtol)
     from tracewire.analyse import growth_rate
 
     found = growth_rate(run, signal, by=by, since=since, period=beat)  # type: ignore[arg-type]
 
     bent = f"the envelope bends, and its second half has {found.late:.6g} /s: try --since"
-    tell(
-        found,
-        as_json=as_json,
-        figure=figure,
-        columns={"t": found.t, "size": found.size},
-        output=output,
-        warnings=[bent] if found.bends else [],
-    )
+    columns = {"t": found.t, "size": found.size}
+    tell(found, target, columns, warnings=[bent] if found.bends else [])
 
 
 def invariants(
     diagram: DiagramPath,
+    *,
     names: Annotated[
         list[str],
         typer.Argument(metavar="SIGNAL ...", help="Signals that should not change: energies."),
@@ -163,17 +127,10 @@ def invariants(
         float | None,
         typer.Option(metavar="SIZE", help="What a drift is compared with, in SI."),
     ] = None,
-    span: Span = None,
-    every: Every = None,
-    preset: Preset = "",
-    values: Values = None,
-    start: Start = None,
+    sampling: Sampling,
+    given: Given,
     rtol: Rtol = 1e-9,
-    figure: FigureFile = None,
-    output: OutputFile = None,
-    library: Libraries = None,
-    as_json: AsJson = False,
-    debug: Debug = False,
+    target: FigureTarget,
 ) -> None:
     """How far signals that should stay the same drift over a run.
 
@@ -182,10 +139,8 @@ def invariants(
       tracewire analyse invariants atwood.yaml energy --set mu=3
       tracewire analyse invariants atwood.yaml energy second --rtol 1e-10 --figure drift.png
     """
-    setting = read_setting(
-        diagram, library, preset, values, start, names, figure=figure, output=output
-    )
-    run = run_of(setting, span, every, rtol)
+    setting = read_setting(diagram, given, target, names)
+    run = run_of(setting, sampling, rtol)
     from tracewire.analyse import invariant_drift
     from tracewire.show.present_analyses import drift_data, drift_table
 
@@ -200,8 +155,6 @@ def invariants(
         {"drift": {d.name: drift_data(d) for d in found}, "rtol": rtol},
         [drift_table(found)],
         draw,
-        as_json=as_json,
-        figure=figure,
-        columns={"t": run.t} | {d.name: d.values for d in found},
-        output=output,
+        target,
+        {"t": run.t} | {d.name: d.values for d in found},
     )

@@ -8,10 +8,11 @@ from typing import Annotated
 
 import typer
 
-from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries
+from tracewire.cli.options import AsJson, Debug, DiagramPath
 from tracewire.cli.output import check_target, note, print_json, print_text, telling, working
+from tracewire.cli.records import Given, Span
 from tracewire.cli.series import SeriesName, read_series
-from tracewire.cli.setting import Preset, Rtol, Start, Values
+from tracewire.cli.setting import Rtol
 from tracewire.cli.values import parameter_values_of, start_values_of
 from tracewire.files import writing
 
@@ -22,6 +23,7 @@ SAMPLES, FINER = 2000, 4
 
 def animate(
     diagram: DiagramPath,
+    *,
     output: Annotated[
         str | None,
         typer.Option(
@@ -36,15 +38,10 @@ def animate(
     ] = 1.0,
     fps: Annotated[float, typer.Option(metavar="N", help="Pictures in a second.")] = 25.0,
     width: Annotated[int, typer.Option(metavar="PIXELS", help="The width of the film.")] = 480,
-    preset: Preset = "",
-    values: Values = None,
-    start: Start = None,
-    span: Annotated[
-        tuple[float, float] | None, typer.Option(metavar="FROM TO", help="From and to, in s.")
-    ] = None,
+    given: Given,
+    span: Span = None,
     series: SeriesName = "",
     rtol: Rtol = 1e-6,
-    library: Libraries = None,
     as_json: AsJson = False,
     debug: Debug = False,
 ) -> None:
@@ -65,17 +62,23 @@ def animate(
         from tracewire.diagram import read
         from tracewire.show import animate as film_of
         from tracewire.show import frame_times
-        from tracewire.solve import parameter_values, simulate
+        from tracewire.solve import Options, parameter_values, simulate, with_options
 
-        plain = compile(read(diagram, library or ()))
+        plain = compile(read(diagram, given.library or ()))
         model = compile(plain.diagram, plain.read_by_scene)
-    given = read_series(model, series)
-    own = {**given.parameters, **parameter_values_of(model, values or ())}
-    known = parameter_values(model, own, preset or given.preset)
-    starts = {**given.start, **start_values_of(model, start or ())}
+    conditions, _ = read_series(model, series)
+    own = Options(
+        parameters=parameter_values_of(model, given.values or ()),
+        start=start_values_of(model, given.start or ()),
+        preset=given.preset,
+        span=span,
+        rtol=rtol,
+    )
+    options = with_options(conditions, own)
+    known = parameter_values(model, options.get("parameters") or {}, options.get("preset", ""))
     from tracewire.cli.one_run import evenly
 
-    begin, end = (span or given.span) or evenly(model, known, None, 1).tolist()
+    begin, end = options.get("span") or evenly(model, known, None, 1).tolist()
     times = frame_times(model, (begin, end), target, speed=speed, fps=fps, width=width)
     finer = max(FINER, math.ceil(SAMPLES / len(times)))
     samples = np.interp(
@@ -83,17 +86,8 @@ def animate(
     )
     what = f"simulating {diagram}"
     with working(what) as show:
-        run = simulate(
-            model,
-            parameters=own,
-            start=starts,
-            preset=preset or given.preset,
-            span=(begin, end),
-            times=samples,
-            rtol=rtol,
-            inputs=given.inputs,
-            progress=telling(what, show),
-        )
+        options |= Options(span=(begin, end), times=samples)
+        run = simulate(model, **options, progress=telling(what, show))
     for warning in run.warnings:
         note(f"warning: {warning}")
     with working(f"drawing {target}") as show, writing(target):

@@ -12,6 +12,7 @@ from tracewire.errors import OptionError, Problem
 
 if TYPE_CHECKING:
     from tracewire.compile import Model
+    from tracewire.solve import Options
 
 MOST_CASES = 12
 """Lines of one panel beyond this are not told apart."""
@@ -25,6 +26,13 @@ class Case:
     preset: str
     parameters: Mapping[str, float]
     start: Mapping[str, float]
+
+    @property
+    def options(self) -> Options:
+        """These, as `simulate` takes them."""
+        from tracewire.solve import Options
+
+        return Options(parameters=self.parameters, start=self.start, preset=self.preset)
 
 
 def cases_of(model: Model, over: Sequence[str], presets: Sequence[str]) -> list[Case]:

@@ -4,16 +4,32 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+import typer
 
 from tracewire.cli.output import (
     Cut,
+    check_target,
     flush,
     print_json,
     print_parts,
     print_text,
 )
-from tracewire.cli.reporting import Attempts, patch_of, store, with_table, write_report, write_table
+from tracewire.cli.reporting import (
+    Apply,
+    Attempts,
+    Output,
+    PatchFile,
+    ReportFile,
+    TableFile,
+    check_targets,
+    patch_of,
+    store,
+    with_table,
+    write_report,
+    write_table,
+)
 
 if TYPE_CHECKING:
     from tracewire.compile import Model
@@ -25,12 +41,23 @@ if TYPE_CHECKING:
 class Targets:
     """The files that a trace is to write; None: that one is not wanted."""
 
-    report: str | None = None
-    save: str | None = None
-    apply: bool = False
-    output: str | None = None
-    patch: str | None = None
-    table: str | None = None
+    report: ReportFile = None
+    save: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE",
+            help="Save the result to this .json, for `tracewire report FILE` and tw.load(FILE).",
+        ),
+    ] = None
+    apply: Apply = False
+    output: Output = None
+    patch: PatchFile = None
+    table: TableFile = None
+
+    def check(self) -> None:
+        """Refuse, before the work, files that could not be written after it. Raises OptionError."""
+        check_targets(self.report, self.output, self.patch, self.table)
+        check_target(self.save, (".json",), "saved trace")
 
 
 def deliver(found: Found, model: Model, own: Diagram, targets: Targets, as_json: bool) -> None:

@@ -9,10 +9,13 @@ from typing import Annotated
 import typer
 
 from tracewire.cli.check import check
+from tracewire.cli.delivery import Targets
 from tracewire.cli.options import Debug
 from tracewire.cli.output import print_text
+from tracewire.cli.records import Sampling
 from tracewire.cli.run import run
-from tracewire.cli.trace import trace
+from tracewire.cli.run_records import Accuracy, RunGiven, RunTarget
+from tracewire.cli.trace import Asked, SeriesFiles, trace
 from tracewire.files import writing
 
 
@@ -41,10 +44,17 @@ def demo(
     print_text("--- 1. check the double torsion pendulum as it was first declared")
     check([pendulum])
     print_text("\n--- 2. run it")
-    run(pendulum, preset=["as_in_the_paper"], figure=str(folder / "torsion.png"))
+    run(
+        pendulum,
+        given=RunGiven(preset=["as_in_the_paper"]),
+        sampling=Sampling(),
+        accuracy=Accuracy(),
+        target=RunTarget(figure=str(folder / "torsion.png")),
+    )
     print_text("\n--- 3. trace what it lacks to explain five records")
     patch = str(folder / "pendulum.patch")
-    trace(pendulum, report=str(folder / "trace" / "report.md"), patch=patch)
+    targets = Targets(report=str(folder / "trace" / "report.md"), patch=patch)
+    trace(pendulum, files=SeriesFiles(), asked=Asked(), targets=targets)
     print_text(
         f"\ndone in {time.perf_counter() - began:.0f} s; figures and reports are in {folder}/"
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -31,65 +32,105 @@ TELL_EVERY = 10.0
 PLOTS = "fit_frames"
 
 
-def fit(
-    diagram: DiagramPath,
+@dataclass(frozen=True)
+class Search:
+    """What is fitted, and how: arguments of `tracewire.fit`."""
+
     method: Annotated[
         str,
         typer.Option(
             help="fminsearch, least_squares, growing_windows, shooting, multistart or "
             "multiple_shooting."
         ),
-    ] = "fminsearch",
+    ] = "fminsearch"
     free: Annotated[
         list[str] | None,
         typer.Option(metavar="NAME", help="A parameter to fit, instead of those with `fit:`."),
-    ] = None,
+    ] = None
     fix: Annotated[
         list[str] | None,
         typer.Option(metavar="NAME", help="A parameter with `fit:` that stays. Repeatable."),
-    ] = None,
+    ] = None
     values: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="NAME=VALUE", help="A value to begin with. Repeatable."),
-    ] = None,
+    ] = None
     loss: Annotated[
         str, typer.Option(help="linear, or huber or cauchy for data with outliers.")
-    ] = "linear",
-    max_iter: Annotated[int | None, typer.Option("--MaxIter", help="The most iterations.")] = None,
+    ] = "linear"
+
+
+@dataclass(frozen=True)
+class Limits:
+    """When a fit ends: options of `optimset`."""
+
+    max_iter: Annotated[int | None, typer.Option("--MaxIter", help="The most iterations.")] = None
     max_fun_evals: Annotated[
         int | None, typer.Option("--MaxFunEvals", help="The most evaluations of the criterion.")
-    ] = None,
+    ] = None
     tol_x: Annotated[
         float | None, typer.Option("--TolX", help="fminsearch: size of the simplex.")
-    ] = None,
+    ] = None
     tol_fun: Annotated[
         float | None, typer.Option("--TolFun", help="fminsearch: spread of the criterion.")
-    ] = None,
-    seed: Annotated[int, typer.Option(help="What the random methods begin from.")] = 0,
+    ] = None
+
+    @property
+    def options(self) -> dict[str, float]:
+        """These by the names of `optimset`, as far as they are given."""
+        named = {
+            "MaxIter": self.max_iter,
+            "MaxFunEvals": self.max_fun_evals,
+            "TolX": self.tol_x,
+            "TolFun": self.tol_fun,
+        }
+        return {name: value for name, value in named.items() if value is not None}
+
+
+@dataclass(frozen=True)
+class Course:
+    """How a search begins, where it is stored, and what is told of it."""
+
+    seed: Annotated[int, typer.Option(help="What the random methods begin from.")] = 0
     save: Annotated[
         str | None, typer.Option(metavar="FILE", help="Store the search here while it runs.")
-    ] = None,
+    ] = None
     resume: Annotated[
         str | None, typer.Option(metavar="FILE", help="Go on from a stored search.")
-    ] = None,
+    ] = None
     profile: Annotated[
         list[str] | None,
         typer.Option(
             metavar="NAME", help="Tell how far a parameter may go, the others refitted. Repeatable."
         ),
-    ] = None,
+    ] = None
     plot: Annotated[
         bool,
         typer.Option(
             "--plot", help=f"Draw the fit while it runs; without a display into {PLOTS}/."
         ),
-    ] = False,
-    report: ReportFile = None,
-    apply: Apply = False,
-    output: Output = None,
+    ] = False
+
+
+@dataclass(frozen=True)
+class FitTarget:
+    """What is written of a fit, and how it is printed."""
+
+    report: ReportFile = None
+    apply: Apply = False
+    output: Output = None
+    as_json: AsJson = False
+    debug: Debug = False
+
+
+def fit(
+    diagram: DiagramPath,
+    *,
+    search: Search,
+    limits: Limits,
+    course: Course,
+    target: FitTarget,
     library: Libraries = None,
-    as_json: AsJson = False,
-    debug: Debug = False,
 ) -> None:
     """Fit the free parameters of a diagram to its measured series.
 
@@ -107,34 +148,28 @@ def fit(
     from tracewire.fit import profile as profile_of
     from tracewire.show import present
 
-    check_targets(report, output)
+    check_targets(target.report, target.output)
     model = load_model(diagram, library)
-    check_home(model.diagram, output)
-    limits = {
-        "MaxIter": max_iter,
-        "MaxFunEvals": max_fun_evals,
-        "TolX": tol_x,
-        "TolFun": tol_fun,
-    }
-    options = _options({name: value for name, value in limits.items() if value is not None}, plot)
-    parameters = parameter_values_of(model, values or [])
+    check_home(model.diagram, target.output)
+    options = _options(limits.options, course.plot)
+    parameters = parameter_values_of(model, search.values or [])
     with working("fitting") as tell:
         found = fit_model(
             model,
-            method=method,
-            free=free or None,
-            fixed=fix or (),
+            method=search.method,
+            free=search.free or None,
+            fixed=search.fix or (),
             parameters=parameters,
             options=options,
-            loss=loss,
-            seed=seed,
-            save=save,
-            resume=resume,
+            loss=search.loss,
+            seed=course.seed,
+            save=course.save,
+            resume=course.resume,
             progress=_told(tell),
         )
         profiles: list[Profile] = []
         cut = found.interrupted
-        for name in () if cut else profile or ():
+        for name in () if cut else course.profile or ():
             tell(f"profile of {name}")
             try:
                 profiles.append(profile_of(found, name))
@@ -149,16 +184,16 @@ def fit(
     def edited() -> Diagram:
         return set_sensors(set_values(model.diagram, own), sensors)
 
-    attempt(lambda: store(model.diagram, edited, apply, output))
-    attempt(lambda: write_report(found, report, profiles))
-    if as_json:
+    attempt(lambda: store(model.diagram, edited, target.apply, target.output))
+    attempt(lambda: write_report(found, target.report, profiles))
+    if target.as_json:
         told = {"profiles": profiles, "written": attempt.written} | attempt.not_written
         print_json(found.json() | told)
     else:
         print_parts(present(found).parts)
         for text in (*(p.words for p in profiles), *(f"written: {w}" for w in attempt.written)):
             print_text(text)
-    attempt.finish(as_json)
+    attempt.finish(target.as_json)
     if cut:
         raise Cut
 

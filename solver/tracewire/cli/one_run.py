@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tracewire.cli.output import note, telling, working
+from tracewire.cli.records import Sampling
 from tracewire.cli.setting import Setting
 from tracewire.errors import OptionError, Problem
 
@@ -20,13 +21,6 @@ if TYPE_CHECKING:
 
     Vector = NDArray[np.float64]
 
-Span = Annotated[
-    tuple[float, float] | None, typer.Option(metavar="FROM TO", help="From and to, in s.")
-]
-Every = Annotated[float | None, typer.Option(metavar="DT", help="The time between samples, in s.")]
-Since = Annotated[
-    float | None, typer.Option(metavar="T", help="Leave out what is before this time, in s.")
-]
 Signal = Annotated[str, typer.Argument(metavar="SIGNAL", help="A signal.", show_default=False)]
 
 
@@ -42,21 +36,14 @@ def evenly(
     return np.linspace(begin, end, steps + 1)
 
 
-def run_of(
-    setting: Setting,
-    span: tuple[float, float] | None,
-    every: float | None,
-    rtol: float,
-    *,
-    steps: int | None = None,
-) -> Run:
+def run_of(setting: Setting, sampling: Sampling, rtol: float, *, steps: int | None = None) -> Run:
     """The run of a setting, with its warnings told; in `steps` steps where nothing says another."""
     import numpy as np
 
     from tracewire.analyse.plane import span_of
     from tracewire.solve import parameter_values, simulate
 
-    times = None
+    span, every, times = sampling.span, sampling.every, None
     values = parameter_values(setting.model, setting.parameters, setting.preset)
     if every is None and steps is not None and setting.model.flat.every is None:
         times = evenly(setting.model, values, span, steps)
@@ -68,16 +55,8 @@ def run_of(
             raise OptionError([Problem(what, hint="Give another time between samples.")])
         times = np.minimum(begin + every * np.arange(count + 1), end)
     with working("simulating") as show:
-        run = simulate(
-            setting.model,
-            parameters=setting.parameters,
-            start=setting.start,
-            preset=setting.preset,
-            span=span,
-            times=times,
-            rtol=rtol,
-            progress=telling("simulating", show),
-        )
+        options = setting.run_options(span, rtol) | {"times": times}
+        run = simulate(setting.model, **options, progress=telling("simulating", show))
     for warning in run.warnings:
         note(f"warning: {warning}")
     return run

@@ -2,35 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from tracewire.cli.cases import cases_of
 from tracewire.cli.one_run import evenly
-from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries, load_model
-from tracewire.cli.output import (
-    check_target,
-    note,
-    print_json,
-    print_table,
-    print_text,
-    telling,
-    working,
-)
-from tracewire.cli.reporting import ReportFile, write_report
-from tracewire.cli.series import SeriesName, read_series
+from tracewire.cli.options import DiagramPath, load_model
+from tracewire.cli.output import note, print_json, print_table, print_text, telling, working
+from tracewire.cli.records import Sampling
+from tracewire.cli.reporting import write_report
+from tracewire.cli.run_records import Accuracy, RunGiven, RunTarget
+from tracewire.cli.series import read_series
 from tracewire.cli.values import parameter_values_of, start_values_of, units_of
-from tracewire.errors import OptionError, Problem
+from tracewire.errors import Problem
 from tracewire.files import writing
 
 if TYPE_CHECKING:
-    from tracewire.solve import Interrupted, Run
-
-OUTPUTS = (".csv", ".npz")
-FIGURES = (".png", ".svg", ".pdf")
+    from tracewire.compile import Model
+    from tracewire.residual import Measured
+    from tracewire.solve import Interrupted, Options, Run
 
 FINER = 10
 """Times as many samples are drawn as are written."""
@@ -38,79 +30,11 @@ FINER = 10
 
 def run(
     diagram: DiagramPath,
-    preset: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="NAME", help="A preset of the diagram. Repeatable: a run for each of them."
-        ),
-    ] = None,
-    values: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="NAME=VALUE",
-            help="A parameter, as in k=2.5 or 'phi=13.6 deg'; a number without unit is in the unit "
-            "that the diagram's file gives it. Repeatable.",
-            show_default=False,
-        ),
-    ] = None,
-    start: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="NAME=VALUE",
-            help="The start value of a state; without unit in SI. Repeatable.",
-            show_default=False,
-        ),
-    ] = None,
-    over: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="NAME=VALUES",
-            help="A run for each of these values of a parameter, or of start.STATE, in one table "
-            "and figure: 'k=1,2,5' or 'k=FROM:TO:COUNT'. Repeatable.",
-            show_default=False,
-        ),
-    ] = None,
-    span: Annotated[
-        tuple[float, float] | None, typer.Option(metavar="FROM TO", help="From and to, in s.")
-    ] = None,
-    every: Annotated[
-        float | None, typer.Option(metavar="DT", help="The time between samples, in s.")
-    ] = None,
-    record: Annotated[
-        list[str] | None,
-        typer.Option(metavar="SIGNAL", help="A further signal to record. Repeatable."),
-    ] = None,
-    unit: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="SIGNAL=UNIT",
-            help="The unit of a signal in table and figure; files are in SI. Repeatable.",
-            show_default=False,
-        ),
-    ] = None,
-    series: SeriesName = "",
-    method: Annotated[
-        str, typer.Option(help="auto, dormand_prince, dop853, rosenbrock or rk4.")
-    ] = "auto",
-    rtol: Annotated[float, typer.Option(help="The relative tolerance.")] = 1e-6,
-    atol: Annotated[
-        float | None, typer.Option(help="The absolute tolerance; rtol/1000 unless given.")
-    ] = None,
-    events: Annotated[bool, typer.Option("--events", help="Print the log of events.")] = False,
-    output: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Write the samples to .csv or .npz.")
-    ] = None,
-    figure: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Draw the run to .png, .svg or .pdf.")
-    ] = None,
-    report: ReportFile = None,
-    samples: Annotated[
-        bool, typer.Option("--samples", help="With --json: print the samples, too.")
-    ] = False,
-    library: Libraries = None,
-    as_json: AsJson = False,
-    debug: Debug = False,
+    *,
+    given: RunGiven,
+    sampling: Sampling,
+    accuracy: Accuracy,
+    target: RunTarget,
 ) -> None:
     """Simulate a diagram and print how each recorded signal went.
 
@@ -124,100 +48,100 @@ def run(
     Ctrl-C keeps the run up to there: in the file of --output, or in DIAGRAM.interrupted.npz in this
     folder.
     """
-    if samples and not as_json:
-        what = "--samples prints samples as JSON only"
-        hint = "Add --json, or write them to a file with --output samples.csv."
-        raise OptionError([Problem(what, hint=hint)])
-    check_target(output, OUTPUTS, "output")
-    check_target(figure, FIGURES, "figure")
-    check_target(report, (".md", ".html"), "report")
-    model = load_model(diagram, library, record)
-    parameters = parameter_values_of(model, values or ())
-    starts = start_values_of(model, start or ())
-    units = units_of(model, unit or ())
-    cases = cases_of(model, over or (), preset or ())
-    if len(cases) > 1 and (output or samples or events or report):
-        what = "--output, --report, --samples and --events are those of one run"
-        what += ", and here are several"
-        hint = "Leave them out, or run each case by itself."
-        raise OptionError([Problem(what, hint=hint)])
-    if every is not None:
+    target.check()
+    model = load_model(diagram, given.library, given.record)
+    parameters = parameter_values_of(model, given.values or ())
+    starts = start_values_of(model, given.start or ())
+    units = units_of(model, target.unit or ())
+    cases = cases_of(model, given.over or (), given.preset or ())
+    if len(cases) > 1:
+        target.check_several()
+    if sampling.every is not None:
         from tracewire.formula import Number
 
-        model = replace(model, flat=replace(model.flat, every=Number(every)))
-    given = read_series(model, series)
-    within = span or given.span
+        model = replace(model, flat=replace(model.flat, every=Number(sampling.every)))
+    from tracewire.solve import Options, with_options
+
+    conditions, measured = read_series(model, given.series)
+    own = Options(parameters=parameters, start=starts, span=sampling.span)
+    options = with_options(conditions, own | accuracy.options)
     # a figure of a quick swing needs more points than a table of it
-    finer = (figure or report) is not None and model.flat.every is None
+    finer = bool(target.figure or target.report) and model.flat.every is None
+    lost = target.output or f"{Path(diagram).stem}.interrupted.npz"
     runs = {}
     for case in cases:
         what = f"simulating {diagram}" + (f" with {case.name}" if case.name else "")
-        with working(what) as show:
-            from tracewire.solve import Interrupted, parameter_values, simulate
-            from tracewire.solve.simulate import DEFAULT_SAMPLES
+        run_of_case = _simulated(model, with_options(options, case.options), finer, what, lost)
+        runs[case.name] = run_of_case.in_units(units)
+        _tell_warnings(case.name, run_of_case)
+    _write(runs, target, measured, finer)
+    _tell(runs, target, finer)
+    if (target.figure or target.report) and model.diagram.measured and not given.is_own:
+        names = ", ".join(model.diagram.measured)
+        if not target.as_json:
+            print_text(
+                f"without measured data; --series runs as one of these and draws it: {names}"
+            )
 
-            own = {**given.parameters, **parameters, **case.parameters}
-            known = parameter_values(model, own, case.preset or given.preset)
-            times = evenly(model, known, within, FINER * (DEFAULT_SAMPLES - 1)) if finer else None
-            try:
-                result = simulate(
-                    model,
-                    parameters=own,
-                    start={**given.start, **starts, **case.start},
-                    span=within,
-                    times=times,
-                    method=method,
-                    rtol=rtol,
-                    atol=atol,
-                    preset=case.preset or given.preset,
-                    inputs=given.inputs,
-                    progress=telling(what, show),
-                )
-            except Interrupted as error:
-                raise _kept(error, output or f"{Path(diagram).stem}.interrupted.npz") from error
-        runs[case.name] = result.in_units(units)
-        _tell_warnings(case.name, result)
-    from tracewire.show import summary
 
+def _simulated(model: Model, options: Options, finer: bool, what: str, lost: str) -> Run:
+    """The run, with ten times the samples where it is `finer`; what there is of one that the user
+    stops goes into the file `lost`."""
+    with working(what) as show:
+        from tracewire.solve import DEFAULT_SAMPLES, Interrupted, parameter_values, simulate
+
+        if finer:
+            preset = options.get("preset", "")
+            known = parameter_values(model, options.get("parameters") or {}, preset)
+            steps = FINER * (DEFAULT_SAMPLES - 1)
+            options["times"] = evenly(model, known, options.get("span"), steps)
+        try:
+            return simulate(model, **options, progress=telling(what, show))
+        except Interrupted as error:
+            raise _kept(error, lost) from error
+
+
+def _write(
+    runs: Mapping[str, Run], target: RunTarget, measured: Measured | None, finer: bool
+) -> None:
+    """Write the files that are asked for."""
     result = next(iter(runs.values()))
-    if output is not None:
-        with writing(output):
-            (_thinned(result) if finer else result).save(output)
-    if figure is not None:
-        with working(f"drawing {figure}"), writing(figure):
+    if target.output is not None:
+        with writing(target.output):
+            (_thinned(result) if finer else result).save(target.output)
+    if target.figure is not None:
+        with working(f"drawing {target.figure}"), writing(target.figure):
             from tracewire.show import plot_run, plot_runs
 
             if len(runs) > 1:
-                plot_runs(runs, figure, given.measured)
+                plot_runs(runs, target.figure, measured)
             else:
-                plot_run(result, figure, given.measured)
-    write_report(result, report, measured=given.measured)
-    written = [path for path in (output, figure, report) if path is not None]
+                plot_run(result, target.figure, measured)
+    write_report(result, target.report, measured=measured)
 
-    if finer:
-        runs = {name: _thinned(one) for name, one in runs.items()}
-    told = {name: summary.run_data(one, samples) for name, one in runs.items()}
-    if as_json:
-        print_json(
-            (told[cases[0].name] if len(cases) == 1 else {"runs": told}) | {"written": written}
-        )
+
+def _tell(runs: Mapping[str, Run], target: RunTarget, finer: bool) -> None:
+    """Print the runs."""
+    from tracewire.show import summary
+
+    shown = {name: _thinned(one) for name, one in runs.items()} if finer else runs
+    result = next(iter(shown.values()))
+    if target.as_json:
+        told = {name: summary.run_data(one, target.samples) for name, one in shown.items()}
+        data = {"runs": told} if len(told) > 1 else next(iter(told.values()))
+        print_json(data | {"written": target.written})
         return
-    if len(runs) > 1:
+    if len(shown) > 1:
         from tracewire.show.several_runs import runs_table
 
-        print_table(runs_table(runs))
+        print_table(runs_table(shown))
     else:
-        result = runs[cases[0].name]
         print_table(summary.run_table(result))
-        if events:
+        if target.events:
             print_table(summary.events_table(result))
         print_text(summary.run_text(result))
-    for path in written:
+    for path in target.written:
         print_text(f"written: {path}")
-    own_conditions = series or preset or values or start or over
-    if (figure or report) and model.diagram.measured and not own_conditions:
-        names = ", ".join(model.diagram.measured)
-        print_text(f"without measured data; --series runs as one of these and draws it: {names}")
 
 
 def _tell_warnings(case: str, result: Run) -> None:

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-
-from tracewire.errors import OptionError, unknown
 
 if TYPE_CHECKING:
     from tracewire.compile import Model
     from tracewire.residual import Measured
+    from tracewire.solve import Options
 
 SeriesName = Annotated[
     str,
@@ -24,32 +21,16 @@ SeriesName = Annotated[
 ]
 
 
-@dataclass(frozen=True)
-class Conditions:
-    """What a run takes from a measured series; nothing where no series is named."""
+def read_series(model: Model, name: str) -> tuple[Options, Measured | None]:
+    """The conditions of a measured series and the series; none where no name is given.
 
-    inputs: Mapping[str, Any] = field(default_factory=dict)
-    start: Mapping[str, float] = field(default_factory=dict)
-    preset: str = ""
-    span: tuple[float, float] | None = None
-    parameters: Mapping[str, float] = field(default_factory=dict)
-    measured: Measured | None = None
+    Raises OptionError, DataError.
+    """
+    from tracewire.solve import Options
 
-
-def read_series(model: Model, name: str) -> Conditions:
-    """The conditions of a measured series, the first window of several. Raises OptionError."""
     if not name:
-        return Conditions()
-    if name not in model.diagram.measured:
-        raise OptionError([unknown("measured series", name, model.diagram.measured)])
-    from tracewire.residual import load_measured
+        return Options(), None
+    from tracewire.residual import measured_series
 
-    measured = load_measured(model, driving=True, series=[name])[0]
-    return Conditions(
-        dict(measured.inputs),
-        measured.known_start,
-        measured.preset,
-        measured.span,
-        dict(measured.parameters),
-        measured,
-    )
+    measured = measured_series(model, name)
+    return measured.conditions, measured

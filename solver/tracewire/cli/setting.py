@@ -18,6 +18,7 @@ from tracewire.cli.output import (
     print_text,
     working,
 )
+from tracewire.cli.records import Given, Target
 from tracewire.cli.values import parameter_values_of, start_values_of
 from tracewire.errors import OptionError, Problem
 from tracewire.files import replacing, write_rows, writing
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from tracewire.compile import Model
     from tracewire.result import Result
     from tracewire.show import Table
+    from tracewire.solve import Options
 
 OUTPUTS = (".csv", ".npz")
 FIGURES = (".png", ".svg", ".pdf")
@@ -33,33 +35,6 @@ NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 VALUES = re.compile(rf"\s*([^=\s]+)\s*=\s*({NUMBER})\s*:\s*({NUMBER})\s*:\s*(\d+)\s*(.*)")
 LISTED = re.compile(rf"\s*([^=\s]+)\s*=\s*({NUMBER}(?:\s*,\s*{NUMBER})*)\s*([^\d:,;]?[^:,;]*)")
 
-Preset = Annotated[str, typer.Option(help="A preset of the diagram.", metavar="NAME")]
-Values = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--set",
-        metavar="NAME=VALUE",
-        help="A parameter, as in k=2.5 or 'phi=13.6 deg'. Repeatable.",
-        show_default=False,
-    ),
-]
-Start = Annotated[
-    list[str] | None,
-    typer.Option(
-        metavar="NAME=VALUE", help="The start value of a state. Repeatable.", show_default=False
-    ),
-]
-Record = Annotated[
-    list[str] | None,
-    typer.Option(metavar="SIGNAL", help="A further signal to record. Repeatable."),
-]
-Period = Annotated[
-    str,
-    typer.Option(metavar="T", help="The period in s, or a formula of parameters: '2*pi/omega'."),
-]
-Begin = Annotated[
-    str, typer.Option(metavar="T", help="When it begins, in s or a formula: '0.5/f'.")
-]
 Modulo = Annotated[
     list[str] | None,
     typer.Option(
@@ -72,23 +47,6 @@ TwoStates = Annotated[
     tuple[str, str] | None, typer.Option(metavar="X Y", help="The two states of the figure.")
 ]
 Rtol = Annotated[float, typer.Option(help="The relative tolerance.")]
-FigureFile = Annotated[
-    str | None, typer.Option("--figure", metavar="FILE", help="Draw it to .png, .svg or .pdf.")
-]
-OutputFile = Annotated[
-    str | None, typer.Option("--output", metavar="FILE", help="Write the numbers to .csv or .npz.")
-]
-PartialFile = Annotated[
-    str | None,
-    typer.Option(
-        "--partial",
-        metavar="FILE",
-        help="Keep what is done in this .npz; the same command goes on from there.",
-    ),
-]
-Workers = Annotated[
-    int | None, typer.Option(metavar="N", help="Threads; the number of cores unless given.")
-]
 
 
 @dataclass(frozen=True)
@@ -105,27 +63,27 @@ class Setting:
         """The values as functions take them."""
         return {"parameters": self.parameters, "preset": self.preset}
 
+    def run_options(self, span: tuple[float, float] | None, rtol: float) -> Options:
+        """The values as `simulate` takes them, with a span and a tolerance."""
+        from tracewire.solve import Options
+
+        return Options(
+            parameters=self.parameters, start=self.start, preset=self.preset, span=span, rtol=rtol
+        )
+
 
 def read_setting(
-    diagram: str,
-    library: Sequence[str] | None,
-    preset: str,
-    values: Sequence[str] | None,
-    start: Sequence[str] | None = None,
-    record: Sequence[str] | None = None,
-    *,
-    figure: str | None = None,
-    output: str | None = None,
+    diagram: str, given: Given, target: Target, record: Sequence[str] | None = None
 ) -> Setting:
     """The model and its values; targets that could not be written are refused before the work."""
-    check_target(figure, FIGURES, "figure")
-    check_target(output, OUTPUTS, "output")
-    model = load_model(diagram, library, record)
+    check_target(target.picture, FIGURES, "figure")
+    check_target(target.output, OUTPUTS, "output")
+    model = load_model(diagram, given.library, record)
     from tracewire.solve import parameter_values
 
-    parameters = parameter_values_of(model, values or ())
-    parameter_values(model, parameters, preset)
-    return Setting(model, parameters, start_values_of(model, start or ()), preset)
+    parameters = parameter_values_of(model, given.values or ())
+    parameter_values(model, parameters, given.preset)
+    return Setting(model, parameters, start_values_of(model, given.start or ()), given.preset)
 
 
 def values_of(model: Model, texts: Sequence[str], option: str = "--over") -> dict[str, Any]:
@@ -170,55 +128,46 @@ def values_of(model: Model, texts: Sequence[str], option: str = "--over") -> dic
 
 def tell(
     found: Result,
+    target: Target,
+    columns: Mapping[str, Any],
     *,
-    as_json: bool,
-    figure: str | None = None,
     look: Mapping[str, Any] | None = None,
-    columns: Mapping[str, Any] | None = None,
-    output: str | None = None,
     warnings: Sequence[str] = (),
 ) -> None:
     """Write figure and numbers of a result where they are asked for, and print what came out.
 
-    look: options of its figure. columns: its arrays.
+    columns: its arrays. look: options of its figure.
     """
     from tracewire.show import present
 
     shown = present(found)
-    tell_parts(
-        found.json(),
-        shown.parts,
-        lambda path: shown.draw(path, look or {}),
-        as_json=as_json,
-        figure=figure,
-        columns=columns,
-        output=output,
-        warnings=warnings,
-    )
+
+    def draw(path: str) -> None:
+        shown.draw(path, look or {})
+
+    tell_parts(found.json(), shown.parts, draw, target, columns, warnings)
 
 
 def tell_parts(
     data: Mapping[str, object],
     parts: Sequence[str | Table],
     draw: Callable[[str], object],
-    *,
-    as_json: bool,
-    figure: str | None = None,
-    columns: Mapping[str, Any] | None = None,
-    output: str | None = None,
+    target: Target,
+    columns: Mapping[str, Any],
     warnings: Sequence[str] = (),
 ) -> None:
     """The same of data, tables and sentences that are no result by themselves."""
     for warning in warnings:
         note(f"warning: {warning}")
+    output, figure = target.output, target.picture
     if output is not None:
         with writing(output):
-            write_numbers(output, columns or {})
+            write_numbers(output, columns)
     if figure is not None:
         with working(f"drawing {figure}"), writing(figure):
             draw(figure)
     written = [path for path in (output, figure) if path is not None]
-    if as_json:
+    if target.as_json:
         print_json({**data, "written": written})
         return
     print_parts(parts)
@@ -237,11 +186,3 @@ def write_numbers(path: str, columns: Mapping[str, Any]) -> None:
         return
     rows = zip(*(values.ravel().tolist() for values in arrays.values()), strict=True)
     write_rows(path, list(arrays), rows)
-
-
-def number_or_formula(text: str) -> float | str:
-    """A number, or the text as a formula."""
-    try:
-        return float(text)
-    except ValueError:
-        return text

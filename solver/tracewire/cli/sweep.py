@@ -6,28 +6,17 @@ from typing import Annotated
 
 import typer
 
-from tracewire.cli.executors import ExecutorAddress, executor_at
-from tracewire.cli.one_run import Since, Span
-from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries
+from tracewire.cli.executors import executor_at
+from tracewire.cli.options import DiagramPath
 from tracewire.cli.output import telling, working
+from tracewire.cli.records import FigureTarget, Given, Since, Span, Work
 from tracewire.cli.series import SeriesName, read_series
-from tracewire.cli.setting import (
-    FigureFile,
-    OutputFile,
-    PartialFile,
-    Preset,
-    Rtol,
-    Start,
-    Values,
-    Workers,
-    read_setting,
-    tell,
-    values_of,
-)
+from tracewire.cli.setting import Rtol, read_setting, tell, values_of
 
 
 def sweep(
     diagram: DiagramPath,
+    *,
     over: Annotated[
         list[str],
         typer.Option(
@@ -48,19 +37,11 @@ def sweep(
     ],
     since: Since = None,
     span: Span = None,
-    preset: Preset = "",
-    values: Values = None,
-    start: Start = None,
+    given: Given,
     series: SeriesName = "",
     rtol: Rtol = 1e-6,
-    workers: Workers = None,
-    executor: ExecutorAddress = "",
-    partial: PartialFile = None,
-    figure: FigureFile = None,
-    output: OutputFile = None,
-    library: Libraries = None,
-    as_json: AsJson = False,
-    debug: Debug = False,
+    work: Work,
+    target: FigureTarget,
 ) -> None:
     """Simulate a diagram over a grid of parameter values, and keep a few numbers of each run.
 
@@ -71,30 +52,26 @@ def sweep(
       tracewire sweep pendulum.yaml --over k=1:5:21 --over c=0:1:11 --keep "rms(phi)"
                 --partial sweep.npz --output sweep.csv
     """
-    setting = read_setting(diagram, library, preset, values, start, figure=figure, output=output)
+    setting = read_setting(diagram, given, target)
     grid = values_of(setting.model, over)
-    given = read_series(setting.model, series)
-    with executor_at(executor) as pool, working("sweeping") as show:
+    conditions, _ = read_series(setting.model, series)
+    with executor_at(work.executor) as pool, working("sweeping") as show:
         from tracewire.analyse import sweep as sweep_of
+        from tracewire.solve import with_options
 
         found = sweep_of(
             setting.model,
             grid,
             keep,
             since=since,
-            workers=workers,
+            workers=work.workers,
             executor=pool,
             progress=telling("sweeping", show),
-            partial=partial,
-            parameters={**given.parameters, **setting.parameters},
-            start={**given.start, **setting.start},
-            preset=setting.preset or given.preset,
-            span=span or given.span,
-            inputs=given.inputs or None,
-            rtol=rtol,
+            partial=work.partial,
+            **with_options(conditions, setting.run_options(span, rtol)),
         )
     import numpy as np
 
     points = np.meshgrid(*found.grid.values(), indexing="ij")
     columns = dict(zip(found.grid, points, strict=True)) | dict(found.values)
-    tell(found, as_json=as_json, figure=figure, columns=columns, output=output)
+    tell(found, target, columns)

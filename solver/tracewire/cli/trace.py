@@ -2,104 +2,103 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tracewire.cli.delivery import Targets, deliver
 from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries, load_model
-from tracewire.cli.output import check_target, note, working
+from tracewire.cli.output import note, working
 from tracewire.cli.progress import stages
-from tracewire.cli.reporting import (
-    Apply,
-    Output,
-    PatchFile,
-    ReportFile,
-    TableFile,
-    check_home,
-    check_targets,
-)
+from tracewire.cli.reporting import check_home
+from tracewire.options import options_of
 
 if TYPE_CHECKING:
     from tracewire.compile import Model
-
-Train = Annotated[
-    list[str] | None,
-    typer.Option(metavar="FILE ...", help="Series to fit to, instead of those of the diagram."),
-]
-Gate = Annotated[
-    list[str] | None,
-    typer.Option(metavar="FILE ...", help="Series that decide whether an effect is accepted."),
-]
-Validate = Annotated[
-    list[str] | None,
-    typer.Option(metavar="FILE ...", help="Series that play no part before the final check."),
-]
+    from tracewire.trace import TraceOptions
 
 
-Only = Annotated[
-    list[str] | None,
-    typer.Option(
-        metavar="PLACE ...",
-        help="Try effects only at these places: a sum, `drive.NAME` or `sensor.SIGNAL`.",
-        show_default=False,
-    ),
-]
-Without = Annotated[
-    list[str] | None,
-    typer.Option(
-        metavar="EFFECT ...",
-        help="Do not try these effects: `coulomb`, or at one place `'coulomb @ force'`.",
-        show_default=False,
-    ),
-]
-Effects = Annotated[
-    int | None,
-    typer.Option(
-        metavar="N", help="How many effects are added at most; without it 3.", show_default=False
-    ),
-]
-Horizon = Annotated[
-    float | None,
-    typer.Option(
-        metavar="SECONDS",
-        help="How far models must predict: the longer of the two horizons on which they are "
-        "compared. Without it: five periods of the slowest motion.",
-        show_default=False,
-    ),
-]
-Budget = Annotated[
-    float | None,
-    typer.Option(
-        metavar="SECONDS",
-        help="End the search after this time with what it has found by then.",
-        show_default=False,
-    ),
-]
-Save = Annotated[
-    str | None,
-    typer.Option(
-        metavar="FILE",
-        help="Save the result to this .json, for `tracewire report FILE` and tw.load(FILE).",
-    ),
-]
+@dataclass(frozen=True)
+class SeriesFiles:
+    """Files in place of the measured series of the diagram."""
+
+    train: Annotated[
+        list[str] | None,
+        typer.Option(metavar="FILE ...", help="Series to fit to, instead of those of the diagram."),
+    ] = None
+    gate: Annotated[
+        list[str] | None,
+        typer.Option(metavar="FILE ...", help="Series that decide whether an effect is accepted."),
+    ] = None
+    validate: Annotated[
+        list[str] | None,
+        typer.Option(metavar="FILE ...", help="Series that play no part before the final check."),
+    ] = None
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a trace is asked for: fields of `tracewire.trace.TraceOptions`, whose defaults hold."""
+
+    only: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="PLACE ...",
+            help="Try effects only at these places: a sum, `drive.NAME` or `sensor.SIGNAL`.",
+            show_default=False,
+        ),
+    ] = None
+    without: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="EFFECT ...",
+            help="Do not try these effects: `coulomb`, or at one place `'coulomb @ force'`.",
+            show_default=False,
+        ),
+    ] = None
+    effects: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N",
+            help="How many effects are added at most; without it 3.",
+            show_default=False,
+        ),
+    ] = None
+    horizon: Annotated[
+        float | None,
+        typer.Option(
+            metavar="SECONDS",
+            help="How far models must predict: the longer of the two horizons on which they are "
+            "compared. Without it: five periods of the slowest motion.",
+            show_default=False,
+        ),
+    ] = None
+    budget: Annotated[
+        float | None,
+        typer.Option(
+            metavar="SECONDS",
+            help="End the search after this time with what it has found by then.",
+            show_default=False,
+        ),
+    ] = None
+
+    @property
+    def options(self) -> TraceOptions:
+        """These, as `trace` takes them."""
+        from tracewire.trace import TraceOptions
+
+        every = {field.name: getattr(self, field.name) for field in fields(self)}
+        given = {name: value for name, value in every.items() if value is not None}
+        return options_of(TraceOptions, given, "a trace")
 
 
 def trace(
     diagram: DiagramPath,
-    train: Train = None,
-    gate: Gate = None,
-    validate: Validate = None,
-    only: Only = None,
-    without: Without = None,
-    effects: Effects = None,
-    horizon: Horizon = None,
-    budget: Budget = None,
-    report: ReportFile = None,
-    save: Save = None,
-    apply: Apply = False,
-    output: Output = None,
-    patch: PatchFile = None,
-    table: TableFile = None,
+    *,
+    files: SeriesFiles,
+    asked: Asked,
+    targets: Targets,
     rtol: Annotated[float, typer.Option(help="The relative tolerance of runs.")] = 1e-6,
     library: Libraries = None,
     as_json: AsJson = False,
@@ -123,19 +122,15 @@ def trace(
     Files that are named here take the place of all series of the diagram, whose columns they have.
     Without series in the diagram, columns are found by their names: t or time, signals, inputs.
     """
-    from tracewire.cli.delivery import Targets, deliver
-    from tracewire.trace import TraceOptions, check_options
+    from tracewire.trace import check_options
     from tracewire.trace import trace as trace_model
 
-    check_targets(report, output, patch, table)
-    check_target(save, (".json",), "saved trace")
-    asked: dict[str, Any] = {"effects": effects, "horizon": horizon, "budget": budget}
-    given = {name: value for name, value in asked.items() if value is not None}
-    options = TraceOptions(only=tuple(only or ()), without=tuple(without or ()), **given)
+    targets.check()
+    options = asked.options
     model = load_model(diagram, library)
     own = model.diagram
-    check_home(own, output)
-    model = _with_files(model, {"train": train, "gate": gate, "validate": validate})
+    check_home(own, targets.output)
+    model = _with_files(model, {use: getattr(files, use) for use in ("train", "gate", "validate")})
     check_options(options, model)
     with working("tracing") as tell:
 
@@ -144,7 +139,6 @@ def trace(
             note(text)
 
         found = trace_model(model, options=options, rtol=rtol, progress=stages(show))
-    targets = Targets(report, save, apply, output, patch, table)
     deliver(found, model, own, targets, as_json)
 
 

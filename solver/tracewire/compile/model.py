@@ -6,8 +6,8 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import Any
 
+from tracewire.compile.differentiate import gradients
 from tracewire.compile.flat import Flat
 from tracewire.compile.flatten import flatten
 from tracewire.compile.holding import modes_read
@@ -75,9 +75,15 @@ class Model:
         return {}
 
     @cached_property
-    def kept(self) -> dict[Any, Any]:
-        """What those who run the model make of it once and keep: by a key that is theirs."""
-        return {}
+    def is_linear(self) -> bool:
+        """Whether the rates are linear in the states at each time, with no event that reads a
+        state."""
+        low = self.lowered
+        if low.resets or low.transitions or any(mode.timed is None for mode in low.modes):
+            return False
+        found = gradients(low.tape, low.rates, low.states)
+        slopes = [entry for gradient in found for entry in gradient.values()]
+        return "state" not in low.tape.leaves(slopes)
 
     @cached_property
     def compared_signals(self) -> tuple[int, ...]:

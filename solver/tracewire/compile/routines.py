@@ -125,6 +125,8 @@ class Routines:
         self._made: dict[str, Routine] = {}
         self._addresses: dict[str, int] = {}
         self._callbacks: dict[str, int] = {}
+        # a tuple of names that was asked for, of how many compiled functions, and the answer
+        self._last: tuple[Sequence[str], int, list[int]] = ((), -1, [])
         self._evaluated: dict[str, dict[str, Function]] = {}
         self._kept: list[Any] = []  # machine code and callbacks, which live as long as this does
 
@@ -261,9 +263,14 @@ class Routines:
 
     def addresses(self, names: Sequence[str]) -> list[int]:
         """The addresses of several functions."""
+        asked, compiled, found = self._last
+        if asked is names and compiled == len(self._addresses):
+            return found
         with self.lock:
-            known = self._addresses
-            return [known[name] if name in known else self.address(name) for name in names]
+            known, compiled = self._addresses, len(self._addresses)
+            found = [known[name] if name in known else self.address(name) for name in names]
+            self._last = tuple(names), compiled, found
+            return found
 
     def compiled_address(self, name: str) -> int:
         """The address of a function, compiled now where it has not been."""

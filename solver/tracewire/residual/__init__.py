@@ -16,6 +16,7 @@ from tracewire.residual.loss import LOSSES
 from tracewire.residual.measured import (
     Measured,
     load_measured,
+    measured_series,
     series_parameters,
     with_measured_signals,
 )
@@ -96,6 +97,7 @@ __all__ = [
     "half_square",
     "likely_input_noise",
     "load_measured",
+    "measured_series",
     "noise_in",
     "noise_level",
     "noise_of",

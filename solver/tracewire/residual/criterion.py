@@ -19,8 +19,15 @@ from tracewire.residual.loss import LOSSES
 from tracewire.residual.measured import LARGEST
 from tracewire.residual.segment import Segment, Unknown, of_diagram
 from tracewire.residual.sensing import Sensing
-from tracewire.solve import Interrupted, Limits, Run, cores, simulate, until_interrupted
-from tracewire.solve.limits import beyond_budget
+from tracewire.solve import (
+    Interrupted,
+    Limits,
+    Run,
+    beyond_budget,
+    cores,
+    simulate,
+    until_interrupted,
+)
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]

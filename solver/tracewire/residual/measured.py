@@ -14,14 +14,14 @@ from numpy.typing import NDArray
 from tracewire.compile import Model, compile
 from tracewire.data import STEPS, Record, read_record
 from tracewire.diagram import Channel, Cleaning, Diagram, Hold, Series, Use
-from tracewire.errors import DataError, OptionError, Place, Problem, TracewireError
+from tracewire.errors import DataError, OptionError, Place, Problem, TracewireError, unknown
 from tracewire.formula import evaluate
 from tracewire.library import SENSOR_TERMS
 from tracewire.residual.arrays import ArrayCheck, fields_of_frame
 from tracewire.residual.inputs import between_samples
 from tracewire.residual.remarks import check_quantities, remarks_on
 from tracewire.residual.sensor import PLAIN, Sensor, read_sensor
-from tracewire.solve import Driving, parameter_values
+from tracewire.solve import Driving, Options, parameter_values
 
 Vector = NDArray[np.float64]
 LARGEST = 1e100  # its square, and sums of such squares, are numbers still
@@ -134,6 +134,17 @@ class Measured:
         its first sample, one without (None) at the diagram's start."""
         return (float(self.t[0]), float(self.t[-1])) if self.start else None
 
+    @property
+    def conditions(self) -> Options:
+        """What `simulate` is given for a run under the conditions of the series."""
+        return Options(
+            parameters=dict(self.parameters),
+            preset=self.preset,
+            start=self.known_start,
+            span=self.span,
+            inputs=dict(self.inputs),
+        )
+
     @cached_property
     def spreads(self) -> Mapping[str, float]:
         """The standard deviation of each measured signal."""
@@ -153,6 +164,16 @@ def measured_signals(diagram: Diagram) -> tuple[str, ...]:
     """Every signal that a series of the diagram measures, once."""
     names = (name for series in diagram.measured.values() for name in series.channels)
     return tuple(dict.fromkeys(names))
+
+
+def measured_series(model: Model, name: str) -> Measured:
+    """The measured series of a model's diagram with this name, the first window of several.
+
+    Raises OptionError: no such series; DataError: a file that cannot be used.
+    """
+    if name not in model.diagram.measured:
+        raise OptionError([unknown("measured series", name, model.diagram.measured)])
+    return load_measured(model, driving=True, series=[name])[0]
 
 
 def load_measured(

@@ -102,12 +102,14 @@ times a second; there Ctrl-C is heard, and raises `Interrupted`, which carries t
 **Order at one instant.** What crosses there and what is scheduled there (clocks, too, which read
 left limits), resets, modes and transitions, resets of guards that were carried over, one sample.
 
-**How it runs.** `core` holds all of this as functions that are compiled when the package is built
-(`core_build`); `core_library` loads their machine code, which calls that of a model by address. The
-room's other files are Python: they fill the
-arrays of a run (`setup`), let the core go on (`execute`), and find words for what went wrong
-(`failures`). Many rows of parameters run in threads (`many`); many short runs with the same
-parameters are prepared once, and the core goes from one to the next (`spans`).
+**How it runs.** `initial_value_problem` checks the arguments of a run and gives them as numbers
+(`problem`). An `Integrator` is given a problem: it takes arrays that fit, set to the numbers
+(`workspace`, made by `setup`), lets the core go on, to a stop or to the end, takes what the core
+logs (`event_log`), and finds words for what went wrong (`failures`). `core` holds all of the above
+as functions that are compiled when the package is built (`core_build`); `core_library` loads their
+machine code, which calls that of a model by address. `simulate` is one run; `simulate_many` runs
+the same problem with rows of values in threads (`task`); `Passage` stops
+where an analysis looks at it; `simulate_spans` lets the core go from one short run to the next.
 
 **Delays.** What is read with a delay is kept over each step, as polynomials through its values in
 the dense output, and before the start it is what is declared. Steps are shorter than the delay, so
@@ -124,27 +126,37 @@ on it keeps its last side while the stop holds.
 
 from tracewire.solve.held import Driving, Held, values_at, with_points
 from tracewire.solve.history import refuse_delays
+from tracewire.solve.integrator import Integrator
 from tracewire.solve.interrupt import Halt, Interrupted, until_interrupted
-from tracewire.solve.limits import Limits
+from tracewire.solve.limits import Limits, beyond_budget
 from tracewire.solve.many import simulate_many
 from tracewire.solve.observers import Section
-from tracewire.solve.parallel import cores, crew, each
+from tracewire.solve.options import START, Options, refuse_unknown_options, with_options, with_row
+from tracewire.solve.parallel import carry_out, cores
+from tracewire.solve.parameters import parameter_values
 from tracewire.solve.passage import Passage
+from tracewire.solve.problem import InitialValueProblem, initial_value_problem
+from tracewire.solve.progress import PartProgress, Tell
 from tracewire.solve.run import Event, Run, Sensitivities, Statistics
 from tracewire.solve.runs import Runs
-from tracewire.solve.simulate import parameter_values, sample_times, simulate
-from tracewire.solve.space import release
+from tracewire.solve.sampling import DEFAULT_SAMPLES, sample_times
+from tracewire.solve.simulate import simulate
 from tracewire.solve.spans import Span, SpanRuns, simulate_spans
-from tracewire.solve.task import Options
+from tracewire.solve.workspace import release
 
 __all__ = [
+    "DEFAULT_SAMPLES",
+    "START",
     "Driving",
     "Event",
     "Halt",
     "Held",
+    "InitialValueProblem",
+    "Integrator",
     "Interrupted",
     "Limits",
     "Options",
+    "PartProgress",
     "Passage",
     "Run",
     "Runs",
@@ -153,11 +165,14 @@ __all__ = [
     "Span",
     "SpanRuns",
     "Statistics",
+    "Tell",
+    "beyond_budget",
+    "carry_out",
     "cores",
-    "crew",
-    "each",
+    "initial_value_problem",
     "parameter_values",
     "refuse_delays",
+    "refuse_unknown_options",
     "release",
     "sample_times",
     "simulate",
@@ -165,5 +180,7 @@ __all__ = [
     "simulate_spans",
     "until_interrupted",
     "values_at",
+    "with_options",
     "with_points",
+    "with_row",
 ]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +12,7 @@ from tracewire.errors import OptionError, Place, Problem, SimulationError
 from tracewire.solve.core.arrays import FIRST, Arrays, History, Sensitivity
 from tracewire.solve.core.codes import T
 from tracewire.solve.core.history import DEGREE, EACH, HEAD, ROOM
+from tracewire.solve.once_per_model import once_per_model
 
 Ints = NDArray[np.int64]
 FIRST_PIECES = 3 * ROOM
@@ -27,7 +27,7 @@ def new_history(model: Model, sensitivity: Sensitivity) -> History:
     delays, q = model.lowered.delays, len(sensitivity.moved)
     count, w = len(delays), sensitivity.nodes.shape[1]
     some = int(bool(count))
-    mode, order, seen = _kept(model)
+    mode, order, seen = _delays_of(model)
     return History(
         mode=mode,
         order=order,
@@ -62,19 +62,17 @@ def refuse_delays(model: Model, what: str, instead: str = "") -> None:
         raise OptionError(problems)
 
 
-def _kept(model: Model) -> tuple[Ints, Ints, Ints]:
-    """The modes of the delays, how far jumps get, and which of them guards read; made once."""
-    found = model.kept.get("delays")
-    if found is None:
-        delays = model.lowered.delays
-        count, leaves = len(delays), len(model.modes) + len(model.states)
-        order = model.jump_orders() if count else []
-        found = model.kept["delays"] = (
-            np.array([delay.mode for delay in delays], dtype=np.int64),
-            np.array(order, dtype=np.int64).reshape(leaves if count else 0, count),
-            np.array([int(j in model.watched_delays) for j in range(count)], dtype=np.int64),
-        )
-    return cast(tuple[Ints, Ints, Ints], found)
+@once_per_model
+def _delays_of(model: Model) -> tuple[Ints, Ints, Ints]:
+    """The modes of the delays, how far jumps get, and which of them guards read."""
+    delays = model.lowered.delays
+    count, leaves = len(delays), len(model.modes) + len(model.states)
+    order = model.jump_orders() if count else []
+    return (
+        np.array([delay.mode for delay in delays], dtype=np.int64),
+        np.array(order, dtype=np.int64).reshape(leaves if count else 0, count),
+        np.array([int(j in model.watched_delays) for j in range(count)], dtype=np.int64),
+    )
 
 
 def has_grown(arrays: Arrays) -> bool:

@@ -5,22 +5,22 @@ Each row is what `simulate` gives for it alone, bit for bit, whoever runs it.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
-from typing import Unpack
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, SimulationError, TracewireError, unknown
-from tracewire.solve.execute import Tell
-from tracewire.solve.interrupt import Interrupted, until_interrupted
+from tracewire.solve.interrupt import Interrupted
 from tracewire.solve.observers import Observer, Section
-from tracewire.solve.parallel import crew, each
+from tracewire.solve.options import START, Options, refuse_unknown_options
+from tracewire.solve.parallel import carry_out
+from tracewire.solve.progress import PartProgress, Tell
 from tracewire.solve.runs import Runs
-from tracewire.solve.task import START, Options, Outcome, Row, Task
+from tracewire.solve.task import Outcome, Row, Task
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -51,34 +51,29 @@ def simulate_many(
     A row that fails does not end the others. Raises OptionError for arguments that do not fit, the
     error of the first row where all of them fail, and Interrupted with the rows that are done.
     """
-    unknown_options = [
-        unknown("option", name, Options.__annotations__)
-        for name in options
-        if name not in Options.__annotations__
-    ]
-    if unknown_options:
-        raise OptionError(unknown_options)
+    refuse_unknown_options(options)
     table = _rows(model, rows)
     observers = _observers(observe)
     outcomes: dict[int, Outcome] = {}
     errors: dict[int, TracewireError] = {}
     task = Task(model, table, observers, options)
     ended: SimulationError | None = None
-    with until_interrupted() as halt, crew(task.run, halt, workers, executor) as made:
-        began, told = time.perf_counter(), -1.0
-        try:
-            for (number, _), outcome in each(made, list(enumerate(table))):
-                if isinstance(outcome, Outcome):
-                    outcomes[number] = outcome
-                else:
-                    errors[number] = outcome
-                done, seconds = len(outcomes) + len(errors), time.perf_counter() - began
-                if progress is not None and (seconds - told >= 0.1 or done == len(table)):
-                    told = seconds
-                    progress(done / len(table), seconds * (len(table) - done) / done)
-        except SimulationError as error:
-            ended = error
-    stopped = halt.asked or ended is not None
+    stopped = True
+
+    def take(arguments: tuple[Any, ...], outcome: Outcome | TracewireError) -> None:
+        if isinstance(outcome, Outcome):
+            outcomes[arguments[0]] = outcome
+        else:
+            errors[arguments[0]] = outcome
+
+    try:
+        shown = PartProgress(progress, len(table), 0)
+        tasks = list(enumerate(table))
+        stopped = carry_out(
+            task.run, tasks, take, workers=workers, executor=executor, progress=shown
+        )
+    except SimulationError as error:
+        ended = error
     if stopped:
         for number in range(len(table)):
             if number not in outcomes:

@@ -26,12 +26,15 @@ from functools import lru_cache
 from typing import Any, Generic, TypeVar
 
 from tracewire.errors import OptionError, Problem, SimulationError, TracewireError
-from tracewire.solve.interrupt import Halt, Interrupted
+from tracewire.solve.interrupt import Halt, Interrupted, until_interrupted
+from tracewire.solve.progress import PartProgress
 
 T = TypeVar("T")
 Job = Callable[..., T]
 """A function of some arguments and a `Halt`; it is picklable where an executor is to run it."""
 
+Arguments = tuple[Any, ...]
+"""Those of a job, but for the `Halt`."""
 CHUNK = 0.5  # s of work that an executor is given at a time
 AHEAD = 2  # tasks that wait, for each worker
 JOBS = 8  # that a process keeps
@@ -135,21 +138,38 @@ def _working(made: Crew[T]) -> Iterator[Crew[T]]:
         made.drop()
 
 
-def each(
-    made: Crew[T], tasks: Sequence[tuple[Any, ...]]
-) -> Iterator[tuple[tuple[Any, ...], T | TracewireError]]:
-    """The tasks with what became of them, in the order in which they end, until the user stops it.
+def carry_out(
+    job: Job[T],
+    tasks: Sequence[Arguments],
+    take: Callable[[Arguments, T | TracewireError], Arguments | None],
+    *,
+    workers: int | None = None,
+    executor: Executor | None = None,
+    progress: PartProgress | None = None,
+) -> bool:
+    """Do a job for each of the tasks, side by side; whether the user has stopped it by Ctrl-C.
 
-    Then what has begun comes to its end and is given, too.
+    `take` gets what became of each task, in the order in which they end, and gives the task that
+    goes on from it, or None. After Ctrl-C what has begun comes to its end and is given, too.
+
+    Raises OptionError: less than one worker, a job that cannot be sent; SimulationError where a
+    worker has ended that the executor does not replace.
     """
-    missing = list(reversed(tasks))
-    while (missing or made.waiting) and not made.halt.asked:
-        while missing and made.has_room:
-            made.submit([missing.pop() for _ in range(min(made.chunk, len(missing)))])
-        yield from made.done()
-    made.drop()
-    while made.waiting:
-        yield from made.done()
+    ready = list(reversed(tasks))
+    with until_interrupted() as halt, crew(job, halt, workers, executor) as made:
+        while (ready and not halt.asked) or made.waiting:
+            if halt.asked:
+                made.drop()
+            while ready and made.has_room and not halt.asked:
+                share = max(1, len(ready) // max(1, made.workers))  # all workers have something
+                made.submit([ready.pop() for _ in range(min(made.chunk, share))])
+            for arguments, result in made.done():
+                follow = take(arguments, result)
+                if follow is not None:
+                    ready.append(follow)
+                if progress is not None and not isinstance(result, Interrupted):
+                    progress.step()
+        return halt.asked
 
 
 def checked(workers: int | None) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import cast
+from dataclasses import replace
 
 import numpy as np
 from numpy.ctypeslib import as_ctypes
@@ -17,9 +17,8 @@ from tracewire.solve.core.codes import (
     END,
     EVENTS,
     FINISHED,
-    LENGTH,
     LOG_FULL,
-    LONGEST,
+    LOG_HEAD,
     PAUSED,
     SAMPLED,
     STEPS,
@@ -29,25 +28,17 @@ from tracewire.solve.core.flow import FREE, FUNCTIONS
 from tracewire.solve.core.memory import invoke
 from tracewire.solve.core.methods import NAMES, STEPPED
 from tracewire.solve.core_library import library
-from tracewire.solve.execute import Execution
 from tracewire.solve.failures import failure
 from tracewire.solve.history import refuse_delays
+from tracewire.solve.integrator import Integrator
 from tracewire.solve.interrupt import Halt, Interrupted
-from tracewire.solve.limits import Limits
-from tracewire.solve.sensitivities import UNMOVED, new_sensitivity
-from tracewire.solve.setup import kept_plan, new_arrays, new_flow, new_progress, packed, prepare
-from tracewire.solve.simulate import (
-    longest_step,
-    parameter_values,
-    start_of,
-    tables_of,
-    tolerance_of,
-)
-from tracewire.solve.space import Space
+from tracewire.solve.options import START
+from tracewire.solve.problem import initial_value_problem
+from tracewire.solve.setup import start_of
+from tracewire.solve.workspace import set_to
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-START = "start."
 LONG = 10.0  # lengths to which instants are resolved and of which a step is a tenth at most
 
 
@@ -87,82 +78,62 @@ class Passage:
             what = f"an interval of {length:g} s from t = {begin:g} s has no use"
             raise OptionError([Problem(what, hint="Give a finite length above 0.")])
         refuse_delays(model, "an analysis")
-        self.model = model
-        self.parameters = parameter_values(model, parameters or {}, preset)
-        longest = longest_step(model, self.parameters, Limits())
-        tolerance = tolerance_of(model, rtol, atol, method, None, LONG * length, longest)
-        model.compiled_addresses(FUNCTIONS)  # several passages may run in threads
-        vector = np.array([*self.parameters.values(), 0.0])
-        tables = packed(tables_of(model, self.parameters, inputs or {}))
-        flow = new_flow(model, vector, tables)
-        x = start_of(model, flow, start or {})
-        span = begin, begin + LONG * length
-        progress = new_progress(model, x, span, np.zeros(inner), method, tolerance)
-        plan = kept_plan(model)
-        plan = plan._replace(direct=np.arange(len(x)))
-        progress = progress._replace(samples=np.zeros((inner, len(x))))
-        asked = tuple(START + name for name in model.states) if tangents else ()
-        sensitivity = new_sensitivity(model, flow, progress, asked, UNMOVED, {}, self.parameters)
-        if asked:  # no recorded signals are followed, but the states
-            sensitivity = sensitivity._replace(samples=np.zeros((inner, len(x) * len(x))))
-        arrays = new_arrays(model, flow, plan, progress, sensitivity)
-        self._space = Space((inner, len(tables), asked, ()), arrays)
-        self.arrays: Arrays = self._space.arrays
-        self._execution = Execution(
+        self.model, self._inner = model, inner
+        asked = [START + name for name in model.states] if tangents else []
+        self._problem = initial_value_problem(
             model,
-            self.arrays,
-            Limits(),
-            begin,
-            halt=halt or Halt(),
-            asked=asked,
-            table=self._space.table,
+            asked,
+            sampled=False,
+            span=(begin, begin + LONG * length),
+            parameters=parameters,
+            start=start,
+            method=method,
+            rtol=rtol,
+            atol=atol,
+            preset=preset,
+            inputs=inputs,
         )
-        self._preset, self._inputs, self._start = preset, dict(inputs or {}), dict(start or {})
-        self._given = dict(parameters or {})
+        model.compiled_addresses(FUNCTIONS)  # several passages may run in threads
+        problem = replace(self._problem, times=np.zeros(inner))
+        self._integrator = Integrator(problem, records="states", halt=halt or Halt())
+        self.arrays: Arrays = self._integrator.arrays
+        self._integrator.workspace.keep()
         self._settle()
 
-    def begin_with(
-        self, parameters: Mapping[str, float], *, begin: float, length: float, x: Vector | None
-    ) -> None:
-        """Begin anew with other values of parameters, over those of the first beginning.
-
-        At the states x (n,), or at the start values. Raises OptionError and SimulationError.
-        """
-        model, arrays = self.model, self.arrays
-        self.parameters = parameter_values(model, {**self._given, **parameters}, self._preset)
-        self._space.renew()
-        arrays.flow.c[:] = 0.0
-        prepare(model, arrays.flow, np.array([*self.parameters.values(), 0.0]))
-        arrays.flow.k[:] = packed(tables_of(model, self.parameters, self._inputs))
-        now = arrays.progress.now
-        now[T], now[END], now[LENGTH] = begin, begin + LONG * length, LONG * length
-        now[LONGEST] = longest_step(model, self.parameters, Limits())
-        self._space.keep()
-        self._execution.start = begin
-        self.begin_at(begin, start_of(model, arrays.flow, self._start) if x is None else x)
-
-    def _settle(self) -> None:
-        """Decide the modes at the beginning; no step is taken."""
-        self.arrays.progress.ints[BUDGET] = 0
-        code = library()
-        status = code.advance(self._address)
-        code.check()
-        if status not in (FINISHED, PAUSED, LOG_FULL):
-            raise failure(self.model, self.arrays, status)
-
     @property
-    def _address(self) -> int:
-        return cast(int, self._space.table.__array_interface__["data"][0])
+    def parameters(self) -> Mapping[str, float]:
+        """The value of each parameter in SI."""
+        return self._problem.parameters
+
+    def begin_with(self, parameters: Mapping[str, float], *, begin: float, length: float) -> None:
+        """Begin anew at the start values with other values of parameters, over those of the first
+        beginning. Raises OptionError and SimulationError.
+        """
+        self._problem = self._problem.with_values(parameters, (begin, begin + LONG * length))
+        self._integrator.workspace.renew()
+        set_to(self.arrays, replace(self._problem, times=np.zeros(self._inner)))
+        self._integrator.workspace.keep()
+        self.begin_at(begin, self._problem.start)
 
     def begin_at(self, t: float, x: Vector) -> None:
         """Begin anew at a time and states (n,): modes are decided anew, memories at their start."""
-        self._space.renew()
-        self._execution.rows.clear()
+        self._integrator.workspace.renew()
+        self._integrator.begin = t
         progress = self.arrays.progress
         progress.now[END] += t - progress.now[T]
         progress.now[T] = self.arrays.sensitivity.now[0] = t
         progress.x[:] = x
         self._settle()
+
+    def _settle(self) -> None:
+        """Decide the modes at the beginning; no step is taken."""
+        self._integrator.forget()
+        self.arrays.progress.ints[BUDGET] = 0
+        code = library()
+        status = code.advance(self._integrator.workspace.address)
+        code.check()
+        if status not in (FINISHED, PAUSED, LOG_FULL):
+            raise failure(self.model, self.arrays, status)
 
     @property
     def t(self) -> float:
@@ -188,7 +159,8 @@ class Passage:
     @property
     def declared_start(self) -> Vector:
         """The states (n,) with which the diagram begins."""
-        return start_of(self.model, self.arrays.flow, {})
+        problem = self._problem
+        return start_of(self.model, problem.constants, problem.tables, {})
 
     def go_to(self, end: float, inner: ArrayLike = ()) -> None:
         """Go on to the time `end` in s; what happens there has happened then.
@@ -197,18 +169,15 @@ class Passage:
         Raises SimulationError where it cannot go on, Interrupted where the user stops it.
         """
         progress = self.arrays.progress
-        progress.now[END] = end
         times = np.asarray(inner, dtype=float)
         if len(progress.times):
             progress.times[:] = times if len(times) else np.inf
             progress.ints[SAMPLED] = 0 if len(times) else len(progress.times)
         progress.ints[STEPS] = 0
-        execution = self._execution
-        execution.rows.clear()
-        execution.logged, execution.seconds = 0, 0.0
+        self._integrator.forget()
         if end > progress.now[T]:
             try:
-                execution.run()
+                self._integrator.go_to(end)
             except Interrupted as error:
                 what = f"interrupted at t = {self.t:.9g} s, on the way to {end:g} s"
                 raise Interrupted([Problem(what)]) from error
@@ -228,13 +197,13 @@ class Passage:
     @property
     def log(self) -> Matrix:
         """What happened in the last interval, in order: time, kind, mode, direction, x⁻, x⁺."""
-        rows = self._execution.log
-        return rows[:, : rows.shape[1] - len(self._execution.asked)]
+        rows = self._integrator.log.rows
+        return rows[:, : LOG_HEAD + 2 * len(self.model.states)]
 
     @property
     def kinds(self) -> set[str]:
         """The kinds of what happened in the last interval."""
-        return {EVENTS[int(kind)] for rows in self._execution.rows for kind in rows[:, 1]}
+        return {EVENTS[int(kind)] for rows in self._integrator.log.parts for kind in rows[:, 1]}
 
     @property
     def modes(self) -> Vector:
@@ -270,7 +239,9 @@ class Passage:
         """The rates (n,) at other states, with the modes, slides and contacts of the stop."""
         at, out = np.ascontiguousarray(x, dtype=float), np.zeros(len(self.model.states))
         pointers = [as_ctypes(array) for array in (at, out)]
-        library().rates(self._address, self.t, pointers[0], len(at), pointers[1], len(at))
+        library().rates(
+            self._integrator.workspace.address, self.t, pointers[0], len(at), pointers[1], len(at)
+        )
         return out
 
     def slopes(self) -> Matrix:
@@ -278,7 +249,9 @@ class Passage:
         x, n = self.x, len(self.model.states)
         out = np.zeros(n * (n + 1))
         pointers = [as_ctypes(array) for array in (x, out)]
-        library().jacobian(self._address, self.t, pointers[0], n, pointers[1], n, n + 1)
+        library().jacobian(
+            self._integrator.workspace.address, self.t, pointers[0], n, pointers[1], n, n + 1
+        )
         return out.reshape(n, n + 1)[:, :n]
 
     @property
@@ -289,7 +262,7 @@ class Passage:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What the user should know of the way so far."""
-        return self._execution.warnings
+        return self._integrator.warnings
 
     def jacobian(
         self, x: Vector | None = None, t: float | None = None, modes: Vector | None = None

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
-from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,16 +11,17 @@ from numpy.typing import NDArray
 from tracewire.compile import Model
 from tracewire.errors import OptionError, unknown
 from tracewire.formula import Expression, Name, evaluate, names_of
-from tracewire.solve.core.arrays import Flow, Progress, Sensitivity
+from tracewire.solve.core.arrays import Progress, Sensitivity
 from tracewire.solve.core.codes import FLAGS, GRAZES, LOST, SIMULTANEOUS, TOUCHES, ZENO
-from tracewire.solve.core.memory import invoke
-from tracewire.solve.core.variation import DERIVATIVES, OF_STARTS
+from tracewire.solve.core.flow import FREE
+from tracewire.solve.core.variation import DERIVATIVES
+from tracewire.solve.once_per_model import once_per_model
+from tracewire.solve.options import START
 from tracewire.solve.run import Sensitivities
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-START = "start."
-MOST_KEPT = 200  # of what a model keeps of which parameters move
+MOST_KEPT = 200  # kinds of what is asked for, of which a model keeps what moves
 STEP = 1e-3  # of a parameter that others follow; what is left of the error is of order 6
 WEIGHTS = ((1.0, 3 / 4), (2.0, -3 / 20), (3.0, 1 / 60))
 SAID = {
@@ -36,6 +36,8 @@ SAID = {
 def checked(model: Model, names: Sequence[str]) -> tuple[str, ...]:
     """The names of what is asked for, each once. Raises OptionError for what does not exist."""
     asked = tuple(dict.fromkeys([names] if isinstance(names, str) else names))
+    if not asked:
+        return ()
     known = model.parameters, {START + state for state in model.states}
     strange = [name for name in asked if not any(name in names for names in known)]
     if strange:
@@ -53,6 +55,17 @@ class Moving:
 
 
 UNMOVED = Moving()
+Reads = dict[str, Set[str]]
+"""The parameters that follow others, and what their formulas read."""
+
+
+@once_per_model
+def _known_moving(
+    model: Model,
+) -> dict[tuple[str, tuple[str, ...], frozenset[str]], tuple[Moving, Reads, Set[str]]]:
+    """What moves, by preset, what is asked for and what is given, as far as it is for all values
+    the same, and the parameters of which it is not."""
+    return {}
 
 
 def moving_with(
@@ -68,21 +81,21 @@ def moving_with(
     """
     if not asked:
         return UNMOVED
-    key = "moving", preset, asked, frozenset(given)
-    known = model.kept.get(key)
+    kept, key = _known_moving(model), (preset, asked, frozenset(given))
+    known = kept.get(key)
     if known is None:  # the same for all values, where nothing that moves follows others
         formulas = model.parameter_formulas(preset)
-        reads = {name: formulas.keys() & names_of(formula) for name, formula in formulas.items()}
-        reads = {name: read for name, read in reads.items() if read and name not in given}
+        every = {name: formulas.keys() & names_of(formula) for name, formula in formulas.items()}
+        reads: Reads = {name: read for name, read in every.items() if read and name not in given}
         led = {name for leader in asked for name in _led(leader, formulas, reads)}
         names = tuple(name for name in formulas if name in led and name in model.read_parameters)
         rates = np.array([[float(name == leader) for leader in asked] for name in names])
         known = Moving(names, rates.reshape(-1, len(asked))), reads, led & reads.keys()
-        if len(model.kept) < MOST_KEPT:
-            model.kept[key] = known
+        if len(kept) < MOST_KEPT:
+            kept[key] = known
     moving, reads, following = known
     if not following:
-        return cast(Moving, moving)
+        return moving
     formulas = model.parameter_formulas(preset)
     columns = [_followers(formulas, reads, values, leader) for leader in asked]
     rates = np.array([[column.get(name, 0.0) for column in columns] for name in moving.names])
@@ -142,81 +155,42 @@ def _partial(formula: Expression, values: Mapping[str, float], name: str) -> flo
 
 def new_sensitivity(
     model: Model,
-    flow: Flow,
     progress: Progress,
     asked: tuple[str, ...],
-    moving: Moving,
-    start: Mapping[str, float],
-    values: Mapping[str, float],
+    moved: tuple[str, ...],
+    columns: int,
 ) -> Sensitivity:
-    """The sensitivities of a run that has not begun.
+    """The sensitivities of a run that has not begun, with `columns` numbers of each of its samples.
 
-    `moving` are the parameters that move with what is asked for, `start` the start values that are
-    set and so follow no parameter, `values` those of the parameters.
+    `moved` are the names of the parameters that move with what is asked for.
     """
-    n, modes, q = len(progress.x), len(flow.bound), len(asked)
-    a = len(moving.names) + 2 * len(model.lowered.delays)
+    n, modes, q = len(progress.x), len(model.modes), len(asked)
+    a = len(moved) + 2 * len(model.lowered.delays)
     w = n + 1 + a if q else 0
-    names = [*model.states, "t", *moving.names]
+    names = [*model.states, "t", *moved]
     functions = [model.derivative(of, names) for of in DERIVATIVES] if q else []
     address = model.compiled_addresses(functions)
-    sensitivity = Sensitivity(
+    return Sensitivity(
         address=np.array(address, dtype=np.int64),
         chain=np.zeros((a, q)),
         s=np.zeros((n, q)),
         moved=np.zeros(q),
         peak=np.zeros((n, q)),
         nodes=np.zeros((4 * n, w)),
-        samples=np.zeros((len(progress.times), len(model.recorded) * q)),
+        samples=np.zeros((len(progress.times), columns * q)),
         times=np.zeros((len(progress.log), q)),
         push=np.zeros((modes, n * a)),
         flags=np.zeros((FLAGS, 2), dtype=np.int64),
         flag_times=np.zeros(FLAGS),
         now=np.zeros(6),
         instants=np.zeros((modes, q)),
-        bound=flow.bound.copy(),
+        bound=np.full(modes, FREE, dtype=np.int64),
         change=np.zeros((3 * n, q)),
         slopes=np.zeros((3 * n, q)),
         real=np.zeros((n, n)),
         real_pivots=np.zeros(n, dtype=np.int64),
         order=np.zeros(n + 1, dtype=np.int64),
     )
-    set_sensitivity(model, flow, progress, sensitivity, asked, moving, start, values)
-    return sensitivity
-
-
-def set_sensitivity(
-    model: Model,
-    flow: Flow,
-    progress: Progress,
-    sensitivity: Sensitivity,
-    asked: tuple[str, ...],
-    moving: Moving,
-    start: Mapping[str, float],
-    values: Mapping[str, float],
-) -> None:
-    """Let the sensitivities of a run that has not begun be those of this one."""
-    n, s = len(progress.x), sensitivity.s
-    if moving.names:
-        sensitivity.chain[: len(moving.names)] = moving.rates
-        rows, nothing = np.zeros((n, n + 1 + len(sensitivity.chain))), np.zeros(1)
-        address = sensitivity.address[OF_STARTS]
-        invoke(address, 0.0, nothing, flow.m, flow.c, flow.k, rows.reshape(-1))
-        s[:] = rows[:, n + 1 :] @ sensitivity.chain
-        s[[state in start for state in model.states]] = 0.0
-    for j, name in enumerate(asked):
-        if name not in model.flat.parameters:
-            s[:, j] = 0.0
-            s[model.states.index(name.removeprefix(START)), j] = 1.0
-    sensitivity.peak[:] = np.maximum(np.abs(s), least_peak(progress, asked, values))
-    sensitivity.now[0] = progress.now[0]
-
-
-def least_peak(progress: Progress, asked: tuple[str, ...], values: Mapping[str, float]) -> Matrix:
-    """The sensitivities (n, q) below which they need not be followed closely: all of a parameter's
-    value moves a state less than its tolerance there, as far from rest of exp(-(rate/speed)^2)."""
-    sizes = np.array([abs(values.get(name, 0.0)) or 1.0 for name in asked])
-    return np.asarray(progress.atol[:, None] / sizes)
 
 
 def recorded(

@@ -1,77 +1,67 @@
-"""What the compiled core is given: a model, values and tables as plain arrays."""
+"""The arrays of a run, which the core works on: made for a model, then set to a problem."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import cast
+import ctypes
+from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
+from tracewire.errors import OptionError, Problem, unknown
 from tracewire.solve.core.arrays import (
     Arrays,
     Crossings,
     Flow,
     Plan,
     Progress,
-    Sensitivity,
     Trial,
     Watch,
 )
 from tracewire.solve.core.codes import (
-    ABSOLUTE,
     CHATTER_EVENTS,
     DIRECTIONS,
-    END,
     EVENTS,
-    FIXED,
     KINDS,
-    LENGTH,
     LOG_HEAD,
-    LONGEST,
-    METHOD,
     PACED,
-    RTOL,
-    H,
-    T,
 )
 from tracewire.solve.core.flow import FREE, FUNCTIONS
 from tracewire.solve.core.locate import SAMPLES
-from tracewire.solve.core.memory import invoke
-from tracewire.solve.core.methods import METHODS, NAMES
-from tracewire.solve.held import Held
+from tracewire.solve.core.memory import MODEL_FUNCTION
+from tracewire.solve.core.methods import METHODS
 from tracewire.solve.history import new_history
+from tracewire.solve.once_per_model import once_per_model
+from tracewire.solve.sensitivities import new_sensitivity
 
 Vector = NDArray[np.float64]
 MOST_STIFF = 64  # mode combinations of a run that are remembered as stiff
 LOG_VALUES = 1_000_000  # numbers that the log of the core may hold before it is emptied
 NOTHING: Vector = np.zeros(1)
-Table = tuple[Vector, Vector]
+ADDRESSED = ctypes.c_char * 0
+MOST_FUNCTIONS = 256  # of models that are called in turn
 
 
-@dataclass(frozen=True)
-class Tolerance:
-    """How exact a run is: relative, absolute per state (n,), the step of a fixed method, and the
-    longest step in s that any may take. An absolute one of 0 follows the size of the state.
-    """
-
-    rtol: float
-    atol: Vector
-    step: float = np.inf
-    longest: float = np.inf
+Records = Literal["signals", "states", "both"]
+"""What a sample has: the recorded signals, the states, or the states behind the signals."""
 
 
-def kept_plan(model: Model) -> Plan:
-    """The modes, resets and transitions of a model as arrays, made once."""
-    found = model.kept.get("plan")
-    if found is None:
-        found = model.kept["plan"] = new_plan(model)
-    return cast(Plan, found)
+class Kind(NamedTuple):
+    """Which runs a workspace fits: the number of samples and what they have, the numbers in the
+    tables, the sensitivities, and the parameters that move with these."""
+
+    samples: int
+    records: Records
+    tables: int
+    asked: tuple[str, ...]
+    moved: tuple[str, ...]
 
 
-def new_plan(model: Model) -> Plan:
+@once_per_model
+def plan_of(model: Model) -> Plan:
     """The modes, resets and transitions of a model as arrays."""
     modes, low = model.modes, model.lowered
     first, resets = 0, []
@@ -109,121 +99,108 @@ def new_plan(model: Model) -> Plan:
     )
 
 
-def new_flow(model: Model, parameters: Vector, tables: Vector) -> Flow:
-    """The field of a model for one set of parameters, with its modes as they are by default.
+@once_per_model
+def default_modes(model: Model) -> Vector:
+    """The values of the modes before a run has decided them, and behind them that none is held."""
+    usual = [mode.at_zero for mode in model.modes]
+    return np.array([*usual, *[0.0] * len(usual)], dtype=float)
 
-    `tables` are packed.
-    """
+
+def constants_of(model: Model, values: Mapping[str, float]) -> Vector:
+    """What a model computes from its parameters alone."""
+    parameters = np.array([*values.values(), 0.0])  # never empty
+    constants = np.zeros(max(1, model.sizes.constants))
+    _call(model.address("prepare"), parameters, NOTHING, NOTHING, NOTHING, constants)
+    return constants
+
+
+def start_of(model: Model, constants: Vector, tables: Vector, given: Mapping[str, float]) -> Vector:
+    """The start states (n,): the diagram's, changed by `given`. Raises OptionError."""
+    names = model.states
+    problems = [unknown("state", name, names) for name in given if name not in names]
+    x = np.zeros(len(names))
+    _call(model.address("starts"), NOTHING, default_modes(model), constants, tables, x)
+    for n, name in enumerate(names if given else ()):
+        if name in given:
+            x[n] = given[name]
+    bad = [] if np.isfinite(x).all() else np.flatnonzero(~np.isfinite(x)).tolist()
+    problems += [Problem(f"the start of '{names[n]}' is {x[n]}") for n in bad]
+    if problems:
+        raise OptionError(problems)
+    return x
+
+
+def _call(address: int, x: Vector, m: Vector, c: Vector, k: Vector, out: Vector) -> None:
+    """Call the function of a model at an address, at t = 0."""
+    # by far the fastest way from an array to its address
+    data = [ADDRESSED.from_buffer(array.data) for array in (x, m, c, k, out)]
+    _function_at(address)(0.0, *data)
+
+
+@lru_cache(maxsize=MOST_FUNCTIONS)
+def _function_at(address: int) -> Callable[..., None]:
+    """What Python calls; to make it takes longer than the call."""
+    return MODEL_FUNCTION(address)
+
+
+def _plan_for(model: Model, records: Records) -> Plan:
+    """The plan of a model with what its samples have."""
+    plan, states = plan_of(model), np.arange(len(model.states))
+    if records == "signals":
+        return plan
+    return plan._replace(direct=states if records == "states" else np.append(plan.direct, states))
+
+
+def _new_flow(model: Model, numbers: int) -> Flow:
+    """The field of a model, with its modes as they are by default; its tables have `numbers`."""
     sizes, count = model.sizes, len(model.modes)
-    flow = Flow(
+    return Flow(
         address=np.empty(len(FUNCTIONS), dtype=np.int64),
-        m=np.array([*(mode.at_zero for mode in model.modes), *[0.0] * count], dtype=float),
+        m=default_modes(model).copy(),
         c=np.zeros(max(1, sizes.constants)),
-        k=tables,
+        k=np.zeros(numbers),
         bound=np.full(count, FREE, dtype=np.int64),
         push=np.zeros((count, sizes.states)),
         counts=np.array([int(model.reads_held), 0, 0, 0], dtype=np.int64),
     )
-    prepare(model, flow, parameters)
-    return flow
 
 
-def prepare(model: Model, flow: Flow, parameters: Vector) -> None:
-    """Let a field whose constants are zero have these parameters, and the functions as they are."""
-    flow.address[:] = model.addresses(FUNCTIONS)
-    invoke(model.address("prepare"), 0.0, parameters, NOTHING, NOTHING, NOTHING, flow.c)
-
-
-def starts(model: Model, flow: Flow) -> Vector:
-    """The start values of the states, as the diagram says."""
-    out = np.zeros(model.sizes.states)
-    address = model.address("starts")
-    invoke(address, 0.0, NOTHING, flow.m, flow.c, flow.k, out)
-    return out
-
-
-def packed(tables: Sequence[Table]) -> Vector:
-    """All tables in one array: their offsets, then of each its length, points, values, slopes.
-
-    One that is held has slopes of 0: it jumps at its points.
-    """
-    out = np.zeros(len(tables) + sum(3 * len(x) for x, _ in tables) + 1)
-    steps: dict[int, Vector] = {}  # many tables have the same x
-    offset = len(tables)
-    for number, table in enumerate(tables):
-        x, y = table
-        count = len(x)
-        if id(x) not in steps:
-            steps[id(x)] = x[1:] - x[:-1]
-        out[number], out[offset] = offset, count
-        out[offset + 1 : offset + 1 + count] = x
-        out[offset + 1 + count : offset + 1 + 2 * count] = y
-        slopes = out[offset + 1 + 2 * count : offset + 3 * count]
-        if not isinstance(table, Held):
-            np.divide(y[1:] - y[:-1], steps[id(x)], out=slopes)
-        offset += 3 * count
-    return out
-
-
-def new_progress(
-    model: Model,
-    x: Vector,
-    span: tuple[float, float],
-    times: Vector,
-    method: str,
-    tolerance: Tolerance,
-) -> Progress:
-    """A run that has not begun."""
-    n, count = len(x), len(model.modes)
+def _new_progress(model: Model, count: int, columns: int) -> Progress:
+    """A run that has not begun, with `count` samples of `columns` numbers."""
+    n, modes = model.sizes.states, len(model.modes)
     width = LOG_HEAD + 2 * n
     progress = Progress(
         now=np.zeros(10),
         x=np.empty(n),
         atol=np.empty(n),
         ints=np.zeros(15, dtype=np.int64),
-        times=np.empty(len(times)),
-        samples=np.full((len(times), len(model.recorded)), np.nan),
-        log=np.empty((max(4 * count + 16, LOG_VALUES // width), width)),
-        stiff=np.empty((MOST_STIFF, 3 * count)),
+        times=np.zeros(count),
+        samples=np.full((count, columns), np.nan),
+        log=np.empty((max(4 * modes + 16, LOG_VALUES // width), width)),
+        stiff=np.empty((MOST_STIFF, 3 * modes)),
         recent=np.zeros((CHATTER_EVENTS, 2)),
-        flights=np.tile([np.inf, 0.0], (count, 1)),
+        flights=np.tile([np.inf, 0.0], (modes, 1)),
         info=np.zeros(4),
-        which=np.zeros(count + 8, dtype=np.int64),
+        which=np.zeros(modes + 8, dtype=np.int64),
         overlooked=np.zeros(len(model.lowered.resets), dtype=np.int64),
-        undetermined=np.full(len(model.modes), np.inf),
+        undetermined=np.full(modes, np.inf),
         given=np.empty(n),
         largest=np.zeros(n),
         least=np.zeros(n),
         sizes=np.zeros(2 * n),
     )
     progress.now[PACED] = float(model.has_pace)
-    set_up(progress, x, span, times, method, tolerance)
     return progress
 
 
-def set_up(
-    progress: Progress,
-    x: Vector,
-    span: tuple[float, float],
-    times: Vector,
-    method: str,
-    tolerance: Tolerance,
-) -> None:
-    """Let a run that has not begun be this one."""
-    now = progress.now
-    now[T], now[H], now[END], now[LENGTH] = span[0], 0.0, span[1], span[1] - span[0]
-    now[RTOL], now[FIXED], now[LONGEST] = tolerance.rtol, tolerance.step, tolerance.longest
-    progress.x[:], progress.given[:], progress.times[:] = x, tolerance.atol, times
-    follows = ABSOLUTE * tolerance.rtol  # till the core knows of what size the states are
-    progress.atol[:] = np.where(tolerance.atol > 0, tolerance.atol, follows)
-    progress.ints[METHOD] = -1 if method == "auto" else NAMES.index(method)
-
-
-def new_arrays(
-    model: Model, flow: Flow, plan: Plan, progress: Progress, sensitivity: Sensitivity
-) -> Arrays:
-    """All arrays of a run, with the work space."""
-    n, modes = len(progress.x), len(plan.kind)
+def new_arrays(model: Model, kind: Kind) -> Arrays:
+    """The arrays of a run that has not begun."""
+    n, modes = len(model.states), len(model.modes)
+    plan = _plan_for(model, kind.records)
+    flow = _new_flow(model, kind.tables)
+    progress = _new_progress(model, kind.samples, len(plan.direct))
+    columns = n if kind.records == "states" else len(model.recorded)
+    sensitivity = new_sensitivity(model, progress, kind.asked, kind.moved, columns)
     most = 3 * modes  # a guard has two levels at most, and held it has a force or two fractions
 
     def ints(size: int) -> NDArray[np.int64]:
@@ -261,7 +238,7 @@ def new_arrays(
         how=np.full(modes, -1),
         to=np.zeros(modes),
         up=ints(modes),
-        x=np.zeros(len(progress.x)),
+        x=np.zeros(n),
         m=np.zeros(len(flow.m)),
         bound=ints(modes),
         due=ints(len(plan.resets)),

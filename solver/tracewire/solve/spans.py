@@ -7,7 +7,7 @@ are prepared once, and the core goes from one to the next on its own.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,29 +18,17 @@ from tracewire.solve.core.arrays import Spans, table_of
 from tracewire.solve.core.codes import BUDGET, FINISHED, HISTORY_FULL, LOG_FULL, PAUSED
 from tracewire.solve.core.spans import INSIDE, LEFT, SPAN
 from tracewire.solve.core_library import library
-from tracewire.solve.execute import Execution
 from tracewire.solve.failures import failure
 from tracewire.solve.history import refuse_delays
+from tracewire.solve.integrator import Integrator
 from tracewire.solve.interrupt import Halt, Interrupted
 from tracewire.solve.limits import Limits, beyond_budget
+from tracewire.solve.options import START
+from tracewire.solve.problem import InitialValueProblem, initial_value_problem
 from tracewire.solve.run import Sensitivities
-from tracewire.solve.sensitivities import (
-    START,
-    checked,
-    least_peak,
-    moving_with,
-    recorded,
-    set_sensitivity,
-)
-from tracewire.solve.setup import packed, set_up, starts
-from tracewire.solve.simulate import (
-    longest_step,
-    parameter_values,
-    refuse_nan,
-    tables_of,
-    tolerance_of,
-)
-from tracewire.solve.space import Space, give_back, space_for
+from tracewire.solve.sensitivities import recorded
+from tracewire.solve.simulate import refuse_nan
+from tracewire.solve.workspace import Workspace, least_peak
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -106,27 +94,31 @@ def simulate_spans(
     """
     if any(span.follows for span in spans):
         refuse_delays(model, "a span that follows another")
-    values = parameter_values(model, parameters or {}, preset)
-    asked = checked(model, sensitivities)
-    tables = packed(tables_of(model, values, inputs or {}))
-    moving = moving_with(model, asked, values, parameters or {}, preset)
-    limits = limits or Limits()
-    space = space_for(model, values, tables, asked, moving, 0)
-    arrays, progress = space.arrays, space.arrays.progress
-    longest = longest_step(model, values, limits)
-    tolerance = tolerance_of(model, rtol, atol, "auto", None, np.inf, longest)
-    set_up(progress, np.zeros(len(progress.x)), (0.0, 1.0), np.empty(0), "auto", tolerance)
-    if asked:
-        of_starts = arrays.sensitivity
-        set_sensitivity(model, arrays.flow, progress, of_starts, asked, moving, {}, values)
-    progress.ints[BUDGET] = min(limits.steps, PAUSE_STEPS)
+    always = set(spans[0].start).intersection(*(span.start for span in spans))
+    problem = initial_value_problem(
+        model,
+        sensitivities,
+        sampled=False,
+        span=(0.0, 1.0),
+        start={name: spans[0].start[name] for name in always},
+        parameters=parameters,
+        rtol=rtol,
+        atol=atol,
+        preset=preset,
+        inputs=inputs,
+        limits=limits,
+    )
+    integrator = Integrator(problem, halt=halt or Halt())
+    space = integrator.workspace
+    integrator.progress.ints[BUDGET] = min(problem.limits.steps, PAUSE_STEPS)
     space.keep()
-    many = _spans(model, space, asked, spans, limits)
-    many.floor[:] = least_peak(progress, asked, values)
-    execution = Execution(model, arrays, limits, 0.0, asked=asked, table=space.table)
-    errors, warnings = _executed(execution, many, budget, halt or Halt())
+    many = _spans(problem, space, spans)
+    many.floor[:] = least_peak(space.arrays, problem)
+    own_places = space.table.copy()
+    errors, warnings = _executed(integrator, many, budget, halt or Halt())
+    space.table[:] = own_places  # the core has set those of samples to what is in `many`
     errors |= _undefined(model, many, errors)
-    answers = arrays.sensitivity._replace(samples=many.answers)
+    answers, asked = space.arrays.sensitivity._replace(samples=many.answers), problem.sensitivities
     runs = SpanRuns(
         signals=dict(zip(model.recorded, many.samples.T.copy(), strict=True)),
         sensitivities=recorded(model, answers, asked, len(many.times)),
@@ -136,17 +128,15 @@ def simulate_spans(
         errors=errors,
         warnings=warnings,
     )
-    give_back(model, space)
+    integrator.give_back()
     return runs
 
 
-def _spans(
-    model: Model, space: Space, asked: tuple[str, ...], spans: Sequence[Span], limits: Limits
-) -> Spans:
+def _spans(problem: InitialValueProblem, space: Workspace, spans: Sequence[Span]) -> Spans:
     """The spans as the core takes them. Raises OptionError for starts that do not fit."""
-    flow, base = space.arrays.flow, space.arrays.sensitivity
+    model, base, asked = problem.model, space.arrays.sensitivity, problem.sensitivities
     count, (n, q), position = len(spans), base.s.shape, {x: i for i, x in enumerate(model.states)}
-    x = np.tile(starts(model, flow), (count, 1))
+    x = np.tile(problem.start, (count, 1))
     given = np.zeros((count, n), dtype=bool)
     for number, span in enumerate(spans):
         for name, value in span.start.items():
@@ -167,7 +157,7 @@ def _spans(
     rows = np.cumsum([0, *(len(span.times) for span in spans)])
     total = int(rows[-1])
     return Spans(
-        at=np.array([0, 0, 0, limits.events, 0], dtype=np.int64),
+        at=np.array([0, 0, 0, problem.limits.events, 0], dtype=np.int64),
         ends=np.array([(span.begin, span.end) for span in spans], dtype=float),
         rows=rows.astype(np.int64),
         x=x,
@@ -188,15 +178,15 @@ def _spans(
 
 
 def _executed(
-    execution: Execution, many: Spans, budget: float, halt: Halt
+    integrator: Integrator, many: Spans, budget: float, halt: Halt
 ) -> tuple[dict[int, SimulationError], dict[int, tuple[str, ...]]]:
     """Let the core go over the spans; errors and warnings of some by number."""
     errors: dict[int, SimulationError] = {}
     warnings: dict[int, tuple[str, ...]] = {}
     code, at = library(), many.at
-    tables = execution.core, table_of([many])
-    addresses = [table.__array_interface__["data"][0] for table in tables]
-    limits = execution.limits
+    table = table_of([many])
+    addresses = integrator.workspace.address, table.__array_interface__["data"][0]
+    limits = integrator.problem.limits
     while at[SPAN] < len(many.ends):
         if halt.asked:
             raise Interrupted([Problem("interrupted")])
@@ -211,15 +201,16 @@ def _executed(
         if not at[INSIDE]:
             continue
         number = int(at[SPAN])
-        one = replace(execution, start=float(many.ends[number, 0]), rows=[], halt=halt)
+        integrator.begin = float(many.ends[number, 0])
+        integrator.forget()
         try:
             if status not in (FINISHED, LOG_FULL, PAUSED, HISTORY_FULL):
-                raise failure(one.model, one.arrays, status)
-            if not one.go_on(halt, status):
-                raise one.interrupted()
+                raise failure(integrator.model, integrator.arrays, status)
+            if not integrator.advance(halt, status):
+                raise integrator.interrupted()
             code.keep_end(*addresses)
-            if one.warnings:
-                warnings[number] = one.warnings
+            if integrator.warnings:
+                warnings[number] = integrator.warnings
         except Interrupted:
             raise
         except SimulationError as error:

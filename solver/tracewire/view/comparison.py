@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
-from tracewire.errors import OptionError, unknown
 from tracewire.solve import Limits
 from tracewire.view.frame import Arrays
 
@@ -43,11 +42,9 @@ def conditions_of(model: Model, series: str) -> SeriesConditions:
 
     Raises OptionError: no such series; DataError: a file that cannot be used.
     """
-    from tracewire.residual import load_measured, whole_segment
+    from tracewire.residual import measured_series, whole_segment
 
-    if series not in model.diagram.measured:
-        raise OptionError([unknown("measured series", series, model.diagram.measured)])
-    measured = load_measured(model, driving=True, series=[series])[0]
+    measured = measured_series(model, series)
     return SeriesConditions(measured, whole_segment(model, measured))
 
 

@@ -10,7 +10,7 @@ from tracewire.compile import Model
 from tracewire.diagram import Setting, Value
 from tracewire.errors import OptionError, unknown
 from tracewire.formula import evaluate
-from tracewire.residual import load_measured
+from tracewire.residual import measured_series
 from tracewire.solve import Options, parameter_values
 
 RTOL = 1e-9
@@ -42,7 +42,7 @@ def conditions_of(model: Model, setting: Setting, full: bool = False) -> Conditi
     given = with_full(setting) if full else setting
     options = Options(rtol=RTOL)
     if given.series:
-        options |= _of_series(model, given.series)
+        options |= measured_series(model, given.series).conditions
     preset = given.preset or options.get("preset", "")
     before = parameter_values(model, options.get("parameters") or {}, preset)
     own = {name: _number(value, before) for name, value in given.values.items()}
@@ -85,18 +85,3 @@ def with_full(setting: Setting) -> Setting:
 
 def _number(value: Value, values: Mapping[str, float]) -> float:
     return evaluate(value.formula, values, value.place) * value.factor
-
-
-def _of_series(model: Model, name: str) -> Options:
-    """What a run takes from a measured series, the first window of several. Raises OptionError,
-    DataError."""
-    if name not in model.diagram.measured:
-        raise OptionError([unknown("measured series", name, model.diagram.measured)])
-    first = load_measured(model, driving=True, series=[name])[0]
-    options = Options(rtol=RTOL, preset=first.preset, parameters=dict(first.parameters))
-    options["start"] = first.known_start
-    if first.span is not None:
-        options["span"] = first.span
-    if first.inputs:
-        options["inputs"] = dict(first.inputs)
-    return options

@@ -1,0 +1,262 @@
+"""`Integrator`: a run on the compiled core, which is paused now and then to look at the clock."""
+
+from __future__ import annotations
+
+import math
+import time
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import Model
+from tracewire.errors import OptionError, Problem, SimulationError
+from tracewire.solve.core.arrays import Arrays, Progress
+from tracewire.solve.core.codes import (
+    BUDGET,
+    END,
+    FINISHED,
+    HISTORY_FULL,
+    LENGTH,
+    LOG_FULL,
+    NOT_UNIQUE,
+    PAUSED,
+    REJECTED,
+    SAMPLED,
+    STEPS,
+    STIFF_STEPS,
+    WARNINGS,
+    T,
+)
+from tracewire.solve.core.flow import EVALUATIONS, FUNCTIONS
+from tracewire.solve.core_library import library
+from tracewire.solve.event_log import Log
+from tracewire.solve.failures import failure, too_long, too_many_events
+from tracewire.solve.history import grow
+from tracewire.solve.interrupt import Halt, Interrupted, until_interrupted
+from tracewire.solve.problem import InitialValueProblem
+from tracewire.solve.progress import Tell
+from tracewire.solve.run import EventLog, Run, Statistics
+from tracewire.solve.sensitivities import recorded, undefined
+from tracewire.solve.setup import Records
+from tracewire.solve.workspace import Workspace, acquire, give_back
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+PAUSE = 0.1  # s between two pauses, about
+FIRST_WORK = 20_000  # signals times steps before the first pause
+GROWTH = 8
+
+
+def first_budget(model: Model) -> int:
+    """The steps before the first pause, when nothing is known of how long a step takes."""
+    return max(1, FIRST_WORK // (1 + len(model.flat.signals)))
+
+
+def next_budget(budget: int, steps: int, seconds: float) -> int:
+    """The steps before the next pause, after `steps` took `seconds`."""
+    fitting = PAUSE * max(steps, 1) / max(seconds, 1e-9)
+    return max(1, int(min(fitting, GROWTH * budget)))
+
+
+class Integrator:
+    """The solution of a problem as it is computed: it goes to a stop, and on from there.
+
+    At a stop, `t` and `x` are the time in s and the states, and `run` is the run up to there.
+    Modes, slides, contacts and memories go on over a stop.
+
+    `records` says what is kept at the sample times. `progress` is told about ten times a second how
+    far it is; `halt` says whether the user wants to stop, and Ctrl-C does where none is given.
+    """
+
+    def __init__(
+        self,
+        problem: InitialValueProblem,
+        *,
+        records: Records = "signals",
+        progress: Tell | None = None,
+        halt: Halt | None = None,
+    ) -> None:
+        self.problem, self.model = problem, problem.model
+        self.tell, self.halt = progress, halt
+        self.workspace: Workspace = acquire(problem, records)
+        self.arrays: Arrays = self.workspace.arrays
+        self.log = Log(problem.model, problem.sensitivities)
+        self.begin, self.seconds = problem.span[0], 0.0
+
+    @property
+    def progress(self) -> Progress:
+        """How far the run is, in the arrays of the core."""
+        return self.arrays.progress
+
+    @property
+    def t(self) -> float:
+        """The time in s up to which the run is there."""
+        return float(self.arrays.progress.now[T])
+
+    @property
+    def x(self) -> Vector:
+        """The states (n,) there: the right limit."""
+        return self.arrays.progress.x.copy()
+
+    def go_to(self, end: float | None = None) -> None:
+        """Go on to the time `end` in s, that of the span unless given; what happens there has
+        happened then.
+
+        Raises OptionError for an end that is behind; SimulationError where it cannot go on;
+        Interrupted where the user does not want it: a `halt` that is given is the business of the
+        caller, else Ctrl-C is heard here.
+        """
+        end = self.problem.span[1] if end is None else end
+        if not self.t <= end < math.inf:
+            what = f"a run that is at t = {self.t:.9g} s cannot go to {end:.9g} s"
+            raise OptionError([Problem(what, hint="Give a later time.")])
+        progress = self.arrays.progress
+        progress.now[END] = end
+        library()  # before the clock of the run begins
+        self._go_on()
+        if end < self.problem.span[1]:  # the core takes the stop for the end of all samples
+            progress.ints[SAMPLED] = np.searchsorted(progress.times, end, side="right")
+
+    def _go_on(self) -> None:
+        """Integrate to the stop; Ctrl-C is heard here unless there is a `halt`."""
+        if self.halt is not None:
+            if not self.advance(self.halt):
+                raise self.interrupted()
+            return
+        with until_interrupted() as halt:
+            try:
+                self.advance(halt)
+            except SimulationError:
+                if not halt.asked:
+                    raise
+        if halt.asked:  # whatever became of the run: the user wants to stop
+            raise self.interrupted()
+
+    def interrupted(self) -> Interrupted:
+        """The error of a run that the user stopped."""
+        now = self.arrays.progress.now
+        way = f"on the way from {self.begin:g} to {now[END]:g} s"
+        what = f"interrupted at t = {now[T]:.9g} s, {way}"
+        return Interrupted([Problem(what, hint="What there is of the run is in `.run`.")])
+
+    def advance(self, halt: Halt, status: int | None = None) -> bool:
+        """Integrate until the end, or until the user wants to stop; whether it is the end.
+
+        `status` is what the core has said already of a run that has begun.
+        """
+        began = time.perf_counter() - self.seconds
+        ints, now, limits = self.arrays.progress.ints, self.arrays.progress.now, self.problem.limits
+        code, core = library(), self.workspace.address
+        budget, last = first_budget(self.model), -PAUSE
+        while not halt.asked:
+            before, done = self.seconds, int(ints[STEPS])
+            ints[BUDGET] = min(budget, limits.steps - done)
+            status = code.advance(core) if status is None else status
+            code.check()
+            self.seconds = time.perf_counter() - began
+            self.log.take(self.arrays)
+            self._check_events()
+            if status == FINISHED:
+                return True
+            if status == HISTORY_FULL:
+                grow(self.arrays, self.workspace.table)
+            elif status not in (LOG_FULL, PAUSED):
+                raise failure(self.model, self.arrays, status)
+            self._check_limits()
+            # what was compiled meanwhile is called without a detour
+            self.arrays.flow.address[:] = self.model.addresses(FUNCTIONS)
+            budget = next_budget(budget, int(ints[STEPS]) - done, self.seconds - before)
+            status = None
+            if self.tell is not None and self.seconds - last >= PAUSE:
+                last, part = self.seconds, float((now[T] - self.begin) / now[LENGTH])
+                self.tell(part, self.seconds * (1 - part) / part if part > 0 else np.inf)
+        return False
+
+    def _check_limits(self) -> None:
+        """Stop a run that takes more steps or more time than it may."""
+        limits = self.problem.limits
+        if self.arrays.progress.ints[STEPS] >= limits.steps:
+            what, hint = f"more than {limits.steps} steps", "Loosen rtol."
+            raise too_long(self.model, self.arrays, what, hint)
+        if self.seconds > limits.seconds:
+            what = f"more than {limits.seconds:g} s of wall time"
+            hint = "Shorten the span, loosen rtol or raise the limit."
+            raise too_long(self.model, self.arrays, what, hint)
+
+    def _check_events(self) -> None:
+        """Stop a run with more events than it may have, at the first of them that is too many."""
+        most = self.problem.limits.events
+        if self.log.most > most and len(self.log) > most:
+            raise too_many_events(self.model, np.concatenate(self.log.parts), most)
+
+    def forget(self) -> None:
+        """Count time and events from here on."""
+        self.seconds = 0.0
+        self.log.clear()
+
+    @property
+    def statistics(self) -> Statistics:
+        """What the run has cost so far."""
+        ints = self.arrays.progress.ints
+        return Statistics(
+            steps=int(ints[STEPS] - ints[REJECTED]),
+            rejected=int(ints[REJECTED]),
+            evaluations=int(self.arrays.flow.counts[EVALUATIONS]),
+            stiff_steps=int(ints[STIFF_STEPS]),
+            seconds=self.seconds,
+        )
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the user should know although the run has gone well."""
+        t, progress = self.begin, self.arrays.progress
+        said = []
+        if progress.ints[WARNINGS] & NOT_UNIQUE:
+            said.append(f"the start at t = {t:g} s is not unique: two modes fit it")
+        for reset in np.flatnonzero(progress.overlooked).tolist():
+            name = self.model.lowered.resets[reset].name
+            said.append(
+                f"the start at t = {t:g} s lies on the guard of {name}, which does not fire there"
+            )
+        for i, since in enumerate(progress.undetermined.tolist()):
+            if since < np.inf:
+                mode = self.model.modes[i]
+                said.append(
+                    f"'{mode.text}' of {mode.signal or 'an event'} rests at exactly zero from "
+                    f"t = {since:.9g} s on, and nothing decides on which side: the last one goes on"
+                )
+        if self.problem.sensitivities:
+            said.extend(undefined(self.model, self.arrays.sensitivity))
+        return tuple(said)
+
+    @property
+    def run(self) -> Run:
+        """The run as far as it is."""
+        progress = self.arrays.progress
+        count = int(progress.ints[SAMPLED])
+        return self.run_at(self.problem.times[:count], progress.samples[:count])
+
+    def run_at(self, t: Vector, samples: Matrix) -> Run:
+        """The run with these sample times (N,) and samples (N, signals)."""
+        problem, model, names = self.problem, self.model, self.model.states
+        sensitivity, log = self.arrays.sensitivity, self.log.copy()
+        units = model.flat.units
+        return Run(
+            title=model.flat.title,
+            t=t,
+            signals=dict(zip(model.recorded, samples.T.copy(), strict=True)),
+            units={name: units.get(name, "") for name in model.recorded},
+            events=EventLog(lambda: log.events),
+            parameters=problem.parameters,
+            start=dict(zip(names, problem.start.tolist(), strict=True)),
+            final=dict(zip(names, self.arrays.progress.x.tolist(), strict=True)),
+            statistics=self.statistics,
+            warnings=self.warnings,
+            shown=model.flat.shown,
+            model=model,
+            sensitivities=recorded(model, sensitivity, problem.sensitivities, len(t)),
+        )
+
+    def give_back(self) -> None:
+        """Let the next run of the model have the arrays; this one is over."""
+        give_back(self.model, self.workspace)

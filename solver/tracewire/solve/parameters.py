@@ -1,0 +1,79 @@
+"""The values of the parameters of a run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from tracewire.compile import Model
+from tracewire.errors import OptionError, Problem, SimulationError, unknown
+from tracewire.formula import evaluate, names_of, to_text
+from tracewire.solve.once_per_model import once_per_model
+
+Given = tuple[str, tuple[str, ...]]
+"""A preset, and the names of the parameters that are given beside it."""
+MOST_KEPT = 100  # kinds of Given
+
+
+@once_per_model
+def _known_values(model: Model) -> dict[Given, tuple[dict[str, float], list[str]]]:
+    """The values that follow from nothing that is given, and the names of those that do."""
+    return {}
+
+
+def parameter_values(
+    model: Model, given: Mapping[str, float], preset: str = ""
+) -> dict[str, float]:
+    """The value of every parameter in SI: the diagram's, changed by a preset and by `given`.
+
+    A parameter that is a formula of others follows them. Raises OptionError for names that do not
+    exist and values that are not finite, SimulationError for values that do not meet what the
+    diagram requires.
+    """
+    flat = model.flat
+    if preset and preset not in flat.presets:
+        raise OptionError([unknown("preset", preset, flat.presets)])
+    problems = [unknown("parameter", n, flat.parameters) for n in given if n not in flat.parameters]
+    problems += [
+        Problem(f"the parameter '{name}' is given as {value}, which is not a finite number")
+        for name, value in given.items()
+        if not math.isfinite(value)
+    ]
+    if problems:
+        raise OptionError(problems)
+    values = {name: float(value) for name, value in given.items()}
+    kept, key = _known_values(model), (preset, tuple(values))
+    known = kept.get(key)
+    if known is None:  # what follows from nothing that is given is the same every time
+        following = []
+        for name, formula in model.parameter_formulas(preset).items():
+            if name in values:
+                continue
+            values[name] = evaluate(formula, values, flat.parameters[name].place)
+            if any(read in given or read in following for read in names_of(formula)):
+                following.append(name)
+        changing = {*given, *following}
+        same = {name: value for name, value in values.items() if name not in changing}
+        if len(kept) < MOST_KEPT:
+            kept[key] = same, following
+    else:
+        same, following = known
+        values |= same
+        formulas = model.parameter_formulas(preset)
+        for name in following:
+            values[name] = evaluate(formulas[name], values, flat.parameters[name].place)
+    refuse_unmet(model, values)
+    return {name: values[name] for name in flat.parameters}
+
+
+def refuse_unmet(model: Model, values: Mapping[str, float]) -> None:
+    """Raises SimulationError: the values of the parameters do not meet a condition of `require`."""
+    problems = []
+    for known in model.flat.require:
+        if not evaluate(known.formula, values, known.place):
+            read = [name for name in names_of(known.formula) if name in values]
+            shown = ", ".join(f"{name} = {values[name]:.6g}" for name in read)
+            what = f"the parameters do not meet '{to_text(known.formula)}': {shown}"
+            problems.append(Problem(what, known.place, (), known.hint))
+    if problems:
+        raise SimulationError(problems)

@@ -1,0 +1,126 @@
+"""`InitialValueProblem`: what a run solves, with every argument checked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Unpack
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import Model
+from tracewire.errors import OptionError, unknown
+from tracewire.options import options_of
+from tracewire.solve.core.methods import NAMES
+from tracewire.solve.limits import Limits
+from tracewire.solve.options import Options, refuse_unknown_options, with_row
+from tracewire.solve.parameters import parameter_values
+from tracewire.solve.sampling import ascending, samples_of, span_of
+from tracewire.solve.sensitivities import Moving, checked, moving_with
+from tracewire.solve.setup import constants_of, start_of
+from tracewire.solve.tables import packed, tables_follow, tables_of
+from tracewire.solve.tolerance import Tolerance, longest_step, tolerance_of
+
+Vector = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class InitialValueProblem:
+    """x' = f(x, t, p) with x at the begin of a span: the arguments of a run, checked and in SI.
+
+    `parameters` has the value of each parameter, `start` (n,) the states at the begin of `span`,
+    which is from and to in s; at `times` (N,) in s the run is sampled, unless it is not `sampled`
+    at all, as where an analysis looks at its states only. `sensitivities` are the
+    names of parameters and start values by which the signals are differentiated, and `moving` the
+    parameters that move with them. `constants` is what the model computes from its parameters
+    alone, `tables` its tables and inputs, packed. `given` are the options that it was made of.
+    """
+
+    model: Model
+    given: Options
+    parameters: Mapping[str, float]
+    span: tuple[float, float]
+    times: Vector
+    method: str
+    limits: Limits
+    tolerance: Tolerance
+    sensitivities: tuple[str, ...]
+    moving: Moving
+    constants: Vector
+    tables: Vector
+    start: Vector
+    sampled: bool = True
+
+    def with_values(
+        self, row: Mapping[str, float], span: tuple[float, float] | None = None
+    ) -> InitialValueProblem:
+        """The problem with the values of a row, `start.NAME` of a state, over those that it has.
+
+        What is the same for all values is not checked again. Raises OptionError, SimulationError.
+        """
+        given = with_row(self.model, self.given, row)
+        if span is not None:
+            given["span"] = span
+        same = None if tables_follow(self.model, given.get("inputs") or {}) else self.tables
+        return _problem(self.model, given, self.sensitivities, self.sampled, same)
+
+
+def initial_value_problem(
+    model: Model,
+    sensitivities: Sequence[str] = (),
+    sampled: bool = True,
+    **given: Unpack[Options],
+) -> InitialValueProblem:
+    """The problem that a model and the options of `simulate` pose.
+
+    Raises OptionError for options that do not fit; SimulationError for values that do not meet what
+    the diagram requires.
+    """
+    refuse_unknown_options(given)
+    return _problem(model, given, sensitivities, sampled)
+
+
+def _problem(
+    model: Model,
+    given: Options,
+    sensitivities: Sequence[str],
+    sampled: bool,
+    tables: Vector | None = None,
+) -> InitialValueProblem:
+    """The problem; `tables` are the packed ones, where they are known."""
+    parameters, preset = given.get("parameters") or {}, given.get("preset", "")
+    values = parameter_values(model, parameters, preset)
+    asked = checked(model, sensitivities)
+    moving = moving_with(model, asked, values, parameters, preset)
+    times = given.get("times")
+    known = None if times is None else ascending(times)
+    begin, end = span_of(model, values, given.get("span"), known)
+    samples = samples_of(model, values, begin, end, known) if sampled else np.empty(0)
+    method = given.get("method", "auto")
+    if method != "auto" and method not in NAMES:
+        raise OptionError([unknown("method", method, ["auto", *NAMES])])
+    limits = options_of(Limits, given.get("limits"), "limits of a run")
+    longest = longest_step(model, values, limits)
+    rtol, atol, step = given.get("rtol", 1e-6), given.get("atol"), given.get("step")
+    tolerance = tolerance_of(model, rtol, atol, method, step, end - begin, longest)
+    if tables is None:
+        tables = packed(tables_of(model, values, given.get("inputs") or {}))
+    constants = constants_of(model, values)
+    start = start_of(model, constants, tables, given.get("start") or {})
+    return InitialValueProblem(
+        model=model,
+        given=given,
+        parameters=values,
+        span=(begin, end),
+        times=samples,
+        method=method,
+        limits=limits,
+        tolerance=tolerance,
+        sensitivities=asked,
+        moving=moving,
+        constants=constants,
+        tables=tables,
+        start=start,
+        sampled=sampled,
+    )

@@ -1,0 +1,82 @@
+"""From when to when a run goes, and at which times it is sampled."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tracewire.compile import Model
+from tracewire.errors import OptionError, Problem
+from tracewire.formula import evaluate
+
+Vector = NDArray[np.float64]
+DEFAULT_SAMPLES = 1001
+MOST_SAMPLES = 10_000_000
+MOST_SPANS = 64  # whose default times are kept
+
+
+def ascending(times: ArrayLike) -> Vector:
+    """Sample times (N,) as they are used. Raises OptionError where they do not ascend."""
+    samples = np.array(times, dtype=float).ravel()
+    increasing = bool((samples[1:] > samples[:-1]).all())  # not so where one is NaN
+    if not len(samples) or not (increasing and -math.inf < samples[0] and samples[-1] < math.inf):
+        what = "the sample times do not ascend"
+        raise OptionError([Problem(what, hint="Sort them, without repetition or NaN.")])
+    return samples
+
+
+def span_of(
+    model: Model,
+    values: Mapping[str, float],
+    span: tuple[float, float] | None,
+    times: Vector | None,
+) -> tuple[float, float]:
+    """Begin and end in s: the span that is given, or the diagram's. Raises OptionError."""
+    begin, end = span or (evaluate(formula, values) for formula in model.flat.span)
+    if span is None and times is not None:
+        begin, end = min(begin, times[0]), times[-1]
+    begin, end = float(begin), float(end)
+    if not (math.isfinite(begin) and math.isfinite(end) and begin < end):
+        what = f"the span from {begin:g} to {end:g} s is empty"
+        raise OptionError([Problem(what, hint="Give a begin before the end.")])
+    return begin, end
+
+
+def samples_of(
+    model: Model, values: Mapping[str, float], begin: float, end: float, times: Vector | None
+) -> Vector:
+    """The sample times (N,) within a span. Raises OptionError where there is no use in them."""
+    if times is not None:
+        if times[0] < begin or times[-1] > end:
+            what = (
+                f"the sample times from {times[0]:g} to {times[-1]:g} s are not within the span "
+                f"from {begin:g} to {end:g} s"
+            )
+            raise OptionError([Problem(what, hint="Give a longer span, or other times.")])
+        return times
+    if model.flat.every is None:
+        return _default_times(begin, end).copy()
+    every = evaluate(model.flat.every, values)
+    if not every > 0 or (end - begin) / every > MOST_SAMPLES:
+        what = f"an output every {every:g} s from {begin:g} to {end:g} s cannot be kept"
+        raise OptionError([Problem(what, hint="Give a larger `every`.")])
+    if every > (end - begin) * (1 + 1e-12):  # a run of one sample would say nothing of its end
+        what = f"an output every {every:g} s has one sample only from {begin:g} to {end:g} s"
+        raise OptionError([Problem(what, hint="Give a smaller `every`, or a longer span.")])
+    count = math.floor((end - begin) / every * (1 + 1e-12))
+    return np.asarray(np.minimum(begin + every * np.arange(count + 1), end))
+
+
+@lru_cache(maxsize=MOST_SPANS)
+def _default_times(begin: float, end: float) -> Vector:
+    return np.linspace(begin, end, DEFAULT_SAMPLES)
+
+
+def sample_times(model: Model, values: Mapping[str, float], span: tuple[float, float]) -> Vector:
+    """The sample times (N,) in s that a run over a span has by itself. Raises OptionError."""
+    begin, end = span_of(model, values, span, None)
+    return samples_of(model, values, begin, end, None)

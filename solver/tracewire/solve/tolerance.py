@@ -1,0 +1,84 @@
+"""How exact a run is, and how long its steps may be."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import Model
+from tracewire.errors import OptionError, Problem, unknown
+from tracewire.formula import evaluate
+from tracewire.solve.core.methods import STEPPED
+from tracewire.solve.limits import Limits
+
+Vector = NDArray[np.float64]
+KNOWN_PAST = 0.98  # of a delay: a step to a known time may be a little longer
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """How exact a run is: relative, absolute per state (n,), the step of a fixed method, and the
+    longest step in s that any may take. An absolute one of 0 follows the size of the state.
+    """
+
+    rtol: float
+    atol: Vector
+    step: float = np.inf
+    longest: float = np.inf
+
+
+def tolerance_of(
+    model: Model,
+    rtol: float,
+    atol: float | Mapping[str, float] | None,
+    method: str,
+    step: float | None,
+    length: float,
+    longest: float = math.inf,
+) -> Tolerance:
+    """The tolerances as the core takes them. Raises OptionError."""
+    given = atol if isinstance(atol, Mapping) else {}
+    problems = [unknown("state", name, model.states) for name in given if name not in model.states]
+    if problems:
+        raise OptionError(problems)
+    usual = None if atol is None or isinstance(atol, Mapping) else atol
+    wanted = [*given.values(), *([] if usual is None else [usual])]
+    if not (1e-14 <= rtol < 1 and all(0 < value < math.inf for value in wanted)):
+        shown = ", ".join(f"{name}: {value:g}" for name, value in given.items())
+        told = f"{{{shown}}}" if given else f"{rtol * 1e-3 if usual is None else usual:g}"
+        what = f"rtol = {rtol:g} and atol = {told} cannot be met"
+        raise OptionError([Problem(what, hint="Take rtol between 1e-13 and 0.1 and atol above 0.")])
+    if (method in STEPPED) != (step is not None):
+        known = " or ".join(STEPPED)
+        needs = f"the method {method} needs a step"
+        what = needs if step is None else f"only the method {known} takes a step"
+        raise OptionError([Problem(what, hint=f"Give method='{known}' and step= in s together.")])
+    if step is not None and not 0 < step <= length:
+        what = f"steps of {step:g} s do not fit into a span of {length:g} s"
+        raise OptionError([Problem(what, hint="Give a step above 0 and below the span.")])
+    absolute = [given.get(name, usual or 0.0) for name in model.states]
+    fixed = math.inf if step is None else step
+    return Tolerance(rtol, np.array(absolute, dtype=float), fixed, longest)
+
+
+def longest_step(model: Model, values: Mapping[str, float], limits: Limits) -> float:
+    """The longest step in s: that of the diagram or of the limits, and no longer than a delay, so
+    that what is read is known. Raises OptionError.
+    """
+    given, longest = model.flat.max_step, limits.max_step
+    if given is not None:
+        longest = min(longest, float(evaluate(given, values)))
+    for delay in model.lowered.delays:
+        time = float(evaluate(delay.shortest, values))
+        if not 0 < time < math.inf:
+            what = f"'{delay.text}' is delayed by {time:g} s"
+            raise OptionError([Problem(what, hint="Give a delay above 0.")])
+        longest = min(longest, KNOWN_PAST * time)
+    if not longest > 0:
+        what = f"steps of {longest:g} s at most lead nowhere"
+        raise OptionError([Problem(what, hint="Give a max_step above 0.")])
+    return longest

@@ -1,0 +1,148 @@
+"""The arrays of runs, kept with the model: to make them takes as long as a short run."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.compile import Model
+from tracewire.solve.core.arrays import Arrays, table_of
+from tracewire.solve.core.codes import ABSOLUTE, END, FIXED, LENGTH, LONGEST, METHOD, RTOL, H, T
+from tracewire.solve.core.flow import FUNCTIONS
+from tracewire.solve.core.memory import invoke
+from tracewire.solve.core.methods import NAMES
+from tracewire.solve.core.variation import OF_STARTS
+from tracewire.solve.history import GROWING, has_grown
+from tracewire.solve.once_per_model import once_per_model
+from tracewire.solve.options import START
+from tracewire.solve.problem import InitialValueProblem
+from tracewire.solve.setup import Kind, Records, new_arrays
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+MOST = 16  # kinds of workspaces that a model keeps
+MOST_NUMBERS = 500_000  # of samples and tables; larger arrays are not kept
+ONLY_WRITTEN = ("address", "c", "k", "log", "stiff", "times", *GROWING)
+"""What is written before each run, or not read before the run has written it."""
+
+
+class Workspace:
+    """The arrays of one run, and their table for the core.
+
+    `block` is the memory of all that a run changes, `first` what was there before.
+    """
+
+    def __init__(self, kind: Kind, arrays: Arrays) -> None:
+        self.kind = kind
+        self.arrays, self.block = _in_one_block(arrays)
+        self.table, self.first = table_of(self.arrays), self.block.copy()
+        self.address: int = self.table.__array_interface__["data"][0]
+
+    def renew(self) -> None:
+        """Let the arrays be as they were before their run."""
+        self.block[:] = self.first
+
+    def keep(self) -> None:
+        """Let them be before each further run as they are now."""
+        self.first[:] = self.block
+
+
+def _in_one_block(arrays: Arrays) -> tuple[Arrays, Vector]:
+    """The arrays with all that a run changes in one block of memory, and that block."""
+    groups: list[Any] = list(arrays)
+    fields = [
+        (number, name, array)
+        for number, group in enumerate(groups)
+        for name, array in group._asdict().items()
+        if group is not arrays.plan and name not in ONLY_WRITTEN
+    ]
+    block = np.empty(sum(array.size for *_, array in fields))
+    first = 0
+    for number, name, array in fields:
+        part = block[first : first + array.size].view(array.dtype).reshape(array.shape)
+        part[...] = array
+        groups[number] = groups[number]._replace(**{name: part})
+        first += array.size
+    return Arrays(*groups), block
+
+
+def acquire(problem: InitialValueProblem, records: Records) -> Workspace:
+    """A workspace for a problem, set to its numbers: one that is kept and free, or a new one."""
+    moved = problem.moving.names
+    kind = Kind(len(problem.times), records, len(problem.tables), problem.sensitivities, moved)
+    try:
+        space = _kept(problem.model)[kind].pop()  # at once, as another thread may want it too
+        space.renew()
+    except (KeyError, IndexError):
+        space = Workspace(kind, new_arrays(problem.model, kind))
+    set_to(space.arrays, problem)
+    return space
+
+
+def set_to(arrays: Arrays, problem: InitialValueProblem) -> None:
+    """Let the arrays of a run that has not begun be those of a problem."""
+    flow, progress, tolerance = arrays.flow, arrays.progress, problem.tolerance
+    flow.address[:] = problem.model.addresses(FUNCTIONS)
+    flow.c[:], flow.k[:] = problem.constants, problem.tables
+    now, (begin, end) = progress.now, problem.span
+    now[T], now[H], now[END], now[LENGTH] = begin, 0.0, end, end - begin
+    now[RTOL], now[FIXED], now[LONGEST] = tolerance.rtol, tolerance.step, tolerance.longest
+    progress.x[:], progress.times[:] = problem.start, problem.times
+    progress.given[:] = tolerance.atol
+    follows = ABSOLUTE * tolerance.rtol  # till the core knows of what size the states are
+    np.copyto(progress.atol, tolerance.atol)
+    progress.atol[tolerance.atol <= 0] = follows
+    progress.ints[METHOD] = -1 if problem.method == "auto" else NAMES.index(problem.method)
+    if problem.sensitivities:
+        _set_sensitivities(arrays, problem)
+
+
+def _set_sensitivities(arrays: Arrays, problem: InitialValueProblem) -> None:
+    """The derivatives of the start values: those that are given follow no parameter."""
+    flow, sensitivity, moving = arrays.flow, arrays.sensitivity, problem.moving
+    states, given = problem.model.states, problem.given.get("start") or {}
+    n, s = len(states), sensitivity.s
+    if moving.names:
+        sensitivity.chain[: len(moving.names)] = moving.rates
+        rows, nothing = np.zeros((n, n + 1 + len(sensitivity.chain))), np.zeros(1)
+        address = sensitivity.address[OF_STARTS]
+        invoke(address, 0.0, nothing, flow.m, flow.c, flow.k, rows.reshape(-1))
+        s[:] = rows[:, n + 1 :] @ sensitivity.chain
+        s[[state in given for state in states]] = 0.0
+    for j, name in enumerate(problem.sensitivities):
+        if name not in problem.model.flat.parameters:
+            s[:, j] = 0.0
+            s[states.index(name.removeprefix(START)), j] = 1.0
+    sensitivity.peak[:] = np.maximum(np.abs(s), least_peak(arrays, problem))
+    sensitivity.now[0] = arrays.progress.now[T]
+
+
+def least_peak(arrays: Arrays, problem: InitialValueProblem) -> Matrix:
+    """The sensitivities (n, q) below which they need not be followed closely: all of a parameter's
+    value moves a state less than its tolerance there, as far from rest of exp(-(rate/speed)^2)."""
+    values = problem.parameters
+    sizes = np.array([abs(values.get(name, 0.0)) or 1.0 for name in problem.sensitivities])
+    return np.asarray(arrays.progress.atol[:, None] / sizes)
+
+
+def give_back(model: Model, space: Workspace) -> None:
+    """Let the next run have a workspace; nobody may look into its arrays any more."""
+    kept = _kept(model)
+    size = space.arrays.progress.samples.size + space.arrays.sensitivity.samples.size
+    if size + space.kind.tables > MOST_NUMBERS or has_grown(space.arrays):
+        return
+    if space.kind not in kept and len(kept) >= MOST:
+        kept.clear()
+    kept.setdefault(space.kind, []).append(space)
+
+
+def release(model: Model) -> None:
+    """Free the memory that runs of a model keep for the next one."""
+    _kept(model).clear()
+
+
+@once_per_model
+def _kept(model: Model) -> dict[Kind, list[Workspace]]:
+    return {}
