@@ -46,7 +46,6 @@ DEEP = {
     "cli -> solve": 1,
     "cli -> trace": 3,
     "paper -> show": 16,
-    "residual -> solve": 1,
     "show -> fit": 2,
     "show -> trace": 2,
     "solve -> compile": 1,

@@ -151,6 +151,15 @@ class Search:
             if self._progress is not None:
                 self._progress(self.progress())
 
+    def count(self, other: Criterion) -> None:
+        """Count what another criterion has evaluated as evaluations of the search."""
+        whole = self.criterion
+        whole.evaluations += other.evaluations
+        whole.failures += other.failures
+        whole.failure = other.failure or whole.failure
+        other.evaluations = 0
+        other.failures.clear()
+
     def refuse_more(self) -> None:
         """Raises Stopped where no evaluation is left; for those that a method makes elsewhere."""
         limit = self.options.evaluations(self.size)

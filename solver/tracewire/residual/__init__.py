@@ -11,7 +11,7 @@ from tracewire.residual.input_noise import (
 )
 from tracewire.residual.input_response import InputNoise
 from tracewire.residual.levenberg_marquardt import CREEPS, LEAST_DAMPING, bounded_step, descended
-from tracewire.residual.linearised import Projection, difference
+from tracewire.residual.linearised import Linearised, Projection, difference
 from tracewire.residual.loss import LOSSES
 from tracewire.residual.measured import (
     Measured,
@@ -70,6 +70,7 @@ __all__ = [
     "Descent",
     "InputCovariance",
     "InputNoise",
+    "Linearised",
     "Measured",
     "NoiseEstimate",
     "Projection",

@@ -174,10 +174,5 @@ class _Part:
 
     def _count(self, z: Vector) -> None:
         """Count what the part has evaluated as evaluations of the search, and tell progress."""
-        whole = self.search.criterion
-        whole.evaluations += self.criterion.evaluations
-        whole.failures += self.criterion.failures
-        whole.failure = self.criterion.failure or whole.failure
-        self.criterion.evaluations = 0
-        self.criterion.failures.clear()
+        self.search.count(self.criterion)
         self.search.notice(z, np.inf)

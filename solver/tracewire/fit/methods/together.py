@@ -37,9 +37,7 @@ def values_at(
             for number, (z, (own, value)) in enumerate(
                 zip(part, pool.map(valued, part), strict=True), 1
             ):
-                whole.evaluations += own.evaluations
-                whole.failures += own.failures
-                whole.failure = own.failure or whole.failure
+                search.count(own)
                 if told is not None:
                     told(number)
                 search.notice(z, value)
