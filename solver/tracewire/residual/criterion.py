@@ -88,7 +88,6 @@ class Criterion:
             + [s.start_scale(name) for s in self.segments for name in s.free]
         )
         self._samples = [segment.samples() for segment in self.segments]
-        self._weights: dict[int, Vector] = {}
         self._following = (
             {n for n in range(1, len(self.segments)) if self._follows(n)} if chained else set()
         )
@@ -119,6 +118,16 @@ class Criterion:
         return fresh
 
     # --- unknowns -----------------------------------------------------------------------------
+
+    @property
+    def names(self) -> list[str]:
+        """The unknowns by name; free starts say of which series, where there are several."""
+        several = len({segment.measured.name for segment in self.segments}) > 1
+        return [unknown.name for unknown in self.unknowns] + [
+            f"start.{state}" + (f" of {segment.measured.name}" if several else "")
+            for segment in self.segments
+            for state in segment.free
+        ]
 
     def begin(self) -> Vector:
         """The scaled unknowns to begin with."""
@@ -191,14 +200,12 @@ class Criterion:
 
     def weights(self, n: int) -> Vector:
         """The weights w (N, signals) of the residuals of segment n."""
-        if n in self._weights:
-            return self._weights[n]
         measured, samples = self.segments[n].measured, self._samples[n]
         counts = [measured.weights.get(name, 1.0) for name in measured.values]
         shares = measured.weight * np.array(counts)
         if self.weighting == "mean":
             shares = shares / len(samples)
-        return self._weights.setdefault(n, np.broadcast_to(np.sqrt(shares), samples.shape))
+        return np.broadcast_to(np.sqrt(shares), samples.shape)
 
     # --- residuals ------------------------------------------------------------------------------
 
