@@ -11,7 +11,7 @@ from tracewire.residual.input_noise import (
 )
 from tracewire.residual.input_response import InputNoise
 from tracewire.residual.levenberg_marquardt import CREEPS, LEAST_DAMPING, bounded_step, descended
-from tracewire.residual.linearised import Linearised, Projection, difference
+from tracewire.residual.linearised import Linearised, Projection, around, difference
 from tracewire.residual.loss import LOSSES
 from tracewire.residual.measured import (
     Measured,
@@ -19,15 +19,13 @@ from tracewire.residual.measured import (
     series_parameters,
     with_measured_signals,
 )
-from tracewire.residual.noise import (
+from tracewire.residual.noise import degrees_of, noise_in, noise_of, noises_beside
+from tracewire.residual.noise_estimate import (
+    NoiseEstimate,
     channel_noise,
-    degrees_of,
-    noise_in,
+    estimate_noise,
     noise_level,
-    noise_of,
-    noises_beside,
 )
-from tracewire.residual.noise_estimate import NoiseEstimate, estimate_noise
 from tracewire.residual.segment import (
     OWN,
     SENSED,
@@ -81,6 +79,7 @@ __all__ = [
     "Unknown",
     "Windows",
     "absolute_tolerances",
+    "around",
     "begun_before",
     "bounded_step",
     "channel_noise",

@@ -158,8 +158,9 @@ class Shooting:
             own = slopes[mine].reshape(residual[mine].size, len(answers))
             ends = np.zeros((len(self.model.states), len(answers)))
             ends[:, moved] = runs.final_slopes[number]
-            if moving is not None:
-                kept = [columns[name] for name in (*moving, *(f"start.{x}" for x in start))]
+            wanted = () if moving is None else (*moving, *(f"start.{name}" for name in start))
+            kept = [columns[name] for name in wanted]
+            if kept != [*columns.values()]:
                 own, ends = own[:, kept], ends[:, kept]
             final = dict(zip(self.model.states, runs.final[number].tolist(), strict=True))
             scales = segment.start_scales(start)
@@ -177,9 +178,10 @@ def _huge(series: str, shown: Vector) -> SimulationError:
 
 def difference(measured: Measured, samples: Vector, shown: Vector) -> Vector:
     """What sensors show without what was measured, (N, signals): the shortest way around."""
-    off = shown - samples
-    for column, signal in enumerate(measured.values):
-        period = measured.periods.get(signal, 0.0)
-        if period > 0:
-            off[:, column] -= period * np.round(off[:, column] / period)
-    return np.asarray(off)
+    columns = zip(measured.values, (shown - samples).T, strict=True)
+    return np.stack([around(x, measured.periods.get(name, 0.0)) for name, x in columns], axis=1)
+
+
+def around(off: Vector, period: float) -> Vector:
+    """Differences by the shortest way around a period; 0 is none."""
+    return off - period * np.round(off / period) if period > 0 else off
