@@ -1,7 +1,7 @@
 """Measured data beside a model: residuals, their derivatives, and the noise they are judged by."""
 
 from tracewire.residual.criterion import LIMITS, Criterion, half_square
-from tracewire.residual.descent import Descent, descend
+from tracewire.residual.descent import descend
 from tracewire.residual.files import series_from_files
 from tracewire.residual.input_noise import (
     InputCovariance,
@@ -11,7 +11,7 @@ from tracewire.residual.input_noise import (
 )
 from tracewire.residual.input_response import InputNoise
 from tracewire.residual.levenberg_marquardt import CREEPS, LEAST_DAMPING, bounded_step, descended
-from tracewire.residual.linearised import Linearised, Projection, around, difference
+from tracewire.residual.linearised import Linearised, Projection, around
 from tracewire.residual.loss import LOSSES
 from tracewire.residual.measured import (
     Measured,
@@ -35,7 +35,6 @@ from tracewire.residual.segment import (
     of_diagram,
     parameter_in,
 )
-from tracewire.residual.sensing import Sensing
 from tracewire.residual.sensor import Sensor
 from tracewire.residual.settling import SETTLING, settled
 from tracewire.residual.starts import start_from_data, whole_segment
@@ -65,7 +64,6 @@ __all__ = [
     "SENSED",
     "SETTLING",
     "Criterion",
-    "Descent",
     "InputCovariance",
     "InputNoise",
     "Linearised",
@@ -74,7 +72,6 @@ __all__ = [
     "Projection",
     "Section",
     "Segment",
-    "Sensing",
     "Sensor",
     "Unknown",
     "Windows",
@@ -88,7 +85,6 @@ __all__ = [
     "degrees_of",
     "descend",
     "descended",
-    "difference",
     "eliminated",
     "estimate_noise",
     "free_names",
