@@ -12,7 +12,8 @@ from residual.models import T, made, oscillation, series
 from tracewire.compile import compile
 from tracewire.diagram import read
 from tracewire.fit import Fit, fit
-from tracewire.fit.uncertainty import Columns, Uncertainty, uncertainty_from
+from tracewire.fit.identify import Columns
+from tracewire.fit.uncertainty import Uncertainty, uncertainty_from
 from tracewire.residual import Measured, Sensor
 
 APPENDIX = Path(__file__).parents[2] / "diagrams" / "papers" / "a_torsion" / "pendulum.yaml"

@@ -12,7 +12,7 @@ from residual.models import OSCILLATOR, T, made, oscillation, series
 from scipy.integrate import solve_ivp
 from tracewire.compile import Model, compile
 from tracewire.diagram import read_text
-from tracewire.errors import OptionError
+from tracewire.errors import FitError, OptionError
 from tracewire.fit import Fit, fit, optimset
 from tracewire.residual import Measured
 
@@ -205,3 +205,18 @@ def test_segments_of_a_record_that_is_not_chaotic_grow_together(oscillator: Mode
     assert found.values == pytest.approx(TRUE, rel=1e-4)
     assert "have grown together" in found.message
     assert len(found.starts["run"]) == 0
+
+
+def test_multiple_shooting_tells_a_segment_that_does_not_run() -> None:
+    """The run comes to 1; where the data are at 3, a segment begins where there is no rate."""
+    model = made("""
+span: [0, 6]
+parameters: {a: {value: 1, fit: [0.1, 10]}}
+blocks:
+  x: {type: integrator, of: rate, start: 0}
+  rate: {type: expression, formula: a*log(2 - x)}
+""")
+    measured = series(np.where(T[-1] > 2 * T, 1 - np.exp(-T), 3.0), start={"x": 0.0})
+    with pytest.raises(FitError) as caught:
+        fit(model, [measured], method="multiple_shooting")
+    assert "a segment does not run: " in str(caught.value)

@@ -14,7 +14,8 @@ from residual.models import LINE, made
 from scipy.stats import linregress
 from scipy.stats import t as student
 from tracewire.fit import fit
-from tracewire.fit.uncertainty import Columns, Uncertainty, uncertainty_from
+from tracewire.fit.identify import Columns
+from tracewire.fit.uncertainty import Uncertainty, uncertainty_from
 from tracewire.residual import Measured
 
 Vector = NDArray[np.float64]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from hypothesis import strategies as st
 from residual.models import LINE, OSCILLATOR, C, K, T, criterion_of, made, oscillation, series
 from tracewire.errors import DataError, OptionError, SimulationError
 from tracewire.residual import Criterion, Measured, Segment, Sensor, Unknown
-from tracewire.residual import criterion as criterion_module
+from tracewire.residual import linearised as linearised_module
 
 LINE_MODEL = made(LINE)
 
@@ -139,15 +140,16 @@ def test_differences_stand_in_where_sensitivities_fail(
     value: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tried: list[float] = []
-    plain = criterion_module.simulate
+    plain = linearised_module.simulate_spans
 
     def failing(*arguments: Any, **options: Any) -> Any:
+        runs = plain(*arguments, **options)
         if options["sensitivities"]:
-            raise SimulationError.one("no sensitivities today")
+            return replace(runs, errors={0: SimulationError.one("no sensitivities today")})
         tried.append(options["parameters"]["a"])
-        return plain(*arguments, **options)
+        return runs
 
-    monkeypatch.setattr(criterion_module, "simulate", failing)
+    monkeypatch.setattr(linearised_module, "simulate_spans", failing)
     whole = criterion_of(LINE_MODEL, series(T))
     criterion = Criterion(LINE_MODEL, whole.segments, [Unknown("a", value, 0.0, 1.0)], {"b": 0.0})
     (matrix,) = criterion.residuals_and_derivatives(criterion.begin())[1]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +12,7 @@ from scipy.io import savemat
 from tracewire.compile import Model, compile
 from tracewire.diagram import read, read_text
 from tracewire.errors import DataError
-from tracewire.residual import Measured, load_measured
-from tracewire.residual.measured import measured_signals
+from tracewire.residual import Measured, load_measured, with_measured_signals
 
 TOP = """\
 span: [0, 6]
@@ -102,9 +102,12 @@ def test_series_are_chosen_by_use(file: Path) -> None:
     )
 
 
-def test_signals_of_all_series_are_named_once(file: Path) -> None:
-    other = PLAIN.replace("run:", "both:").replace("signals: {", "signals: {omega: u, ")
-    assert measured_signals(model_of(file, PLAIN, other).diagram) == ("theta", "omega")
+def test_a_model_records_what_any_series_measures_once() -> None:
+    model = compile(read_text(TOP.partition("measured:")[0]), record=["theta"])
+    one = Measured("one", "train", np.arange(2.0), {"theta": np.zeros(2)})
+    both = replace(one, values={"theta": np.zeros(2), "omega": np.zeros(2)})
+    assert with_measured_signals(model, [both, both]).recorded == ("theta", "omega")
+    assert with_measured_signals(model, [one]) is model
 
 
 def test_no_series_is_told() -> None:

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from residual.made_noise import autoregression
 from scipy.linalg import toeplitz
 from tracewire.residual import Measured
-from tracewire.residual.noise import channel_noise, noise_level, noise_of
+from tracewire.residual.noise import noise_of
+from tracewire.residual.noise_estimate import channel_noise, noise_level
 
 RANDOM = np.random.default_rng(7)
 

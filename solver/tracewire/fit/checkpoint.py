@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from tracewire.errors import OptionError, Place, Problem
 from tracewire.files import write_file, writing
-from tracewire.fit.result import Improvement
 from tracewire.fit.search import Search
 from tracewire.residual import Criterion
 
@@ -48,7 +47,7 @@ class Store:
             "kind": KIND,
             "method": self.method,
             "seed": search.seed,
-            "names": _names(search.criterion),
+            "names": search.criterion.names,
             "best": (search.best * search.criterion.scales).tolist(),
             "criterion": search.best_value if math.isfinite(search.best_value) else None,
             "evaluations": search.criterion.evaluations,
@@ -87,24 +86,10 @@ def resume_from(path: str | Path, method: str, criterion: Criterion) -> Mapping[
     ):
         hint = "Name the file that --save, or save= of fit, has written."
         raise OptionError.one("this is not the saved file of a fit", place, hint=hint)
-    names = _names(criterion)
-    if content["names"] != names:
+    if content["names"] != criterion.names:
         what = f"the saved fit is one of {', '.join(content['names'])}"
-        hint = f"Free the same, or begin anew; free now: {', '.join(names)}."
+        hint = f"Free the same, or begin anew; free now: {', '.join(criterion.names)}."
         raise OptionError([Problem(what, place, hint=hint)])
     if content["method"] != method:
         content["state"] = {}
     return content
-
-
-def earlier(content: Mapping[str, Any]) -> list[Improvement]:
-    """The history in a saved file."""
-    return [Improvement(**step) for step in content["history"]]
-
-
-def _names(criterion: Criterion) -> list[str]:
-    """The unknowns in their order: parameters and sensors, then free starts by series."""
-    names = [u.name for u in criterion.unknowns]
-    for segment in criterion.segments:
-        names += [f"{segment.measured.name}: start.{state}" for state in segment.free]
-    return names

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.fit.identify import PART, TRACE, Flat
+from tracewire.fit.identify import PART, TRACE, Columns, Flat
 
 Vector = NDArray[np.float64]
 
@@ -28,32 +28,19 @@ class Direction:
     words: str
 
 
-@dataclass(frozen=True, eq=False)
-class Point:
-    """Where a fit ended: `names`, `values` and `sizes` (n,) of all columns, in SI.
-
-    `value` is the criterion at values (n,), where it may be asked.
-    """
-
-    names: tuple[str, ...]
-    values: Vector
-    sizes: Vector
-    value: Callable[[Vector], float] | None = None
-
-
 def described(
-    flats: Sequence[Flat], missing: set[int], point: Point
+    flats: Sequence[Flat], missing: set[int], columns: Columns
 ) -> tuple[tuple[Direction, ...], tuple[str, ...]]:
     """The directions, and a sentence for each group of parameters that share some."""
-    flats = _approximate(flats, missing, point)
+    flats = _approximate(flats, missing, columns)
     directions = []
     for flat in flats:
         members = _taking_part(flat)
         unit = flat.changes / np.linalg.norm(flat.changes)
-        names = tuple(point.names[j] for j in members)
-        words = f"changing {_changes(flat, point)} leaves the residual as it is"
+        names = tuple(columns.names[j] for j in members)
+        words = f"changing {_changes(flat, columns)} leaves the residual as it is"
         directions.append(Direction(names, tuple(unit[members].tolist()), flat.ratio, words))
-    return tuple(directions), tuple(_sentence(g, missing, point) for g in _groups(flats, missing))
+    return tuple(directions), tuple(_sentence(g, missing, columns) for g in _groups(flats, missing))
 
 
 def followers(flats: Sequence[Flat], missing: set[int]) -> set[int]:
@@ -61,14 +48,14 @@ def followers(flats: Sequence[Flat], missing: set[int]) -> set[int]:
     return {j for flat in flats if not flat.exact for j in _taking_part(flat)} - missing
 
 
-def _approximate(flats: Sequence[Flat], missing: set[int], point: Point) -> list[Flat]:
+def _approximate(flats: Sequence[Flat], missing: set[int], columns: Columns) -> list[Flat]:
     """The same directions; those that conserve no plain product or sum do not count as exact."""
     found = []
     for group in _groups(flats, missing):
         members = _members(group, missing)
         rest = [j for j in members if j not in {flat.fixed for flat in group}]
         exact = all(flat.exact for flat in group)
-        exact = exact and _conserved(group, rest, members, point) is not None
+        exact = exact and _conserved(group, rest, members, columns) is not None
         found += [replace(flat, exact=exact) for flat in group]
     return sorted(found, key=lambda flat: -flat.ratio)
 
@@ -100,28 +87,28 @@ def _taking_part(flat: Flat) -> list[int]:
     return [int(j) for j in np.flatnonzero(takes)]
 
 
-def _sentence(flats: Sequence[Flat], missing: set[int], point: Point) -> str:
+def _sentence(flats: Sequence[Flat], missing: set[int], columns: Columns) -> str:
     members = _members(flats, missing)
     held = sorted(flat.fixed for flat in flats)
     rest = [j for j in members if j not in held]
-    names = [point.names[j] for j in members]
+    names = [columns.names[j] for j in members]
     exact = all(flat.exact for flat in flats)
     if not rest:
-        return _alone(flats[0], point)
+        return _alone(flats[0], columns)
     count = _count(len(held))
     if len(members) == 2:
         advice = f"fix {names[1]} or {names[0]}"
     elif len(held) == 1 or (len(rest) == 1 and exact):
         advice = f"fix {count} of {_listed(names)}"
     else:
-        advice = f"fix {count} of them, for example {_listed([point.names[j] for j in held])}"
-    whole = _conserved(flats, rest, members, point) if exact else None
+        advice = f"fix {count} of them, for example {_listed([columns.names[j] for j in held])}"
+    whole = _conserved(flats, rest, members, columns) if exact else None
     verb = "is" if len(rest) == 1 else "are"
     if whole is not None:
         return f"only {_listed(whole)} {verb} determined: {advice}"
-    products = _exponents(flats, rest, members, point)
+    products = _exponents(flats, rest, members, columns)
     near = _listed([_product(e if exact else _rounded(e)) for e in products])
-    after = [point.names[j] for j in sorted(followers(flats, missing))]
+    after = [columns.names[j] for j in sorted(followers(flats, missing))]
     if after:
         pronoun = "it has no error" if len(after) == 1 else "they have no errors"
         advice += (
@@ -131,29 +118,29 @@ def _sentence(flats: Sequence[Flat], missing: set[int], point: Point) -> str:
     return (
         f"{_listed(names)}: the data determine {combinations} of these {_count(len(members))}, "
         f"near these values {'' if exact else 'almost '}only {near}; "
-        f"changing {_changes(flats[0], point)} leaves the residual as it is; {advice}"
+        f"changing {_changes(flats[0], columns)} leaves the residual as it is; {advice}"
     )
 
 
-def _alone(flat: Flat, point: Point) -> str:
+def _alone(flat: Flat, columns: Columns) -> str:
     many = np.flatnonzero(flat.effects > PART).tolist()
-    others = [point.names[j] for j in many if j != flat.fixed]
-    name, together = point.names[flat.fixed], " together" if len(others) > 1 else ""
+    others = [columns.names[j] for j in many if j != flat.fixed]
+    name, together = columns.names[flat.fixed], " together" if len(others) > 1 else ""
     return (
         f"{name} cannot be told from {_listed(others)}{together}: "
-        f"changing {_changes(flat, point)} leaves the residual as it is; fix {name}"
+        f"changing {_changes(flat, columns)} leaves the residual as it is; fix {name}"
     )
 
 
 def _conserved(
-    flats: Sequence[Flat], rest: Sequence[int], members: Sequence[int], point: Point
+    flats: Sequence[Flat], rest: Sequence[int], members: Sequence[int], columns: Columns
 ) -> list[str] | None:
     """The combinations of an exactly flat group, as products or as sums of the parameters."""
-    sums = _exponents(flats, rest, members, point, linear=True)
-    products = _exponents(flats, rest, members, point)
-    by_product = np.all(point.values[list(members)]) and _are_plain(products, len(members))
+    sums = _exponents(flats, rest, members, columns, linear=True)
+    products = _exponents(flats, rest, members, columns)
+    by_product = np.all(columns.values[list(members)]) and _are_plain(products, len(members))
     by_sum = _are_plain(sums, len(members))
-    if by_product and by_sum and _sum_is_flatter(flats[0], point):
+    if by_product and by_sum and _sum_is_flatter(flats[0], columns):
         by_product = False
     if by_product:
         return [_product(_plain(e)) for e in products]
@@ -164,37 +151,39 @@ def _exponents(
     flats: Sequence[Flat],
     rest: Sequence[int],
     members: Sequence[int],
-    point: Point,
+    columns: Columns,
     linear: bool = False,
 ) -> list[dict[str, float]]:
     """For each parameter that is not held, the combination with held ones that is conserved.
 
     Exponents of a product; `linear`: coefficients of a sum.
     """
-    units = np.ones(len(point.values)) if linear else np.where(point.values, point.values, 1.0)
-    changes = np.array([flat.changes * point.sizes / units for flat in flats])
+    units = (
+        np.ones(len(columns.values)) if linear else np.where(columns.values, columns.values, 1.0)
+    )
+    changes = np.array([flat.changes * columns.sizes / units for flat in flats])
     held = [flat.fixed for flat in flats]
     solved = -np.linalg.solve(changes[:, held], changes[:, rest])
     found = []
     for column, j in enumerate(rest):
         combination = {j: 1.0, **dict(zip(held, solved[:, column].tolist(), strict=True))}
-        found.append({point.names[k]: combination[k] for k in members if k in combination})
+        found.append({columns.names[k]: combination[k] for k in members if k in combination})
     return found
 
 
-def _sum_is_flatter(flat: Flat, point: Point) -> bool:
+def _sum_is_flatter(flat: Flat, columns: Columns) -> bool:
     """Whether the criterion changes on a long way along the product and not on one along the sum.
 
     At equal values, or where k/J is 4 as k - 4 J is 0, derivatives cannot tell these apart.
     """
-    if point.value is None:
+    if columns.value is None:
         return False
-    steps = flat.changes * point.sizes
-    relative = np.divide(steps, point.values, out=np.zeros_like(steps), where=point.values != 0)
+    steps = flat.changes * columns.sizes
+    relative = np.divide(steps, columns.values, out=np.zeros_like(steps), where=columns.values != 0)
     scale = 0.25 / np.abs(relative).max()
-    here = point.value(point.values)
-    along_sum = abs(point.value(point.values + scale * steps) - here)
-    along_product = abs(point.value(point.values * np.exp(scale * relative)) - here)
+    here = columns.value(columns.values)
+    along_sum = abs(columns.value(columns.values + scale * steps) - here)
+    along_product = abs(columns.value(columns.values * np.exp(scale * relative)) - here)
     return bool(along_product > 1e-3 * here and along_sum < 0.1 * along_product)
 
 
@@ -246,18 +235,18 @@ def _sum(coefficients: dict[str, float]) -> str:
     return text
 
 
-def _changes(flat: Flat, point: Point) -> str:
+def _changes(flat: Flat, columns: Columns) -> str:
     """A change in words, the largest by 10 %, with what the others must change by."""
-    units = np.where(point.values, point.values, point.sizes)
-    relative = flat.changes * point.sizes / units
+    units = np.where(columns.values, columns.values, columns.sizes)
+    relative = flat.changes * columns.sizes / units
     relative *= 10.0 / np.abs(relative).max() * (1.0 if relative[flat.fixed] > 0 else -1.0)
     kept = np.flatnonzero((np.abs(relative) > 0.5) | (flat.effects > PART)).tolist()
     parts = []
     for j in sorted(kept, key=lambda j: (j != flat.fixed, j)):
-        if point.values[j] == 0:
-            parts.append(f"{point.names[j]} by {0.01 * relative[j] * units[j]:+.3g}")
+        if columns.values[j] == 0:
+            parts.append(f"{columns.names[j]} by {0.01 * relative[j] * units[j]:+.3g}")
         else:
-            parts.append(f"{point.names[j]} by {relative[j]:+.3g} %")
+            parts.append(f"{columns.names[j]} by {relative[j]:+.3g} %")
     return _listed(parts)
 
 

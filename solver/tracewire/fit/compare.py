@@ -16,7 +16,7 @@ Vector = NDArray[np.float64]
 
 
 def shown_by_series(
-    criterion: Criterion, z: Vector, others: Sequence[Segment] = ()
+    criterion: Criterion, z: Vector, others: Sequence[Segment]
 ) -> dict[str, Vector]:
     """What the sensors show (N, signals) by series, with samples that do not count; NaN where no
     segment is. `others` get free start values, and free parameters, of their own.

@@ -102,7 +102,8 @@ def autocorrelation(residual: Vector, count: int) -> Vector:
     square = float(residual @ residual)
     if square == 0:
         return np.asarray(np.eye(1, count)[0])
-    return _products(residual, residual, count) / square
+    spectrum = np.fft.rfft(residual, 2 * len(residual))
+    return np.asarray(np.fft.irfft(np.abs(spectrum) ** 2)[:count]) / square
 
 
 def ljung_box(correlation: Vector, samples: int) -> float:
@@ -156,13 +157,6 @@ def independence(residual: Vector, other: Vector, lags: int) -> float:
         return 1.0
     covariance = basis.T @ noise.spread(basis)
     return float(chdtrc(len(follows), follows @ np.linalg.solve(covariance, follows)))
-
-
-def _products(x: Vector, y: Vector, lags: int) -> Vector:
-    """The sums over n of x_(n+k) y_n for the lags k = 0 to lags - 1."""
-    size = 2 * len(x)
-    spectrum = np.fft.rfft(x, size) * np.conj(np.fft.rfft(y, size))
-    return np.asarray(np.fft.irfft(spectrum, size)[:lags])
 
 
 def _counted(comparison: Comparison) -> NDArray[np.bool_]:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from tracewire.compile import Model
 from tracewire.errors import DataError, FitError, OptionError, Problem, unknown
 from tracewire.fit.caveats import caveats, starts_elsewhere, unfinished
-from tracewire.fit.checkpoint import Store, earlier, resume_from
+from tracewire.fit.checkpoint import Store, resume_from
 from tracewire.fit.compare import compared, shown_by_series
 from tracewire.fit.methods import METHODS
 from tracewire.fit.optimset import Options, optimset
@@ -25,7 +25,7 @@ from tracewire.fit.refusals import (
     refuse_presets_of_free,
     refuse_unusable,
 )
-from tracewire.fit.result import Comparison, Fit
+from tracewire.fit.result import Comparison, Fit, Improvement
 from tracewire.fit.search import Ended, Progress, Search, Stopped
 from tracewire.fit.uncertainty import uncertainty_of
 from tracewire.options import options_of
@@ -219,7 +219,7 @@ def _go_on(search: Search, saved: Mapping[str, Any]) -> None:
     search.begin = search.best = np.array(saved["best"]) / search.criterion.scales
     search.best_value = search.criterion.value(search.best)
     search.criterion.evaluations = saved["evaluations"]
-    search.history = earlier(saved)
+    search.history = [Improvement(**step) for step in saved["history"]]
     if saved["state"]:
         search.iterations = saved["iterations"]
         search.resumed = search.state = saved["state"]

@@ -277,10 +277,7 @@ class _Monitor:
     """What a search tells meanwhile, to the screen and to the user's functions."""
 
     def __init__(self, options: Options, evaluate: _Evaluate) -> None:
-        self.display = options.Display
-        self.output_functions = options.output_functions()
-        self.plot_functions = options.plot_functions()
-        self.evaluate = evaluate
+        self.options, self.display, self.evaluate = options, options.Display, evaluate
 
     def stops(self, state: str, x: Vector, fval: float, iteration: int, procedure: str) -> bool:
         """Tell a state; true where an output function wants to stop."""
@@ -290,11 +287,7 @@ class _Monitor:
                 print(" Iteration   Func-count     min f(x)         Procedure")  # noqa: T201
             line = f"{iteration:6d}        {count:5d}     {fval:12.8g}         {procedure}"
             print("" if state == "done" else line.rstrip())  # noqa: T201
-        values = OptimValues(count, iteration, fval, procedure)
-        answers = [function(x.copy(), values, state) for function in self.output_functions]
-        for function in self.plot_functions:
-            function(x.copy(), values, state)
-        return any(bool(answer) for answer in answers)
+        return self.options.stops(x, OptimValues(count, iteration, fval, procedure), state)
 
     def result(self, x: Vector, fval: float, iteration: int, flag: int, message: str) -> Minimum:
         """The result, told where Display asks for it."""

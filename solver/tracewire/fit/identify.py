@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +20,23 @@ PART = 0.1
 """Share of a direction from which a parameter takes part in it."""
 TRACE = 1e-3
 """The same where the direction is exactly flat: less is within the derivatives' error."""
+
+
+@dataclass(frozen=True, eq=False)
+class Columns:
+    """The unknowns of a fit (n,), in SI: parameters and sensors first, then free start values.
+
+    `count` are the parameters and sensors. `sizes` are those by which unknowns were scaled. `value`
+    is the criterion at values (n,); it is asked only where a sum and a product look alike.
+    """
+
+    names: tuple[str, ...]
+    count: int
+    values: Vector
+    sizes: Vector
+    low: Vector
+    high: Vector
+    value: Callable[[Vector], float] | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -94,6 +94,13 @@ class Options:
         """The limit of evaluations for `size` variables."""
         return _limit(self.MaxFunEvals, size)
 
+    def stops(self, x: NDArray[np.float64], values: OptimValues, state: str) -> bool:
+        """Tell a state to all functions; whether an output function wants to stop."""
+        answers = [function(x.copy(), values, state) for function in self.output_functions()]
+        for function in self.plot_functions():
+            function(x.copy(), values, state)
+        return any(map(bool, answers))
+
     def output_functions(self) -> tuple[OutputFunction, ...]:
         """The output functions as a tuple, empty where there are none."""
         return _as_tuple(self.OutputFcn)

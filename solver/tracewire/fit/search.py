@@ -76,19 +76,17 @@ class Search:
         criterion: Criterion,
         options: Options,
         seed: int = 0,
-        begin: Vector | None = None,
         units: Vector | None = None,
-        resumed: Mapping[str, Any] | None = None,
         progress: Callable[[Progress], None] | None = None,
         kept: Callable[[Search, bool], None] | None = None,
         comparisons: Callable[[Vector], tuple[Comparison, ...]] | None = None,
     ) -> None:
         self.criterion, self.options, self.seed = criterion, options, seed
-        self.begin = criterion.begin() if begin is None else begin
+        self.begin = criterion.begin()
         self.units = np.ones(len(self.begin)) if units is None else units
         self.low, self.high = criterion.bounds()
-        self.resumed: Mapping[str, Any] = resumed or {}
-        self.state: Mapping[str, Any] = self.resumed
+        self.resumed: Mapping[str, Any] = {}
+        self.state: Mapping[str, Any] = {}
         self.best, self.best_value = self.begin, np.inf
         self.iterations = 0
         self.stage = ""
@@ -124,19 +122,24 @@ class Search:
         """The criterion, and where it is the best so far remembered."""
         return half_square(self.vector(z))
 
-    def vector(self, z: Vector) -> Vector:
-        """What the criterion squares (M,)."""
+    def vector(self, z: Vector, part: Criterion | None = None) -> Vector:
+        """What the criterion squares (M,), or that of a `part` of the series, which is counted."""
         self.refuse_more()
-        found = self.criterion.vector(z)
-        self.notice(z, half_square(found))
+        found = (part or self.criterion).vector(z)
+        self._evaluated(z, found, part)
         return found
 
-    def both(self, z: Vector) -> tuple[Vector, Matrix]:
+    def both(self, z: Vector, part: Criterion | None = None) -> tuple[Vector, Matrix]:
         """`vector` (M,) and its derivatives (M, n), by forward sensitivities."""
         self.refuse_more()
-        found, matrix = self.criterion.both(z)
-        self.notice(z, half_square(found))
+        found, matrix = (part or self.criterion).both(z)
+        self._evaluated(z, found, part)
         return found, matrix
+
+    def _evaluated(self, z: Vector, found: Vector, part: Criterion | None) -> None:
+        if part is not None:
+            self.count(part)
+        self.notice(z, half_square(found) if part is None else np.inf)
 
     def notice(self, z: Vector, value: float) -> None:
         """Remember a point where it is the best so far, and tell progress."""
@@ -150,6 +153,15 @@ class Search:
             self._save(last=False)
             if self._progress is not None:
                 self._progress(self.progress())
+
+    def count(self, other: Criterion) -> None:
+        """Count what another criterion has evaluated as evaluations of the search."""
+        whole = self.criterion
+        whole.evaluations += other.evaluations
+        whole.failures += other.failures
+        whole.failure = other.failure or whole.failure
+        other.evaluations = 0
+        other.failures.clear()
 
     def refuse_more(self) -> None:
         """Raises Stopped where no evaluation is left; for those that a method makes elsewhere."""
@@ -212,21 +224,9 @@ class Search:
         values = OptimValues(self.criterion.evaluations, self.iterations, value, procedure)
         values = self.with_comparisons(values)
         x = z * self.criterion.scales
-        answers = [function(x, values, state) for function in self._functions()]  # all are asked
-        if any(map(bool, answers)):
+        if self.options.stops(x, values, state):
             raise Stopped(-1, "stopped by an output function")
-
-    def _functions(self) -> list[Callable[..., object]]:
-        plots = [_without_answer(f) for f in self.options.plot_functions()]
-        return [*self.options.output_functions(), *plots]
 
     def _save(self, last: bool) -> None:
         if self._kept is not None:
             self._kept(self, last)
-
-
-def _without_answer(function: Callable[..., object]) -> Callable[..., object]:
-    def called(*arguments: object) -> None:
-        function(*arguments)
-
-    return called

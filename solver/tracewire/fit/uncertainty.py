@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
-from tracewire.fit.combinations import Direction, Point, described, followers
-from tracewire.fit.identify import Known, flat_directions
+from tracewire.fit.combinations import Direction, described, followers
+from tracewire.fit.identify import Columns, Known, flat_directions
 from tracewire.residual import LOSSES, Criterion, degrees_of, noise_in, noises_beside
 
 Vector = NDArray[np.float64]
@@ -66,21 +66,6 @@ class Uncertainty:
         return np.asarray(self.covariance / np.outer(sizes, sizes))
 
 
-@dataclass(frozen=True, eq=False)
-class Columns:
-    """The unknowns of a fit (n,), in SI: parameters and sensors first, then free start values.
-
-    `count` are the parameters and sensors. `sizes` are those by which unknowns were scaled.
-    """
-
-    names: tuple[str, ...]
-    count: int
-    values: Vector
-    sizes: Vector
-    low: Vector
-    high: Vector
-
-
 def uncertainty_of(
     criterion: Criterion,
     z: Vector,
@@ -93,20 +78,16 @@ def uncertainty_of(
     See `uncertainty_from`. With a robust loss rho the residual is replaced by psi/mean(psi'), psi =
     rho'/2; then the covariance is that of an M-estimator (Huber, Annals of Statistics 1, 1973).
     """
-    unknowns, segments = criterion.unknowns, criterion.segments
+    segments = criterion.segments
     low, high = criterion.bounds()
-    series = {segment.measured.name for segment in segments}
-    names = [unknown.name for unknown in unknowns]
-    for segment in segments:
-        where = f" of {segment.measured.name}" if len(series) > 1 else ""
-        names += [f"start.{state}{where}" for state in segment.free]
     columns = Columns(
-        tuple(names),
-        len(unknowns),
+        tuple(criterion.names),
+        len(criterion.unknowns),
         z * criterion.scales,
         criterion.scales,
         low * criterion.scales,
         high * criterion.scales,
+        lambda values: criterion.value(values / criterion.scales),
     )
     found = uncertainty_from(
         [_pseudo(r, criterion.loss) for r in residuals],
@@ -116,7 +97,6 @@ def uncertainty_of(
         columns,
         correlated=correlated,
         accuracy=max(1e-6, criterion.rtol),
-        value=lambda values: criterion.value(values / criterion.scales),
     )
     lost = _lost(criterion, residuals)
     if not lost:
@@ -163,7 +143,6 @@ def uncertainty_from(
     *,
     correlated: bool = True,
     accuracy: float = 1e-6,
-    value: Callable[[Vector], float] | None = None,
 ) -> Uncertainty:
     """What the data say of fitted values, from residuals and derivatives of each segment.
 
@@ -184,8 +163,7 @@ def uncertainty_from(
     Parameters that the data leave open (see `flat_directions`) have none either, nor have those
     that move with them by more than a tenth of what they do; the errors of the others suppose them
     known to 100 % of their values (one standard deviation). `accuracy` is the relative
-    error of the derivatives. `value` is the criterion at values (n,) in SI; it is asked only where
-    a sum and a product of parameters look alike.
+    error of the derivatives.
     """
     names, values, sizes = columns.names, columns.values, columns.sizes
     sizes = np.maximum(np.abs(values), sizes)
@@ -207,8 +185,7 @@ def uncertainty_from(
     known = Known(response, noise, accuracy)
     relative = np.where(values, np.abs(values) / sizes, 1.0)
     flats, missing = flat_directions(known, active, columns.count, relative)
-    point = Point(names, values, sizes, value)
-    directions, words = described(flats, missing, point)
+    directions, words = described(flats, missing, replace(columns, sizes=sizes))
     covariance = np.full((len(names), len(names)), np.nan)
     kept = [j for j in active if j not in missing | followers(flats, missing)]
     if kept:

@@ -1,7 +1,7 @@
 """Measured data beside a model: residuals, their derivatives, and the noise they are judged by."""
 
 from tracewire.residual.criterion import LIMITS, Criterion, half_square
-from tracewire.residual.descent import Descent, descend
+from tracewire.residual.descent import descend
 from tracewire.residual.files import series_from_files
 from tracewire.residual.input_noise import (
     InputCovariance,
@@ -11,7 +11,7 @@ from tracewire.residual.input_noise import (
 )
 from tracewire.residual.input_response import InputNoise
 from tracewire.residual.levenberg_marquardt import CREEPS, LEAST_DAMPING, bounded_step, descended
-from tracewire.residual.linearised import Projection, difference
+from tracewire.residual.linearised import Linearised, Projection, around
 from tracewire.residual.loss import LOSSES
 from tracewire.residual.measured import (
     Measured,
@@ -20,15 +20,13 @@ from tracewire.residual.measured import (
     series_parameters,
     with_measured_signals,
 )
-from tracewire.residual.noise import (
+from tracewire.residual.noise import degrees_of, noise_in, noise_of, noises_beside
+from tracewire.residual.noise_estimate import (
+    NoiseEstimate,
     channel_noise,
-    degrees_of,
-    noise_in,
+    estimate_noise,
     noise_level,
-    noise_of,
-    noises_beside,
 )
-from tracewire.residual.noise_estimate import NoiseEstimate, estimate_noise
 from tracewire.residual.segment import (
     OWN,
     SENSED,
@@ -38,7 +36,6 @@ from tracewire.residual.segment import (
     of_diagram,
     parameter_in,
 )
-from tracewire.residual.sensing import Sensing
 from tracewire.residual.sensor import Sensor
 from tracewire.residual.settling import SETTLING, settled
 from tracewire.residual.starts import start_from_data, whole_segment
@@ -68,19 +65,19 @@ __all__ = [
     "SENSED",
     "SETTLING",
     "Criterion",
-    "Descent",
     "InputCovariance",
     "InputNoise",
+    "Linearised",
     "Measured",
     "NoiseEstimate",
     "Projection",
     "Section",
     "Segment",
-    "Sensing",
     "Sensor",
     "Unknown",
     "Windows",
     "absolute_tolerances",
+    "around",
     "begun_before",
     "bounded_step",
     "channel_noise",
@@ -89,7 +86,6 @@ __all__ = [
     "degrees_of",
     "descend",
     "descended",
-    "difference",
     "eliminated",
     "estimate_noise",
     "free_names",

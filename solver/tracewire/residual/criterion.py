@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import cache
 from typing import Literal
@@ -14,20 +15,10 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import DataError, OptionError, Problem, SimulationError, unknown
-from tracewire.residual.linearised import Linearised, Shooting, Shots, difference
+from tracewire.residual.linearised import Linearised, Shooting, Shots
 from tracewire.residual.loss import LOSSES
-from tracewire.residual.measured import LARGEST
-from tracewire.residual.segment import Segment, Unknown, of_diagram
-from tracewire.residual.sensing import Sensing
-from tracewire.solve import (
-    Interrupted,
-    Limits,
-    Run,
-    beyond_budget,
-    cores,
-    simulate,
-    until_interrupted,
-)
+from tracewire.residual.segment import Segment, Unknown
+from tracewire.solve import Halt, Interrupted, Limits, cores, until_interrupted
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -97,11 +88,9 @@ class Criterion:
             + [s.start_scale(name) for s in self.segments for name in s.free]
         )
         self._samples = [segment.samples() for segment in self.segments]
-        self._weights: dict[int, Vector] = {}
         self._following = (
             {n for n in range(1, len(self.segments)) if self._follows(n)} if chained else set()
         )
-        self._rates = any(u.name.startswith("delay.") for u in self.unknowns)
 
     def _follows(self, n: int) -> bool:
         """Whether segment n begins where the one before it ends."""
@@ -118,17 +107,27 @@ class Criterion:
         """Whether states go on from one segment to the next, so that these run together."""
         return any(set(self.model.states) - set(self.segments[n].free) for n in self._following)
 
-    def on(self, segments: Sequence[Segment]) -> Criterion:
+    def on(self, segments: Sequence[Segment], weighting: Weighting | None = None) -> Criterion:
         """The same criterion on other segments, of the same series."""
         fresh = Criterion(
             self.model, segments, self.unknowns, self.parameters, self.rtol,
-            weighting=self.weighting, limits=self.limits, covariance=self.covariance,
+            weighting=weighting or self.weighting, limits=self.limits, covariance=self.covariance,
         )  # fmt: skip
         fresh.loss = self.loss
         fresh.sigma = {s.measured.name: self.sigma[s.measured.name] for s in segments}
         return fresh
 
     # --- unknowns -----------------------------------------------------------------------------
+
+    @property
+    def names(self) -> list[str]:
+        """The unknowns by name; free starts say of which series, where there are several."""
+        several = len({segment.measured.name for segment in self.segments}) > 1
+        return [unknown.name for unknown in self.unknowns] + [
+            f"start.{state}" + (f" of {segment.measured.name}" if several else "")
+            for segment in self.segments
+            for state in segment.free
+        ]
 
     def begin(self) -> Vector:
         """The scaled unknowns to begin with."""
@@ -190,23 +189,23 @@ class Criterion:
         self, residuals: Sequence[Vector], derivatives: Sequence[Matrix]
     ) -> Matrix:
         """The derivatives (M, n) of what `weigh` makes of the residuals."""
-        loss = LOSSES[self.loss]
-        rows = [
-            (loss(r).slope * self.weights(n)).reshape(-1, 1) * matrix
-            for n, (r, matrix) in enumerate(zip(residuals, derivatives, strict=True))
-        ]
-        return np.concatenate(rows)
+        both = enumerate(zip(residuals, derivatives, strict=True))
+        return np.concatenate([self.weighed(n, r, matrix)[1] for n, (r, matrix) in both])
+
+    def weighed(self, n: int, residual: Vector, derivatives: Matrix) -> tuple[Vector, Matrix]:
+        """The part of `vector` that segment n makes, and its derivatives."""
+        lossy, weights = LOSSES[self.loss](residual), self.weights(n)
+        slope = (lossy.slope * weights).reshape(-1, 1)
+        return (lossy.residual * weights).ravel(), slope * derivatives
 
     def weights(self, n: int) -> Vector:
         """The weights w (N, signals) of the residuals of segment n."""
-        if n in self._weights:
-            return self._weights[n]
         measured, samples = self.segments[n].measured, self._samples[n]
         counts = [measured.weights.get(name, 1.0) for name in measured.values]
         shares = measured.weight * np.array(counts)
         if self.weighting == "mean":
             shares = shares / len(samples)
-        return self._weights.setdefault(n, np.broadcast_to(np.sqrt(shares), samples.shape))
+        return np.broadcast_to(np.sqrt(shares), samples.shape)
 
     # --- residuals ------------------------------------------------------------------------------
 
@@ -214,7 +213,8 @@ class Criterion:
         """The residuals of each segment, shape (N, signals); a failed run counts as far away."""
         self.evaluations += 1
         named, starts = self.split(z)
-        return [self._residual(n, named, start) for n, start in enumerate(starts)]
+        found = self.linearised(named, dict(enumerate(starts)), slopes=False)
+        return [found[n].residual for n in range(len(starts))]
 
     def residuals_and_derivatives(self, z: Vector) -> tuple[list[Vector], list[Matrix]]:
         """`residuals`, and d residuals/d scaled unknowns, for each segment (N*signals, n).
@@ -239,39 +239,42 @@ class Criterion:
         return residuals, matrices
 
     def linearised(
-        self, named: Mapping[str, float], starts: Mapping[int, Mapping[str, float]]
+        self,
+        named: Mapping[str, float],
+        starts: Mapping[int, Mapping[str, float]],
+        slopes: bool = True,
     ) -> dict[int, Linearised]:
-        """Segments near these unknowns and starts, by number, each by the sensitivities of one run.
+        """The segments near these unknowns and starts, by number, each by the sensitivities of one
+        run, and by differences where such a run fails. Many steps run in parallel.
 
-        By differences where such a run fails. Many steps run in parallel.
+        Without `slopes` from a plain run; one that fails counts as far away.
         """
         rows = sum(len(self.segments[n].rows) for n in starts)  # about as many steps, at first
         many = (len(starts) * self.steps / self.runs if self.runs else rows) > MANY
         groups = self._groups(sorted(starts), halves=many and not self.remembers)
-        with until_interrupted() as halt:
+        with _heard() as halt:
 
             def shots(numbers: Sequence[int]) -> Shots:
-                return self._shooting(numbers).linearised(
-                    named,
-                    self.parameters,
-                    [starts[n] for n in numbers],
-                    [self.follows(n) and n - 1 in starts for n in numbers],
-                    self.budget - self.steps,
-                    halt,
-                )
+                segments = [self.segments[n] for n in numbers]
+                follows = [self.follows(n) and n - 1 in starts for n in numbers]
+                shooting = self._shooting(segments, named, [starts[n] for n in numbers], follows)
+                samples = np.concatenate([self._samples[n] for n in numbers])
+                sigma = self.sigma[segments[0].measured.name]
+                return shooting.near(samples, sigma, [*named] if slopes else None, halt)
 
             apart = _threads().map if many and cores() > 1 else map
-            try:
-                done = list(apart(shots, groups))
-            except Interrupted as error:  # no failed run: the whole search shall stop
-                raise KeyboardInterrupt from error
+            done = list(apart(shots, groups))
         found: dict[int, Linearised] = {}
         for numbers, group in zip(groups, done, strict=True):
             self.runs += len(numbers)
             self.steps += group.steps
-            self.warnings |= {(self.segments[numbers[0]].measured.name, w) for w in group.warnings}
-            for place, near in group.near.items():
-                found[numbers[place]] = self._whitened(numbers[place], near)
+            found |= {numbers[n]: self._whitened(numbers[n], x) for n, x in group.near.items()}
+            if slopes:
+                series = self.segments[numbers[0]].measured.name
+                self.warnings |= {(series, warning) for warning in group.warnings}
+                continue
+            for n, error in group.errors.items():
+                found[numbers[n]] = self._failed(numbers[n], starts[numbers[n]], error)
         for n in starts.keys() - found.keys():
             found[n] = self._differences(n, named, starts[n])
         return found
@@ -287,79 +290,29 @@ class Criterion:
         parts = [part for group, at in middles for part in (group[:at], group[at:])]
         return [part for part in parts if part]
 
-    def _shooting(self, numbers: Sequence[int]) -> Shooting:
-        """Segments of one series as they run together."""
-        segments = [self.segments[n] for n in numbers]
-        return Shooting(
-            self.model,
-            segments,
-            np.concatenate([self._samples[n] for n in numbers]),
-            self.sigma[segments[0].measured.name],
-            self.rtol,
-            self.limits,
-            self._rates,
-        )
+    def _shooting(
+        self,
+        segments: Sequence[Segment],
+        named: Mapping[str, float],
+        starts: Sequence[Mapping[str, float]],
+        follows: Sequence[bool],
+    ) -> Shooting:
+        values, left = {**self.parameters, **named}, self.budget - self.steps
+        return Shooting(self.model, segments, values, starts, follows, self.rtol, self.limits, left)
 
     def outputs(
         self, segment: Segment, named: Mapping[str, float], start: Mapping[str, float]
     ) -> Vector:
-        """What the sensors of a segment show in a run, shape (N, signals)."""
-        run, sensing = self.run(segment, named, start)
-        return sensing.shown(run)
-
-    def run(
-        self,
-        segment: Segment,
-        named: Mapping[str, float],
-        start: Mapping[str, float],
-        until: float | None = None,
-        sensitivities: Sequence[str] = (),
-    ) -> tuple[Run, Sensing]:
-        """The run of a segment, up to the time `until` where that is given, and its sensors.
+        """What the sensors of a segment show in a run, shape (N, signals).
 
         Raises SimulationError where it fails, KeyboardInterrupt for Ctrl-C: the whole search shall
         stop.
         """
-        values = {**self.parameters, **named}
-        sensing = Sensing([segment], values, rates=self._rates and bool(sensitivities))
-        times = sensing.times[0] if until is None else np.append(sensing.times[0], until)
-        if self.steps > self.budget:
-            raise beyond_budget(self.budget)
-        self.runs += 1
-        try:
-            run = simulate(
-                self.model,
-                parameters=of_diagram(values, segment.measured),
-                start={**segment.start, **start},
-                span=(sensing.begins[0], max(sensing.ends[0], float(times[-1]))),
-                times=times,
-                rtol=self.rtol,
-                preset=segment.measured.preset,
-                inputs=segment.measured.inputs,
-                limits=self.limits,
-                sensitivities=sensitivities,
-            )
-        except Interrupted as error:
-            raise KeyboardInterrupt from error
-        except SimulationError:
-            self.steps += self.limits.steps
-            raise
-        self.steps += run.statistics.steps
-        return run, sensing
-
-    def difference(self, n: int, shown: Vector) -> Vector:
-        """Residuals of what is shown: shown - measured in sigma, the shortest way around."""
-        measured = self.segments[n].measured
-        off = difference(measured, self._samples[n], shown)
-        return np.asarray(off / self.sigma[measured.name])
-
-    def _residual(self, n: int, named: Mapping[str, float], start: Mapping[str, float]) -> Vector:
-        try:
-            shown = self.outputs(self.segments[n], named, start)
-            _refuse_huge(self.segments[n], shown)
-        except SimulationError as error:
-            return self._penalty(n, error)
-        return self.whiten(n, self.difference(n, shown))
+        with _heard() as halt:
+            runs, sensing = self._shooting([segment], named, [start], [False]).shown(halt)
+        for error in runs.errors.values():
+            raise error
+        return sensing.shown(runs)
 
     def whiten(self, n: int, rows: Vector) -> Vector:
         """Rows (N, signals) or (N*signals, ...) of segment n, in sigma, as its residuals are."""
@@ -377,35 +330,53 @@ class Criterion:
         residual, slopes = self.whiten(n, near.residual), self.whiten(n, near.slopes)
         return replace(near, residual=residual, slopes=slopes)
 
-    def _penalty(self, n: int, error: SimulationError) -> Vector:
-        """The residuals of a run that failed."""
+    def _failed(self, n: int, start: Mapping[str, float], error: SimulationError) -> Linearised:
+        """A segment whose run failed: far from the data, whatever the unknowns."""
         self.failure = error
         self.failures[self.segments[n].measured.name] += 1
         sigma = self.sigma[self.segments[n].measured.name]
         spread = PENALTY * np.maximum(np.std(self._samples[n], axis=0), sigma)
-        return np.asarray(np.broadcast_to(spread / sigma, self._samples[n].shape))
+        residual = np.asarray(np.broadcast_to(spread / sigma, self._samples[n].shape))
+        scales = self.segments[n].start_scales(start)
+        none, ends = np.zeros((residual.size, 0)), np.zeros((len(self.model.states), 0))
+        return Linearised(residual, none, scales, {}, ends, ran=False)
 
     def _differences(
         self, n: int, named: Mapping[str, float], start: Mapping[str, float]
     ) -> Linearised:
-        """The same by differences to one side, away from a bound; none where the run fails."""
-        failures = self.failures.total()
-        scales = self.segments[n].start_scales(start)
-        at = self._residual(n, named, start)
-        if self.failures.total() > failures:
-            return Linearised(at, np.zeros((at.size, len(named) + len(start))), scales, {}, False)
-        parts = []
-        for u, scale in zip(self.unknowns, self.scales.tolist(), strict=False):
-            h = STEP * max(scale, abs(named[u.name]))
-            h = -h if named[u.name] + h > u.high else h
-            there = self._residual(n, {**named, u.name: named[u.name] + h}, start)
-            parts.append(((there - at) / h).ravel())
+        """A segment by differences to one side, away from a bound; without where the run fails."""
+
+        def there(named: Mapping[str, float], start: Mapping[str, float]) -> Linearised:
+            return self.linearised(named, {n: start}, slopes=False)[n]
+
+        at = there(named, start)
+        if not at.ran:
+            return replace(at, slopes=np.zeros((at.residual.size, len(named) + len(start))))
+        steps, moved = [], []
+        for u in self.unknowns:
+            h = STEP * max(u.scale, abs(named[u.name]))
+            steps.append(-h if named[u.name] + h > u.high else h)
+            moved.append(there({**named, u.name: named[u.name] + steps[-1]}, start))
         for state, value in start.items():
-            h = STEP * max(self.segments[n].start_scale(state), abs(value))
-            there = self._residual(n, named, {**start, state: value + h})
-            parts.append(((there - at) / h).ravel())
-        slopes = np.stack(parts, axis=1) if parts else np.zeros((at.size, 0))
-        return Linearised(at, slopes, scales, {})
+            steps.append(STEP * max(self.segments[n].start_scale(state), abs(value)))
+            moved.append(there(named, {**start, state: value + steps[-1]}))
+        rows = np.array([(near.residual - at.residual).ravel() for near in moved])
+        ends = np.array([[near.final.get(x, y) - y for x, y in at.final.items()] for near in moved])
+        return replace(
+            at,
+            slopes=rows.reshape(len(steps), at.residual.size).T / np.array(steps),
+            final_slopes=ends.reshape(len(steps), len(at.final)).T / np.array(steps),
+        )
+
+
+@contextmanager
+def _heard() -> Iterator[Halt]:
+    """Ctrl-C during runs is no failed run: the whole search shall stop."""
+    try:
+        with until_interrupted() as halt:
+            yield halt
+    except Interrupted as error:
+        raise KeyboardInterrupt from error
 
 
 @cache
@@ -417,14 +388,6 @@ def _threads() -> ThreadPoolExecutor:
 def half_square(vector: Vector) -> float:
     """Half the sum of squares: the criterion of its vector."""
     return 0.5 * float(vector @ vector)
-
-
-def _refuse_huge(segment: Segment, shown: Vector) -> None:
-    """Raises SimulationError where squares of what is shown would be no numbers any more."""
-    if not (np.abs(shown) < LARGEST).all():
-        largest = float(np.max(np.abs(shown)))
-        what = f"the series '{segment.measured.name}' is simulated as large as {largest:.3g}"
-        raise SimulationError([Problem(what, hint="Begin elsewhere, or narrow `fit:` bounds.")])
 
 
 def _sigma_of(

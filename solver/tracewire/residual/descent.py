@@ -31,13 +31,10 @@ class Squares(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Descent:
-    """Where least squares ended: scaled unknowns, vector and derivatives there, half the sum of
-    squares at the start and at the end, whether it converged, and why it ended."""
+    """Where least squares ended: scaled unknowns, half the sum of squares there, whether it
+    converged, and why it ended."""
 
     z: Vector
-    residual: Vector
-    jacobian: Matrix
-    before: float
     after: float
     converged: bool
     message: str
@@ -66,8 +63,7 @@ def descend(
     low, high = criterion.bounds()
     room = np.where(np.isfinite(high - low), 1e-9 * (high - low), 1e-12)
     z = np.clip(begin, low + room, high - room)  # scipy wants to begin inside
-    slopes = _Slopes(criterion, frugal, stepped)
-    before = half_square(slopes.vector(z))
+    slopes = _Slopes(criterion, z, frugal, stepped)
     message, left = "", steps
     while len(z) and not message:
         # derivatives that were corrected may end it early: only true ones tell the end
@@ -101,9 +97,7 @@ def descend(
             message = "converged"
         elif left <= 0:
             message = f"stopped at the limit of {steps} steps"
-    residual, jacobian = slopes.true(z)
-    converged = not message.startswith("stopped")
-    return Descent(z, residual, jacobian, before, half_square(residual), converged, message)
+    return Descent(z, half_square(slopes.vector(z)), not message.startswith("stopped"), message)
 
 
 class _Settled(Exception):
@@ -118,23 +112,25 @@ class _Slopes:
     """Vector and derivatives at the last points, each run once."""
 
     def __init__(
-        self, criterion: Squares, frugal: bool, stepped: Callable[[Vector, float], None] | None
+        self,
+        criterion: Squares,
+        z: Vector,
+        frugal: bool,
+        stepped: Callable[[Vector, float], None] | None,
     ) -> None:
         self.criterion, self.frugal, self.stepped = criterion, frugal, stepped
-        self.last: tuple[Vector, Vector] | None = None  # a point and its vector
-        self.at: tuple[Vector, Vector, Matrix] | None = None  # and the derivatives
-        self.is_fresh = False
+        self.at = (z.copy(), *criterion.both(z))  # a point, its vector and the derivatives
+        self.last = self.at[:2]
+        self.is_fresh = True
         self.trials = 0
         self.values: list[float] = []
         self.best = np.empty(0)
 
     def vector(self, z: Vector) -> Vector:
-        """The criterion's vector; the first point comes with its derivatives."""
-        if self.at is None:
-            self.refresh(z)
-        if self.at is not None and np.array_equal(self.at[0], z):
+        """The criterion's vector."""
+        if np.array_equal(self.at[0], z):
             return self.at[1]
-        if self.last is None or not np.array_equal(self.last[0], z):
+        if not np.array_equal(self.last[0], z):
             self.last = z.copy(), self.criterion.vector(z)
             self.trials += 1
         return self.last[1]
@@ -142,32 +138,22 @@ class _Slopes:
     def refresh(self, z: Vector) -> None:
         """Have the true derivatives at a point."""
         if not self.is_true(z):
-            residual, jacobian = self.criterion.both(z)
-            self.at, self.is_fresh = (z.copy(), residual, jacobian), True
+            self.at, self.is_fresh = (z.copy(), *self.criterion.both(z)), True
 
     def is_true(self, z: Vector) -> bool:
         """Whether the derivatives are the true ones at a point."""
-        return self.at is not None and self.is_fresh and np.array_equal(self.at[0], z)
-
-    def true(self, z: Vector) -> tuple[Vector, Matrix]:
-        """Vector and true derivatives at a point."""
-        self.refresh(z)
-        if self.at is None:
-            raise AssertionError("refresh has made them")
-        return self.at[1], self.at[2]
+        return self.is_fresh and np.array_equal(self.at[0], z)
 
     def jacobian(self, z: Vector) -> Matrix:
         """The derivatives from which the next step is made. Raises _Settled."""
         renewed = False
-        if self.at is None or not np.array_equal(self.at[0], z):
+        if not np.array_equal(self.at[0], z):
             residual = self.vector(z)
-            if self.frugal and self.at is not None and _fell(self.at[1], residual):
+            if self.frugal and half_square(residual) < FAST * half_square(self.at[1]):
                 self.at, self.is_fresh = _corrected(self.at, z, residual), False
             else:
-                renewed = self.at is not None and not self.is_fresh
+                renewed = not self.is_fresh
                 self.refresh(z)
-        if self.at is None:
-            raise AssertionError("there are derivatives by now")
         value = half_square(self.at[1])
         if not self.values or value < self.values[-1]:
             self.values.append(value)
@@ -181,10 +167,6 @@ class _Slopes:
         if renewed:
             raise _Renewed
         return self.at[2]
-
-
-def _fell(before: Vector, after: Vector) -> bool:
-    return half_square(after) < FAST * half_square(before)
 
 
 def _corrected(

@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
+from tracewire.errors import Problem, SimulationError
 from tracewire.residual.measured import LARGEST, Measured
 from tracewire.residual.segment import Segment, absolute_tolerances, of_diagram, parameter_in
 from tracewire.residual.sensing import Sensing
-from tracewire.solve import Halt, Limits, Span, simulate_spans
+from tracewire.solve import Halt, Limits, Span, SpanRuns, simulate_spans
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -37,13 +38,15 @@ class Projection:
 @dataclass(frozen=True, eq=False)
 class Linearised:
     """A segment near some unknowns: residuals (N, signals) in sigma, their derivatives `slopes`
-    (N*signals, unknowns + free starts) in SI, the `scales` of the free starts, the states where it
-    ended, and whether it `ran`."""
+    (N*signals, unknowns + free starts) in SI, the `scales` of the free starts, the `final` states
+    where it ended with their derivatives `final_slopes` (states, unknowns + free starts), and
+    whether it `ran`."""
 
     residual: Vector
     slopes: Matrix
     scales: Vector
     final: Mapping[str, float]
+    final_slopes: Matrix
     ran: bool = True
 
     @cached_property
@@ -66,95 +69,119 @@ class Linearised:
 
 @dataclass(frozen=True, eq=False)
 class Shots:
-    """Segments of one series that were linearised, by their place among them; those whose runs
-    failed are missing. `steps` of all runs, and what they warn of."""
+    """Segments of one series near some unknowns, by their place among them, and the `errors` of
+    those whose runs failed. `steps` of all runs, and what they warn of."""
 
     near: Mapping[int, Linearised]
+    errors: Mapping[int, SimulationError]
     steps: int
     warnings: frozenset[str]
 
 
 @dataclass(frozen=True, eq=False)
 class Shooting:
-    """Segments of one series to run together: their measured `samples` (N, signals), the noise
-    `sigma` (signals,), and whether a delay is unknown, which takes the `rates` of signals."""
+    """Segments of one series to run together, with the `values` of unknowns and fixed parameters
+    by name and the free `starts` of each segment.
+
+    One that `follows` goes on with states that are not free where the one before has ended.
+    """
 
     model: Model
     segments: Sequence[Segment]
-    samples: Matrix
-    sigma: Vector
+    values: Mapping[str, float]
+    starts: Sequence[Mapping[str, float]]
+    follows: Sequence[bool]
     rtol: float
     limits: Limits
-    rates: bool
+    budget: float
 
-    def linearised(
-        self,
-        named: Mapping[str, float],
-        parameters: Mapping[str, float],
-        starts: Sequence[Mapping[str, float]],
-        follows: Sequence[bool],
-        budget: float,
-        halt: Halt,
-    ) -> Shots:
-        """The segments near unknowns and free starts; `parameters` are fixed.
-
-        One that `follows` goes on with states that are not free where the one before has ended.
-        """
-        measured, values = self.segments[0].measured, {**parameters, **named}
-        sensing = Sensing(self.segments, values, rates=self.rates)
+    def shown(
+        self, halt: Halt, asked: Sequence[str] | None = None, rates: bool = False
+    ) -> tuple[SpanRuns, Sensing]:
+        """The runs, with the sensitivities that are `asked` for, and the sensors that look at them;
+        `rates` of signals are for the derivatives by a delay. Raises Interrupted."""
+        measured = self.segments[0].measured
+        sensing = Sensing(self.segments, self.values, rates=rates)
+        atol = None if asked is None else absolute_tolerances(self.model, measured, self.rtol)
         spans = [
             Span(begin, end, times, start if after else {**segment.start, **start}, after)
             for segment, begin, end, times, start, after in zip(
-                self.segments, sensing.begins, sensing.ends, sensing.times, starts, follows,
-                strict=True,
+                self.segments, sensing.begins, sensing.ends, sensing.times, self.starts,
+                self.follows, strict=True,
             )
         ]  # fmt: skip
-        free = tuple(dict.fromkeys(f"start.{name}" for start in starts for name in start))
-        answers = {name: parameter_in(name, measured) for name in named}
-        answers |= {name: name for name in free}
         runs = simulate_spans(
             self.model,
             spans,
-            parameters=of_diagram(values, measured),
+            parameters=of_diagram(self.values, measured),
             rtol=self.rtol,
-            atol=absolute_tolerances(self.model, measured, self.rtol),
+            atol=atol,
             preset=measured.preset,
             inputs=measured.inputs,
             limits=self.limits,
-            budget=budget,
-            sensitivities=[name for name in answers.values() if name],
+            budget=self.budget,
+            sensitivities=asked or (),
             halt=halt,
         )
-        shown = sensing.shown(runs)
-        with np.errstate(over="ignore"):  # what overflows is not usable
-            slopes = sensing.derivatives(runs, answers) / self.sigma[:, None]
-            residual = difference(measured, self.samples, shown) / self.sigma
+        return runs, sensing
+
+    def near(
+        self, samples: Matrix, sigma: Vector, moving: Sequence[str] | None, halt: Halt
+    ) -> Shots:
+        """The residuals of the segments' `samples` (N, signals) with the noise `sigma` (signals,),
+        and their derivatives by the unknowns `moving` and the free starts; None: without these."""
+        measured = self.segments[0].measured
+        if moving is None:
+            answers, asked = dict[str, str](), None
+        else:
+            answers = {name: parameter_in(name, measured) for name in moving}
+            answers |= {f"start.{name}": f"start.{name}" for one in self.starts for name in one}
+            asked = [name for name in answers.values() if name]
+        rates = any(name.startswith("delay.") for name in answers)
+        runs, sensing = self.shown(halt, asked, rates)
+        with np.errstate(over="ignore", invalid="ignore"):  # what overflows is not usable
+            shown = sensing.shown(runs)
+            slopes = sensing.derivatives(runs, answers) / sigma[:, None]
+            residual = difference(measured, samples, shown) / sigma
         rows = np.cumsum([0, *(len(segment.rows) for segment in self.segments)])
-        # squares of what is larger would be no numbers
-        small = (np.abs(shown) < LARGEST).all(axis=1) & (np.abs(slopes) < LARGEST).all(axis=(1, 2))
-        usable = np.logical_and.reduceat(small, rows[:-1])
-        near = {}
-        for number, start in enumerate(starts):
-            if number in runs.errors or not usable[number]:
-                continue
+        near, errors = dict[int, Linearised](), dict(runs.errors)
+        columns = {name: column for column, name in enumerate(answers)}
+        moved = [column for column, name in enumerate(answers.values()) if name]
+        for number, (segment, start) in enumerate(zip(self.segments, self.starts, strict=True)):
             mine = slice(int(rows[number]), int(rows[number + 1]))
+            if number in errors:
+                continue
+            # squares of what is larger would be no numbers
+            if not all((np.abs(some) < LARGEST).all() for some in (shown[mine], slopes[mine])):
+                errors[number] = _huge(measured.name, shown[mine])
+                continue
             own = slopes[mine].reshape(residual[mine].size, len(answers))
-            columns = [len(named) + free.index(f"start.{name}") for name in start]
-            if columns != [*range(len(named), len(answers))]:
-                own = own[:, [*range(len(named)), *columns]]
+            ends = np.zeros((len(self.model.states), len(answers)))
+            ends[:, moved] = runs.final_slopes[number]
+            wanted = () if moving is None else (*moving, *(f"start.{name}" for name in start))
+            kept = [columns[name] for name in wanted]
+            if kept != [*columns.values()]:
+                own, ends = own[:, kept], ends[:, kept]
             final = dict(zip(self.model.states, runs.final[number].tolist(), strict=True))
-            scales = self.segments[number].start_scales(start)
-            near[number] = Linearised(residual[mine], own, scales, final)
+            scales = segment.start_scales(start)
+            near[number] = Linearised(residual[mine], own, scales, final, ends)
         steps = int(runs.steps.sum()) + self.limits.steps * len(runs.errors)
         told = frozenset(text for texts in runs.warnings.values() for text in texts)
-        return Shots(near, steps, told)
+        return Shots(near, errors, steps, told)
+
+
+def _huge(series: str, shown: Vector) -> SimulationError:
+    largest = float(np.max(np.abs(shown)))
+    what = f"the series '{series}' is simulated as large as {largest:.3g}"
+    return SimulationError([Problem(what, hint="Begin elsewhere, or narrow `fit:` bounds.")])
 
 
 def difference(measured: Measured, samples: Vector, shown: Vector) -> Vector:
     """What sensors show without what was measured, (N, signals): the shortest way around."""
-    off = shown - samples
-    for column, signal in enumerate(measured.values):
-        period = measured.periods.get(signal, 0.0)
-        if period > 0:
-            off[:, column] -= period * np.round(off[:, column] / period)
-    return np.asarray(off)
+    columns = zip(measured.values, (shown - samples).T, strict=True)
+    return np.stack([around(x, measured.periods.get(name, 0.0)) for name, x in columns], axis=1)
+
+
+def around(off: Vector, period: float) -> Vector:
+    """Differences by the shortest way around a period; 0 is none."""
+    return off - period * np.round(off / period) if period > 0 else off

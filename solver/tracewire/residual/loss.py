@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,12 +19,6 @@ class Lossy(NamedTuple):
 
     residual: Array
     slope: Array
-
-
-class Loss(Protocol):
-    """From residuals r in sigma to what the criterion squares."""
-
-    def __call__(self, r: Array) -> Lossy: ...
 
 
 def linear(r: Array) -> Lossy:
@@ -49,4 +44,4 @@ def cauchy(r: Array) -> Lossy:
     return Lossy(f, steep / (1 + ratio**2))
 
 
-LOSSES: dict[str, Loss] = {"linear": linear, "huber": huber, "cauchy": cauchy}
+LOSSES: dict[str, Callable[[Array], Lossy]] = {"linear": linear, "huber": huber, "cauchy": cauchy}

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model, compile
 from tracewire.data import STEPS, Record, read_record
-from tracewire.diagram import Channel, Cleaning, Diagram, Hold, Series, Use
+from tracewire.diagram import Channel, Cleaning, Hold, Series, Use
 from tracewire.errors import DataError, OptionError, Place, Problem, TracewireError, unknown
 from tracewire.formula import evaluate
 from tracewire.library import SENSOR_TERMS
@@ -158,12 +158,6 @@ class Measured:
     def sensor(self, signal: str) -> Sensor:
         """The sensor of a signal; it shows the signal itself where nothing is said of it."""
         return self.sensors.get(signal, PLAIN)
-
-
-def measured_signals(diagram: Diagram) -> tuple[str, ...]:
-    """Every signal that a series of the diagram measures, once."""
-    names = (name for series in diagram.measured.values() for name in series.channels)
-    return tuple(dict.fromkeys(names))
 
 
 def measured_series(model: Model, name: str) -> Measured:
@@ -441,15 +435,12 @@ def _or(value: float | None, default: float) -> float:
     return default if value is None else value
 
 
-def with_measured_signals(model: Model, series: Sequence[Measured] | None = None) -> Model:
-    """The model with every signal of the series, or of the diagram's, among the recorded ones.
+def with_measured_signals(model: Model, series: Sequence[Measured]) -> Model:
+    """The model with every signal of the series among the recorded ones.
 
     Raises OptionError: a signal that the model does not have.
     """
-    if series is None:
-        signals = measured_signals(model.diagram)
-    else:
-        signals = tuple(signal for m in series for signal in m.values)
-    if set(signals) <= set(model.recorded):
+    signals = dict.fromkeys(signal for m in series for signal in m.values)
+    if signals.keys() <= set(model.recorded):
         return model
     return compile(model.diagram, record=[*model.recorded, *signals])

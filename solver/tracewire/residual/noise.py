@@ -8,27 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.residual.noise_estimate import (
-    NoiseEstimate,
-    channel_noise,
-    estimate_noise,
-    noise_level,
-)
-
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-
-__all__ = [
-    "Noise",
-    "NoiseEstimate",
-    "channel_noise",
-    "degrees_of",
-    "estimate_noise",
-    "noise_in",
-    "noise_level",
-    "noise_of",
-    "noises_beside",
-]
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.residual.measured import Measured
-from tracewire.residual.readings import interpolation, rounding_step, without_spikes
+from tracewire.residual.readings import MAD, interpolation, rounding_step, without_spikes
 from tracewire.residual.spectrum import Spectrum, spectrum_of
 
 Vector = NDArray[np.float64]
@@ -21,8 +21,6 @@ FALLING = 1.2
 FEWEST_FOR_SPECTRUM = 96
 UNEVEN = 1e-3
 """Of an interval: times that differ by more from even ones are not even."""
-MAD = 1.4826
-"""The standard deviation of normal numbers over their median absolute value."""
 FLAT = 1.6
 """The largest ratio of the densities of two bands of white noise, beside their own errors."""
 PLATEAU = 3

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from tracewire.compile import Model
 from tracewire.data import Record, signal_remarks, time_remarks, usual_range
 from tracewire.diagram import Channel, Series
-from tracewire.errors import DataError, FormulaError, Problem
-from tracewire.formula import evaluate, quantity_hint, read_unit, same_quantity
+from tracewire.errors import DataError, Problem
+from tracewire.formula import evaluate, quantity_hint, read_unit
+from tracewire.residual.endings import alike
 from tracewire.residual.inputs import looks_held, lost_by_lines, smoothed
 
 LARGEST_ANGLE = 20.0
@@ -33,7 +34,7 @@ def check_quantities(model: Model, series: Series, record: Record) -> None:
     problems = []
     for name, unit in wanted.items():
         given = record.unit(name).text
-        if unit and given and unit != given and not _same(unit, given):
+        if unit and given and unit != given and not alike(unit, given):
             channel = series.channels.get(name) or series.inputs[name.removeprefix("input ")]
             column = f"its column '{channel.column}'" if channel.column else "its measurement"
             what = f"'{name}' is in {unit} in the diagram, and {column} in {given}"
@@ -161,10 +162,3 @@ def _on_span(
             f"{begin:g} s: say which time is t = 0, as in time: {{column: ..., zero: ...}}"
         )
     return found
-
-
-def _same(one: str, other: str) -> bool:
-    try:
-        return same_quantity(one, other)
-    except FormulaError:
-        return True  # a unit of a library block that is not known cannot be compared

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,23 +15,12 @@ from numpy.typing import NDArray
 from tracewire.library import SENSOR_TERMS
 from tracewire.residual.segment import Segment
 from tracewire.residual.sensor import Sensor
-from tracewire.solve import Sensitivities
+from tracewire.solve import SpanRuns
 
 Vector = NDArray[np.float64]
 Cube = NDArray[np.float64]
 STEP = 1e-3
 """Of a sample interval: how far to each side a signal is sampled for its rate."""
-
-
-class Seen(Protocol):
-    """A run, or runs over many spans: what sensors look at."""
-
-    @property
-    def sensitivities(self) -> Sensitivities:
-        """The derivatives of the signals."""
-
-    def __getitem__(self, name: str) -> Vector:
-        """The samples of a signal."""
 
 
 class Sensing:
@@ -82,7 +71,7 @@ class Sensing:
             for segment, times, begin in zip(self.segments, self.times, self.begins, strict=True)
         ]
 
-    def shown(self, run: Seen) -> Vector:
+    def shown(self, run: SpanRuns) -> Vector:
         """What the sensors show, shape (N, signals)."""
         columns = [
             sensor.shown(run[signal][at], self.since)
@@ -90,7 +79,7 @@ class Sensing:
         ]
         return np.stack(columns, axis=1)
 
-    def derivatives(self, run: Seen, unknowns: Mapping[str, str]) -> Cube:
+    def derivatives(self, run: SpanRuns, unknowns: Mapping[str, str]) -> Cube:
         """d shown/d unknowns, shape (N, signals, unknowns).
 
         `unknowns` gives each unknown by name the name under which the run has the derivatives of
@@ -111,7 +100,7 @@ class Sensing:
                     found[:, number, column] = self._of_sensor(kind, run, number)
         return found
 
-    def _of_sensor(self, kind: str, run: Seen, number: int) -> Vector | float:
+    def _of_sensor(self, kind: str, run: SpanRuns, number: int) -> Vector | float:
         """d shown/d an unknown of the sensor of a signal."""
         signal = self.signals[number]
         delayed = run[signal][self.at[number]]
@@ -125,7 +114,7 @@ class Sensing:
         """d shown/d y(t - delay)."""
         return sensor.gain + 2 * sensor.quad * delayed if sensor.quad else sensor.gain
 
-    def _rate(self, run: Seen, signal: str, column: int) -> Vector:
+    def _rate(self, run: SpanRuns, signal: str, column: int) -> Vector:
         count, times = len(self.signals), np.concatenate(self.times)
         down, up = self.at[count + column], self.at[2 * count + column]
         width = np.maximum(times[up] - times[down], 1e-300)

@@ -55,7 +55,7 @@ def whole_segment(model: Model, measured: Measured) -> Segment:
     if not measured.start:
         begin = float(evaluate(model.flat.span[0], values))
         return Segment(measured, min(begin, float(measured.t[0])), rows)
-    start = {name: value for name, value in measured.start.items() if value is not None}
+    start = measured.known_start
     free = tuple(name for name, value in measured.start.items() if value is None)
     told = start_from_data(model, measured, 0)
     for state in model.flat.states:

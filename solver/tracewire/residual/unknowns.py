@@ -26,7 +26,7 @@ def free_unknowns(
     Raises OptionError: a name does not exist, a start outside the bounds.
     """
     flat = model.flat
-    names = [n for n, p in flat.parameters.items() if p.fit is not None] if free is None else free
+    names = _with_bounds(model) if free is None else free
     problems = [unknown("parameter", n, flat.parameters) for n in names if n not in flat.parameters]
     if problems:
         raise OptionError(problems)
@@ -39,6 +39,10 @@ def free_unknowns(
     if problems:
         raise OptionError(problems)
     return unknowns
+
+
+def _with_bounds(model: Model) -> list[str]:
+    return [name for name, p in model.flat.parameters.items() if p.fit is not None]
 
 
 def _outside(
@@ -103,7 +107,7 @@ def free_names(model: Model, measured: Sequence[Measured]) -> list[str]:
 
     Raises OptionError: a start outside the bounds.
     """
-    own = [name for name, parameter in model.flat.parameters.items() if parameter.fit is not None]
+    own = _with_bounds(model)
     others = [unknown.name for unknown in (*sensor_unknowns(measured), *own_unknowns(measured))]
     starts = (f"start.{s}" for one in measured for s, value in one.start.items() if value is None)
     return [*own, *others, *dict.fromkeys(starts)]
@@ -117,7 +121,7 @@ def refuse_readers_of_free(model: Model, free: Collection[str] | None = None) ->
     Raises OptionError with all of them.
     """
     flat = model.flat.parameters
-    moving = {n for n, p in flat.items() if p.fit is not None} if free is None else set(free)
+    moving = set(_with_bounds(model) if free is None else free)
     while more := {
         n for n, p in flat.items() if n not in moving and moving & {*names_of(p.formula)}
     }:
@@ -166,9 +170,7 @@ def chosen_unknowns(
     ]
     if problems:
         raise OptionError(problems)
-    own = None if free is None else [name for name in free if name not in sensors]
-    if own is None:
-        own = [n for n, p in model.flat.parameters.items() if p.fit is not None]
+    own = _with_bounds(model) if free is None else [name for name in free if name not in sensors]
     found = free_unknowns(model, [name for name in own if name not in fixed], values)
     found += [
         sensor

@@ -54,14 +54,16 @@ class SpanRuns:
     """Runs over spans: `runs["name"]` (M,) in SI, the samples of one span behind those of the one
     before; those of span n are `rows[n]` to `rows[n + 1]`.
 
-    `sensitivities` as those of a run; `final` (spans, states), `steps` (spans,) accepted steps, and
-    by number `errors` of spans whose run failed, whose samples mean nothing, and `warnings`.
+    `sensitivities` as those of a run; `final` (spans, states) and their derivatives `final_slopes`
+    (spans, states, sensitivities), `steps` (spans,) accepted steps, and by number `errors` of spans
+    whose run failed, whose samples mean nothing, and `warnings`.
     """
 
     signals: Mapping[str, Vector]
     sensitivities: Sensitivities
     rows: NDArray[np.int64]
     final: Matrix
+    final_slopes: Matrix
     steps: NDArray[np.int64]
     errors: Mapping[int, SimulationError]
     warnings: Mapping[int, tuple[str, ...]]
@@ -124,6 +126,9 @@ def simulate_spans(
         sensitivities=recorded(model, answers, asked, len(many.times)),
         rows=many.rows,
         final=many.final,
+        final_slopes=many.final_s.reshape(*many.final.shape, many.floor.shape[1])[
+            :, :, : len(asked)
+        ],
         steps=many.steps,
         errors=errors,
         warnings=warnings,

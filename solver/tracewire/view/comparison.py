@@ -60,7 +60,7 @@ def comparison_of(
     values: those of parameters in SI that are not the file's. The criterion is that of a fit with
     this series alone. Raises SimulationError, DataError.
     """
-    from tracewire.residual import Criterion, half_square
+    from tracewire.residual import Criterion, around, half_square
 
     measured = known.measured
     signals = list(measured.values)
@@ -81,7 +81,7 @@ def comparison_of(
         look = model.flat.shown.get(name)
         factor = look.factor if look is not None else 1.0
         samples = measured.values[name][rows]
-        residual = _around(samples - shown[:, n], measured.periods.get(name, 0.0))
+        residual = around(samples - shown[:, n], measured.periods.get(name, 0.0))
         head["signals"][name] = {
             "t": t,
             "values": arrays.keep(samples[chosen] / factor),
@@ -89,10 +89,3 @@ def comparison_of(
             "rms": float(np.sqrt(np.mean(residual**2))) / factor,
         }
     return head
-
-
-def _around(difference: Vector, period: float) -> Vector:
-    """Differences by the shortest way around a period; 0 is none."""
-    if period > 0:
-        difference = difference - period * np.round(difference / period)
-    return difference

@@ -2,20 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.compile import Model, compile
-from tracewire.errors import SimulationError
-from tracewire.fit.methods.cutting import cut
-from tracewire.residual import LOSSES, Criterion, Segment, Sensing, parameter_in
-from tracewire.solve import Run
+from tracewire.errors import FitError, Problem
+from tracewire.fit.methods.following import PARTS, followed, spread_of
+from tracewire.formula import evaluate
+from tracewire.residual import (
+    Criterion,
+    Linearised,
+    Segment,
+    half_square,
+    of_diagram,
+    start_from_data,
+)
+from tracewire.solve import parameter_values
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
+FEWEST = 10
+"""Samples of a segment, at least."""
+MOST = 300
+"""Segments of a series, at most."""
+LONGER = 4
+"""How many times longer than the longest so far the next segment may be."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,45 +43,30 @@ class Normal:
 class Chain:
     """The segments of a criterion's series, cut, as a criterion of its own (`criterion`).
 
-    A gap is the difference of the states at the end of a segment and at the start of the next, in
-    units of what each state changes from one start to the next.
+    A segment begins at the last sample of the one before it. A gap is the difference of the states
+    at the end of a segment and at the start of the next, in units of what each state changes from
+    one start to the next.
     """
 
     def __init__(self, whole: Criterion) -> None:
-        model = _with_states(whole.model)
         segments: list[Segment] = []
         self.follows: list[bool] = []  # whether a segment goes on into the next
-        for segment in whole.segments:
-            parts = cut(model, whole, segment)
+        for n in range(len(whole.segments)):
+            parts = _cut(whole, n)
             segments += parts
             self.follows += [True] * (len(parts) - 1) + [False]
-        self.criterion = Criterion(
-            model,
-            segments,
-            whole.unknowns,
-            whole.parameters,
-            whole.rtol,
-            weighting=whole.weighting,
-        )
-        self.criterion.loss = whole.loss
-        self.criterion.sigma = dict(whole.sigma)
-        self.states = model.states
-        self.sizes = self._sizes()
+        self.criterion = whole.on(segments, "sum")
         self.parameters = len(whole.unknowns)
-        counts = np.array([len(s.free) for s in segments])
-        self.offsets = self.parameters + np.concatenate(([0], np.cumsum(counts)))
-
-    def _sizes(self) -> Vector:
-        """What each state changes from one start to the next, shape (states,)."""
-        known = [[s.start.get(name, 0.0) for name in self.states] for s in self.segments if s.free]
-        changes = np.diff(np.array(known), axis=0) if len(known) > 1 else np.ones((1, 1))
-        size = np.sqrt(np.mean(changes**2, axis=0)) * np.ones(len(self.states))
-        return np.where(size > 0, size, 1.0)
-
-    @property
-    def segments(self) -> Sequence[Segment]:
-        """The segments, those of a series one after the other."""
-        return self.criterion.segments
+        counts = np.cumsum([0, *(len(segment.free) for segment in segments)]) + self.parameters
+        self.columns = [
+            [*range(self.parameters), *range(first, last)]
+            for first, last in zip(counts[:-1].tolist(), counts[1:].tolist(), strict=True)
+        ]
+        states = whole.model.states
+        begun = [[s.start.get(name, 0.0) for name in states] for s in segments if s.free]
+        changes = np.diff(np.array(begun), axis=0) if len(begun) > 1 else np.ones((1, 1))
+        size = np.sqrt(np.mean(changes**2, axis=0)) * np.ones(len(states))
+        self.sizes = np.where(size > 0, size, 1.0)
 
     def value(self, z: Vector, weight: float) -> tuple[float, float]:
         """The criterion with weight/2 times the mean square of the gaps, and the largest gap.
@@ -76,83 +74,92 @@ class Chain:
         Infinite where a run fails.
         """
         named, starts = self.criterion.split(z)
-        total, largest = 0.0, 0.0
         self.criterion.evaluations += 1
-        for n in range(len(self.segments)):
-            try:
-                run, sensing = self._run(n, named, starts)
-            except SimulationError:
-                return np.inf, np.inf
-            residual = self.criterion.difference(n, sensing.shown(run))
-            lost = LOSSES[self.criterion.loss](residual).residual * self.criterion.weights(n)
-            total += 0.5 * float(np.sum(lost**2))
-            gap = self._gap(n, run, starts)
-            total += 0.5 * weight * float(gap @ gap) / max(sum(self.follows), 1)
-            largest = max(largest, float(np.max(np.abs(gap), initial=0.0)))
-        return total, largest
+        found = self.criterion.linearised(named, dict(enumerate(starts)), slopes=False)
+        if not all(near.ran for near in found.values()):
+            return np.inf, np.inf
+        gaps = np.concatenate([self._gap(n, near, starts) for n, near in found.items()])
+        value = half_square(self.criterion.weigh([found[n].residual for n in range(len(found))]))
+        value += weight * half_square(gaps) / max(sum(self.follows), 1)
+        return value, float(np.max(np.abs(gaps), initial=0.0))
 
     def normal(self, z: Vector, weight: float) -> Normal:
         """The criterion with the gaps, and what a Gauss-Newton step needs.
 
-        Raises SimulationError where a run fails.
+        Raises FitError where a run fails.
         """
         criterion = self.criterion
         named, starts = criterion.split(z)
         gradient, matrix, total = np.zeros(len(z)), np.zeros((len(z), len(z))), 0.0
-        criterion.evaluations += 1 + self.parameters + max((len(s) for s in starts), default=0)
+        criterion.evaluations += 1 + self.parameters + max(map(len, starts), default=0)
         share = np.sqrt(weight / max(sum(self.follows), 1))
-        for n in range(len(self.segments)):
-            measured = self.segments[n].measured
-            answers = {name: parameter_in(name, measured) for name in named}
-            answers |= {f"start.{state}": f"start.{state}" for state in starts[n]}
-            run, sensing = self._run(n, named, starts, [name for name in answers.values() if name])
-            lost = LOSSES[criterion.loss](criterion.difference(n, sensing.shown(run)))
-            weights = criterion.weights(n)
-            own = [*range(self.parameters), *range(self.offsets[n], self.offsets[n + 1])]
-            sigma = criterion.sigma[measured.name]
-            slopes = sensing.derivatives(run, answers) / sigma[:, None]
-            rows = [(lost.residual * weights).ravel()]
-            columns = [*own]
-            slopes *= (lost.slope * weights)[:, :, None]
-            parts = [slopes.reshape(lost.residual.size, len(answers))]
+        for n, near in criterion.linearised(named, dict(enumerate(starts))).items():
+            if not near.ran and criterion.failure is not None:
+                problems = criterion.failure.problems
+                raise FitError(
+                    [Problem(f"a segment does not run: {p.what}", p.place) for p in problems]
+                )
+            columns = self.columns[n]
+            vector, jacobian = criterion.weighed(n, near.residual, near.slopes)
             if self.follows[n]:
-                following = range(self.offsets[n + 1], self.offsets[n + 2])
-                columns += following
-                rows.append(share * self._gap(n, run, starts))
-                ends = np.zeros((len(self.states), len(own)))
-                for j, name in enumerate(answers.values()):
-                    if name:
-                        ends[:, j] = [run.sensitivities[name][x][-1] for x in self.states]
-                parts[0] = np.hstack([parts[0], np.zeros((len(parts[0]), len(following)))])
-                moved = np.hstack([ends, -np.eye(len(self.states))])
-                parts.append(share * moved / self.sizes[:, None])
-            vector, jacobian = np.concatenate(rows), np.vstack(parts) * criterion.scales[columns]
-            total += 0.5 * float(vector @ vector)
+                moved = share * near.final_slopes / self.sizes[:, None]
+                own = np.vstack([jacobian, moved])
+                following = np.vstack(
+                    [np.zeros((len(jacobian), len(moved))), -share * np.diag(1 / self.sizes)]
+                )
+                columns = [*columns, *self.columns[n + 1][self.parameters :]]
+                jacobian = np.hstack([own, following])
+                vector = np.concatenate([vector, share * self._gap(n, near, starts)])
+            jacobian = jacobian * criterion.scales[columns]
+            total += half_square(vector)
             gradient[columns] += jacobian.T @ vector
             matrix[np.ix_(columns, columns)] += jacobian.T @ jacobian
         return Normal(total, gradient, matrix)
 
-    def _gap(self, n: int, run: Run, starts: Sequence[dict[str, float]]) -> Vector:
+    def _gap(self, n: int, near: Linearised, starts: Sequence[Mapping[str, float]]) -> Vector:
         if not self.follows[n]:
             return np.zeros(0)
-        end = np.array([run[name][-1] for name in self.states])
-        begin = np.array([starts[n + 1][name] for name in self.states])
-        return np.asarray((end - begin) / self.sizes)
-
-    def _run(
-        self,
-        n: int,
-        named: dict[str, float],
-        starts: Sequence[dict[str, float]],
-        sensitivities: Sequence[str] = (),
-    ) -> tuple[Run, Sensing]:
-        """The run of a segment up to the start of the next, and its sensors."""
-        until = self.segments[n + 1].begin if self.follows[n] else None
-        return self.criterion.run(self.segments[n], named, starts[n], until, sensitivities)
+        gap = [end - starts[n + 1][name] for name, end in near.final.items()]
+        return np.asarray(np.array(gap) / self.sizes)
 
 
-def _with_states(model: Model) -> Model:
-    """The model with all states among the recorded signals."""
-    if set(model.states) <= set(model.recorded):
-        return model
-    return compile(model.diagram, record=[*model.recorded, *model.states])
+def _cut(whole: Criterion, n: int) -> list[Segment]:
+    """Segment n in parts, each as long as the model follows it from its start; all but the first
+    have free starts, and each sample counts as much as in the whole.
+
+    They begin at the states that the data tell; the other states are those to which the part before
+    has come.
+    """
+    segment, model = whole.segments[n], whole.model
+    named, starts = whole.split(whole.begin())
+    rows, measured = segment.rows, segment.measured
+    if whole.weighting == "mean":
+        measured = replace(measured, weight=measured.weight / len(rows))
+    sigma, spread = whole.sigma[measured.name], spread_of(segment, PARTS)
+    least = max(FEWEST, -(-len(rows) // MOST))
+    known = parameter_values(
+        model, of_diagram({**whole.parameters, **named}, measured), measured.preset
+    )
+    there = {s.name: evaluate(s.start, known, s.place) for s in model.flat.states}
+    now = {**there, **segment.start, **starts[n]}
+    parts = [replace(segment, measured=measured)]
+    first, longest = 0, least
+
+    def followed_to(last: int) -> Linearised:
+        part = replace(parts[-1], rows=rows[first : last + 1], start=now, free=())
+        return whole.on([part]).linearised(named, {0: {}}, slopes=False)[0]
+
+    while first + least < len(rows):
+        last = min(first + LONGER * longest, len(rows) - 1)
+        length = max(least, followed(followed_to(last).residual * sigma, spread))
+        longest = max(longest, min(length, last - first))
+        after = min(first + length, last)
+        if after + least >= len(rows):
+            break  # the last part is rather longer than too short
+        told = start_from_data(model, segment.measured, int(rows[after]))
+        now = {**now, **followed_to(after).final, **told}
+        parts[-1] = replace(parts[-1], rows=parts[-1].rows[: after + 1 - first - (first > 0)])
+        begin = float(segment.t[after])
+        parts.append(Segment(measured, begin, rows[after + 1 :], now, model.states))
+        first = after
+    return parts

@@ -133,8 +133,7 @@ class _Part:
         segments = search.criterion.segments
         shorter = [replace(s, rows=s.rows[:n]) for s, n in zip(segments, counts, strict=True)]
         self.criterion: Criterion = search.criterion.on(shorter)
-        self.pull = np.zeros(len(around))
-        before = self.plain(self.vector(around))
+        before = search.vector(around, self.criterion)
         noise = 2 * half_square(before) / max(len(before), 1)
         self.pull = np.sqrt(noise) / (WIDTH * np.maximum(np.abs(around), 1.0))
 
@@ -144,40 +143,22 @@ class _Part:
 
     def vector(self, z: Vector) -> Vector:
         """The vector (M + n,)."""
-        self.search.refuse_more()
-        vector = self.criterion.vector(z)
-        self._count(z)
+        vector = self.search.vector(z, self.criterion)
         return np.concatenate([vector, self.pull * (z - self.around)])
 
     def both(self, z: Vector) -> tuple[Vector, Matrix]:
         """The vector (M + n,) and its derivatives (M + n, n)."""
-        self.search.refuse_more()
-        vector, matrix = self.criterion.both(z)
-        self._count(z)
+        vector, matrix = self.search.both(z, self.criterion)
         held = self.pull * (z - self.around)
         return np.concatenate([vector, held]), np.concatenate([matrix, np.diag(self.pull)])
-
-    def plain(self, vector: Vector) -> Vector:
-        """The criterion's part of a vector (M + n,)."""
-        return vector[: len(vector) - len(self.around)]
 
     def is_astray(self, z: Vector) -> bool:
         """Whether much of the spread of the data on this part remains."""
         residuals = self.criterion.residuals(z)
-        self._count(z)
+        self.search.count(self.criterion)
         for segment, residual in zip(self.criterion.segments, residuals, strict=True):
             off = np.sqrt(np.mean(residual**2, axis=0))
             sigma = self.criterion.sigma[segment.measured.name]
             if np.any(off * sigma > ASTRAY * spread_of(segment)):
                 return True
         return False
-
-    def _count(self, z: Vector) -> None:
-        """Count what the part has evaluated as evaluations of the search, and tell progress."""
-        whole = self.search.criterion
-        whole.evaluations += self.criterion.evaluations
-        whole.failures += self.criterion.failures
-        whole.failure = self.criterion.failure or whole.failure
-        self.criterion.evaluations = 0
-        self.criterion.failures.clear()
-        self.search.notice(z, np.inf)

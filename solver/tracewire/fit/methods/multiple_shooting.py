@@ -10,10 +10,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.errors import FitError, Problem, SimulationError
 from tracewire.fit.methods.chain import Chain
 from tracewire.fit.search import Ended, Search, Stopped
-from tracewire.residual import descend, half_square
+from tracewire.residual import descend
 
 Vector = NDArray[np.float64]
 WEIGHTS = tuple(10.0**k for k in range(-1, 7))
@@ -58,26 +57,21 @@ class _Shooting:
     def __init__(self, search: Search) -> None:
         self.search = search
         self.chain = Chain(search.criterion)
-        self.low, self.high = self.chain.criterion.bounds()
-        self.scales = self.chain.criterion.scales
+        criterion = self.chain.criterion
+        self.criterion, self.scales = criterion, criterion.scales
+        self.low, self.high = criterion.bounds()
         kept = search.resumed
-        self.stage = int(kept["stage"]) if kept else 0
-        self.z = np.array(kept["z"]) / self.scales if kept else self._begin()
+        self.stage, self.gap = int(kept["stage"]) if kept else 0, np.inf
+        self.z = np.array(kept["z"]) / self.scales if kept else criterion.begin()
+        if not kept:
+            self.z[: self.chain.parameters] = search.begin[: self.chain.parameters]
         spread = sum(
-            float(np.sum((self.chain.criterion.weights(n) * _centred(s.samples())) ** 2))
-            for n, s in enumerate(self.chain.segments)
+            float(np.sum(criterion.weights(n) ** 2 * np.var(s.samples(), axis=0)))
+            for n, s in enumerate(criterion.segments)
         )
-        self.unit = max(spread, 1e-300)  # in sigma of 1
-        sigmas = np.concatenate(list(self.chain.criterion.sigma.values()))
-        self.unit /= float(np.mean(sigmas**2))
-        self.value, self.gap = np.inf, np.inf
-
-    def _begin(self) -> Vector:
-        """The unknowns of the search, with the starts of segments as the data tell them."""
-        z = self.chain.criterion.begin()
-        count = self.chain.parameters
-        z[:count] = self.search.begin[:count]
-        return z
+        sigmas = np.concatenate(list(criterion.sigma.values()))
+        self.unit = max(spread, 1e-300) / float(np.mean(sigmas**2))
+        self.segments = f"{len(criterion.segments)} segments"
 
     def stages(self) -> None:
         """Close the gaps."""
@@ -95,13 +89,8 @@ class _Shooting:
         search, chain, damping = self.search, self.chain, DAMPING
         for number in range(steps):
             share = (self.stage + number / steps) / len(WEIGHTS)
-            search.tell(share, f"{len(chain.segments)} segments, gaps up to {self.gap:.2g}")
-            try:
-                normal = chain.normal(self.z, weight)
-            except SimulationError as error:
-                raise FitError(
-                    [Problem(f"a segment does not run: {p.what}", p.place) for p in error.problems]
-                ) from None
+            search.tell(share, f"{self.segments}, gaps up to {self.gap:.2g}")
+            normal = chain.normal(self.z, weight)
             self._count()
             outward = (self.z <= self.low) & (normal.gradient > 0)
             outward |= (self.z >= self.high) & (normal.gradient < 0)
@@ -120,7 +109,7 @@ class _Shooting:
             else:
                 return
             damping = max(damping / 5.0, LEAST_DAMPING)
-            self.z, self.value, self.gap = trial, value, gap
+            self.z, self.gap = trial, gap
             search.iterated(self._own(), value, f"gaps up to {gap:.2g}")
             if value > (1 - enough) * normal.value:
                 return
@@ -128,29 +117,24 @@ class _Shooting:
     def together(self) -> Ended:
         """The end, on one run over the whole series where that is as good as the segments."""
         search, z = self.search, self._own()
-        apart = half_square(self.chain.criterion.vector(self.z))
+        apart = self.criterion.value(self.z)
         if search.value(z) <= ALIKE * apart + NOTHING * self.unit:
             ended = descend(search, z, stepped=search.iterated)
-            message = f"{ended.message}; {len(self.chain.segments)} segments have grown together"
+            message = f"{ended.message}; {self.segments} have grown together"
             return Ended(ended.z, search.iterations, int(ended.converged), message)
         closed = self.gap < CLOSED
         return self.ended(int(closed), "converged" if closed else "the gaps did not close")
 
     def ended(self, exitflag: int, message: str, interrupted: bool = False) -> Ended:
         """The end as it is, on segments."""
-        what = f"{len(self.chain.segments)} segments, gaps up to {self.gap:.1e} of a segment"
-        return Ended(
-            self.z,
-            self.search.iterations,
-            exitflag,
-            f"{message}: {what}",
-            self.chain.criterion,
-            interrupted,
-        )
+        what = f"{self.segments}, gaps up to {self.gap:.1e} of a segment"
+        iterations = self.search.iterations
+        message = f"{message}: {what}"
+        return Ended(self.z, iterations, exitflag, message, self.criterion, interrupted)
 
     def _own(self) -> Vector:
         """The unknowns of the search among those of the chain."""
-        values, starts = self.chain.criterion.split(self.z)
+        values, starts = self.criterion.split(self.z)
         heads = [0, *(n + 1 for n, on in enumerate(self.chain.follows[:-1]) if not on)]
         found = [*values.values(), *(v for n in heads for v in starts[n].values())]
         z = np.array(found) / self.search.criterion.scales
@@ -158,12 +142,6 @@ class _Shooting:
 
     def _count(self) -> None:
         """Count what the chain has evaluated as evaluations of the search, and tell progress."""
-        whole, own = self.search.criterion, self.chain.criterion
-        whole.evaluations += own.evaluations
-        own.evaluations = 0
+        self.search.count(self.criterion)
         self.search.notice(self.search.begin, np.inf)
         self.search.refuse_more()
-
-
-def _centred(samples: Vector) -> Vector:
-    return np.asarray(samples - samples.mean(axis=0))

@@ -124,41 +124,28 @@ def _with_long_shots(
     spread = (vertices - vertices.mean(axis=0)) / np.sqrt(search.size)
     stretch = LONGEST ** rng.uniform(0.0, 1.0, (search.size, 1))
     shots = vertices[0] + stretch * rng.standard_normal((search.size, len(vertices))) @ spread
-    frame = _Frame(search, simplex)
-    values = np.array(list(values_at(search, [frame.point(x) for x in shots])))
+    values = np.array(list(values_at(search, [_point(search, simplex, x) for x in shots])))
     vertices, known = np.vstack([vertices, shots]), np.concatenate([known, values])
     kept = np.argsort(known, kind="stable")[: search.size + 1]
     joined = {**simplex, "vertices": vertices[kept].tolist(), "values": known[kept].tolist()}
     if known[kept[0]] < state.value:
-        there = frame.point(vertices[kept[0]]) * search.criterion.scales
+        there = _point(search, simplex, vertices[kept[0]]) * search.criterion.scales
         state = replace(state, z=tuple(there.tolist()), value=float(known[kept[0]]))
     return replace(state, simplex=joined)
 
 
-class _Frame:
-    """The unknowns in which fminsearch moves: all 1 at the centre, so that its edges are a radius.
-
-    It is that of a kept simplex, or one round z.
-    """
-
-    def __init__(self, search: Search, kept: Mapping[str, Any]) -> None:
-        self.search = search
-        self.centre, self.unit = np.array(kept["centre"]), np.array(kept["unit"])
-
-    def point(self, x: Vector) -> Vector:
-        """The scaled unknowns of a vertex."""
-        return self.search.folded(self.centre + (x - 1.0) * self.unit)
+def _point(search: Search, kept: Mapping[str, Any], x: Vector) -> Vector:
+    """The scaled unknowns of a vertex. fminsearch moves in unknowns that are all 1 at the centre of
+    a simplex, so that its edges are a radius."""
+    return search.folded(np.array(kept["centre"]) + (x - 1.0) * np.array(kept["unit"]))
 
 
 def _with_simplex(search: Search, state: _State) -> _State:
     """The state after moves of the simplex, the kept one or a new one, until it stalls."""
     scales = search.criterion.scales
     z = np.array(state.z) / scales
-    kept = state.simplex
-    if kept is None:
-        unit = state.radius / EDGE * _sizes(z)
-        kept = {"centre": z.tolist(), "unit": unit.tolist()}
-    frame = _Frame(search, kept)
+    unit = state.radius / EDGE * _sizes(z)
+    kept = state.simplex or {"centre": z.tolist(), "unit": unit.tolist()}
     last = {key: kept[key] for key in KEPT if key in kept}
     told: list[tuple[int, float]] = []
 
@@ -169,7 +156,7 @@ def _with_simplex(search: Search, state: _State) -> _State:
         return when == "iter" and bool(old) and values.fval > STALLED * old[-1]
 
     found = fminsearch(
-        lambda x: search.value(frame.point(x)),
+        lambda x: search.value(_point(search, kept, x)),
         np.ones(search.size),
         Options(
             Display="off",
@@ -184,7 +171,7 @@ def _with_simplex(search: Search, state: _State) -> _State:
     )
     simplex = None if found.exitflag == CONVERGED else {**kept, **last}
     if found.fval < state.value:
-        there = frame.point(found.x) * scales
+        there = _point(search, kept, found.x) * scales
         state = replace(state, z=tuple(there.tolist()), value=float(found.fval))
     return replace(state, simplex=simplex)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -15,14 +15,11 @@ from tracewire.solve import cores
 Vector = NDArray[np.float64]
 
 
-def values_at(
-    search: Search, points: Sequence[Vector], told: Callable[[int], None] | None = None
-) -> Iterator[float]:
+def values_at(search: Search, points: Sequence[Vector]) -> Iterator[float]:
     """The criterion at each of the points, in their order.
 
-    What comes is the same for any number of threads. `told` gets the number of points that are
-    done. Raises Stopped where the limit of evaluations is reached, behind the last point that it
-    allows.
+    What comes is the same for any number of threads. Raises Stopped where the limit of evaluations
+    is reached, behind the last point that it allows.
     """
     whole = search.criterion
     allowed = max(int(search.options.evaluations(search.size)) - whole.evaluations, 0)
@@ -34,14 +31,8 @@ def values_at(
 
     with ThreadPoolExecutor(max(1, min(cores(), len(part)))) as pool:
         try:
-            for number, (z, (own, value)) in enumerate(
-                zip(part, pool.map(valued, part), strict=True), 1
-            ):
-                whole.evaluations += own.evaluations
-                whole.failures += own.failures
-                whole.failure = own.failure or whole.failure
-                if told is not None:
-                    told(number)
+            for z, (own, value) in zip(part, pool.map(valued, part), strict=True):
+                search.count(own)
                 search.notice(z, value)
                 yield value
         except BaseException:  # Ctrl-C, or a limit: what is not yet begun shall not begin

@@ -38,8 +38,8 @@ def begun(
         values = dict(subject.values)
         measured = subject.measured if measured is None else measured
         subject = subject.model
-    model = with_measured_signals(subject, measured)
-    series = tuple(load_measured(model) if measured is None else measured)
+    series = tuple(load_measured(subject) if measured is None else measured)
+    model = with_measured_signals(subject, series)
     refuse_delays(model, "each window of a trace")
     check_series(model, series, options.check)
     refuse_readers_of_free(model)
