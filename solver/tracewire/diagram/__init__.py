@@ -1,6 +1,7 @@
 """Diagrams: from a YAML file to a checked description, and edits of its text."""
 
 from tracewire.diagram.builder import DiagramBuilder, Signal, SubsystemBuilder
+from tracewire.diagram.changes import AddBlock, AddOwn, AddSensorTerm, Change, apply, patch
 from tracewire.diagram.complete import Proposal, complete, word_before
 from tracewire.diagram.diagram import (
     Array,
@@ -71,8 +72,12 @@ from tracewire.diagram.yaml_text import mapping_text, quoted
 __all__ = [
     "EVENT_KINDS",
     "STDIN",
+    "AddBlock",
+    "AddOwn",
+    "AddSensorTerm",
     "Array",
     "BlockUse",
+    "Change",
     "Channel",
     "Cleaning",
     "Clock",
@@ -102,6 +107,7 @@ __all__ = [
     "add_own",
     "add_sensor",
     "add_to_drive",
+    "apply",
     "complete",
     "cycles",
     "difference",
@@ -118,6 +124,7 @@ __all__ = [
     "load_text",
     "mapping_text",
     "package_subsystems",
+    "patch",
     "path_text",
     "quantity_problems",
     "quoted",

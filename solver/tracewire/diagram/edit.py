@@ -171,14 +171,19 @@ def difference(old: Diagram, new: Diagram) -> str:
 
 def _addends(use: BlockUse, inside: Diagram, blocks: Entries) -> tuple[str, Node]:
     """The input of a sum that takes several wires, and its node."""
-    many: tuple[str, ...] = ()
-    if use.type in inside.library:
-        many = tuple(port.name for port in inside.library[use.type].inputs if port.many)
-    line = blocks.values[use.name]
-    if not many or use.subsystem is not None or not isinstance(line, Entries):
+    port, line = many_port(use, inside), blocks.values[use.name]
+    assert isinstance(line, Entries)
+    return port, line.values[port]
+
+
+def many_port(use: BlockUse, inside: Diagram) -> str:
+    """The input of a sum that takes several wires. Raises OptionError: it is no sum."""
+    known = inside.library[use.type].inputs if use.type in inside.library else ()
+    many = [port.name for port in known if port.many]
+    if not many or use.subsystem is not None:
         what = f"block '{use.name}' is a {use.type}, and has no input for several signals"
         raise OptionError.one(what, use.place, hint="Name a sum.")
-    return many[0], line.values[many[0]]
+    return many[0]
 
 
 def _own_sum(diagram: Diagram, sum_name: str) -> tuple[Diagram, Diagram, Entries, str]:

@@ -10,7 +10,8 @@ from scipy.integrate import solve_ivp
 from tracewire.compile import Model, compile
 from tracewire.diagram import read_text
 from tracewire.solve import Interrupted
-from tracewire.trace.candidates.candidates import Candidate, find_candidates
+from tracewire.trace.candidates.candidate import Candidate
+from tracewire.trace.candidates.candidates import find_candidates
 from tracewire.trace.candidates.histories import histories, variants_of
 from tracewire.trace.candidates.levels import Trajectory, levels_of
 from tracewire.trace.candidates.places import find_places

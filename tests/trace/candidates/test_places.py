@@ -6,9 +6,10 @@ from pathlib import Path
 from textwrap import dedent
 
 import pytest
+from oracles.written import with_effects
 from tracewire.compile import compile
 from tracewire.diagram import read, read_text
-from tracewire.trace.candidates.candidates import extend, find_candidates
+from tracewire.trace.candidates.candidates import find_candidates
 from tracewire.trace.candidates.levels import Level, Levels
 from tracewire.trace.candidates.places import Place, find_places, untried
 from tracewire.trace.options import TraceOptions
@@ -285,7 +286,7 @@ def test_an_effect_inside_a_subsystem_is_wired_to_the_names_there() -> None:
     viscous = known["viscous"]
     assert (viscous.block, viscous.coefficient) == ("body.viscous", "body.viscous.c")
     assert viscous.parameter == "c"
-    new = extend(diagram, [(viscous, {"c": 0.25})])
+    new = with_effects(diagram, [(viscous, {"c": 0.25})])
     assert "viscous: {type: viscous, rate: v, c: {value: 0.25, fit:" in new.text
     assert "of: [-x, u, w, viscous]" in new.text
     assert "body.viscous.c" in compile(new, backend="quick").flat.parameters

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from oracles.oscillator import bench_of, candidates_of, record, search_of
-from tracewire.trace.candidates.candidates import Candidate
+from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Row, Screen

@@ -17,7 +17,7 @@ from tracewire.errors import Place as Spot
 from tracewire.errors import TracewireError
 from tracewire.formula import Number
 from tracewire.solve import Interrupted, simulate
-from tracewire.trace.candidates.candidates import Candidate
+from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.levels import Trajectory
 from tracewire.trace.thresholds import CandidateOptions
 

@@ -11,7 +11,7 @@ from tracewire.compile import Model
 from tracewire.errors import TracewireError
 from tracewire.formula import Expression, evaluate, names_of
 from tracewire.library import Block
-from tracewire.trace.candidates.candidates import Candidate
+from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.levels import Trajectory
 from tracewire.trace.candidates.places import Place
 

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
-from tracewire.diagram import Diagram, set_sensors, set_values
+from tracewire.diagram import Diagram, patch, set_sensors, set_values
 from tracewire.residual import SENSED
-from tracewire.trace.candidates.candidates import extend
+from tracewire.trace.candidates.changes import changes_of
 from tracewire.trace.found import FoundEffect, Ranked, StepTold, Tie
 from tracewire.trace.results.account import intervals
 from tracewire.trace.search.finish import Final, Rival
@@ -131,7 +131,8 @@ def edited(model: Model, effects: Sequence[Added], values: Mapping[str, float]) 
     """The original text with effects and with the refitted parameters."""
     if not effects:
         return model.diagram
-    diagram = extend(model.diagram, [(e.candidate, e.values) for e in effects])
+    chosen = [(effect.candidate, effect.values) for effect in effects]
+    diagram = patch(model.diagram, changes_of(model.diagram, chosen))
     own = {name: value for name, value in values.items() if name in model.flat.parameters}
     diagram = set_values(diagram, own) if own else diagram
     added = {effect.candidate.coefficient for effect in effects}

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.residual import Unknown, Windows, eliminated
-from tracewire.trace.candidates.candidates import Candidate, is_default
+from tracewire.trace.candidates.candidate import Candidate, is_default
 from tracewire.trace.candidates.histories import Variant, histories
 from tracewire.trace.candidates.levels import Trajectory
 from tracewire.trace.candidates.waves import as_measured, scanned

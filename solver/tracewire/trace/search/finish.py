@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tracewire.errors import FitError
-from tracewire.trace.candidates.candidates import is_default
+from tracewire.trace.candidates.candidate import is_default
 from tracewire.trace.search.refits import few_of, target_of
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.trial import Added, Trial

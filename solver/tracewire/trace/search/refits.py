@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tracewire.errors import DiagramError, FitError
+from tracewire.errors import DiagramError, FitError, OptionError
 from tracewire.residual import CREEPS, SETTLING, Segment
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal
@@ -190,7 +190,7 @@ class Refits:
                 creeps=creeps,
                 settling=settling,
             )
-        except (FitError, DiagramError) as error:
+        except (FitError, DiagramError, OptionError) as error:
             there = {str(effect) for effect in now.effects}
             names = " and ".join(str(e) for e in effects if str(e) not in there)
             beginning = f"{names} was not tried: "

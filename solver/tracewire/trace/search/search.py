@@ -9,7 +9,8 @@ import numpy as np
 
 from tracewire.errors import FitError
 from tracewire.residual import Section, Segment
-from tracewire.trace.candidates.candidates import Candidate, find_candidates
+from tracewire.trace.candidates.candidate import Candidate
+from tracewire.trace.candidates.candidates import find_candidates
 from tracewire.trace.candidates.levels import levels_of
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.check.repeated import comes_back, visible

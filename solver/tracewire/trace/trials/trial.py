@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model, compile
-from tracewire.diagram import Diagram
-from tracewire.errors import FitError
+from tracewire.diagram import Diagram, apply, patch
+from tracewire.errors import DiagramError, FitError, OptionError, TracewireError
 from tracewire.residual import (
     CREEPS,
     SETTLING,
@@ -31,7 +31,8 @@ from tracewire.residual import (
     settled,
 )
 from tracewire.solve import Limits, parameter_values, release
-from tracewire.trace.candidates.candidates import Candidate, extend, unknowns_of, without_defaults
+from tracewire.trace.candidates.candidate import Candidate, unknowns_of, without_defaults
+from tracewire.trace.candidates.changes import changes_of
 from tracewire.trace.candidates.tones import Sine, tones_of
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.thresholds import TrialOptions
@@ -173,6 +174,8 @@ class Bench:
     rtol: float
     inputs: InputCovariance | None = None
     options: TraceOptions = field(default_factory=TraceOptions)
+    unwritable: dict[str, TracewireError | None] = field(default_factory=dict)
+    """Why no effect can be written at a place, by its name; None where one can."""
 
     @cached_property
     def tones(self) -> dict[str, dict[str, Sine]]:
@@ -214,13 +217,17 @@ class Bench:
         that is too slow to reach the sum of squares `target` ends early; windows whose squared
         residual is at most `good` are not taken for astray; `creeps` and `settling` as in
         `descended`. Raises FitError where the
-        model cannot be simulated, DiagramError where an effect cannot be wired.
+        model cannot be simulated, DiagramError or OptionError where an effect cannot be wired, or
+        the text at its place cannot be edited by program.
         """
         steps = self.options.trial.steps if steps is None else steps
         good = self.options.trial.not_astray if good is None else good
-        added = [(effect.candidate, effect.values) for effect in effects]
-        diagram = extend(self.declared.diagram, added) if added else self.declared.diagram
-        model = self.compiled(diagram) if added else self.declared
+        diagram, model = self.declared.diagram, self.declared
+        if effects:
+            added = [(effect.candidate, effect.values) for effect in effects]
+            diagram = apply(diagram, changes_of(diagram, added))
+            self._refuse_unwritable(effects)
+            model = self.compiled(diagram)
         fixed = fixed or {}
         unknowns = [u for u in self._unknowns(effects, values) if u.name not in fixed]
         segments = [_without_strange(segment, model) for segment in segments]
@@ -230,10 +237,25 @@ class Bench:
         _refuse_failed(criterion, windows)
         windows, converged = descended(windows, steps, target, creeps, settling)
         _refuse_failed(criterion, windows)
-        if added:
+        if effects:
             release(model)  # a search keeps hundreds of models
         now = tuple(effect.at(windows.values) for effect in effects)
         return Trial(diagram, model, now, windows, length, converged, self.options.trial)
+
+    def _refuse_unwritable(self, effects: Sequence[Added]) -> None:
+        """Refuse effects at places where the text has no room for one: what a search finds is
+        written at its end. The text is tried once for each place."""
+        diagram = self.declared.diagram
+        for effect in effects:
+            place = effect.candidate.place.name
+            if place not in self.unwritable:
+                self.unwritable[place] = None
+                try:
+                    patch(diagram, changes_of(diagram, [(effect.candidate, effect.values)]))
+                except (DiagramError, OptionError) as error:
+                    self.unwritable[place] = error
+            if (known := self.unwritable[place]) is not None:
+                raise known
 
     def again(
         self, trial: Trial, segments: Sequence[Segment], length: int, target: float = np.inf
