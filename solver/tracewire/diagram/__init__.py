@@ -32,6 +32,7 @@ from tracewire.diagram.edit import (
     remove_addend,
     set_values,
     set_variants,
+    with_addend,
     written_units,
 )
 from tracewire.diagram.edit_own import add_own
@@ -148,6 +149,7 @@ __all__ = [
     "state_names",
     "states",
     "who_has",
+    "with_addend",
     "with_modeline",
     "with_series_of",
     "word_before",

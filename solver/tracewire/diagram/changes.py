@@ -17,7 +17,7 @@ from typing import Any
 from tracewire.diagram.body import Body
 from tracewire.diagram.channels import unit_of_term
 from tracewire.diagram.diagram import BlockUse, Diagram, Value, Wire
-from tracewire.diagram.edit import add_addend, many_port
+from tracewire.diagram.edit import add_addend, many_port, with_addend
 from tracewire.diagram.edit_own import add_own, declared_parameter
 from tracewire.diagram.edit_sensors import add_sensor, column_factor, series_of
 from tracewire.diagram.names import find_signal, split_index
@@ -139,13 +139,12 @@ def _to_sum(diagram: Diagram, path: str, change: AddBlock, negative: bool = Fals
         what = f"block '{name}' is one of the row '{old.row}', which have one line"
         hint = "Edit that line, or write the blocks out: tracewire show --text."
         raise OptionError.one(what, old.place, hint=hint)
-    port = many_port(old, inside)
+    many_port(old, inside)  # refuses what is no sum
     new = _use(diagram, inside, change)
-    wires = (*old.inputs[port], Wire(new.name, negative))
 
     def edit(body: Diagram) -> Diagram:
-        wired = replace(old, inputs={**old.inputs, port: wires})
-        return replace(body, blocks=_with_block({**body.blocks, name: wired}, name, new))
+        wired = with_addend(body, name, Wire(new.name, negative))
+        return replace(body, blocks=_with_block(wired.blocks, name, new))
 
     return _changed(diagram, inside.place, old.place, name, edit) if where else edit(diagram)
 

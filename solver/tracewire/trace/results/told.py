@@ -76,8 +76,7 @@ def _standing(search: Search, effect: Added) -> tuple[float, float, float]:
     for step in search.steps:
         rows = {str(row.candidate): row for row in step.screen.best()}
         for one in step.tried:
-            names = [str(row.candidate) for row in one.proposal.rows]
-            if str(effect) in names and one.trial is step.after:
+            if str(effect) in one.proposal.names and one.trial is step.after:
                 row = rows.get(str(effect))
                 return -one.rise / 2, row.masked if row else float("nan"), one.weight
     return (float("nan"),) * 3
@@ -89,23 +88,19 @@ def told_steps(search: Search, interval: float) -> tuple[StepTold, ...]:
 
 
 def _told(step: Step, interval: float, shown: int) -> StepTold:
-    rows = []
-    seen = set()
-    for one in step.tried:
-        names = " + ".join(str(row.candidate) for row in one.proposal.rows)
-        seen.add(names)
-        masked = max(row.masked for row in one.proposal.rows)
-        rows.append(
-            Ranked(
-                names,
-                one.proposal.gain,
-                -one.rise / 2,
-                one.weight,
-                masked,
-                one.trial.s2,
-                one.remark,
-            )
+    rows = [
+        Ranked(
+            " + ".join(one.proposal.names),
+            one.proposal.gain,
+            -one.rise / 2,
+            one.weight,
+            max(row.masked for row in one.proposal.rows),
+            one.trial.s2,
+            one.remark,
         )
+        for one in step.tried
+    ]
+    seen = {row.effects for row in rows}
     for row in step.screen.best()[:shown]:
         if str(row.candidate) not in seen:
             rows.append(Ranked(str(row.candidate), row.gain, masked=row.masked))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from tracewire.diagram import BlockUse, Diagram, InputPort, Value, Wire, rewired
+from tracewire.diagram import BlockUse, Diagram, InputPort, Value, Wire, rewired, with_addend
 from tracewire.formula import Call, Expression, Name, Number
 from tracewire.trace.candidates.places import Place
 
@@ -59,21 +59,13 @@ def _added(diagram: Diagram, place: Place, name: str, formula: Expression) -> Di
         assert use.subsystem is not None
         port = InputPort(name, default=Value(Number(0.0)))
         inside = replace(use.subsystem, inputs={**use.subsystem.inputs, name: port})
-        inside = _wired(inside, place.definition.rpartition(".")[2], name)
+        inside = with_addend(inside, place.definition.rpartition(".")[2], Wire(name))
         use = replace(use, subsystem=inside, inputs={**use.inputs, name: (Wire(name),)})
         diagram = replace(diagram, blocks={**diagram.blocks, place.within: use})
     else:
-        diagram = _wired(diagram, place.definition, name)
+        diagram = with_addend(diagram, place.definition, Wire(name))
     probe = BlockUse(name, "expression", {}, {"formula": formula})
     return replace(diagram, blocks={**diagram.blocks, name: probe})
-
-
-def _wired(diagram: Diagram, sum_name: str, signal: str) -> Diagram:
-    """The diagram with one more signal in a sum."""
-    old = diagram.blocks[sum_name]
-    (port,) = (p.name for p in diagram.library[old.type].inputs if p.many)
-    new = replace(old, inputs={**old.inputs, port: (*old.inputs[port], Wire(signal))})
-    return replace(diagram, blocks={**diagram.blocks, sum_name: new})
 
 
 def _total(terms: Sequence[Expression]) -> Expression:

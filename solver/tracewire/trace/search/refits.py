@@ -17,26 +17,14 @@ from tracewire.trace.trials.trial import Added, Bench, Trial
 
 @dataclass(frozen=True, eq=False)
 class Tried:
-    """Effects that were refitted: how much BIC rose, and what became of them."""
+    """Effects that were refitted, at first in a few steps on few windows: how much BIC rose, their
+    weight among those that were ranked with them, and what became of them."""
 
     trial: Trial
     proposal: Proposal
-    rise: float
-    weight: float
+    rise: float = 0.0
+    weight: float = 0.0
     remark: str = ""
-
-
-@dataclass(frozen=True, eq=False)
-class Begun:
-    """A proposal after a few steps on few windows."""
-
-    trial: Trial
-    proposal: Proposal
-
-    @property
-    def is_pair(self) -> bool:
-        """Whether two effects are proposed together."""
-        return len(self.proposal.rows) > 1
 
     @property
     def by_windows(self) -> float:
@@ -80,43 +68,45 @@ class Refits:
         target = min((one.trial.rss for one in tried), default=np.inf)
         return self.ranked(now, [*tried, *self.whole(now, begun, target)])
 
-    def begun(self, now: Trial, proposals: Sequence[Proposal]) -> list[Begun]:
+    def begun(self, now: Trial, proposals: Sequence[Proposal]) -> list[Tried]:
         """The proposals after a few steps on few windows."""
         segments = now.windows.segments
         rows = few_of(segments, self.options.few)
         few, least = [segments[n] for n in rows], float(now.windows.squares[rows].sum())
         begun = []
         for number, proposal in enumerate(proposals, start=1):
-            names = " and ".join(str(row.candidate) for row in proposal.rows)
+            names = " and ".join(proposal.names)
             self.tell(f"refitting with {names} ({number} of {len(proposals)})")
-            added = [row.added for row in proposal.rows]
             first = self.options.first_steps
-            trial = self.extended(now, added, few, first, values=proposal.values)
+            added = [row.added for row in proposal.rows]
+            effects = (*now.effects, *added)
+            trial = self.fitted(now, effects, few, steps=first, values=proposal.values)
             if trial is not None and trial.rss > least:  # the promised size led it astray
                 small = [
                     one.having(one.candidate.parameter, self.options.small * one.coefficient)
                     for one in added
                 ]
-                again = self.extended(now, small, few, self.options.first_steps) or trial
+                again = self.fitted(now, (*now.effects, *small), few, steps=first) or trial
                 trial = min(trial, again, key=lambda one: one.rss)
             if trial is not None:
-                begun.append(Begun(trial, proposal))
+                begun.append(Tried(trial, proposal))
         return begun
 
-    def whole(self, now: Trial, begun: Sequence[Begun], target: float = np.inf) -> list[Tried]:
+    def whole(self, now: Trial, begun: Sequence[Tried], target: float = np.inf) -> list[Tried]:
         """The best of what was begun, refitted on all windows and ranked.
 
         Those that are too slow to come near the best, or below `target`, are given up on the way.
         """
         most = self.options.kept if now.s2 < self.options.far else self.options.kept_far
-        kept: list[Begun] = []
+        kept: list[Tried] = []
         by_sum = sorted(begun, key=lambda one: one.trial.rss)
         by_windows = sorted(begun, key=lambda one: one.by_windows)
         for one, other in zip(by_sum, by_windows, strict=True):
             near = one.trial.rss < self.options.within * by_sum[0].trial.rss
             near_too = other.by_windows - by_windows[0].by_windows < np.log(self.options.within)
             for chosen, is_near in ((one, near), (other, near_too)):
-                alike = sum(known.is_pair == chosen.is_pair for known in kept)
+                size = len(chosen.proposal.rows)
+                alike = sum(len(known.proposal.rows) == size for known in kept)
                 if is_near and chosen not in kept and alike < most:
                     kept.append(chosen)
         segments, tried = now.windows.segments, []
@@ -124,11 +114,10 @@ class Refits:
         for number, one in enumerate(kept, start=1):
             names = named(one.trial, now)
             self.tell(f"refitting {names} on all windows ({number} of {len(kept)})")
-            trial = self.extended(
-                one.trial, (), begun_there(segments, one.trial, rows), target=target
-            )
+            there = begun_there(segments, one.trial, rows)
+            trial = self.fitted(one.trial, one.trial.effects, there, target=target)
             if trial is not None:
-                tried.append(Tried(trial, one.proposal, 0.0, 0.0))
+                tried.append(Tried(trial, one.proposal))
                 target = min(target, target_of(trial, self.bench.options))
         return self.ranked(now, tried)
 
@@ -146,20 +135,6 @@ class Refits:
         ]
         return sorted(rows, key=lambda one: one.rise)
 
-    def extended(
-        self,
-        now: Trial,
-        added: Sequence[Added],
-        segments: Sequence[Segment],
-        steps: int | None = None,
-        target: float = np.inf,
-        values: Mapping[str, float] | None = None,
-    ) -> Trial | None:
-        """The model with more effects, refitted from where it stood, or from other values of what
-        is declared; None if it does not run."""
-        effects = (*now.effects, *added)
-        return self.fitted(now, effects, segments, steps=steps, target=target, values=values)
-
     def fitted(
         self,
         now: Trial,
@@ -173,7 +148,8 @@ class Refits:
         settling: int = SETTLING,
         values: Mapping[str, float] | None = None,
     ) -> Trial | None:
-        """The model with other effects, refitted from where it stood; None if it does not run."""
+        """The model with other effects, refitted from where it stood, or from other values of what
+        is declared; None if it does not run."""
         known = now.windows.criterion.parameters
         steps = self.options.steps if steps is None else steps
         try:
