@@ -27,9 +27,8 @@ from tracewire.trace.choose.promising import promising, unmasked
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal, Screen
 from tracewire.trace.screen.shortlist import distinct
-from tracewire.trace.search.refits import begun_there
 from tracewire.trace.search.search import Search
-from tracewire.trace.trials.trial import Added, Trial
+from tracewire.trace.trials.trial import Added, Trial, begun_there
 
 Array = NDArray[np.float64]
 Key = tuple[frozenset[str], tuple[str, ...]]

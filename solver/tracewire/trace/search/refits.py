@@ -12,7 +12,7 @@ from tracewire.residual import CREEPS, SETTLING, Segment
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal
 from tracewire.trace.thresholds import SearchOptions
-from tracewire.trace.trials.trial import Added, Bench, Trial
+from tracewire.trace.trials.trial import Added, Bench, Trial, begun_there
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,8 +30,7 @@ class Tried:
     def by_windows(self) -> float:
         """The mean over windows of the logarithm of what they leave, ln(E/n + 1): a few windows
         that were led astray, as by a friction that sticks, do not rule it."""
-        left = self.trial.windows.squares / [r.size for r in self.trial.windows.residuals]
-        return float(np.mean(np.log(left + 1.0)))
+        return float(np.mean(np.log(self.trial.means + 1.0)))
 
 
 @dataclass(frozen=True)
@@ -181,14 +180,6 @@ def few_of(segments: Sequence[Segment], count: int) -> list[int]:
     names = [segment.measured.name for segment in segments]
     most = -(-count // len(set(names)))
     return [n for n, name in enumerate(names) if names[:n].count(name) < most]
-
-
-def begun_there(segments: Sequence[Segment], trial: Trial, rows: Sequence[int]) -> list[Segment]:
-    """Windows of which some, by number, begin where a trial on those begins."""
-    found = list(segments)
-    for n, segment in zip(rows, trial.windows.segments, strict=True):
-        found[n] = segment
-    return found
 
 
 def target_of(trial: Trial, options: TraceOptions) -> float:

@@ -132,8 +132,13 @@ class Trial:
     def good(self) -> float:
         """The mean squared residual of a window up to which its start is not taken for astray:
         twice that of the middle one, and what the noise alone may give."""
-        means = self.windows.squares / [max(r.size, 1) for r in self.windows.residuals]
-        return max(2 * float(np.median(means)), self.options.not_astray)
+        return max(2 * float(np.median(self.means)), self.options.not_astray)
+
+    @property
+    def means(self) -> Vector:
+        """The mean squared residual of each window."""
+        windows = self.windows
+        return np.asarray(windows.squares / [max(r.size, 1) for r in windows.residuals])
 
     @property
     def cost(self) -> float:
@@ -272,7 +277,7 @@ class Bench:
         """A trial that a few windows rule, fitted without them first and then to all, where that
         does better: values and a start may hold each other where neither is right."""
         options, segments = self.options.trial, trial.windows.segments
-        means = trial.windows.squares / [max(r.size, 1) for r in trial.windows.residuals]
+        means = trial.means
         others = np.flatnonzero(means <= options.ruling * np.median(means)).tolist()
         few = len(others) >= (1 - options.few_ruling) * len(segments)
         if trial.s2 < options.not_astray or len(others) == len(segments) or not few:
@@ -283,10 +288,9 @@ class Bench:
                 trial.effects, [segments[n] for n in others], trial.length, trial.values,
                 fixed=fixed, good=good,
             )  # fmt: skip
-            begun = dict(zip(others, there.windows.segments, strict=True))
             whole = self.fitted(
-                there.effects, [begun.get(n, s) for n, s in enumerate(segments)], trial.length,
-                there.values, fixed=fixed, target=trial.rss, good=good,
+                there.effects, begun_there(segments, there, others), trial.length, there.values,
+                fixed=fixed, target=trial.rss, good=good,
             )  # fmt: skip
         except FitError:
             return trial
@@ -413,6 +417,14 @@ class Bench:
             own = unknowns_of(effect.candidate, effect.values)
             free += [u for u in own if u.name not in known]
         return [replace(u, value=min(max(u.value, u.low), u.high)) for u in free]
+
+
+def begun_there(segments: Sequence[Segment], trial: Trial, rows: Sequence[int]) -> list[Segment]:
+    """Windows of which some, by number, begin where a trial on those begins."""
+    found = list(segments)
+    for n, segment in zip(rows, trial.windows.segments, strict=True):
+        found[n] = segment
+    return found
 
 
 def _refuse_failed(criterion: Criterion, windows: Windows) -> None:
