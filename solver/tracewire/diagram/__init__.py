@@ -1,6 +1,7 @@
 """Diagrams: from a YAML file to a checked description, and edits of its text."""
 
 from tracewire.diagram.builder import DiagramBuilder, Signal, SubsystemBuilder
+from tracewire.diagram.changes import AddBlock, AddOwn, AddSensorTerm, Change, apply, patch
 from tracewire.diagram.complete import Proposal, complete, word_before
 from tracewire.diagram.diagram import (
     Array,
@@ -31,6 +32,7 @@ from tracewire.diagram.edit import (
     remove_addend,
     set_values,
     set_variants,
+    with_addend,
     written_units,
 )
 from tracewire.diagram.edit_own import add_own
@@ -72,8 +74,12 @@ from tracewire.diagram.yaml_text import mapping_text, quoted
 __all__ = [
     "EVENT_KINDS",
     "STDIN",
+    "AddBlock",
+    "AddOwn",
+    "AddSensorTerm",
     "Array",
     "BlockUse",
+    "Change",
     "Channel",
     "Cleaning",
     "Clock",
@@ -103,6 +109,7 @@ __all__ = [
     "add_own",
     "add_sensor",
     "add_to_drive",
+    "apply",
     "complete",
     "cycles",
     "difference",
@@ -119,6 +126,7 @@ __all__ = [
     "load_text",
     "mapping_text",
     "package_subsystems",
+    "patch",
     "path_text",
     "quantity_problems",
     "quoted",
@@ -143,6 +151,7 @@ __all__ = [
     "state_names",
     "states",
     "who_has",
+    "with_addend",
     "with_modeline",
     "with_series_of",
     "word_before",

@@ -92,7 +92,7 @@ def _channel(
         for name in ("sigma", "modulo")
     }
     sensor = {
-        name: _of_sensor(name, values[name], body, _unit_of(name, unit))
+        name: _of_sensor(name, values[name], body, unit_of_term(name, unit))
         for name in SENSOR_TERMS
         if name in values
     }
@@ -127,7 +127,7 @@ def _hold(node: Node, body: Body) -> Hold | None:
     return HOLDS.get(word or "")
 
 
-def _unit_of(name: str, unit: Unit) -> Unit:
+def unit_of_term(name: str, unit: Unit) -> Unit:
     """The unit of a number of a sensor, from that of the column; none where the column has none."""
     text, factor = SENSOR_TERMS[name].unit, SENSOR_TERMS[name].factor(unit.factor)
     if text == "{}":

@@ -10,8 +10,9 @@ import contextlib
 import difflib
 import math
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
-from tracewire.diagram.diagram import BlockUse, Diagram
+from tracewire.diagram.diagram import BlockUse, Diagram, Wire
 from tracewire.diagram.outline import Outline
 from tracewire.diagram.override import localised, with_parts, without_part
 from tracewire.diagram.rewrite import digits, reread
@@ -184,14 +185,27 @@ def difference(old: Diagram, new: Diagram) -> str:
 
 def _addends(use: BlockUse, inside: Diagram, blocks: Entries) -> tuple[str, Node]:
     """The input of a sum that takes several wires, and its node."""
-    many: tuple[str, ...] = ()
-    if use.type in inside.library:
-        many = tuple(port.name for port in inside.library[use.type].inputs if port.many)
-    line = blocks.values[use.name]
-    if not many or use.subsystem is not None or not isinstance(line, Entries):
+    port, line = many_port(use, inside), blocks.values[use.name]
+    assert isinstance(line, Entries)
+    return port, line.values[port]
+
+
+def many_port(use: BlockUse, inside: Diagram) -> str:
+    """The input of a sum that takes several wires. Raises OptionError: it is no sum."""
+    known = inside.library[use.type].inputs if use.type in inside.library else ()
+    many = [port.name for port in known if port.many]
+    if not many or use.subsystem is not None:
         what = f"block '{use.name}' is a {use.type}, and has no input for several signals"
         raise OptionError.one(what, use.place, hint="Name a sum.")
-    return many[0], line.values[many[0]]
+    return many[0]
+
+
+def with_addend(diagram: Diagram, sum_name: str, wire: Wire) -> Diagram:
+    """The diagram with one more wire in a sum; its text stays as it is."""
+    old = diagram.blocks[sum_name]
+    port = many_port(old, diagram)
+    wired = replace(old, inputs={**old.inputs, port: (*old.inputs[port], wire)})
+    return replace(diagram, blocks={**diagram.blocks, sum_name: wired})
 
 
 def _own_sum(diagram: Diagram, sum_name: str) -> tuple[Diagram, Diagram, Entries, str]:

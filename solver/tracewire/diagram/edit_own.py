@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from tracewire.diagram.diagram import Diagram
+from tracewire.diagram.diagram import Diagram, Value
 from tracewire.diagram.names import find_parameter, parameters
 from tracewire.diagram.outline import Outline
 from tracewire.diagram.override import with_parts
-from tracewire.diagram.rewrite import bounds, digits, reread
+from tracewire.diagram.rewrite import as_written, bounds, reread
 from tracewire.diagram.splice import entry_last
 from tracewire.diagram.strict import Entries, Node
 from tracewire.errors import OptionError, unknown
+from tracewire.formula import number_text
 
 
 def add_own(
@@ -38,7 +39,7 @@ def add_own(
             assert isinstance(inner, Entries)
             node = inner
         texts = {
-            path: _text(value, _factor(diagram, path), (fit or {}).get(path))
+            path: _text(value, declared_parameter(diagram, path).factor, (fit or {}).get(path))
             for path, value in own.items()
         }
         given = node.values.get("parameters")
@@ -54,15 +55,15 @@ def add_own(
 
 
 def _text(value: float, factor: float, fit: tuple[float, float] | None) -> str:
-    if fit is None:
-        return digits(value / factor)
-    low, high = fit[0] / factor, fit[1] / factor
-    return f"{{value: {digits(value / factor, low, high)}, fit: {bounds((low, high))}}}"
+    number, ends = as_written(value, factor, fit)
+    if ends is None:
+        return number_text(number)
+    return f"{{value: {number_text(number)}, fit: {bounds(ends)}}}"
 
 
-def _factor(diagram: Diagram, path: str) -> float:
-    """The factor to SI of a number without a unit for a parameter."""
+def declared_parameter(diagram: Diagram, path: str) -> Value:
+    """The declaration of a parameter by its path. Raises OptionError: there is none."""
     known = find_parameter(diagram, path)
     if known is None:
         raise OptionError([unknown("parameter", path, parameters(diagram))])
-    return known.factor
+    return known

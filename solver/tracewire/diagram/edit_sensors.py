@@ -10,11 +10,11 @@ from tracewire.diagram.diagram import Diagram, Series, Value
 from tracewire.diagram.names import find_recorded
 from tracewire.diagram.outline import Outline
 from tracewire.diagram.override import localised
-from tracewire.diagram.rewrite import bounds, digits, reread
+from tracewire.diagram.rewrite import as_written, bounds, digits, reread
 from tracewire.diagram.splice import Change, entry_last, replaced
 from tracewire.diagram.strict import Entries, Node, Scalar
 from tracewire.errors import FormulaError, OptionError, unknown
-from tracewire.formula import Number, read_unit
+from tracewire.formula import Number, number_text, read_unit
 from tracewire.library import SENSOR_TERMS
 
 
@@ -31,6 +31,24 @@ def add_sensor(
     SI; the text gets them in the unit of the column (a delay in s). Raises OptionError: there is no
     such measured signal, or no such kind.
     """
+    full, having = series_of(diagram, signal, kind)
+    outline = Outline(diagram)
+    nodes = [_channel(diagram, outline.root, series, full) for series in having]
+    diagram = localised(diagram, outline, nodes)
+    root = Outline(diagram).root
+    changes = []
+    for series in having:
+        node = _channel(diagram, root, series, full)
+        text = _value_text(value, fit, SENSOR_TERMS[kind].factor(column_factor(series, full)))
+        changes.append(_with_number(diagram.text, node, kind, text))
+    return reread(diagram, changes)
+
+
+def series_of(diagram: Diagram, signal: str, kind: str) -> tuple[str, list[Series]]:
+    """The full name of a measured signal, and the series that may get a number of its sensor.
+
+    Raises OptionError: there is no such measured signal, or no such kind.
+    """
     if kind not in SENSOR_TERMS:
         raise OptionError([unknown("number of a sensor", kind, SENSOR_TERMS)])
     full = find_recorded(diagram, signal)
@@ -42,16 +60,7 @@ def add_sensor(
     if full is None or not having:
         measured = {name for series in diagram.measured.values() for name in series.channels}
         raise OptionError([unknown("measured signal", signal, measured)])
-    outline = Outline(diagram)
-    nodes = [_channel(diagram, outline.root, series, full) for series in having]
-    diagram = localised(diagram, outline, nodes)
-    root = Outline(diagram).root
-    changes = []
-    for series in having:
-        node = _channel(diagram, root, series, full)
-        text = _value_text(value, fit, SENSOR_TERMS[kind].factor(_factor(series, full)))
-        changes.append(_with_number(diagram.text, node, kind, text))
-    return reread(diagram, changes)
+    return full, having
 
 
 def set_sensors(diagram: Diagram, values: Mapping[str, float]) -> Diagram:
@@ -143,7 +152,7 @@ def _factor_of(known: Value, kind: str, series: Series, signal: str) -> float:
     """The factor to SI of a number of a sensor as it stands in the text."""
     if known.unit or series.channels[signal].declared is not None:
         return known.factor
-    return known.factor * SENSOR_TERMS[kind].factor(_factor(series, signal))
+    return known.factor * SENSOR_TERMS[kind].factor(column_factor(series, signal))
 
 
 def _channel(diagram: Diagram, root: Entries, series: Series, signal: str) -> Node:
@@ -157,10 +166,9 @@ def _channel(diagram: Diagram, root: Entries, series: Series, signal: str) -> No
 
 
 def _value_text(value: float, fit: tuple[float, float] | None, factor: float) -> str:
-    if fit is None:
-        return f"{{value: {digits(value / factor)}}}"
-    low, high = (end / factor for end in fit)
-    return f"{{value: {digits(value / factor, low, high)}, fit: {bounds((low, high))}}}"
+    number, ends = as_written(value, factor, fit)
+    shown = "" if ends is None else f", fit: {bounds(ends)}"
+    return f"{{value: {number_text(number)}{shown}}}"
 
 
 def _with_number(text: str, channel: Node, kind: str, number: str) -> Change:
@@ -174,7 +182,7 @@ def _with_number(text: str, channel: Node, kind: str, number: str) -> Change:
     return entry_last(text, channel, kind, number)
 
 
-def _factor(series: Series, signal: str) -> float:
+def column_factor(series: Series, signal: str) -> float:
     """The factor to SI of a column: by its unit, else by that of the file's header."""
     channel = series.channels[signal]
     calibrated = {step.options.get("signal") for step in series.clean if step.step == "calibrate"}

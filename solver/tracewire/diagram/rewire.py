@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TypeGuard
 
-from tracewire.diagram.diagram import BlockUse, Diagram, Event
+from tracewire.diagram.diagram import BlockUse, Diagram, Event, Wire
 from tracewire.diagram.edit import add_addend
 from tracewire.diagram.names import find_signal
 from tracewire.diagram.outline import Outline
@@ -67,22 +68,13 @@ def add_to_drive(diagram: Diagram, drive: str, block_name: str, block_line: str)
     which the readers get in its place. What is recorded and measured stays the drive. Raises
     OptionError: nothing reads the drive; DiagramError: a reader cannot be edited by program.
     """
-    readers = [use for use in diagram.blocks.values() if _reads(diagram, use, drive)]
-    events = [event for event in diagram.events if _event_reads(diagram, event, drive)]
-    readers = [use for use in readers if not _acts_on_drive(diagram, use)]
-    if not readers and not events:
-        known = [name for name in (*diagram.inputs, *diagram.blocks) if name != drive]
-        raise OptionError([unknown("drive that something reads", drive, known)])
-    if len(readers) == 1 and not events and readers[0].type == "sum":
-        (wires,) = readers[0].inputs.values()
-        own = [wire for wire in wires if find_signal(diagram, wire.signal) == drive]
-        if len(own) == 1 and not own[0].index:
-            name = readers[0].name
-            return add_addend(diagram, name, block_name, block_line, negative=own[0].negative)
+    readers, events = readers_of(diagram, drive)
+    sole = sole_wire(diagram, drive, readers, events)
+    if sole is not None:
+        name = readers[0].name
+        return add_addend(diagram, name, block_name, block_line, negative=sole.negative)
     anchor = drive if drive in diagram.blocks else readers[0].name if readers else ""
-    seen = f"{drive}_seen"
-    while seen in {*diagram.inputs, *diagram.blocks, *diagram.parameters}:
-        seen += "_"
+    seen = seen_name(diagram, drive)
     diagram, blocks, section = _own_readers(diagram, readers, events)
     line = f"{{type: sum, of: [{drive}]}}"
     text = diagram.text
@@ -107,6 +99,36 @@ def add_to_drive(diagram: Diagram, drive: str, block_name: str, block_line: str)
             what = f"what '{name}' reads is laid out in a way that cannot be edited by program"
             raise DiagramError.one(what, use.place, hint="Write each wire and formula on one line.")
     return add_addend(new, seen, block_name, block_line)
+
+
+def readers_of(diagram: Diagram, drive: str) -> tuple[list[BlockUse], list[Event]]:
+    """The blocks and events that read a drive, without effects at it. Raises OptionError: none."""
+    readers = [use for use in diagram.blocks.values() if _reads(diagram, use, drive)]
+    events = [event for event in diagram.events if _event_reads(diagram, event, drive)]
+    readers = [use for use in readers if not _acts_on_drive(diagram, use)]
+    if not readers and not events:
+        known = [name for name in (*diagram.inputs, *diagram.blocks) if name != drive]
+        raise OptionError([unknown("drive that something reads", drive, known)])
+    return readers, events
+
+
+def sole_wire(
+    diagram: Diagram, drive: str, readers: Sequence[BlockUse], events: Sequence[Event]
+) -> Wire | None:
+    """The wire of a drive to the one sum that reads it; None where there are other readers."""
+    if len(readers) != 1 or events or readers[0].type != "sum":
+        return None
+    (wires,) = readers[0].inputs.values()
+    own = [wire for wire in wires if find_signal(diagram, wire.signal) == drive]
+    return own[0] if len(own) == 1 and not own[0].index else None
+
+
+def seen_name(diagram: Diagram, drive: str) -> str:
+    """A free name for what the readers of a drive see."""
+    seen = f"{drive}_seen"
+    while seen in {*diagram.inputs, *diagram.blocks, *diagram.parameters}:
+        seen += "_"
+    return seen
 
 
 def _own_readers(

@@ -16,13 +16,28 @@ def reread(diagram: Diagram, changes: Sequence[Change]) -> Diagram:
     return read_text(changed(diagram.text, changes), diagram.file, library=diagram.library)
 
 
-def digits(value: float, low: float = -math.inf, high: float = math.inf) -> str:
+def rounded(value: float, low: float = -math.inf, high: float = math.inf) -> float:
     """The value with six digits, or as many more as it takes to stay within its bounds."""
     for count in (6, 9, 12, 15):
-        rounded = float(f"{value:.{count}g}")
-        if low <= rounded <= high:
-            return number_text(rounded)
-    return number_text(value)
+        found = float(f"{value:.{count}g}")
+        if low <= found <= high:
+            return found
+    return value
+
+
+def digits(value: float, low: float = -math.inf, high: float = math.inf) -> str:
+    """The text of a rounded value."""
+    return number_text(rounded(value, low, high))
+
+
+def as_written(
+    value: float, factor: float, fit: tuple[float, float] | None = None
+) -> tuple[float, tuple[float, float] | None]:
+    """A value in SI, and its bounds, as a text has them in a unit with this factor to SI."""
+    if fit is None:
+        return rounded(value / factor), None
+    low, high = fit[0] / factor, fit[1] / factor
+    return rounded(value / factor, low, high), (float(f"{low:.12g}"), float(f"{high:.12g}"))
 
 
 def bounds(fit: tuple[float, float]) -> str:

@@ -50,7 +50,7 @@ def _read_block(name: str, key: Scalar, line: Node, body: Body, find: Find) -> B
         local = _read_local(entries.values["place"], type_name, body, name)
     if kind is None:
         return replace(unread, unit=unit, local=local)
-    ports, parameters = _shape(kind)
+    ports, parameters = shape_of(kind)
     _check_keys(entries, (*ports, *parameters), type_name, body, name)
     inputs: dict[str, tuple[Wire, ...]] = {}
     for port in ports.values():
@@ -98,7 +98,7 @@ def _read_guess(node: Node, inside: Diagram | None, body: Body, name: str) -> Va
     return None
 
 
-def _shape(kind: Block | Diagram) -> tuple[dict[str, Input], dict[str, Parameter]]:
+def shape_of(kind: Block | Diagram) -> tuple[dict[str, Input], dict[str, Parameter]]:
     """The inputs and parameters of a block or subsystem."""
     if isinstance(kind, Block):
         return {p.name: p for p in kind.inputs}, {p.name: p for p in kind.parameters}
@@ -131,7 +131,7 @@ def _read_settings(
             given = read_points(node, body, name)
             if given is not None:
                 for number in (min(*given.x, *given.y), max(*given.x, *given.y)):
-                    _check_bounds(Value(Number(number), place=given.place), parameter, body)
+                    check_bounds(Value(Number(number), place=given.place), parameter, body)
         elif parameter.kind == "formula":
             given = read_formulas(node, body, name)
         elif isinstance(kind, Diagram):
@@ -142,15 +142,15 @@ def _read_settings(
             given = read_array(node, body, name)
             for value in given.items if isinstance(given, Array) else (given,):
                 if value is not None:
-                    _check_bounds(value, parameter, body)
+                    check_bounds(value, parameter, body)
         if given is not None:
             settings[parameter.name] = given
     if isinstance(kind, Block):
-        _check_conditions(kind, settings, body, place)
+        check_conditions(kind, settings, body, place)
     return settings
 
 
-def _check_conditions(
+def check_conditions(
     block: Block,
     settings: Mapping[str, Value | Array | Points | Expression],
     body: Body,
@@ -186,7 +186,7 @@ def in_unit_of(given: Value, declared: Value) -> Value:
     return replace(given, unit=unit, factor=factor, fit=bounds)
 
 
-def _check_bounds(value: Value, parameter: Parameter, body: Body) -> None:
+def check_bounds(value: Value, parameter: Parameter, body: Body) -> None:
     if not isinstance(value.formula, Number):
         return
     number = value.formula.value * value.factor

@@ -18,6 +18,7 @@ from tracewire.trace.options import TraceOptions
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 Verdict = Literal["null", "effect", "unexplained"]
+RunKind = Literal["windowed", "free run"]
 IN_JSON = (
     "verdict interrupted effects dropped depends_on missing rmse_before rmse_after sigma s2_before "
     "s2_after declared moved errors steps power experiments explained remainder remainder_depends "
@@ -129,7 +130,7 @@ class ChannelError:
     use: str
     signal: str
     unit: str
-    kind: Literal["windowed", "free run"]
+    kind: RunKind
     before: float
     after: float
     sigma: float

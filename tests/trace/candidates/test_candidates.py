@@ -8,15 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from library.installed import HEAD, install
+from oracles.written import with_effects
 from tracewire.compile import Model, compile
 from tracewire.diagram import Diagram, difference, read_text
 from tracewire.solve import simulate
-from tracewire.trace.candidates.candidates import (
-    Candidate,
-    extend,
-    find_candidates,
-    unknowns_of,
-)
+from tracewire.trace.candidates.candidate import Candidate, unknowns_of
+from tracewire.trace.candidates.candidates import find_candidates
 from tracewire.trace.candidates.levels import Level, Levels, Trajectory, levels_of, signals_at
 from tracewire.trace.candidates.places import find_places
 from tracewire.trace.options import TraceOptions
@@ -202,7 +199,7 @@ def test_an_effect_of_an_installed_library_keeps_its_type_and_gets_a_plain_name(
     diagram = read_text("libraries: [mylab]\n" + PENDULUM)
     candidate = named(found_in(diagram))["mylab.rub @ torque"]
     assert candidate.block == "rub"
-    extended = extend(diagram, [(candidate, {"c": 0.1})])
+    extended = with_effects(diagram, [(candidate, {"c": 0.1})])
     assert extended.blocks["rub"].type == "mylab.rub"
 
 
@@ -210,7 +207,7 @@ def test_what_a_trace_has_taken_is_no_candidate_any_more() -> None:
     diagram = read_text(PENDULUM)
     candidates = found_in(diagram)
     coulomb = named(candidates)["coulomb @ torque"]
-    rest = found_in(extend(diagram, [(coulomb, {"level": 0.1})]), [coulomb])
+    rest = found_in(with_effects(diagram, [(coulomb, {"level": 0.1})]), [coulomb])
     assert set(named(candidates)) - set(named(rest)) == {"coulomb @ torque"}
 
 
@@ -239,7 +236,7 @@ def test_unknowns_are_the_coefficient_and_the_shapes_that_are_on() -> None:
 def test_the_text_of_an_effect_is_what_a_person_would_write() -> None:
     old = read_text(PENDULUM)
     coulomb = named(found_in(old))["coulomb @ torque"]
-    new = extend(old, [(coulomb, {"level": 0.148, "width": 0.0})])
+    new = with_effects(old, [(coulomb, {"level": 0.148, "width": 0.0})])
     assert difference(old, new).splitlines()[3:] == [
         "   omega: {type: integrator, of: torque}",
         "-  torque: {type: sum, of: [gravity]}               # the place",
@@ -247,7 +244,7 @@ def test_the_text_of_an_effect_is_what_a_person_would_write() -> None:
         "+  coulomb: {type: coulomb, rate: omega, level: {value: 0.148, fit: [0, 10]}}",
         '   gravity: {type: expression, formula: "-20*sin(theta)"}',
     ]
-    new = extend(old, [(coulomb, {"level": 0.148, "width": 0.4})])
+    new = with_effects(old, [(coulomb, {"level": 0.148, "width": 0.4})])
     assert "width: {value: 0.4, fit: [0, " in new.text
 
 
@@ -263,7 +260,7 @@ def test_every_effect_can_be_added_and_vanishes_at_zero(tmp_path: Path) -> None:
             for c in candidates
         ]
         before = simulate(compile(diagram), span=(0, 1))
-        after = simulate(compile(extend(diagram, zeros)), span=(0, 1))
+        after = simulate(compile(with_effects(diagram, zeros)), span=(0, 1))
         for name in before.signals:
             expected = before.signals[name]
             np.testing.assert_allclose(after.signals[name], expected, atol=1e-5, err_msg=name)
@@ -272,7 +269,7 @@ def test_every_effect_can_be_added_and_vanishes_at_zero(tmp_path: Path) -> None:
 def test_effects_of_each_kind_go_together(tmp_path: Path) -> None:
     diagram = driven(tmp_path)
     candidates = found_in(diagram)
-    new = extend(diagram, [(c, {c.parameter: 0.02}) for c in candidates])
+    new = with_effects(diagram, [(c, {c.parameter: 0.02}) for c in candidates])
     added = set(new.blocks) - set(diagram.blocks) - {"u_seen"}  # two readers see the drive there
     assert added == {c.block for c in candidates if c.block}
     channel = new.measured["run"].channels["x"]
@@ -284,7 +281,7 @@ def test_effects_of_each_kind_go_together(tmp_path: Path) -> None:
 def test_inertia_is_a_loop_that_is_solved() -> None:
     diagram = read_text(PENDULUM)
     inertia = named(found_in(diagram))["inertia @ torque"]
-    heavier = simulate(compile(extend(diagram, [(inertia, {"m": 0.25})])), rtol=1e-9)
+    heavier = simulate(compile(with_effects(diagram, [(inertia, {"m": 0.25})])), rtol=1e-9)
     lighter = read_text(PENDULUM.replace("-20*", "-16*"))  # 1.25 a = -20 sin(theta)
     expected = simulate(compile(lighter), rtol=1e-9).signals["theta"]
     np.testing.assert_allclose(heavier.signals["theta"], expected, atol=1e-7)
@@ -297,7 +294,7 @@ def test_a_subsystem_of_the_diagram_is_an_effect_with_its_own_units() -> None:
     assert magnet.shapes["width"] == pytest.approx((0.1, 0.2), rel=0.01)
     level = named(found_in(diagram))["bias @ torque"].scale
     assert level < magnet.scale < 1.2 * level  # the tanh is nearly 1 most of the time
-    new = extend(diagram, [(magnet, {"strength": 0.2, "width": np.pi / 18})])
+    new = with_effects(diagram, [(magnet, {"strength": 0.2, "width": np.pi / 18})])
     values = simulate(compile(new)).parameters
     assert values[magnet.coefficient] == pytest.approx(0.2)
     assert values[f"{magnet.block}.width"] == pytest.approx(np.pi / 18)
@@ -327,7 +324,7 @@ blocks:
     assert play.fixed == ("lag",)
     names = [u.name for u in unknowns_of(play, {"k": 0.5})]
     assert names == ["play_q.k", "play_q.gap"]
-    new = extend(diagram, [(play, {"k": 0.5, "gap": 0.3})])
+    new = with_effects(diagram, [(play, {"k": 0.5, "gap": 0.3})])
     assert ", lag: 0.006}" in new.text
 
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from oracles.written import with_effects
 from tracewire.compile import compile
 from tracewire.diagram import read_text
-from tracewire.trace.candidates.candidates import extend, find_candidates
+from tracewire.trace.candidates.candidates import find_candidates
 from tracewire.trace.candidates.levels import Level, Levels
 from tracewire.trace.candidates.places import find_places
 from tracewire.trace.options import TraceOptions
@@ -33,6 +34,6 @@ def test_an_inertia_beside_a_solved_acceleration_can_be_added() -> None:
     known = find_candidates(model, find_places(model), levels, TraceOptions().candidate)
     (inertia,) = [c for c in known if str(c) == "inertia @ rod"]
     assert "acceleration[1]" in inertia.signals.values()
-    diagram = extend(model.diagram, [(inertia, {inertia.parameter: 0.5})])
+    diagram = with_effects(model.diagram, [(inertia, {inertia.parameter: 0.5})])
     assert 'of: "acceleration[1]"' in diagram.text
     assert compile(diagram).flat.states

@@ -10,7 +10,8 @@ from scipy.integrate import solve_ivp
 from tracewire.compile import Model, compile
 from tracewire.diagram import read_text
 from tracewire.solve import Interrupted
-from tracewire.trace.candidates.candidates import Candidate, find_candidates
+from tracewire.trace.candidates.candidate import Candidate
+from tracewire.trace.candidates.candidates import find_candidates
 from tracewire.trace.candidates.histories import histories, variants_of
 from tracewire.trace.candidates.levels import Trajectory, levels_of
 from tracewire.trace.candidates.places import find_places
@@ -62,7 +63,8 @@ def test_memoryless_effects_follow_their_formulas() -> None:
         "inertia @ force": lambda x, v, a, u: -a,
         "drive_gain @ drive.u": lambda x, v, a, u: u,
     }
-    found = histories(model, [known[name] for name in formulas], runs, OPTIONS.candidate)
+    chosen = [known[name] for name in formulas]
+    found = histories(model, chosen, runs, OPTIONS.candidate, pytest.fail)
     for name, formula in formulas.items():
         first = next(v for v in found if str(v.candidate) == name)
         for run, values in zip(runs, found[first], strict=True):
@@ -73,7 +75,7 @@ def test_memoryless_effects_follow_their_formulas() -> None:
 def test_a_shape_is_a_variant_of_its_own() -> None:
     runs = [moving()]
     model, known = candidates_of(TEXT, runs)
-    found = histories(model, [known["coulomb @ force"]], runs, OPTIONS.candidate)
+    found = histories(model, [known["coulomb @ force"]], runs, OPTIONS.candidate, pytest.fail)
     assert [dict(variant.shapes)["width"] for variant in found] == pytest.approx(
         known["coulomb @ force"].shapes["width"]
     )
@@ -87,7 +89,7 @@ def test_a_memory_is_integrated_along_the_run() -> None:
     run = moving()
     model, known = candidates_of(TEXT, [run])
     dahl = known["hysteresis @ force"]
-    found = histories(model, [dahl], [run], OPTIONS.candidate)
+    found = histories(model, [dahl], [run], OPTIONS.candidate, pytest.fail)
     for variant, (values,) in found.items():
         (s,) = (value for _, value in variant.shapes)
 
@@ -104,7 +106,7 @@ def test_a_lag_is_that_of_its_coefficient_over_it() -> None:
     model, known = candidates_of(TEXT, [run])
     lag = known["drive_lag @ drive.u"]
     assert lag.at == pytest.approx(2 * 0.005)
-    ((values,),) = histories(model, [lag], [run], OPTIONS.candidate).values()
+    ((values,),) = histories(model, [lag], [run], OPTIONS.candidate, pytest.fail).values()
     late = T > 0.2  # behind the start, a sine after a lag is known
     phase = np.arctan(3 * lag.at)
     expected = (np.cos(phase) * np.sin(3 * T - phase) - np.sin(3 * T)) / lag.at
@@ -170,4 +172,4 @@ def test_ctrl_c_is_no_reason_to_leave_one_out(monkeypatch: pytest.MonkeyPatch) -
     # the package has a function of its name, which hides the module from its path
     monkeypatch.setattr(sys.modules[histories.__module__], "simulate", stopped)
     with pytest.raises(Interrupted):
-        histories(model, list(known.values()), [moving()], OPTIONS.candidate)
+        histories(model, list(known.values()), [moving()], OPTIONS.candidate, pytest.fail)

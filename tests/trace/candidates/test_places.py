@@ -7,10 +7,11 @@ from textwrap import dedent
 
 import numpy as np
 import pytest
+from oracles.written import with_effects
 from tracewire.compile import compile
 from tracewire.diagram import read, read_text
 from tracewire.solve import simulate
-from tracewire.trace.candidates.candidates import extend, find_candidates
+from tracewire.trace.candidates.candidates import find_candidates
 from tracewire.trace.candidates.levels import Level, Levels
 from tracewire.trace.candidates.places import Place, find_places, untried
 from tracewire.trace.options import TraceOptions
@@ -150,7 +151,7 @@ def test_an_effect_at_an_element_is_written_with_a_gain_that_makes_a_vector_of_i
     }
     viscous = known["viscous", "force[1]"]
     assert viscous.coefficient == "viscous_force_1.c"
-    new = extend(diagram, [(viscous, {"c": 0.25})])
+    new = with_effects(diagram, [(viscous, {"c": 0.25})])
     assert "of: [spring, viscous_force_1_alone]" in new.text
     lines = new.text.splitlines()
     at = next(n for n, line in enumerate(lines) if "viscous_force_1:" in line)
@@ -332,7 +333,7 @@ def test_a_sum_two_levels_deep_is_a_place() -> None:
     found = find_candidates(model, [place], LEVELS, OPTIONS.candidate)
     known = {candidate.effect: candidate for candidate in found}
     assert known["viscous"].coefficient == "body.c.viscous.c"
-    new = extend(diagram, [(known["viscous"], {"c": 0.25})])
+    new = with_effects(diagram, [(known["viscous"], {"c": 0.25})])
     assert "      viscous: {type: viscous, rate: v, c: {value: 0.25, fit:" in new.text
     assert "body.c.viscous.c" in compile(new, backend="quick").flat.parameters
     probe, ((name,),) = probed(diagram, [place], 1)
@@ -373,7 +374,7 @@ def test_an_effect_inside_a_subsystem_is_wired_to_the_names_there() -> None:
     viscous = known["viscous"]
     assert (viscous.block, viscous.coefficient) == ("body.viscous", "body.viscous.c")
     assert viscous.parameter == "c"
-    new = extend(diagram, [(viscous, {"c": 0.25})])
+    new = with_effects(diagram, [(viscous, {"c": 0.25})])
     assert "viscous: {type: viscous, rate: v, c: {value: 0.25, fit:" in new.text
     assert "of: [-x, u, w, viscous]" in new.text
     assert "body.viscous.c" in compile(new, backend="quick").flat.parameters

@@ -7,7 +7,8 @@ import pytest
 from oracles.oscillator import bench_of, trial_of
 from scipy.integrate import solve_ivp
 from tracewire.residual import Measured
-from tracewire.trace.candidates.candidates import Candidate, find_candidates
+from tracewire.trace.candidates.candidate import Candidate
+from tracewire.trace.candidates.candidates import find_candidates
 from tracewire.trace.candidates.levels import levels_of
 from tracewire.trace.candidates.places import find_places
 from tracewire.trace.options import TraceOptions

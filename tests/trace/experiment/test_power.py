@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tracewire.trace.candidates.candidates import Candidate
+from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.experiment.power import powers
 from tracewire.trace.screen.screening import Row, Screen

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from oracles.oscillator import bench_of, candidates_of, record, search_of
-from tracewire.trace.candidates.candidates import Candidate
+from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Row, Screen
@@ -129,7 +129,7 @@ def test_an_effect_that_cannot_be_run_is_left_out_with_a_reason() -> None:
     coulomb = candidates_of(search.bench)["coulomb @ force"]
     nowhere = replace(coulomb, signals={"rate": "nowhere"})
     added = [Added(nowhere, {"level": 0.1})]
-    assert search.refits.extended(now, added, now.windows.segments) is None
+    assert search.refits.fitted(now, added, now.windows.segments) is None
     (told,) = search.words
     assert told.startswith("coulomb @ force was not tried: ") and "'nowhere'" in told
 

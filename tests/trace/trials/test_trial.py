@@ -13,10 +13,11 @@ from oracles.oscillator import (
     candidates_of,
     later,
     record,
+    search_of,
     trial_of,
 )
 from scipy.integrate import solve_ivp
-from tracewire.errors import FitError
+from tracewire.errors import DiagramError, FitError
 from tracewire.residual import Measured
 from tracewire.residual.windows import Section, cut
 from tracewire.trace.trials.trial import Added
@@ -138,3 +139,25 @@ def test_a_delay_is_found_on_short_windows_too() -> None:
     assert trial.s2 == pytest.approx(1.0, abs=0.2)
     begins = [window.begin for window in trial.windows.segments]
     assert all(b < w.t[0] - delay for b, w in zip(begins, trial.windows.segments, strict=True))
+
+
+def test_where_the_text_has_no_room_for_an_effect_none_is_tried() -> None:
+    """What a search finds is written into the text at its end."""
+    folded = "force:\n    type: sum\n    of: >\n      spring"
+    text = DIAGRAM.replace("force: {type: sum, of: [spring, damper]}", folded)
+    bench = bench_of(record(end=3.0), text=text)
+    for name in ("coulomb @ force", "bias @ force"):
+        effect = candidates_of(bench)[name]
+        with pytest.raises(DiagramError, match="laid out here in a way that cannot be edited"):
+            trial_of(bench, [Added(effect, {effect.parameter: 0.1})])
+    assert [*bench.unwritable] == ["force"], "the text is tried once"
+
+
+def test_a_sum_of_a_row_is_told_and_no_end_of_a_search() -> None:
+    text = DIAGRAM.replace("of: [spring, damper]}", "of: [spring, damper], replicate: 1}")
+    bench = bench_of(record(end=6.0), text=text.replace("of: force", "of: force_1"))
+    search = search_of(bench)
+    now = search.declared()
+    coulomb = Added(candidates_of(bench)["coulomb @ force_1"], {"level": 0.1})
+    assert search.refits.fitted(now, [coulomb], now.windows.segments) is None
+    assert "coulomb @ force_1 was not tried: block 'force_1' is one of the row" in search.words[0]

@@ -9,28 +9,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from tracewire.compile import Model
 from tracewire.diagram import BlockUse, Diagram, EffectType, effects_of
 from tracewire.library import SENSOR_TERMS, Effect, Shape
-from tracewire.trace.candidates.candidate import (
-    Candidate,
-    is_default,
-    unknowns_of,
-    without_defaults,
-)
+from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.effects import bounds_of, scale_of
-from tracewire.trace.candidates.extend import extend
 from tracewire.trace.candidates.inside import opened
 from tracewire.trace.candidates.levels import Levels
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.candidates.tones import Sine, own_values
 from tracewire.trace.thresholds import CandidateOptions
-
-__all__ = [
-    "Candidate",
-    "extend",
-    "find_candidates",
-    "is_default",
-    "unknowns_of",
-    "without_defaults",
-]
 
 NO_NAME = re.compile(r"\W+", re.ASCII)
 RANGES = {"rates": "slowest", "drives": "least"}

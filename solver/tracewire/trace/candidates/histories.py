@@ -17,13 +17,11 @@ from tracewire.errors import Place as Spot
 from tracewire.errors import TracewireError
 from tracewire.formula import Number
 from tracewire.solve import Interrupted, simulate
-from tracewire.trace.candidates.candidates import Candidate
+from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.levels import Trajectory
 from tracewire.trace.thresholds import CandidateOptions
 
 Vector = NDArray[np.float64]
-
-__all__ = ["Trajectory", "Variant", "histories", "variants_of"]
 
 
 @dataclass(frozen=True)
@@ -58,15 +56,15 @@ def histories(
     candidates: Sequence[Candidate],
     trajectories: Sequence[Trajectory],
     options: CandidateOptions,
-    tell: Callable[[str], None] | None = None,
+    tell: Callable[[str], None],
 ) -> dict[Variant, list[Vector]]:
     """The output of each variant of each candidate along each trajectory, shape (N,).
 
     The output is that of the coefficient 1; where it is not linear in the coefficient, that of
     `candidate.at`, divided by it. The blocks run on the recorded signals, joined by straight
     lines, memory and all. Candidates at sensors are passed over, and so are variants that put out
-    nothing; one that cannot be computed is left out, and `tell` gets the reason. Raises
-    Interrupted: Ctrl-C.
+    nothing, or cannot be computed; `tell` gets the reason where that is so of all variants of a
+    candidate. Raises Interrupted: Ctrl-C.
     """
     variants = [
         v for c in candidates if c.place.kind != "sensor" for v in variants_of(c, options.variants)
@@ -76,6 +74,7 @@ def histories(
     groups: dict[str, list[Variant]] = {}
     for variant in variants:
         groups.setdefault(_memory(model.diagram, variant.candidate.effect), []).append(variant)
+    failed: dict[str, str] = {}
     queue = list(groups.values())
     while queue:
         group = queue.pop()
@@ -87,8 +86,10 @@ def histories(
             if len(group) > 1:  # one of them cannot be computed: find out which
                 middle = len(group) // 2
                 queue += [group[:middle], group[middle:]]
-            elif tell is not None:
-                tell(f"{group[0]} was not tried: {error.problems[0].what}")
+            else:
+                failed.setdefault(str(group[0].candidate), error.problems[0].what)
+    for name in sorted(failed.keys() - {str(variant.candidate) for variant in found}):
+        tell(f"{name} was not tried: {failed[name]}")
     return {v: found[v] for v in variants if any(x.any() for x in found.get(v, ()))}
 
 

@@ -63,38 +63,28 @@ def signals_at(places: Sequence[Place]) -> tuple[str, ...]:
 
 def levels_of(trajectories: Sequence[Trajectory], options: CandidateOptions) -> Levels:
     """The sizes of all signals over all series."""
-    names = dict.fromkeys(name for run in trajectories for name in run.signals)
-    whole = {
-        name: np.concatenate([run.signals[name] for run in trajectories if name in run.signals])
-        for name in names
-    }
-    ways = {
-        name: np.concatenate(
-            [_ways(run.signals[name]) for run in trajectories if name in run.signals]
-        )
-        for name in names
-    }
-    steps = {
-        name: np.abs(
-            np.concatenate(
-                [np.diff(run.signals[name]) for run in trajectories if name in run.signals]
-            )
-        )
-        for name in names
-    }
+    parts: dict[str, list[Vector]] = {}
+    for run in trajectories:
+        for name, values in run.signals.items():
+            parts.setdefault(name, []).append(values)
     return Levels(
-        {
-            name: Level(
-                float(np.sqrt(np.mean(x**2))),
-                float(np.max(np.abs(x))),
-                float(np.max(ways[name], initial=0.0)),
-                float(np.median(_moving(steps[name], options.moves))),
-                float(np.quantile(_moving(np.abs(x), options.moves), options.resolved_rates)),
-            )
-            for name, x in whole.items()
-        },
+        {name: _level(values, options) for name, values in parts.items()},
         max(float(run.t[-1] - run.t[0]) for run in trajectories),
         float(np.median(np.concatenate([np.diff(run.t) for run in trajectories]))),
+    )
+
+
+def _level(parts: Sequence[Vector], options: CandidateOptions) -> Level:
+    """The size of a signal from its values (N,) in each series."""
+    x = np.concatenate(parts)
+    ways = np.concatenate([_ways(part) for part in parts])
+    steps = np.abs(np.concatenate([np.diff(part) for part in parts]))
+    return Level(
+        float(np.sqrt(np.mean(x**2))),
+        float(np.max(np.abs(x))),
+        float(np.max(ways, initial=0.0)),
+        float(np.median(_moving(steps, options.moves))),
+        float(np.quantile(_moving(np.abs(x), options.moves), options.resolved_rates)),
     )
 
 

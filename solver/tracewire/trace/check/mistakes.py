@@ -13,12 +13,7 @@ from numpy.typing import NDArray
 from tracewire.compile import Model
 from tracewire.errors import DataError, FormulaError, Problem, TracewireError
 from tracewire.formula import Name, same_quantity
-from tracewire.residual import (
-    Measured,
-    Section,
-    channel_noise,
-    cut,
-)
+from tracewire.residual import Measured, Section, channel_noise, cut
 from tracewire.solve import values_at, with_points
 from tracewire.trace.thresholds import CheckOptions
 from tracewire.trace.trials.trial import Bench

@@ -18,23 +18,22 @@ def check_options(options: TraceOptions, model: Model) -> None:
 
     Raises OptionError with all that is wrong.
     """
-    problems = [*_places(options, model), *_effects(options, model), *_sizes(options)]
+    places = [place.name for place in find_places(model)]
+    problems = [*_places(options, places), *_effects(options, model, places), *_sizes(options)]
     if problems:
         raise OptionError(problems)
 
 
-def _places(options: TraceOptions, model: Model) -> Iterator[Problem]:
-    places = [place.name for place in find_places(model)]
+def _places(options: TraceOptions, places: list[str]) -> Iterator[Problem]:
     hint = "`tracewire show DIAGRAM` lists the sums; `check` lists drives and measured signals."
     for name in options.only:
         if name not in places:
             yield unknown("place", name, places, hint=hint)
 
 
-def _effects(options: TraceOptions, model: Model) -> Iterator[Problem]:
+def _effects(options: TraceOptions, model: Model, places: list[str]) -> Iterator[Problem]:
     names = [kind.name for kind in effects_of(model.diagram)]
     names += [f"sensor_{kind}" for kind in SENSOR_TERMS]
-    places = [place.name for place in find_places(model)]
     hint = "`tracewire blocks` lists the effects."
     for text in options.without:
         name, at, place = (part.strip() for part in text.partition("@"))

@@ -9,9 +9,9 @@ import numpy as np
 
 from tracewire.compile import Model
 from tracewire.errors import TracewireError
-from tracewire.formula import Expression, evaluate, names_of
+from tracewire.formula import evaluate, names_of
 from tracewire.library import Block
-from tracewire.trace.candidates.candidates import Candidate
+from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.levels import Trajectory
 from tracewire.trace.candidates.places import Place
 
@@ -43,7 +43,7 @@ def visible(
     found = []
     for candidate in candidates:
         block = model.diagram.library.blocks.get(candidate.effect)
-        timed = block is not None and any(_reads_time(f) for f in block.formulas.values())
+        timed = block is not None and any("t" in names_of(f) for f in block.formulas.values())
         if block is not None and block.effect and _even(block):
             continue
         if timed or (block is not None and (block.states or block.modes)):
@@ -63,10 +63,6 @@ def visible(
             )
         found.append(candidate)
     return found
-
-
-def _reads_time(formula: Expression) -> bool:
-    return "t" in names_of(formula)
 
 
 def _even(block: Block) -> bool:

@@ -12,7 +12,7 @@ import numpy as np
 
 from tracewire.errors import FitError
 from tracewire.residual import Segment
-from tracewire.trace.trials.trial import Bench, Trial
+from tracewire.trace.trials.trial import Bench, Trial, begun_there
 
 
 def without_strays(bench: Bench, trial: Trial, segments: Sequence[Segment], steps: int) -> Trial:
@@ -27,8 +27,7 @@ def without_strays(bench: Bench, trial: Trial, segments: Sequence[Segment], step
     least = left * len(segments)
     try:
         for _ in range(options.stray_rounds):
-            sizes = best.windows.squares / [max(r.size, 1) for r in best.windows.residuals]
-            near = np.flatnonzero(sizes <= options.stray * np.median(sizes)).tolist()
+            near = np.flatnonzero(best.means <= options.stray * np.median(best.means)).tolist()
             if best.s2 < options.led_astray or len(near) == len(kept) or len(near) < least:
                 break
             kept = [kept[n] for n in near]
@@ -36,9 +35,8 @@ def without_strays(bench: Bench, trial: Trial, segments: Sequence[Segment], step
             best = bench.fitted((), starts, trial.length, best.values, steps=steps)
         if best is trial:
             return trial
-        fitted = dict(zip(kept, best.windows.segments, strict=True))
-        whole_segments = [fitted.get(n, segment) for n, segment in enumerate(segments)]
-        whole = bench.fitted((), whole_segments, trial.length, best.values, steps=steps)
+        there = begun_there(segments, best, kept)
+        whole = bench.fitted((), there, trial.length, best.values, steps=steps)
     except FitError:
         return trial
     at_noise = best.s2 < bench.options.trial.gate_noise

@@ -26,10 +26,9 @@ from tracewire.trace.choose.horizons import Horizons
 from tracewire.trace.choose.promising import promising, unmasked
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal, Screen
-from tracewire.trace.screen.shortlist import merged
-from tracewire.trace.search.refits import begun_there
+from tracewire.trace.screen.shortlist import distinct
 from tracewire.trace.search.search import Search
-from tracewire.trace.trials.trial import Added, Trial
+from tracewire.trace.trials.trial import Added, Trial, begun_there
 
 Array = NDArray[np.float64]
 Key = tuple[frozenset[str], tuple[str, ...]]
@@ -65,7 +64,7 @@ class Pool:
             singles, pairs = self.worth(options.singles) // len(numbers), options.pairs
             proposals = self.promising(number, self.first[number], singles, pairs)
             along = self._along_data(declared, number, singles, pairs)
-            self.extend(declared, number, merged(along, proposals))
+            self.extend(declared, number, distinct([*along, *proposals]))
         for trial in self._tried_before():
             climbed = self._climbed(trial)
             if climbed is not None:
@@ -144,7 +143,7 @@ class Pool:
                 self.extend(parent, number, along)
                 continue
             proposals = self.promising(number, screen, options.beside, pairs)
-            self.extend(parent, number, merged(along, proposals))
+            self.extend(parent, number, distinct([*along, *proposals]))
 
     def _along_data(
         self, parent: Finalist, number: int, singles: int, pairs: int
@@ -165,8 +164,7 @@ class Pool:
         proposals = [
             proposal
             for proposal in self.promising(number, screen, 2 * options.beside, options.beside)
-            if any(str(row.candidate) in new for row in proposal.rows)
-            and all(str(row.candidate) in others for row in proposal.rows)
+            if not new.isdisjoint(proposal.names) and others.keys() >= {*proposal.names}
         ]
         self.extend(smaller, number, proposals)
 
@@ -205,9 +203,8 @@ class Pool:
         now = self.at(parent, number)
         begun: list[Trial] = []
         for proposal in proposals:
-            added = {str(row.candidate) for row in proposal.rows}
-            names = parent.names | added
-            known = (names, parent.dropped) in self.models or added & parent.names
+            names = parent.names.union(proposal.names)
+            known = (names, parent.dropped) in self.models or parent.names & {*proposal.names}
             if known or len(proposal.rows) > left or self.spent > options.most_steps:
                 continue
             self.search.tell(f"refitting with {' and '.join(sorted(names))}")

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.trace.screen.screening import Proposal, Row, Screen
+from tracewire.trace.screen.shortlist import distinct
 
 Vector = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -29,12 +30,12 @@ def promising(screen: Screen, blocks: Ints, singles: int, pairs: int) -> list[Pr
     blocks: the block of each residual, (M,); negative where it belongs to none.
     """
     alone = [Proposal((row,), row.gain) for row in screen.best() if row.fall > 0]
-    found = _of_both(screen, blocks, alone, singles)
+    found = _alternately(_by_blocks(screen, blocks, alone)[:singles], alone[:singles])
     if pairs:
         together = [p for same in screen.by_count(pairs).values() for p in same if len(p.rows) == 2]
         together.sort(key=lambda pair: -pair.gain)
         by_blocks = _by_blocks(screen, blocks, screen.pairs())
-        found += _alternately((by_blocks[:pairs], together[:pairs]))
+        found += _alternately(by_blocks[:pairs], together[:pairs])
     return found
 
 
@@ -49,19 +50,10 @@ def unmasked(screen: Screen, before: Screen, least: float) -> set[str]:
     return {name for name, row in screen.visible().items() if fell(name, row)}
 
 
-def _of_both(
-    screen: Screen, blocks: Ints, proposals: Sequence[Proposal], count: int
-) -> list[Proposal]:
-    return _alternately((_by_blocks(screen, blocks, proposals)[:count], proposals[:count]))
-
-
-def _alternately(rankings: Sequence[Sequence[Proposal]]) -> list[Proposal]:
-    """The proposals of some rankings, each set of effects once."""
-    found: dict[frozenset[str], Proposal] = {}
-    for proposal in chain.from_iterable(zip_longest(*rankings)):
-        if proposal is not None:
-            found.setdefault(frozenset(str(row.candidate) for row in proposal.rows), proposal)
-    return list(found.values())
+def _alternately(*rankings: Sequence[Proposal]) -> list[Proposal]:
+    """The proposals of some rankings in turn, each set of effects once."""
+    in_turn = chain.from_iterable(zip_longest(*rankings))
+    return distinct(proposal for proposal in in_turn if proposal is not None)
 
 
 def _by_blocks(screen: Screen, blocks: Ints, proposals: Sequence[Proposal]) -> list[Proposal]:

@@ -19,12 +19,10 @@ from tracewire.residual import Projection, eliminated
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.found import Dependence, Missing
 from tracewire.trace.missing.bases import Basis, bases_of
-from tracewire.trace.missing.table import add_table, missing_table
 from tracewire.trace.screen.tangent import Joined, Tangent
 from tracewire.trace.thresholds import MapOptions
+from tracewire.trace.trials.statistics import orthonormal
 from tracewire.trace.trials.trial import Trial
-
-__all__ = ["add_table", "missing_table", "where_what"]
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -140,7 +138,8 @@ class Problem:
             if rows >= TOGETHER or n + 1 == len(self.views):
                 block, folds = np.concatenate(waiting), self.folds[first:last]
                 for fold in np.unique(folds).tolist():
-                    total[fold] += _gram(block[folds == fold])
+                    rows_of = block[folds == fold]
+                    total[fold] += rows_of.T @ rows_of
                 first, waiting, rows = last, [], 0
         return total
 
@@ -151,9 +150,8 @@ def _problem(tangent: Tangent, trial: Trial) -> Problem:
     unknowns, residual = eliminated(windows)
     sizes = np.linalg.norm(unknowns, axis=0)
     seen = sizes > 1e-12 * max(float(sizes.max(initial=0.0)), 1e-300)
-    basis = np.linalg.svd(unknowns[:, seen] / sizes[seen], full_matrices=False)
-    kept = 1e-8 * max(float(basis.S.max(initial=0.0)), 1e-300) < basis.S
-    return Problem(tangent, views, residual, basis.U[:, kept], _folds(tangent), trial.freedom)
+    basis = orthonormal(unknowns[:, seen])
+    return Problem(tangent, views, residual, basis, _folds(tangent), trial.freedom)
 
 
 def _folds(tangent: Tangent) -> NDArray[np.intp]:
@@ -223,10 +221,6 @@ def _together(problem: Problem, place: Place, bases: Sequence[Basis]) -> list[Sc
         found.append(Scored(place, replace(basis, columns=()), share, fall, values[known:]))
         first = last
     return found
-
-
-def _gram(matrix: Matrix) -> Matrix:
-    return np.asarray(matrix.T @ matrix)
 
 
 def _left_out(products: Matrix, known: int, ridges: Vector) -> Vector:

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import compile
 from tracewire.diagram import effects_of
 from tracewire.residual import Windows
-from tracewire.trace.candidates.levels import Trajectory
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.found import Force, Means
-from tracewire.trace.screen.observed import trajectories
+from tracewire.trace.screen.observed import observed, stitched
 from tracewire.trace.screen.tangent import Tangent
 from tracewire.trace.screen.torques import missing_torques
 from tracewire.trace.thresholds import MapOptions
@@ -46,32 +43,14 @@ def forces(
         needed = missing_torques(tangent, [place], bend, options.screen.torque_level)[place.name]
         given_by_effects = _fitted(best, tangent.windows, place, rtol)
         means = () if fitted is None else _means(fitted, best, place, rtol)
-        for number, (run, torque) in enumerate(zip(tangent.trajectories, needed, strict=True)):
-            known = np.isfinite(torque)
+        parts = []
+        for run, torque, given in zip(tangent.trajectories, needed, given_by_effects, strict=True):
             q = run.signals[place.q] if place.q else np.zeros(len(run.t))
-            v = run.signals[place.v]
-            given = given_by_effects[number]
-            torque = torque + given
-            signals = (place.q, place.v)
-            found.append(
-                Force(place.name, q[known], v[known], torque[known], given[known], signals, means)
-            )
-    merged: dict[str, list[Force]] = {}
-    for force in found:
-        merged.setdefault(force.place, []).append(force)
-    return tuple(_merged(group) for group in merged.values())
-
-
-def _merged(group: Sequence[Force]) -> Force:
-    return Force(
-        group[0].place,
-        np.concatenate([force.q for force in group]),
-        np.concatenate([force.v for force in group]),
-        np.concatenate([force.needed for force in group]),
-        np.concatenate([force.fitted for force in group]),
-        group[0].names,
-        group[0].means,
-    )
+            both = np.stack((q, run.signals[place.v], torque + given, given))
+            parts.append(both[:, np.isfinite(torque)])
+        q, v, torque, given = np.concatenate(parts, axis=1)
+        found.append(Force(place.name, q, v, torque, given, (place.q, place.v), means))
+    return tuple(found)
 
 
 def _means(tangent: Tangent, best: Trial, place: Place, rtol: float) -> tuple[Means, ...]:
@@ -142,5 +121,5 @@ def _fitted(best: Trial, windows: Windows, place: Place, rtol: float) -> list[Ve
     added = [e.candidate for e in best.effects if e.candidate.place.name == place.name]
     signals = [c.block + outputs.get(c.effect, "") for c in added]
     model = compile(best.diagram, record=signals, backend="quick")
-    runs: list[Trajectory] = trajectories(model, windows, rtol)
+    runs = stitched(windows, observed(model, windows, rtol))
     return [np.sum([run.signals[name] for name in signals], axis=0) for run in runs]

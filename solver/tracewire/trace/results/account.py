@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
-from tracewire.residual import Section, Segment, opened, settled
-from tracewire.trace.found import ChannelError, Curve, Moved
+from tracewire.residual import Section, Segment, opened
+from tracewire.trace.found import ChannelError, Curve, Moved, RunKind
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.trial import Bench, Trial
 
@@ -30,19 +30,13 @@ class Compared:
 
     def errors(self, sigma: dict[str, float], units: dict[str, str]) -> Iterator[ChannelError]:
         """The root mean square errors of each signal."""
+        kinds: dict[RunKind, tuple[Vector, Vector]]
+        kinds = {"windowed": self.windowed, "free run": self.free}
         for n, signal in enumerate(self.segment.signals):
-            for kind, pair in (("windowed", self.windowed), ("free run", self.free)):
+            for kind, pair in kinds.items():
                 before, after = (float(np.sqrt(np.mean(r[:, n] ** 2))) for r in pair)
-                yield ChannelError(
-                    self.segment.measured.name,
-                    self.use,
-                    signal,
-                    units.get(signal, ""),
-                    "windowed" if kind == "windowed" else "free run",
-                    before,
-                    after,
-                    sigma[signal],
-                )
+                at = self.segment.measured.name, self.use, signal, units.get(signal, "")
+                yield ChannelError(*at, kind, before, after, sigma[signal])
 
     def curves(self, sigma: dict[str, float], units: dict[str, str]) -> Iterator[Curve]:
         """Each measured signal with both free runs."""
@@ -101,14 +95,9 @@ def free_run(bench: Bench, trial: Trial, whole: Segment, shortest: int) -> Vecto
     A free start is fitted on the first part of the section alone.
     """
     if whole.free:
-        begun = settled(
-            opened(
-                bench.criterion(
-                    trial, [_first_part(whole, shortest, bench.options.split.first_part)]
-                )
-            )
-        )
-        whole = replace(begun.segments[0], rows=whole.rows)
+        first = _first_part(whole, shortest, bench.options.split.first_part)
+        (begun,) = bench.settled(trial, [first]).segments
+        whole = replace(begun, rows=whole.rows)
     return opened(bench.criterion(trial, [whole])).residuals[0]
 
 
@@ -147,16 +136,9 @@ def intervals(trial: Trial, confidence: float) -> dict[str, tuple[float, float]]
 
 def moved(bench: Bench, declared: Trial, best: Trial, values: dict[str, float]) -> list[Moved]:
     """The declared parameters without and with the effects."""
-    errors = best.standard_errors
+    errors, flat = best.standard_errors, bench.declared.flat
+    units = {name: parameter.unit for name, parameter in flat.parameters.items()}
     return [
-        Moved(
-            name,
-            bench.declared.flat.parameters[name].unit
-            if name in bench.declared.flat.parameters
-            else "",
-            value,
-            values.get(name, 0.0),
-            errors.get(name, 0.0),
-        )
+        Moved(name, units.get(name, ""), value, values.get(name, 0.0), errors.get(name, 0.0))
         for name, value in declared.values.items()
     ]

@@ -11,9 +11,7 @@ import numpy as np
 from tracewire.diagram import Diagram
 from tracewire.errors import TracewireError
 from tracewire.trace.choose.prediction import Prediction
-from tracewire.trace.choose.verdict import (
-    Judgement,
-)
+from tracewire.trace.choose.verdict import Judgement
 from tracewire.trace.experiment.experiment import separating
 from tracewire.trace.experiment.power import powers
 from tracewire.trace.found import Experiment, Force, Found

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
-from tracewire.diagram import Diagram, set_sensors, set_values
+from tracewire.diagram import Diagram, patch, set_sensors, set_values
 from tracewire.residual import SENSED
-from tracewire.trace.candidates.candidates import extend
+from tracewire.trace.candidates.changes import changes_of
 from tracewire.trace.found import FoundEffect, Ranked, StepTold, Tie
 from tracewire.trace.results.account import intervals
 from tracewire.trace.search.finish import Final, Rival
@@ -76,8 +76,7 @@ def _standing(search: Search, effect: Added) -> tuple[float, float, float]:
     for step in search.steps:
         rows = {str(row.candidate): row for row in step.screen.best()}
         for one in step.tried:
-            names = [str(row.candidate) for row in one.proposal.rows]
-            if str(effect) in names and one.trial is step.after:
+            if str(effect) in one.proposal.names and one.trial is step.after:
                 row = rows.get(str(effect))
                 return -one.rise / 2, row.masked if row else float("nan"), one.weight
     return (float("nan"),) * 3
@@ -89,23 +88,19 @@ def told_steps(search: Search, interval: float) -> tuple[StepTold, ...]:
 
 
 def _told(step: Step, interval: float, shown: int) -> StepTold:
-    rows = []
-    seen = set()
-    for one in step.tried:
-        names = " + ".join(str(row.candidate) for row in one.proposal.rows)
-        seen.add(names)
-        masked = max(row.masked for row in one.proposal.rows)
-        rows.append(
-            Ranked(
-                names,
-                one.proposal.gain,
-                -one.rise / 2,
-                one.weight,
-                masked,
-                one.trial.s2,
-                one.remark,
-            )
+    rows = [
+        Ranked(
+            " + ".join(one.proposal.names),
+            one.proposal.gain,
+            -one.rise / 2,
+            one.weight,
+            max(row.masked for row in one.proposal.rows),
+            one.trial.s2,
+            one.remark,
         )
+        for one in step.tried
+    ]
+    seen = {row.effects for row in rows}
     for row in step.screen.best()[:shown]:
         if str(row.candidate) not in seen:
             rows.append(Ranked(str(row.candidate), row.gain, masked=row.masked))
@@ -131,7 +126,8 @@ def edited(model: Model, effects: Sequence[Added], values: Mapping[str, float]) 
     """The original text with effects and with the refitted parameters."""
     if not effects:
         return model.diagram
-    diagram = extend(model.diagram, [(e.candidate, e.values) for e in effects])
+    chosen = [(effect.candidate, effect.values) for effect in effects]
+    diagram = patch(model.diagram, changes_of(model.diagram, chosen))
     own = {name: value for name, value in values.items() if name in model.flat.parameters}
     diagram = set_values(diagram, own) if own else diagram
     added = {effect.candidate.coefficient for effect in effects}

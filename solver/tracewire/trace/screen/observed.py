@@ -35,11 +35,6 @@ def nodes_of(segment: Segment) -> tuple[Vector, NDArray[np.intp], NDArray[np.boo
     return times, inside, counts
 
 
-def trajectories(model: Model, windows: Windows, rtol: float) -> list[Trajectory]:
-    """The recorded signals of a model along fitted windows, for each series."""
-    return stitched(windows, observed(model, windows, rtol))
-
-
 def observed(model: Model, windows: Windows, rtol: float) -> list[Signals]:
     """The recorded signals in fitted windows, at their nodes."""
     segments, numbers = windows.segments, series_of(windows)

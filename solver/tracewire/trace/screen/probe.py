@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from tracewire.diagram import BlockUse, Diagram, InputPort, Value, Wire, rewired
+from tracewire.diagram import BlockUse, Diagram, InputPort, Value, Wire, rewired, with_addend
 from tracewire.formula import Call, Expression, Name, Number
 from tracewire.trace.candidates.places import Place
 
@@ -69,7 +69,7 @@ def _added(diagram: Diagram, place: Place, name: str, formula: Expression) -> Di
 def _led_in(diagram: Diagram, within: Sequence[str], sum_name: str, signal: str) -> Diagram:
     """The diagram with one more signal in a sum, through an input of each subsystem around it."""
     if not within:
-        return _wired(diagram, sum_name, signal)
+        return with_addend(diagram, sum_name, Wire(signal))
     use = diagram.blocks[within[0]]
     assert use.subsystem is not None
     port = InputPort(signal, default=Value(Number(0.0)))
@@ -77,14 +77,6 @@ def _led_in(diagram: Diagram, within: Sequence[str], sum_name: str, signal: str)
     inside = _led_in(inside, within[1:], sum_name, signal)
     use = replace(use, subsystem=inside, inputs={**use.inputs, signal: (Wire(signal),)})
     return replace(diagram, blocks={**diagram.blocks, within[0]: use})
-
-
-def _wired(diagram: Diagram, sum_name: str, signal: str) -> Diagram:
-    """The diagram with one more signal in a sum."""
-    old = diagram.blocks[sum_name]
-    (port,) = (p.name for p in diagram.library[old.type].inputs if p.many)
-    new = replace(old, inputs={**old.inputs, port: (*old.inputs[port], Wire(signal))})
-    return replace(diagram, blocks={**diagram.blocks, sum_name: new})
 
 
 def _total(terms: Sequence[Expression]) -> Expression:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
 
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.residual import Unknown, Windows, eliminated
-from tracewire.trace.candidates.candidates import Candidate, is_default
+from tracewire.trace.candidates.candidate import Candidate, is_default
 from tracewire.trace.candidates.histories import Variant, histories
 from tracewire.trace.candidates.levels import Trajectory
 from tracewire.trace.candidates.waves import as_measured, scanned
@@ -83,6 +83,11 @@ class Proposal:
         """How many numbers the effects take."""
         return sum(row.count for row in self.rows)
 
+    @property
+    def names(self) -> list[str]:
+        """The effects, as `name @ place`."""
+        return [str(row.candidate) for row in self.rows]
+
 
 @dataclass(frozen=True, eq=False)
 class Screen:
@@ -106,22 +111,15 @@ class Screen:
 
     def best(self) -> list[Row]:
         """The best possible variant of each candidate, the most promising first."""
-        found: dict[str, Row] = {}
-        for row in self.rows:
-            known = found.get(str(row.candidate))
-            if row.possible and (known is None or row.gain > known.gain):
-                found[str(row.candidate)] = row
+        possible = (row for row in self.rows if row.possible)
+        found = _best_of_each(possible, lambda row: row.gain)
         return sorted(found.values(), key=lambda row: -row.gain)
 
     def visible(self) -> dict[str, Row]:
         """The best variant of each candidate that the unknowns do not imitate, of any sign, by its
         name."""
-        found: dict[str, Row] = {}
-        for row in self.rows:
-            known = found.get(str(row.candidate))
-            if row.masked < 1 - HIDDEN and (known is None or row.fall > known.fall):
-                found[str(row.candidate)] = row
-        return found
+        seen = (row for row in self.rows if row.masked < 1 - HIDDEN)
+        return _best_of_each(seen, lambda row: row.fall)
 
     def slim(self) -> Screen:
         """The same with the best variants of each candidate alone: all others are much memory."""
@@ -178,15 +176,27 @@ class Screen:
         return dict(sorted(found.items()))
 
 
+def _best_of_each(rows: Iterable[Row], worth: Callable[[Row], float]) -> dict[str, Row]:
+    """The row of each candidate that is worth most, by its name."""
+    found: dict[str, Row] = {}
+    for row in rows:
+        known = found.setdefault(str(row.candidate), row)
+        if worth(row) > worth(known):
+            found[str(row.candidate)] = row
+    return found
+
+
 def screened(
     tangent: Tangent,
     trial: Trial,
     candidates: Sequence[Candidate],
     scan: bool = True,
     most: int = 10**9,
+    tell: Callable[[str], None] = lambda text: None,
 ) -> Screen:
     """The score test of every variant of every candidate, at coefficient zero.
 
+    `tell` gets the candidates that cannot be computed, and why.
     `scan`: the lengths of waves are scanned, else they are those of the candidates' grids. Of more
     than `most` residuals only every second, third, ... one of a window is looked at.
     """
@@ -212,7 +222,7 @@ def screened(
         candidates = scanned(
             model, candidates, measured, tangent.used, residual, answer, options.candidate
         )
-    reduced, whole, variants = _rows(tangent, candidates, measured, every)
+    reduced, whole, variants = _rows(tangent, candidates, measured, every, tell)
     with np.errstate(over="ignore", invalid="ignore"):  # answers that grow without bounds
         judged = _squares(reduced) >= SEEN * whole
     reduced[~(judged & np.isfinite(whole))] = 0.0
@@ -270,6 +280,7 @@ def _rows(
     candidates: Sequence[Candidate],
     measured: Sequence[Trajectory],
     every: int,
+    tell: Callable[[str], None],
 ) -> tuple[Matrix, Vector, list[Variant]]:
     """What the coefficients of all variants do to the residuals in sigma, as rows (K, M) without
     what the starts of windows imitate, and their squares (K,) with it.
@@ -281,8 +292,9 @@ def _rows(
     wired = [c for c in candidates if c.place.kind != "sensor"]
     sensors = [c for c in candidates if c.place.kind == "sensor"]
     model, options = windows.criterion.model, tangent.options.candidate
-    known = histories(model, [c for c in wired if not c.waves], tangent.trajectories, options)
-    known |= histories(model, [c for c in wired if c.waves], measured, options)
+    plain = [c for c in wired if not c.waves]
+    known = histories(model, plain, tangent.trajectories, options, tell)
+    known |= histories(model, [c for c in wired if c.waves], measured, options, tell)
     by_place: dict[str, list[Variant]] = {}
     for variant in known:
         by_place.setdefault(variant.candidate.place.name, []).append(variant)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 
 from tracewire.trace.screen.screening import Proposal, Row, Screen
 
@@ -39,9 +39,9 @@ def shortlist(screen: Screen, room: int, count: int) -> list[Proposal]:
     return found + simple + others[: options.pairs - len(simple)]
 
 
-def merged(first: Sequence[Proposal], others: Sequence[Proposal]) -> list[Proposal]:
-    """Proposals, and those of others that have other effects."""
+def distinct(proposals: Iterable[Proposal]) -> list[Proposal]:
+    """The first of the proposals with each set of effects."""
     found: dict[frozenset[str], Proposal] = {}
-    for proposal in (*first, *others):
-        found.setdefault(frozenset(str(row.candidate) for row in proposal.rows), proposal)
+    for proposal in proposals:
+        found.setdefault(frozenset(proposal.names), proposal)
     return list(found.values())

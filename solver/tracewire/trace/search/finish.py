@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tracewire.errors import FitError
-from tracewire.trace.candidates.candidates import is_default
+from tracewire.trace.candidates.candidate import is_default
 from tracewire.trace.search.refits import few_of, target_of
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.trial import Added, Trial
@@ -226,7 +226,7 @@ def _pruned(search: Search, best: Trial) -> Trial:
         costs = []
         at_noise = best.s2 < options.trial.gate_noise
         for effect in best.effects:
-            if at_noise and _is_certain(best, effect, options.search.certain):
+            if at_noise and _errors_from_nothing(best, effect) > options.search.certain:
                 continue
             search.tell(f"trying without {effect}")
             smaller = _refitted(search, best, [e for e in best.effects if e is not effect])
@@ -241,11 +241,6 @@ def _pruned(search: Search, best: Trial) -> Trial:
             return best
         best = min(costs, key=lambda cost: cost[0])[1]
     return best
-
-
-def _is_certain(best: Trial, effect: Added, errors: float) -> bool:
-    """Whether a coefficient is many standard errors from that of no effect."""
-    return _errors_from_nothing(best, effect) > errors
 
 
 def _errors_from_nothing(best: Trial, effect: Added) -> float:

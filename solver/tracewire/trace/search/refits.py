@@ -7,43 +7,30 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tracewire.errors import DiagramError, FitError
+from tracewire.errors import DiagramError, FitError, OptionError
 from tracewire.residual import CREEPS, SETTLING, Segment
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal
 from tracewire.trace.thresholds import SearchOptions
-from tracewire.trace.trials.trial import Added, Bench, Trial
+from tracewire.trace.trials.trial import Added, Bench, Trial, begun_there
 
 
 @dataclass(frozen=True, eq=False)
 class Tried:
-    """Effects that were refitted: how much BIC rose, and what became of them."""
+    """Effects that were refitted, at first in a few steps on few windows: how much BIC rose, their
+    weight among those that were ranked with them, and what became of them."""
 
     trial: Trial
     proposal: Proposal
-    rise: float
-    weight: float
+    rise: float = 0.0
+    weight: float = 0.0
     remark: str = ""
-
-
-@dataclass(frozen=True, eq=False)
-class Begun:
-    """A proposal after a few steps on few windows."""
-
-    trial: Trial
-    proposal: Proposal
-
-    @property
-    def is_pair(self) -> bool:
-        """Whether two effects are proposed together."""
-        return len(self.proposal.rows) > 1
 
     @property
     def by_windows(self) -> float:
         """The mean over windows of the logarithm of what they leave, ln(E/n + 1): a few windows
         that were led astray, as by a friction that sticks, do not rule it."""
-        left = self.trial.windows.squares / [r.size for r in self.trial.windows.residuals]
-        return float(np.mean(np.log(left + 1.0)))
+        return float(np.mean(np.log(self.trial.means + 1.0)))
 
 
 @dataclass(frozen=True)
@@ -80,43 +67,45 @@ class Refits:
         target = min((one.trial.rss for one in tried), default=np.inf)
         return self.ranked(now, [*tried, *self.whole(now, begun, target)])
 
-    def begun(self, now: Trial, proposals: Sequence[Proposal]) -> list[Begun]:
+    def begun(self, now: Trial, proposals: Sequence[Proposal]) -> list[Tried]:
         """The proposals after a few steps on few windows."""
         segments = now.windows.segments
         rows = few_of(segments, self.options.few)
         few, least = [segments[n] for n in rows], float(now.windows.squares[rows].sum())
         begun = []
         for number, proposal in enumerate(proposals, start=1):
-            names = " and ".join(str(row.candidate) for row in proposal.rows)
+            names = " and ".join(proposal.names)
             self.tell(f"refitting with {names} ({number} of {len(proposals)})")
-            added = [row.added for row in proposal.rows]
             first = self.options.first_steps
-            trial = self.extended(now, added, few, first, values=proposal.values)
+            added = [row.added for row in proposal.rows]
+            effects = (*now.effects, *added)
+            trial = self.fitted(now, effects, few, steps=first, values=proposal.values)
             if trial is not None and trial.rss > least:  # the promised size led it astray
                 small = [
                     one.having(one.candidate.parameter, self.options.small * one.coefficient)
                     for one in added
                 ]
-                again = self.extended(now, small, few, self.options.first_steps) or trial
+                again = self.fitted(now, (*now.effects, *small), few, steps=first) or trial
                 trial = min(trial, again, key=lambda one: one.rss)
             if trial is not None:
-                begun.append(Begun(trial, proposal))
+                begun.append(Tried(trial, proposal))
         return begun
 
-    def whole(self, now: Trial, begun: Sequence[Begun], target: float = np.inf) -> list[Tried]:
+    def whole(self, now: Trial, begun: Sequence[Tried], target: float = np.inf) -> list[Tried]:
         """The best of what was begun, refitted on all windows and ranked.
 
         Those that are too slow to come near the best, or below `target`, are given up on the way.
         """
         most = self.options.kept if now.s2 < self.options.far else self.options.kept_far
-        kept: list[Begun] = []
+        kept: list[Tried] = []
         by_sum = sorted(begun, key=lambda one: one.trial.rss)
         by_windows = sorted(begun, key=lambda one: one.by_windows)
         for one, other in zip(by_sum, by_windows, strict=True):
             near = one.trial.rss < self.options.within * by_sum[0].trial.rss
             near_too = other.by_windows - by_windows[0].by_windows < np.log(self.options.within)
             for chosen, is_near in ((one, near), (other, near_too)):
-                alike = sum(known.is_pair == chosen.is_pair for known in kept)
+                size = len(chosen.proposal.rows)
+                alike = sum(len(known.proposal.rows) == size for known in kept)
                 if is_near and chosen not in kept and alike < most:
                     kept.append(chosen)
         segments, tried = now.windows.segments, []
@@ -124,11 +113,10 @@ class Refits:
         for number, one in enumerate(kept, start=1):
             names = named(one.trial, now)
             self.tell(f"refitting {names} on all windows ({number} of {len(kept)})")
-            trial = self.extended(
-                one.trial, (), begun_there(segments, one.trial, rows), target=target
-            )
+            there = begun_there(segments, one.trial, rows)
+            trial = self.fitted(one.trial, one.trial.effects, there, target=target)
             if trial is not None:
-                tried.append(Tried(trial, one.proposal, 0.0, 0.0))
+                tried.append(Tried(trial, one.proposal))
                 target = min(target, target_of(trial, self.bench.options))
         return self.ranked(now, tried)
 
@@ -146,20 +134,6 @@ class Refits:
         ]
         return sorted(rows, key=lambda one: one.rise)
 
-    def extended(
-        self,
-        now: Trial,
-        added: Sequence[Added],
-        segments: Sequence[Segment],
-        steps: int | None = None,
-        target: float = np.inf,
-        values: Mapping[str, float] | None = None,
-    ) -> Trial | None:
-        """The model with more effects, refitted from where it stood, or from other values of what
-        is declared; None if it does not run."""
-        effects = (*now.effects, *added)
-        return self.fitted(now, effects, segments, steps=steps, target=target, values=values)
-
     def fitted(
         self,
         now: Trial,
@@ -173,7 +147,8 @@ class Refits:
         settling: int = SETTLING,
         values: Mapping[str, float] | None = None,
     ) -> Trial | None:
-        """The model with other effects, refitted from where it stood; None if it does not run."""
+        """The model with other effects, refitted from where it stood, or from other values of what
+        is declared; None if it does not run."""
         known = now.windows.criterion.parameters
         steps = self.options.steps if steps is None else steps
         try:
@@ -190,7 +165,7 @@ class Refits:
                 creeps=creeps,
                 settling=settling,
             )
-        except (FitError, DiagramError) as error:
+        except (FitError, DiagramError, OptionError) as error:
             there = {str(effect) for effect in now.effects}
             names = " and ".join(str(e) for e in effects if str(e) not in there)
             beginning = f"{names} was not tried: "
@@ -205,14 +180,6 @@ def few_of(segments: Sequence[Segment], count: int) -> list[int]:
     names = [segment.measured.name for segment in segments]
     most = -(-count // len(set(names)))
     return [n for n, name in enumerate(names) if names[:n].count(name) < most]
-
-
-def begun_there(segments: Sequence[Segment], trial: Trial, rows: Sequence[int]) -> list[Segment]:
-    """Windows of which some, by number, begin where a trial on those begins."""
-    found = list(segments)
-    for n, segment in zip(rows, trial.windows.segments, strict=True):
-        found[n] = segment
-    return found
 
 
 def target_of(trial: Trial, options: TraceOptions) -> float:

@@ -9,7 +9,8 @@ import numpy as np
 
 from tracewire.errors import FitError
 from tracewire.residual import Section, Segment
-from tracewire.trace.candidates.candidates import Candidate, find_candidates
+from tracewire.trace.candidates.candidate import Candidate
+from tracewire.trace.candidates.candidates import find_candidates
 from tracewire.trace.candidates.levels import levels_of
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.check.repeated import comes_back, visible
@@ -17,7 +18,7 @@ from tracewire.trace.check.strays import without_strays
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.assimilated import assimilated, seen_along
 from tracewire.trace.screen.screening import Proposal, Screen, screened
-from tracewire.trace.screen.shortlist import merged, shortlist
+from tracewire.trace.screen.shortlist import distinct, shortlist
 from tracewire.trace.screen.tangent import Tangent
 from tracewire.trace.search.refits import Refits, Tried, named
 from tracewire.trace.trials.judge import Verdict, gate
@@ -68,6 +69,11 @@ class Search:
         if self.first is None or self.best is None:
             raise AssertionError("the declared model comes first")
         return self.first, self.best
+
+    def note(self, text: str) -> None:
+        """Keep a sentence for the result, once."""
+        if text not in self.words:
+            self.words.append(text)
 
     @property
     def refits(self) -> Refits:
@@ -214,7 +220,7 @@ class Search:
             near = now.s2 < self.options.search.far
             return shortlist(screen, room, options.singles if near else options.many)
         first = [along.begun(p) for p in shortlist(along, room, options.singles)]
-        return merged(first, shortlist(screen, room, options.singles))
+        return distinct([*first, *shortlist(screen, room, options.singles)])
 
     def screen(self, trial: Trial) -> Screen:
         """The screen beside a model. Lengths of waves are scanned where there are few samples; else
@@ -230,7 +236,7 @@ class Search:
             candidates = [
                 replace(c, shapes={**c.shapes, **self.waves.get(str(c), {})}) for c in candidates
             ]
-        screen = screened(tangent, trial, candidates, scan, options.most_residuals)
+        screen = screened(tangent, trial, candidates, scan, options.most_residuals, self.note)
         for candidate in {str(row.candidate): row.candidate for row in screen.rows}.values():
             if candidate.waves:
                 shapes = {name: candidate.shapes[name] for name in candidate.waves}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,7 +73,7 @@ class Columns:
         """The sum of squared residuals."""
         return float(self.residual @ self.residual)
 
-    def some(self, indices: Sequence[int]) -> Columns:
+    def some(self, indices: Sequence[int]) -> Self:
         """Some of the columns, by number."""
         chosen = list(indices)
         return replace(self, matrix=self.matrix[:, chosen], masked=self.masked[chosen])
@@ -200,15 +201,9 @@ class BoundedColumns(Columns):
         """The fall of the sum of squares where the unknowns move alone."""
         return self._solved(())[0]
 
-    def some(self, indices: Sequence[int]) -> BoundedColumns:
+    def some(self, indices: Sequence[int]) -> Self:
         """As of columns without bounds."""
-        chosen = list(indices)
-        return replace(
-            self,
-            matrix=self.matrix[:, chosen],
-            masked=self.masked[chosen],
-            whole=self.whole[:, chosen],
-        )
+        return replace(super().some(indices), whole=self.whole[:, list(indices)])
 
     def score(self, indices: Sequence[int]) -> tuple[float, Vector]:
         """As of columns without bounds; the unknowns move with them."""

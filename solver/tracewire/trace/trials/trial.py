@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model, compile
-from tracewire.diagram import Diagram
-from tracewire.errors import FitError
+from tracewire.diagram import Diagram, apply, patch
+from tracewire.errors import DiagramError, FitError, OptionError, TracewireError
 from tracewire.residual import (
     CREEPS,
     SETTLING,
@@ -31,7 +31,8 @@ from tracewire.residual import (
     settled,
 )
 from tracewire.solve import Limits, parameter_values, release
-from tracewire.trace.candidates.candidates import Candidate, extend, unknowns_of, without_defaults
+from tracewire.trace.candidates.candidate import Candidate, unknowns_of, without_defaults
+from tracewire.trace.candidates.changes import changes_of
 from tracewire.trace.candidates.tones import Sine, tones_of
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.thresholds import TrialOptions
@@ -131,8 +132,13 @@ class Trial:
     def good(self) -> float:
         """The mean squared residual of a window up to which its start is not taken for astray:
         twice that of the middle one, and what the noise alone may give."""
-        means = self.windows.squares / [max(r.size, 1) for r in self.windows.residuals]
-        return max(2 * float(np.median(means)), self.options.not_astray)
+        return max(2 * float(np.median(self.means)), self.options.not_astray)
+
+    @property
+    def means(self) -> Vector:
+        """The mean squared residual of each window."""
+        windows = self.windows
+        return np.asarray(windows.squares / [max(r.size, 1) for r in windows.residuals])
 
     @property
     def cost(self) -> float:
@@ -173,6 +179,8 @@ class Bench:
     rtol: float
     inputs: InputCovariance | None = None
     options: TraceOptions = field(default_factory=TraceOptions)
+    unwritable: dict[str, TracewireError | None] = field(default_factory=dict)
+    """Why no effect can be written at a place, by its name; None where one can."""
 
     @cached_property
     def tones(self) -> dict[str, dict[str, Sine]]:
@@ -214,13 +222,17 @@ class Bench:
         that is too slow to reach the sum of squares `target` ends early; windows whose squared
         residual is at most `good` are not taken for astray; `creeps` and `settling` as in
         `descended`. Raises FitError where the
-        model cannot be simulated, DiagramError where an effect cannot be wired.
+        model cannot be simulated, DiagramError or OptionError where an effect cannot be wired, or
+        the text at its place cannot be edited by program.
         """
         steps = self.options.trial.steps if steps is None else steps
         good = self.options.trial.not_astray if good is None else good
-        added = [(effect.candidate, effect.values) for effect in effects]
-        diagram = extend(self.declared.diagram, added) if added else self.declared.diagram
-        model = self.compiled(diagram) if added else self.declared
+        diagram, model = self.declared.diagram, self.declared
+        if effects:
+            added = [(effect.candidate, effect.values) for effect in effects]
+            diagram = apply(diagram, changes_of(diagram, added))
+            self._refuse_unwritable(effects)
+            model = self.compiled(diagram)
         fixed = fixed or {}
         unknowns = [u for u in self._unknowns(effects, values) if u.name not in fixed]
         segments = [_without_strange(segment, model) for segment in segments]
@@ -230,10 +242,25 @@ class Bench:
         _refuse_failed(criterion, windows)
         windows, converged = descended(windows, steps, target, creeps, settling)
         _refuse_failed(criterion, windows)
-        if added:
+        if effects:
             release(model)  # a search keeps hundreds of models
         now = tuple(effect.at(windows.values) for effect in effects)
         return Trial(diagram, model, now, windows, length, converged, self.options.trial)
+
+    def _refuse_unwritable(self, effects: Sequence[Added]) -> None:
+        """Refuse effects at places where the text has no room for one: what a search finds is
+        written at its end. The text is tried once for each place."""
+        diagram = self.declared.diagram
+        for effect in effects:
+            place = effect.candidate.place.name
+            if place not in self.unwritable:
+                self.unwritable[place] = None
+                try:
+                    patch(diagram, changes_of(diagram, [(effect.candidate, effect.values)]))
+                except (DiagramError, OptionError) as error:
+                    self.unwritable[place] = error
+            if (known := self.unwritable[place]) is not None:
+                raise known
 
     def again(
         self, trial: Trial, segments: Sequence[Segment], length: int, target: float = np.inf
@@ -250,7 +277,7 @@ class Bench:
         """A trial that a few windows rule, fitted without them first and then to all, where that
         does better: values and a start may hold each other where neither is right."""
         options, segments = self.options.trial, trial.windows.segments
-        means = trial.windows.squares / [max(r.size, 1) for r in trial.windows.residuals]
+        means = trial.means
         others = np.flatnonzero(means <= options.ruling * np.median(means)).tolist()
         few = len(others) >= (1 - options.few_ruling) * len(segments)
         if trial.s2 < options.not_astray or len(others) == len(segments) or not few:
@@ -261,10 +288,9 @@ class Bench:
                 trial.effects, [segments[n] for n in others], trial.length, trial.values,
                 fixed=fixed, good=good,
             )  # fmt: skip
-            begun = dict(zip(others, there.windows.segments, strict=True))
             whole = self.fitted(
-                there.effects, [begun.get(n, s) for n, s in enumerate(segments)], trial.length,
-                there.values, fixed=fixed, target=trial.rss, good=good,
+                there.effects, begun_there(segments, there, others), trial.length, there.values,
+                fixed=fixed, target=trial.rss, good=good,
             )  # fmt: skip
         except FitError:
             return trial
@@ -391,6 +417,14 @@ class Bench:
             own = unknowns_of(effect.candidate, effect.values)
             free += [u for u in own if u.name not in known]
         return [replace(u, value=min(max(u.value, u.low), u.high)) for u in free]
+
+
+def begun_there(segments: Sequence[Segment], trial: Trial, rows: Sequence[int]) -> list[Segment]:
+    """Windows of which some, by number, begin where a trial on those begins."""
+    found = list(segments)
+    for n, segment in zip(rows, trial.windows.segments, strict=True):
+        found[n] = segment
+    return found
 
 
 def _refuse_failed(criterion: Criterion, windows: Windows) -> None:

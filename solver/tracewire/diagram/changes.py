@@ -1,0 +1,310 @@
+"""Changes of a diagram as values, which are applied to its objects or patched into its text.
+
+A search applies changes and reads no text; what it has found is patched into the text once, so that
+comments and layout stay. Both say the same:
+
+    read(patch(text, changes)) == apply(read(text), changes)
+
+but for the places of the parts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from tracewire.diagram.body import Body
+from tracewire.diagram.channels import unit_of_term
+from tracewire.diagram.diagram import Array, BlockUse, Diagram, Value, Wire
+from tracewire.diagram.edit import add_addend, many_port, with_addend
+from tracewire.diagram.edit_own import add_own, declared_parameter
+from tracewire.diagram.edit_sensors import add_sensor, column_factor, series_of
+from tracewire.diagram.names import find_signal, split_index
+from tracewire.diagram.problems import Problems
+from tracewire.diagram.rewire import add_to_drive, readers_of, rewired, seen_name, sole_wire
+from tracewire.diagram.rewrite import as_written
+from tracewire.diagram.uses import check_bounds, check_conditions, in_unit_of, shape_of
+from tracewire.errors import DiagramError, OptionError, Place, unknown
+from tracewire.formula import Number, Unit, number_text, to_text
+from tracewire.library import SENSOR_TERMS, Block
+
+
+@dataclass(frozen=True)
+class AddBlock:
+    """A new block, whose output goes into a sum, or is added to a drive before all that reads it.
+
+    inputs: the signal that each port reads. settings: values as a line of the text has them, in the
+    units of the block. to: a sum by its definition (`torque`, `bearing.total` for the sum `total`
+    in the definition of the subsystem `bearing`), or a drive, which is a named input or a source.
+    element: of a sum of vectors the number of the element that it is added to, and how many there
+    are: a gain behind the block makes a vector of it.
+    """
+
+    name: str
+    type: str
+    inputs: Mapping[str, str]
+    settings: Mapping[str, Value]
+    to: str
+    drive: bool = False
+    element: tuple[int, int] | None = None
+
+
+@dataclass(frozen=True)
+class AddSensorTerm:
+    """An offset, gain, delay, quad or drift of a measured signal, with its bounds, in SI."""
+
+    signal: str
+    kind: str
+    value: float
+    fit: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class AddOwn:
+    """Values of parameters that hold in single series, in SI: series -> path -> value; those in
+    `fit` with their bounds. None may have a value there yet."""
+
+    values: Mapping[str, Mapping[str, float]]
+    fit: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+
+
+Change = AddBlock | AddSensorTerm | AddOwn
+
+
+def patch(diagram: Diagram, changes: Sequence[Change]) -> Diagram:
+    """The diagram with changes made in its text, and read anew.
+
+    Raises DiagramError: the text cannot be edited by program, or is no diagram any more;
+    OptionError: what should be changed does not exist.
+    """
+    for change in changes:
+        match change:
+            case AddBlock(name, to=to, drive=True):
+                diagram = add_to_drive(diagram, to, name, _line(change))
+            case AddBlock(name, to=to, element=element):
+                diagram = add_addend(diagram, to, name, _line(change), element=element)
+            case AddSensorTerm(signal, kind, value, fit):
+                diagram = add_sensor(diagram, signal, kind, value, fit)
+            case AddOwn(values, fit):
+                diagram = add_own(diagram, values, fit)
+    return diagram
+
+
+def apply(diagram: Diagram, changes: Sequence[Change]) -> Diagram:
+    """The diagram with changes made in its objects; its text stays as it is.
+
+    Raises DiagramError, as reading the text with these changes would; OptionError: what should be
+    changed does not exist.
+    """
+    for change in changes:
+        match change:
+            case AddBlock(to=to, drive=drive):
+                diagram = (_to_drive if drive else _to_sum)(diagram, to, change)
+            case AddSensorTerm():
+                diagram = _with_sensor_term(diagram, change)
+            case AddOwn():
+                diagram = _with_own(diagram, change)
+    return diagram
+
+
+# --- in the text ----------------------------------------------------------------------------------
+
+
+def _line(change: AddBlock) -> str:
+    parts = [f"type: {change.type}"]
+    parts += [f"{port}: {_quoted(name)}" for port, name in change.inputs.items()]
+    parts += [f"{name}: {_setting(value)}" for name, value in change.settings.items()]
+    return f"{{{', '.join(parts)}}}"
+
+
+def _quoted(name: str) -> str:
+    """The name of a signal as a value inside braces: that of an element is quoted, as YAML asks."""
+    return f'"{name}"' if "[" in name else name
+
+
+def _setting(value: Value) -> str:
+    number = to_text(value.formula)
+    if not value.named:
+        return number
+    ends = "" if value.fit is None else ", ".join(map(number_text, value.fit))
+    return f"{{value: {number}, fit: [{ends}]}}" if ends else f"{{value: {number}}}"
+
+
+# --- in the objects -------------------------------------------------------------------------------
+
+
+def _to_sum(diagram: Diagram, path: str, change: AddBlock, negative: bool = False) -> Diagram:
+    """The diagram with a new block, and its output in a sum."""
+    where, _, name = path.rpartition(".")
+    inside = _body(diagram, where, name)
+    old = inside.blocks[name]
+    if old.row:
+        what = f"block '{name}' is one of the row '{old.row}', which have one line"
+        hint = "Edit that line, or write the blocks out: tracewire show --text."
+        raise OptionError.one(what, old.place, hint=hint)
+    many_port(old, inside)  # refuses what is no sum
+    new = _use(diagram, inside, change)
+    gain = None if change.element is None else _alone(new.name, change.element)
+
+    def edit(body: Diagram) -> Diagram:
+        wired = with_addend(body, name, Wire(gain.name if gain else new.name, negative))
+        blocks = _with_block(wired.blocks, name, new)
+        return replace(body, blocks=_with_block(blocks, new.name, gain) if gain else blocks)
+
+    return _changed(diagram, inside.place, old.place, name, edit) if where else edit(diagram)
+
+
+def _alone(name: str, element: tuple[int, int]) -> BlockUse:
+    """The gain that makes a vector of a signal, which is one element of it."""
+    shares = tuple(Value(Number(float(n == element[0]))) for n in range(element[1]))
+    return BlockUse(f"{name}_alone", "gain", {"of": (Wire(name),)}, {"k": Array(shares)})
+
+
+def _to_drive(diagram: Diagram, drive: str, change: AddBlock) -> Diagram:
+    """The diagram with a new block, whose output is added to a drive, as in `add_to_drive`."""
+    readers, events = readers_of(diagram, drive)
+    sole = sole_wire(diagram, drive, readers, events)
+    if sole is not None:
+        return _to_sum(diagram, readers[0].name, change, negative=sole.negative)
+    name = seen_name(diagram, drive)
+    seen = BlockUse(name, "sum", {"of": (Wire(drive),)}, {})
+    anchor = drive if drive in diagram.blocks else readers[0].name if readers else ""
+    diagram = rewired(diagram, drive, name)
+    diagram = replace(diagram, blocks=_with_block(diagram.blocks, anchor, seen))
+    return _to_sum(diagram, name, change)
+
+
+def _use(top: Diagram, inside: Diagram, change: AddBlock) -> BlockUse:
+    """The new block as the reader would make it of its line. Raises DiagramError."""
+    problems, name, place = Problems(), change.name, Place(str(top.file), block=change.name)
+    body = Body(problems)
+    kind: Block | Diagram | None = inside.subsystems.get(change.type)
+    kind = kind or top.subsystems.get(change.type) or inside.library.blocks.get(change.type)
+    if kind is None:
+        known = [*top.subsystems, *inside.library]
+        raise DiagramError([unknown("block type", change.type, known, place)])
+    if isinstance(kind, Diagram) and kind.place == inside.place:
+        problems.add(f"subsystem '{change.type}' contains itself", place)
+    if name in {*inside.inputs, *inside.parameters, *inside.blocks, *inside.subsystems}:
+        problems.add(f"two definitions of '{name}'", place, (), "Rename one.")
+    ports, parameters = shape_of(kind)
+    for key in {**change.inputs, **change.settings}:
+        if key not in ports and key not in parameters:
+            problems.unknown(f"input or parameter of '{change.type}'", key, [*ports, *parameters],
+                             place)  # fmt: skip
+    inputs: dict[str, tuple[Wire, ...]] = {}
+    for port in ports.values():
+        signal, index = split_index(change.inputs.get(port.name, ""))
+        if signal and signal != name and find_signal(inside, signal) is None:
+            problems.unknown("signal", signal, inside.blocks, place)
+        if signal:
+            inputs[port.name] = (Wire(signal, index=index),)
+        elif port.default is None:
+            problems.add(f"input '{port.name}' is not connected", place)
+    settings = {key: change.settings[key] for key in parameters if key in change.settings}
+    for parameter in parameters.values():
+        if parameter.default is None and parameter.name not in settings:
+            problems.add(f"parameter '{parameter.name}' is not given", place)
+    if isinstance(kind, Diagram):
+        settings = {k: in_unit_of(value, kind.parameters[k]) for k, value in settings.items()}
+    else:
+        for key, value in settings.items():
+            check_bounds(replace(value, place=place), parameters[key], body)
+        check_conditions(kind, settings, body, place)
+    problems.raise_found(str(top.file))
+    subsystem = kind if isinstance(kind, Diagram) else None
+    return BlockUse(name, change.type, inputs, settings, subsystem=subsystem)
+
+
+def _with_block(blocks: Mapping[str, BlockUse], after: str, new: BlockUse) -> dict[str, BlockUse]:
+    """Blocks with a new one behind another one, or at the end."""
+    names = list(blocks)
+    names.insert(names.index(after) + 1 if after in blocks else len(names), new.name)
+    return {name: new if name == new.name else blocks[name] for name in names}
+
+
+def _body(diagram: Diagram, path: str, block: str) -> Diagram:
+    """The definition of a subsystem by its path, in the variant that is used. The definition of a
+    nested one may be named without those around it where that is clear. Raises OptionError."""
+    definitions = _definitions(diagram)
+    ends = [known for known in definitions if known.endswith(f".{path}")]
+    found = [path] if path in definitions else ends
+    if len(found) > 1:
+        what = f"'{path}.{block}' may mean several blocks"
+        raise OptionError.one(what, exists=[f"{other}.{block}" for other in found])
+    if not found:
+        raise OptionError([unknown("subsystem", path, (p for p in definitions if p))])
+    usual = definitions[found[0]]
+    body = next((b for b in _bodies(diagram) if b.place == usual.place), usual) if path else usual
+    if block not in body.blocks:
+        raise OptionError([unknown("block", block, body.blocks)])
+    return body
+
+
+def _definitions(diagram: Diagram, path: str = "") -> dict[str, Diagram]:
+    """The definitions of subsystems by their path; '' is the diagram itself."""
+    found = {path: diagram}
+    for name, inside in diagram.subsystems.items():
+        found |= _definitions(inside, f"{path}.{name}" if path else name)
+    return found
+
+
+def _bodies(diagram: Diagram) -> list[Diagram]:
+    """The subsystems that blocks are, at all levels."""
+    own = [use.subsystem for use in diagram.blocks.values() if use.subsystem is not None]
+    return [body for inside in own for body in (inside, *_bodies(inside))]
+
+
+def _changed(
+    diagram: Diagram, place: Place, line: Place, name: str, edit: Callable[[Diagram], Diagram]
+) -> Diagram:
+    """The diagram with each body of a definition edited that has the block of this line: a block
+    may stand in several variants."""
+    if diagram.place == place and name in diagram.blocks and diagram.blocks[name].place == line:
+        diagram = edit(diagram)
+
+    def inner(inside: Diagram) -> Diagram:
+        return _changed(inside, place, line, name, edit)
+
+    return replace(
+        diagram,
+        blocks={
+            key: use if use.subsystem is None else replace(use, subsystem=inner(use.subsystem))
+            for key, use in diagram.blocks.items()
+        },
+        subsystems={key: inner(inside) for key, inside in diagram.subsystems.items()},
+    )
+
+
+def _with_sensor_term(diagram: Diagram, change: AddSensorTerm) -> Diagram:
+    signal, having = series_of(diagram, change.signal, change.kind)
+    measured = dict(diagram.measured)
+    for series in having:
+        channel = series.channels[signal]
+        unit = Unit(channel.unit, channel.factor) if channel.declared else Unit("", 1.0)
+        unit = unit_of_term(change.kind, unit)
+        factor = SENSOR_TERMS[change.kind].factor(column_factor(series, signal))
+        number, fit = as_written(change.value, factor, change.fit)
+        fit = fit and (fit[0] * unit.factor, fit[1] * unit.factor)
+        term: dict[str, Any] = {
+            change.kind: Value(Number(number), unit.text, unit.factor, fit, named=True)
+        }
+        channels = {**series.channels, signal: replace(channel, **term)}
+        measured[series.name] = replace(series, channels=channels)
+    return replace(diagram, measured=measured)
+
+
+def _with_own(diagram: Diagram, change: AddOwn) -> Diagram:
+    measured = dict(diagram.measured)
+    for name, own in change.values.items():
+        if name not in measured:
+            raise OptionError([unknown("measured series", name, measured)])
+        parameters = dict(measured[name].parameters)
+        for path, value in own.items():
+            declared = declared_parameter(diagram, path)
+            number, fit = as_written(value, declared.factor, change.fit.get(path))
+            written = Value(Number(number), fit=fit, named=fit is not None)
+            parameters[path] = in_unit_of(written, declared)
+        measured[name] = replace(measured[name], parameters=parameters)
+    return replace(diagram, measured=measured)

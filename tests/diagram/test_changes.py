@@ -1,0 +1,181 @@
+"""Changes as values: applied to the objects of a diagram they say what its patched text says."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import pytest
+from diagram.alike import said
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tracewire.diagram import (
+    AddBlock,
+    AddOwn,
+    AddSensorTerm,
+    Change,
+    Diagram,
+    Value,
+    apply,
+    patch,
+    read_text,
+)
+from tracewire.errors import DiagramError, OptionError, TracewireError
+from tracewire.formula import Number
+
+TEXT = """\
+inputs: {u: {unit: N, default: 0}}
+parameters: {m: 2, c: {value: 3, unit: mm, fit: [0, 9]}}
+blocks:
+  x: {type: integrator, of: v}             # the way
+  v: {type: integrator, of: force}
+  force: {type: sum, of: [spring, -u, a.y]}   # the sum
+  spring: {type: expression, formula: "-m*x - 0.1*abs(u)"}
+  pull: {type: sine, amplitude: 1, omega: 2}
+  a: {type: leg, r: v, w: pull}
+  b: {type: arm, r: v, variant: wet}
+  only: {type: sum, of: [b.y, -pull]}
+subsystems:
+  leg: {inputs: [r, w], outputs: {y: total}, parameters: {k: {value: 5, unit: mm}}, blocks:
+    {total: {type: sum, of: [r, w]}}}
+  arm:
+    inputs: [r]
+    outputs: {y: total}
+    parameters: {k: 1}
+    blocks: {total: {type: sum, of: [drag]}}
+    variants:
+      dry: {blocks: {drag: {type: gain, of: r, k: 1}}}
+      wet: {blocks: {drag: {type: gain, of: r, k: k}, more: {type: sum, of: [r, r]}}}
+events:
+  - {when: u - x, set: {v: -0.5*v}}
+measured:
+  run_1: {file: run_1.csv, time: t, signals: {x: {column: x, unit: mm}, v: v}}
+  run_2: {file: run_2.csv, time: t, signals: {x: x}, parameters: {m: 3}}
+"""
+OF = ("x", "v", "u", "pull", "a.y", "t", "r", "total", "nowhere")
+SUMS = ("force", "only", "leg.total", "arm.total", "arm.more", "spring", "leg.no", "none.total")
+
+
+@pytest.fixture(scope="module")
+def diagram(tmp_path_factory: pytest.TempPathFactory) -> Diagram:
+    folder = tmp_path_factory.mktemp("changes")
+    for name in ("run_1", "run_2"):
+        (folder / f"{name}.csv").write_text("t, x, v [mm/s]\n0, 1, 2\n1, 2, 3\n")
+    return read_text(TEXT, folder / "two.yaml")
+
+
+@pytest.fixture(scope="module")
+def made(diagram: Diagram) -> Callable[[], Diagram]:
+    """The diagram, behind a name that is short where a test fails."""
+    return lambda: diagram
+
+
+numbers = st.floats(-1e6, 1e6).map(lambda x: float(f"{x:.6g}"))
+bounds = st.none() | st.tuples(st.floats(-1e9, -1e6), st.sampled_from([2e6, float("inf")]))
+values = st.builds(
+    lambda number, fit: Value(Number(number), fit=fit, named=fit is not None), numbers, bounds
+)
+
+
+def blocks(name: str) -> st.SearchStrategy[AddBlock]:
+    """A new block of this name, somewhere; often where it cannot be."""
+    line = st.sampled_from([("gain", "of", "k"), ("viscous", "rate", "c"), ("leg", "r", "k")])
+
+    def block(kind: tuple[str, str, str], of: str, value: Value, to: str, drive: bool) -> AddBlock:
+        inputs = {kind[1]: of} | ({"w": of} if kind[0] == "leg" else {})
+        return AddBlock(name, kind[0], inputs, {kind[2]: value}, to, drive)
+
+    drives = st.sampled_from(["u", "pull", "x", "nowhere"])
+    return st.builds(block, line, st.sampled_from(OF), values, drives, st.just(True)) | st.builds(
+        block, line, st.sampled_from(OF), values, st.sampled_from(SUMS), st.just(False)
+    )
+
+
+terms = st.builds(
+    AddSensorTerm,
+    st.sampled_from(["x", "v", "force"]),
+    st.sampled_from(["offset", "gain", "delay", "quad", "drift"]),
+    st.floats(1e-3, 1e3),
+    st.none() | st.just((0.0, 1e4)),
+)
+own = st.builds(
+    lambda series, value, fit: AddOwn({series: {"c": value}}, {"c": (0.0, 1e7)} if fit else {}),
+    st.sampled_from(["run_1", "run_2", "run_3"]),
+    st.floats(1e-3, 1e6),
+    st.booleans(),
+)
+
+
+def done(way: object, diagram: Diagram, changes: Sequence[Change]) -> object:
+    """What a diagram says after changes; the kind of the error where they cannot be made."""
+    try:
+        return said(way(diagram, changes))  # type: ignore[operator]
+    except TracewireError as error:
+        return type(error)
+
+
+@settings(deadline=None, max_examples=40)
+@given(blocks("one"), blocks("two"), terms, own)
+def test_objects_and_text_say_the_same(
+    made: Callable[[], Diagram], one: AddBlock, two: AddBlock, term: AddSensorTerm, values: AddOwn
+) -> None:
+    diagram = made()
+    for changes in ([one], [term], [values]):
+        assert done(apply, diagram, changes) == done(patch, diagram, changes)
+    both = [one, two, term, values]
+    assert done(apply, diagram, both) == done(patch, diagram, both)
+
+
+def test_the_text_stays_as_it_is(diagram: Diagram) -> None:
+    changes = [AddBlock("one", "gain", {"of": "x"}, {"k": Value(Number(2.0))}, "force")]
+    new = apply(diagram, changes)
+    assert new.text == diagram.text
+    assert [wire.signal for wire in new.blocks["force"].inputs["of"]][-1] == "one"
+    assert list(new.blocks)[2:4] == ["force", "one"]
+    assert "{type: gain, of: x, k: 2}\n" in patch(diagram, changes).text
+
+
+def test_a_block_goes_into_each_body_that_has_the_sum(diagram: Diagram) -> None:
+    changes = [AddBlock("one", "gain", {"of": "r"}, {"k": Value(Number(2.0))}, "arm.total")]
+    new = apply(diagram, changes)
+    wet = new.blocks["b"].subsystem
+    assert wet is not None
+    assert "one" in wet.blocks
+    assert "one" in new.subsystems["arm"].blocks, "the other variant"
+
+
+ONE, LEG = Value(Number(1.0)), "leg.total"
+REFUSED = {
+    "unknown block type 'gian'": AddBlock("one", "gian", {"of": "x"}, {}, "force"),
+    "two definitions of 'x'": AddBlock("x", "gain", {"of": "v"}, {"k": ONE}, "force"),
+    "unknown signal 'nowhere'": AddBlock(
+        "one", "gain", {"of": "nowhere"}, {"k": ONE}, "force"
+    ),
+    "input 'of' is not connected": AddBlock("one", "gain", {}, {"k": ONE}, "force"),
+    "parameter 'k' is not given": AddBlock("one", "gain", {"of": "x"}, {}, "force"),
+    "unknown input or parameter of 'gain' 'c'": AddBlock(
+        "one", "gain", {"of": "x"}, {"k": ONE, "c": ONE}, "force"
+    ),
+    "subsystem 'leg' contains itself": AddBlock("one", "leg", {"r": "r", "w": "w"}, {}, LEG),
+    "must be at least 0": AddBlock(
+        "one", "coulomb", {"rate": "v"},
+        {"level": ONE, "width": Value(Number(-1.0))}, "force",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("told", REFUSED)
+def test_what_reading_would_refuse_is_refused(told: str, diagram: Diagram) -> None:
+    with pytest.raises(DiagramError) as refused:
+        apply(diagram, [REFUSED[told]])
+    assert told in str(refused.value)
+    assert Path(refused.value.problems[0].place.file) == diagram.file
+    with pytest.raises(DiagramError):
+        patch(diagram, [REFUSED[told]])
+
+
+def test_a_block_of_a_row_has_no_line_of_its_own() -> None:
+    text = "inputs: [u]\nblocks: {f: {type: sum, of: [u], replicate: 2}}"
+    block = AddBlock("one", "constant", {}, {"value": Value(Number(2.0))}, "f_1")
+    with pytest.raises(OptionError, match="one of the row 'f'"):
+        apply(read_text(text), [block])
