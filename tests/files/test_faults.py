@@ -36,7 +36,7 @@ def make_trace(folder: Path, number: float) -> None:
 
 
 def make_fit(folder: Path, number: float) -> None:
-    criterion = SimpleNamespace(unknowns=[], segments=[], scales=1.0, evaluations=3)
+    criterion = SimpleNamespace(names=[], scales=1.0, evaluations=3)
     search: Any = SimpleNamespace(
         criterion=criterion,
         seed=1,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import tracewire as tw
-from tracewire.analyse import linearise, lyapunov, periodic_orbit, steady_state
+from tracewire.analyse import lyapunov, periodic_orbit
 from tracewire.errors import OptionError
 from tracewire.fit import fit
 from tracewire.residual import Measured
@@ -60,8 +60,6 @@ def test_what_begins_at_states_refuses_a_delay() -> None:
     with pytest.raises(OptionError, match="each window of a trace begins at states"):
         trace(model, [measured])
     for analysis in (
-        lambda: linearise(model),
-        lambda: steady_state(model),
         lambda: lyapunov(model, length=10.0),
         lambda: periodic_orbit(model, period=2.0),
     ):

@@ -14,7 +14,7 @@ from tracewire.errors import Problem, SimulationError
 from tracewire.residual.measured import LARGEST, Measured
 from tracewire.residual.segment import Segment, absolute_tolerances, of_diagram, parameter_in
 from tracewire.residual.sensing import Sensing
-from tracewire.solve import Halt, Limits, Span, SpanRuns, simulate_spans
+from tracewire.solve import Halt, Interrupted, Limits, Span, SpanRuns, simulate_spans
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -138,7 +138,14 @@ class Shooting:
             answers |= {f"start.{name}": f"start.{name}" for one in self.starts for name in one}
             asked = [name for name in answers.values() if name]
         rates = any(name.startswith("delay.") for name in answers)
-        runs, sensing = self.shown(halt, asked, rates)
+        try:
+            runs, sensing = self.shown(halt, asked, rates)
+        except Interrupted:
+            raise
+        except SimulationError as error:  # values that the diagram does not allow: nothing runs
+            count = len(self.segments)
+            errors = dict.fromkeys(range(count), error)
+            return Shots({}, errors, count * self.limits.steps, frozenset())
         with np.errstate(over="ignore", invalid="ignore"):  # what overflows is not usable
             shown = sensing.shown(runs)
             slopes = sensing.derivatives(runs, answers) / sigma[:, None]

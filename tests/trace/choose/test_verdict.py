@@ -82,7 +82,10 @@ def test_a_term_that_is_left_out_does_not_come_back_as_an_effect() -> None:
 
     same, other = row("viscous @ force", 0.1), row("coulomb @ force", 0.2)
     before = screen(row("coulomb @ force", 0.9))  # the declared term hides the same completely
-    asked = [SimpleNamespace(rows=rows) for rows in ((same,), (other,), (same, other))]
+    asked = [
+        SimpleNamespace(rows=rows, names=frozenset(row.candidate for row in rows))
+        for rows in ((same,), (other,), (same, other))
+    ]
     tried: list[Any] = []
     there: Any = SimpleNamespace(
         options=TraceOptions(),
