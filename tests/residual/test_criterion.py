@@ -404,3 +404,15 @@ blocks: {x: {type: integrator, of: r, start: 1}, r: {type: expression, formula: 
     assert failed > criterion.value(at(criterion, a=0.1)) > 0
     z = at(criterion, a=1)
     assert np.isfinite(criterion.residuals_and_derivatives(z)[1][0]).all()
+
+
+def test_beyond_its_budget_nothing_is_run_and_nothing_counted() -> None:
+    """A run that was not begun costs nothing: what others may still take is not used up."""
+    criterion = criterion_of(LINE_MODEL, series(0 * T + 1))
+    criterion.budget, criterion.steps = 100, 101
+    residuals, slopes = criterion.residuals_and_derivatives(at(criterion, a=0, b=0))
+    assert criterion.steps == 101
+    assert np.abs(residuals[0]).min() > 1 and not slopes[0].any()
+    assert criterion.failure is not None
+    (problem,) = criterion.failure.problems
+    assert problem.what == "the model takes more than 100 steps in all"

@@ -18,7 +18,7 @@ from tracewire.errors import DataError, OptionError, Problem, SimulationError, u
 from tracewire.residual.linearised import Linearised, Shooting, Shots
 from tracewire.residual.loss import LOSSES
 from tracewire.residual.segment import Segment, Unknown
-from tracewire.solve import Halt, Interrupted, Limits, cores, until_interrupted
+from tracewire.solve import Halt, Interrupted, Limits, beyond_budget, cores, until_interrupted
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -255,6 +255,9 @@ class Criterion:
         with _heard() as halt:
 
             def shots(numbers: Sequence[int]) -> Shots:
+                if self.steps > self.budget:  # nothing more is run, and nothing counted
+                    beyond = dict.fromkeys(range(len(numbers)), beyond_budget(self.budget))
+                    return Shots({}, beyond, 0, frozenset())
                 segments = [self.segments[n] for n in numbers]
                 follows = [self.follows(n) and n - 1 in starts for n in numbers]
                 shooting = self._shooting(segments, named, [starts[n] for n in numbers], follows)

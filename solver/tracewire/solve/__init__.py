@@ -128,7 +128,7 @@ from tracewire.solve.held import Driving, Held, values_at, with_points
 from tracewire.solve.history import refuse_delays
 from tracewire.solve.integrator import Integrator
 from tracewire.solve.interrupt import Halt, Interrupted, until_interrupted
-from tracewire.solve.limits import Limits
+from tracewire.solve.limits import Limits, beyond_budget
 from tracewire.solve.many import simulate_many
 from tracewire.solve.observers import Section
 from tracewire.solve.options import START, Options, refuse_unknown_options, with_options, with_row
@@ -166,6 +166,7 @@ __all__ = [
     "SpanRuns",
     "Statistics",
     "Tell",
+    "beyond_budget",
     "carry_out",
     "cores",
     "initial_value_problem",
