@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import os
 import signal
 from collections.abc import Generator, Iterator
 from typing import Any
 
 import pytest
 from hypothesis import settings
+from tracewire.cli import THREADS
+
+# as the command has it; the workers of pytest share the cores. numpy is imported later
+for name in THREADS:
+    os.environ.setdefault(name, "1")
 
 # a busy machine is no fault of what is tested
 settings.register_profile("no deadline", deadline=None)

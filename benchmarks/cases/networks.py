@@ -62,7 +62,14 @@ def _chains(options: Options) -> Result:
         shown = (str(blocks), str(steps), seconds(time_of_run), f"{each:.0f} ns")
         rows.append((f"{count} pendulums", seconds(sum(parts)), *shown))
         promises.append(Promise(f"compile, {count} pendulums", sum(parts), 5.0, "s", True))
-    columns = ("to the first run", "blocks", "steps", "run of 40 s", "time per block and step")
+    columns = (
+        "row",
+        "to the first run",
+        "blocks",
+        "steps",
+        "run of 40 s",
+        "time per block and step",
+    )
     return Result("A row of blocks", columns, rows, promises)
 
 

@@ -10,14 +10,18 @@ from benchmarks.rigs import (
     actuators,
     axes,
     benches,
+    circuits,
     decays,
     drives,
+    flights,
     households,
+    joints,
     labs,
     machines,
     mounts,
     plants,
     servos,
+    structures,
     vibrations,
 )
 from benchmarks.rigs.record import Record
@@ -68,6 +72,18 @@ RECORDS: Mapping[str, Callable[[], Record]] = {
     "r42_rotors": axes.rotors,
     "r43_carts": households.carts,
     "r44_ripple": axes.ripple,
+    "r45_joint": joints.joint,
+    "r46_oscillator": circuits.oscillator,
+    "r47_store": structures.store,
+    "r48_bolted": structures.bolted,
+    "r49_table": joints.table,
+    "r50_belts": joints.belts,
+    "r51_flight": flights.flight,
+    "r52_rolling": flights.rolling,
+    "r53_damper": structures.damper,
+    "r54_telephone": flights.telephone,
+    "r55_plate": structures.plate,
+    "r56_cell": circuits.cell,
 }
 
 

@@ -327,4 +327,82 @@ TRUTHS: Mapping[str, Truth] = {
         clean=True,
         bounds={("cogging @ forces", "pitch"): (0.0145, 0.0155)},
     ),
+    "r45_joint": Truth(
+        "Joint of a robot that warms up",
+        hidden=("viscous_drift @ torques",),
+        sizes={"viscous_drift.c": -0.606},
+        words="26 % of the viscous friction in 40 s; it slows down, and the gear ripples",
+    ),
+    "r46_oscillator": Truth(
+        "Electronic oscillator",
+        hidden=("cubic_stiffness @ acceleration",),
+        sizes={"cubic_stiffness.k": 5.2e5},
+        words="22 % of the linear spring at the largest voltage; a fifth power of 0.5 % and a bent "
+        "scale besides",
+    ),
+    "r47_store": Truth(
+        "Store below a wing",
+        hidden=("barrier @ mount", "coulomb @ mount"),
+        sizes={"barrier.k": 7.5e4, "barrier.gap": 1.0e-3, "coulomb.level": 8.5},
+        words="accelerometers on both sides, each value the mean of 1.25 ms; the bolts harden "
+        "besides",
+    ),
+    "r48_bolted": Truth(
+        "Bolted beam",
+        hidden=("dahl @ forces",),
+        sizes={"dahl.level": 3.6, "dahl.deflection": 1.4e-4, "dahl.exponent": 2.0},
+        words="3 % of the force at the largest deflection; the second mode rings in besides",
+    ),
+    "r49_table": Truth(
+        "Positioning table",
+        hidden=("friction_drift @ forces", "bias @ forces"),
+        sizes={"friction_drift.level": -0.75, "bias.level": -8.5},
+        words="seals that lose a third of 46 N in 20 s, a floor that is not level; the screw has a "
+        "pitch error besides",
+        equal={"bias @ forces": ("asym_coulomb @ forces",)},  # it hardly ever rests
+    ),
+    "r50_belts": Truth(
+        "Coupled electric drives",
+        hidden=("sensor_quad @ sensor.p",),
+        sizes={"sensor_quad.quad": 6.68e-4},
+        words="4 % at the highest rate; the belt creeps and the tachogenerator is 4 ms late "
+        "besides",
+    ),
+    "r51_flight": Truth(
+        "Table tennis ball with backspin",
+        hidden=("coupling_v @ along", "coupling_v @ up"),
+        sizes={"coupling_v.c": 8.5e-4},
+        words="the lift is across the way: of one sign along, of the other up; the spin gets "
+        "slower by 2.6 % and the lens bends besides",
+    ),
+    "r52_rolling": Truth(
+        "Wheel with a weight that rolls",
+        words="nothing is hidden; a rail that leans by 0.02 mm in 1 m below the noise besides",
+        clean=True,
+    ),
+    "r53_damper": Truth(
+        "Damper with a magnetic fluid",
+        hidden=("bouc_wen @ force",),
+        sizes={"bouc_wen.level": 62.0, "bouc_wen.deflection": 1.3e-3},
+        words="9 % of the force; its motion is given and its force is measured; a corner of "
+        "exponent 2; the fluid thins by 0.9 % besides",
+    ),
+    "r54_telephone": Truth(
+        "Telephone as a pendulum",
+        hidden=("sensor_gain @ sensor.w",),
+        sizes={"sensor_gain.gain": 1.065},
+        words="the period at large angles tells it; uneven times; the rod stretches besides",
+    ),
+    "r55_plate": Truth(
+        "Plate on a shaker, tone by tone",
+        hidden=("drive_3rd_harm @ drive.u",),
+        sizes={"drive_3rd_harm.share": 0.055, "drive_3rd_harm.phase": 0.7},
+        words="the spring hardens by 0.1 % and a second harmonic of 0.04 % is there besides",
+    ),
+    "r56_cell": Truth(
+        "Cell of a battery under pulses",
+        words="nothing is hidden; a voltage at rest that bends and a slow diffusion below the "
+        "noise besides",
+        clean=True,
+    ),
 }

@@ -52,6 +52,25 @@ def test_a_diagram_with_mistakes_is_drawn_and_they_are_told(call: Any, swing: Pa
     assert 'class="block wrong" data-block="torque"' in Path("swing.svg").read_text("utf-8")
 
 
+@pytest.mark.parametrize(
+    ("blocks", "wrong", "words"),
+    [
+        ("x: {type: gain, of: y, k: 2}\n  y: {type: gain, of: x, k: 0.5}", "x", "algebraic loop"),
+        ("x: {type: integrator, of: v, unit: m}\n  v: {type: constant, value: 1, unit: N}", "x",
+         "needs a rate in m/s"),
+    ],
+)  # fmt: skip
+def test_what_only_the_compiler_sees_is_red_too(
+    call: Any, tmp_path: Path, blocks: str, wrong: str, words: str
+) -> None:
+    file = tmp_path / "wrong.yaml"
+    file.write_text(f"blocks:\n  {blocks}\n", encoding="utf-8")
+    told = call("draw", file)
+    assert (told.code, told.out) == (2, "written: wrong.svg\n")
+    assert words in told.err
+    assert f'class="block wrong" data-block="{wrong}"' in Path("wrong.svg").read_text("utf-8")
+
+
 def test_measured_files_need_not_be_there(call: Any, swing: Path) -> None:
     swing.with_name("run_1.csv").unlink()
     told = call("draw", swing)

@@ -60,6 +60,12 @@ def test_what_is_no_address_is_told(ball: list[str], capsys: pytest.CaptureFixtu
     assert "'cluster:80' is no executor. Give the address" in capsys.readouterr().err
 
 
+def test_a_trace_takes_an_address_too(capsys: pytest.CaptureFixture[str]) -> None:
+    lesson = Path(__file__).parents[2] / "diagrams" / "lessons" / "pendulum.yaml"
+    assert main(["trace", str(lesson), "--executor", "cluster:80"]) == 2
+    assert "'cluster:80' is no executor. Give the address" in capsys.readouterr().err
+
+
 def test_nobody_at_an_address_is_told(
     ball: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

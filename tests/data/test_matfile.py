@@ -158,7 +158,7 @@ def test_files_of_version_4_are_read(tmp_path: Path) -> None:
 
 
 def test_what_unpacks_to_too_much_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(matfile, "MOST_BYTES", 1000)
+    monkeypatch.setattr(matfile, "MOST_UNPACKED", 1000)
     bomb = zlib.compress(b"\0" * 100_000)
     content = WHOLE[:128] + struct.pack("<II", 15, len(bomb)) + bomb
     with pytest.raises(Damaged, match="it holds more than"):

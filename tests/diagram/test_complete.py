@@ -79,6 +79,35 @@ def test_what_comes_first(before: str, first: list[str]) -> None:
     assert sorted(found[: len(first)]) == sorted(first)
 
 
+CART = """
+parameters: {law: 1}
+subsystems:
+  friction:
+    inputs: [rate]
+    outputs: {force: drag}
+    variants:
+      viscous: {blocks: {drag: {type: viscous, rate: rate, c: 1}}}
+      dry: {blocks: {drag: {type: coulomb, rate: rate, level: 1}}}
+blocks:
+  v: {type: integrator, of: drag}
+  drag: {type: friction, rate: v, variant: dry}
+"""
+
+
+@pytest.mark.parametrize(
+    ("line", "names"),
+    [
+        ("drag: {type: friction, variant: ", ["viscous", "dry", "law"]),
+        ("drag: {variant: d", ["dry"]),
+        ("other: {type: friction, rate: v, variant: v", ["viscous"]),
+        ("v: {type: integrator, variant: ", []),
+    ],
+)
+def test_the_bodies_of_a_subsystem_are_proposed(line: str, names: list[str]) -> None:
+    before = CART[: CART.index("  v: {type")] + "  " + line
+    assert [one.text for one in complete(before, LIBRARY, read_text(CART))] == names
+
+
 @pytest.mark.parametrize(
     "before",
     [

@@ -8,7 +8,7 @@ from diagram.small_library import LIBRARY, PENDULUM, made
 from tracewire.compile import compile as compile_model
 from tracewire.diagram import Value, Wire, find_parameter, read, read_text
 from tracewire.errors import DiagramError, Place
-from tracewire.formula import Name, Number, parse
+from tracewire.formula import Name, Number, parse, to_text
 from tracewire.solve import parameter_values
 
 
@@ -246,3 +246,20 @@ def test_an_event_may_be_that_of_a_block_or_a_clock_and_set_one_of_several_state
     assert clock.every.formula == Number(5.0)
     assert clock.every.factor == pytest.approx(1e-3)
     assert clock.offset.formula == Number(1.0)
+
+
+def test_a_subsystem_without_blocks_is_a_bundle_with_names() -> None:
+    diagram = read_text("""
+subsystems:
+  pose: {inputs: [x, v], outputs: {x: x, v: v}, blocks: {}}
+blocks:
+  a: {type: integrator, of: b}
+  b: {type: constant, value: 2}
+  body: {type: pose, x: a, v: -b}
+  s: {type: sum, of: [body.x, body.v]}
+""")
+    signals = compile_model(diagram).flat.signals
+    assert {name: to_text(signals[name]) for name in ("body.x", "body.v")} == {
+        "body.x": "a",
+        "body.v": "-b",
+    }

@@ -185,7 +185,7 @@ def test_mistakes_are_red_at_their_place(tmp_path: Path) -> None:
     assert marks == {"x": "", "a": "wrong", "rate": "", "b": "wrong", "?z": "wrong"}
     assert "z?" in texts(groups(drawing)["?z"])
     assert drawing.svg.count('class="small mistake"') == 2
-    assert "block 'a': unknown signal 'z'" in drawing.svg
+    assert "✗ wrong.yaml:3:23: block 'a': unknown signal 'z'" in drawing.svg
 
 
 @pytest.mark.parametrize("name", ["unknown_block", "unknown_parameter", "unconnected_input"])

@@ -29,7 +29,7 @@ def test_there_are_diagrams() -> None:
 @pytest.mark.parametrize("file", SHIPPED, ids=lambda file: file.stem)
 def test_shipped_diagrams_are_drawn_without_faults(file: Path) -> None:
     diagram, problems = read_readable(file)  # the files of some are fetched first
-    assert faults(draw(diagram, problems=problems)) == []
+    assert faults(draw(diagram, measured=True, problems=problems)) == []
 
 
 @pytest.mark.parametrize("depth", [1, 2])

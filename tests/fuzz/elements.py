@@ -194,6 +194,7 @@ class Stop(Element):
     hit: int = 0
     force: Vector = field(default_factory=lambda: np.zeros(0))
     lying: list[Switch] = field(default_factory=list)  # on its rate, while the body lies there
+    still: float = -np.inf  # when its last flights, which are left out, are long over
 
     def output(self) -> Vector:
         return np.zeros(len(self.one))

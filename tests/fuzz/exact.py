@@ -42,6 +42,7 @@ MOST_EVENTS = 400
 ROUNDING = 1e-11  # of a guard that is held at zero
 SOON = 1e-5  # after a reset: it may be one of a sequence without end
 LAST_FLIGHTS = 1e-2  # before a body lies
+FLIGHTS = 10  # times as long as the last flights: then a body lies, whatever its force has done
 LOWEST = 2 * CLOSE  # a flight that rises no higher counts as lying
 
 
@@ -312,7 +313,21 @@ class Solution:
             if abs(number - round(number)) < 1e-9 and round(number) > 0:
                 due |= clock.rows
         self.write(due)
+        self.throw()
         self.react()
+
+    def throw(self) -> None:
+        """A body that lies on a stop and has been given a rate leaves it, or strikes it."""
+        for element in self.system.elements:
+            if not isinstance(element, Stop) or not element.side or self.z[element.v] == 0.0:
+                continue
+            rate = element.side * self.z[element.v]
+            if abs(rate) < CLOSE or self.t < element.still:
+                raise Unclear("a body that is thrown while it comes to rest, or hardly")
+            side = element.side
+            element.release()
+            if rate > 0:
+                element.strike(side)
 
     def write(self, rows: dict[int, Vector]) -> None:
         before = self.z.copy()
@@ -341,6 +356,7 @@ class Solution:
             left = [e for e in self.system.elements if isinstance(e, Switch) and e.left]
             along = [float(switch.row @ (self.field() @ self.z)) for switch in left]
             self.write(writes)
+            self.throw()
             moves = self.z - before
             if any(-CLOSE < float(r.guards()[0].row @ moves) < 0 for r in fired):
                 raise Unclear("a reset that hardly moves its own guard back")
@@ -359,6 +375,8 @@ class Solution:
         for element in self.system.elements:
             if isinstance(element, Switch):
                 element.left = False
+            if isinstance(element, Stop) and element.side == 0 and self.t < element.still:
+                raise Unclear("a body that is let go while it comes to rest")
 
     def due(self) -> list[Reset]:
         return [e for e in self.system.elements if isinstance(e, Reset) and e.due]
@@ -404,6 +422,7 @@ class Solution:
             if pressed > 0:
                 rest = 2 * abs(self.z[stop.v]) / pressed / (1 - stop.restitution)
                 self.left_out.append((self.t, self.t + rest))
+                stop.still = self.t + FLIGHTS * rest
                 self.z[stop.v], stop.side = 0.0, side
                 self.lie(stop)
 

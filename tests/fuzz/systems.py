@@ -328,7 +328,7 @@ def _wave(draft: Draft, n: int, unit: float) -> None:
 
 def _written(draft: Draft) -> tuple[dict[int, dict[int, float]], str]:
     """What an event writes, and in YAML."""
-    place = draft.rng.choice(draft.plain)
+    place = draft.rng.choice(draft.plain + [v for _, v in draft.bodies])
     other = draft.rng.choice([n for n in range(1, len(draft.names)) if draft.names[n]])
     row = {place: round(draft.rng.uniform(-0.6, 0.6), 3)}
     row[other] = row.get(other, 0.0) + draft.number(0.1, 0.5)

@@ -131,7 +131,7 @@ def test_what_is_no_block_is_told_what_to_use() -> None:
     with pytest.raises(BlockError) as caught:
         describe(library(), "preisach")
     assert str(caught.value) == f"'preisach' is no block. {find_instead('preisach')}"
-    assert "'maxwell_slip'" in find_instead("Preisach")
+    assert "include: tracewire:hysteresis.yaml" in find_instead("Preisach")
     assert find_instead("nonsense") == ""
     assert find_synonym("nonsense", [*library()]) is None
 
@@ -140,7 +140,7 @@ def test_what_is_no_block_is_told_what_to_use() -> None:
     ("name", "told"),
     [
         ("INTEGRAL_m", "Xcos's INTEGRAL_m is 'integrator' here."),
-        ("preisach", "It is no block yet: 'maxwell_slip' and 'bouc_wen' have hysteresis"),
+        ("preisach", "Write include: tracewire:hysteresis.yaml, which has it as a subsystem."),
         ("Logical Operator", "Use 'and', 'or', 'xor' or 'not'."),
     ],
 )

@@ -13,6 +13,7 @@ from show.test_figures import CART, pixels, texts
 from tracewire import show
 from tracewire.analyse import (
     Plane,
+    Sweep,
     bifurcation,
     growth_rate,
     invariant_drift,
@@ -155,6 +156,17 @@ def test_a_sweep_is_a_line_or_a_map(tmp_path: Path) -> None:
         assert all(name in said for name in [*names, "max(x)", "count()"])
     with pytest.raises(OptionError, match="a sweep over 3 parameters is no picture"):
         show.plot_sweep(sweep(model, grid, ["count()"]), tmp_path / "a.svg")
+
+
+def test_a_sweep_has_the_unit_of_its_axis_and_counts_are_whole(tmp_path: Path) -> None:
+    model = made(OSCILLATOR.replace("{k: 4,", "{k: {value: 4, unit: N/m},"))
+    found = sweep(model, {"k": [1.0, 2.0], "start.x": [0.5, 1.0]}, ["end(x)"])
+    assert dict(found.units) == {"k": "N/m", "start.x": "m"}
+    said = texts(show.plot_sweep(found, tmp_path / "a.svg"))
+    assert "k [N/m]" in said and "start.x [m]" in said
+    counted = Sweep("", {"k": np.arange(3.0)}, {"count()": np.array([1.0, 2.0, 4.0])})
+    ticks = texts(show.plot_sweep(counted, tmp_path / "a.svg")).split()
+    assert "4" in ticks and "1.5" not in ticks
 
 
 def test_the_same_analysis_gives_the_same_file(tmp_path: Path) -> None:

@@ -11,11 +11,13 @@ from typing import Any
 import matplotlib
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.errors import OptionError
 from tracewire.show import plot_fit, plot_residual, plot_run
-from tracewire.show.event_rows import jump_times
+from tracewire.show.event_rows import draw_events, jump_times
 from tracewire.show.figures import group_signals
 from tracewire.show.sticking import held_intervals, joined, stick_intervals
 from tracewire.show.summary import run_table
@@ -186,6 +188,16 @@ def test_an_event_strikes_the_panels_of_the_states_that_it_sets() -> None:
     run = run_of({"x": ("m", T), "v": ("m/s", T)}, (bounce, bounce, stick))
     assert jump_times(run, ["v"]) == [1.0]
     assert jump_times(run, ["x"]) == []
+
+
+def test_a_short_stick_is_a_bar_that_can_be_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    bars: list[tuple[float, float]] = []
+    monkeypatch.setattr(Axes, "broken_barh", lambda self, spans, *given, **look: bars.extend(spans))
+    short = (event(1.0, "stick", "rub"), event(1.0001, "slip", "rub"))
+    draw_events(Figure().subplots(), run_of({"x": ("m", T)}, short), ["rub"])
+    ((begin, length),) = bars
+    assert begin == 1.0
+    assert length > 0.005 * (T[-1] - T[0])
 
 
 def test_hundreds_of_events_are_counted_and_take_few_marks(tmp_path: Path) -> None:

@@ -231,6 +231,9 @@ def test_free_runs_have_the_residual_before_and_after_on_one_scale(drawn: Any) -
     assert low < before.min()
     assert before.max() < high
     assert strip.get_yscale() == "symlog"  # they differ by a factor of 40
+    ticks = strip.get_yticks()
+    assert len(ticks) == 5
+    assert 0 < ticks[3] < ticks[4] / 2  # an axis that is bent shows where
 
 
 def test_free_runs_are_in_the_unit_of_the_users_file(drawn: Any) -> None:

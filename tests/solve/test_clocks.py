@@ -106,3 +106,31 @@ record: [second]
 """
     result = run(text, times=[0.4, 0.5, 0.9, 1.0])
     assert result["second"] == pytest.approx([-2, 0.25, 0.25, 0.75], abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("clock", "said"),
+    [
+        ("every: 1, offset: -1e300", "do not meet 'abs(-1e+300) <= 1000000000*1'. Give the clock"),
+        ("every: T, offset: far", "'abs(far) <= 1000000000*T': far = -1e+12, T = 1e-06. Give the"),
+    ],
+)
+def test_ticks_that_numbers_cannot_tell_apart_are_refused(clock: str, said: str) -> None:
+    text = f"""
+parameters: {{T: 1e-6, far: -1e12}}
+blocks:
+  x: {{type: integrator, of: x}}
+events: [{{{clock}, set: {{x: 1}}}}]
+"""
+    with pytest.raises(SimulationError) as error:
+        simulate(made(text))
+    assert said in str(error.value)
+
+
+def test_a_block_whose_ticks_numbers_cannot_tell_apart_is_refused() -> None:
+    block = "{type: unit_delay, of: u, period: 1e-6, offset: -1e6}"
+    text = f"blocks:\n  u: {{type: time}}\n  y: {block}\n"
+    with pytest.raises(
+        SimulationError, match=r"block .y.: the parameters do not meet .abs\(-1000000"
+    ):
+        simulate(made(text))

@@ -132,3 +132,29 @@ def test_a_sign_of_a_rate_that_rests_at_zero_is_no_force(start: int) -> None:
 
 def test_nothing_is_told_where_the_side_makes_no_difference() -> None:
     assert run(held_rate(-1, "quad_drag, rate: v, c: 1")).warnings == ()
+
+
+BY_TABLE = """
+span: [0, 6]
+inputs: {measured: {default: 0}}
+record: [friction]
+blocks:
+  table: {type: signal_builder, times: [0, 1, 2, 3, 4, 5, 6], values: [0, 1, 0, 0, -1, 0, 0]}
+  press: {type: constant, value: 2}
+  friction: {type: BLOCK}
+"""
+DRY = [
+    "coulomb, level: 2",
+    "dry_friction, slip: 2, stick: 3",
+    "stribeck_friction, slip: 2, stick: 3, speed: 1e-6",
+    "brake, normal: press, friction: 1, stick: 1.5",
+]
+
+
+@pytest.mark.parametrize("rate", ["table", "measured"])
+@pytest.mark.parametrize("block", DRY)
+def test_friction_is_no_force_while_a_prescribed_rate_is_zero(block: str, rate: str) -> None:
+    model = made(BY_TABLE.replace("BLOCK", f"{block}, rate: {rate}"))
+    inputs = {"measured": (np.arange(7.0), [0, 1, 0, 0, -1, 0, 0])}
+    result = simulate(model, times=[0.5, 1.5, 2.5, 3.5, 4.5, 5.5], inputs=inputs)
+    assert result["friction"] == pytest.approx([-2, -2, 0, 2, 2, 0], abs=1e-9)

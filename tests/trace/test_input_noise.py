@@ -76,7 +76,7 @@ def test_what_the_noise_of_an_input_would_explain_is_told_with_its_size(tmp_path
     file = write_record(tmp_path, True)
     whole = file.read_text(encoding="utf-8").replace(", sigma: 0.02", "")
     file.write_text(whole, encoding="utf-8")
-    found = trace(compile(read(file)))
+    found = trace(compile(read(file)), options={"effects": 1})
     assert found.verdict == "unexplained"
     (noisy,) = found.noisy_inputs
     assert noisy.name == "F" and noisy.left < 1.5

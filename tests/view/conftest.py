@@ -21,7 +21,7 @@ title: A mass on a spring
 span: [0, 10]
 record: [x, v]
 parameters:
-  k: {value: 4, unit: N/m, fit: [1, 9]}
+  k: {value: 4, unit: 1/s^2, fit: [1, 9]}
   start: {value: 100, unit: mm}
   twice: 2*k
   force: 0

@@ -101,7 +101,7 @@ def test_parameters_are_moved_by_keyboard(page: Chromium) -> None:
     page.wait("document.body.dataset.shown === '2'")
     assert page.run("+document.getElementById('p-k').value") == before + 1
     text = page.run("document.getElementById('p-k').getAttribute('aria-valuetext')")
-    assert text.endswith(" N/m")
+    assert text.endswith(" 1/s^2")
 
 
 def test_what_has_the_focus_is_seen(page: Chromium) -> None:

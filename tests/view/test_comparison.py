@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import time
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from tracewire.compile import compile
-from tracewire.diagram import read
+from tracewire.compile import Model, compile
+from tracewire.diagram import read, read_text
+from tracewire.errors import DataError, Problem
 from tracewire.fit import fit, optimset
+from tracewire.solve import parameter_values
 from tracewire.view import Service
 from view.conftest import frame_in
 
@@ -104,12 +108,24 @@ def test_a_fit_proposes_a_text_and_changes_no_file(pendulum: Service, lesson: Pa
 
 
 def read_values(text: str) -> dict[str, float]:
-    from tracewire.diagram import read_text
+    return parameter_values(compile(read_text(text, LESSONS / "pendulum.yaml")), {})
 
-    model = compile(read_text(text, LESSONS / "pendulum.yaml"))
-    from tracewire.solve import parameter_values
 
-    return parameter_values(model, {})
+def test_a_trace_begins_at_the_values_of_the_sliders(
+    pendulum: Service, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun: list[dict[str, float]] = []
+
+    def noted(model: Model, progress: object) -> None:
+        begun.append(parameter_values(model, {}))
+        raise DataError([Problem("enough")])
+
+    monkeypatch.setattr(import_module("tracewire.trace"), "trace", noted)
+    values = {"c": 0.31, "w0_squared": 60.5}
+    key = key_of(pendulum)
+    pendulum.answer("start", {"key": key, "kind": "trace", "parameters": values})
+    ended(pendulum)
+    assert {name: begun[0][name] for name in values} == values
 
 
 @pytest.mark.slow
@@ -117,8 +133,9 @@ def test_a_trace_shows_the_effect_that_it_found_in_green(pendulum: Service) -> N
     pendulum.answer("start", {"key": key_of(pendulum), "kind": "trace"})
     job = ended(pendulum, 300)
     proposal: Any = pendulum.answer("proposal", {"id": job["id"]})
-    assert proposal["added"] == ["coulomb"]
     assert 'class="block effect" data-block="coulomb"' in proposal["svg"]
+    assert proposal["svg"].count('class="block effect"') == 1
+    assert re.search(r"needed: up to 0\.\d+ rad/s\^2 over omega<", proposal["svg"])
     assert "{type: coulomb, rate: omega" in proposal["text"]
 
 

@@ -47,6 +47,52 @@ def test_the_page_shows_the_diagram_its_parameters_and_a_run(page: Chromium) -> 
     assert page.run("shows('stage')")
 
 
+def test_the_picture_is_enlarged_by_a_click(page: Chromium) -> None:
+    page.wait("!!document.querySelector('#drawing svg')")
+    wide = "document.querySelector('#drawing').clientWidth"
+    before = page.run(wide)
+    page.run("document.getElementById('enlarge').click()")
+    assert page.run(wide) > 2 * before
+    natural = "document.querySelector('#drawing svg')"
+    assert page.run(f"{natural}.clientWidth == Math.round({natural}.getAttribute('width'))")
+    assert page.run("document.getElementById('enlarge').getAttribute('aria-pressed')") == "true"
+    page.run("document.getElementById('enlarge').click()")
+    assert page.run(wide) == before
+
+
+def test_a_block_that_one_types_leaves_the_others_where_they_are(page: Chromium) -> None:
+    page.wait("!!document.querySelector('#drawing [data-block=a]')")
+    tops = (
+        "['x', 'v', 'a'].map((name) => document.querySelector(`#drawing [data-block=${name}]`)"
+        ".getBoundingClientRect().left)"
+    )
+    before = page.run(tops)
+    text = SPRING.replace("presets:", "  b: {type: gain, of: v, k: -c}\npresets:")
+    page.run(f"set('source', {text!r})")
+    page.wait("!!document.querySelector('#drawing [data-block=b]')")
+    assert sorted(before) == [before[n] for n in sorted(range(3), key=page.run(tops).__getitem__)]
+    page.run("document.querySelector('#drawing [data-block=b]').dispatchEvent("
+             "new MouseEvent('dblclick', {bubbles: true}))")  # fmt: skip
+    at = page.run("document.getElementById('source').selectionStart")
+    assert text[at:].startswith("  b: {type: gain") or text[at:].startswith("b: {type: gain")
+
+
+def test_what_one_sees_is_saved_as_a_figure_a_script_and_a_diagram(page: Chromium) -> None:
+    page.run("set('p-k', 0)")
+    page.wait("document.getElementById('p-k').value === '0'")
+    page.run(
+        "window.saved = []; URL.createObjectURL = (blob) => {"
+        " blob.text().then((text) => window.saved.push(text)); return 'data:,'; }"
+    )
+    for count, kind in enumerate(("figure", "script", "diagram"), start=1):
+        page.run(f"document.querySelector('#exports [data-kind={kind}]').click()")
+        page.wait(f"window.saved.length === {count}")
+    figure, script, diagram = page.run("window.saved")
+    assert "<svg" in figure and "</svg>" in figure
+    assert "tw.simulate(" in script and "'k': 1.0" in script
+    assert "k: {value: 1, unit: 1/s^2, fit: [1, 9]}" in diagram
+
+
 def test_a_slider_moves_the_curve(page: Chromium) -> None:
     page.run("window.before = painted()")
     page.run("set('p-k', 900)")
@@ -141,12 +187,12 @@ def test_saving_writes_the_file_and_says_so(page: Chromium, spring: Path) -> Non
     assert page.run("text('saved')") == "saved"
     page.run("set('p-k', 0)")
     page.run("document.getElementById('put').click()")
-    page.wait("document.getElementById('source').value.includes('value: 1, unit: N/m')")
+    page.wait("document.getElementById('source').value.includes('value: 1, unit: 1/s^2')")
     assert page.run("text('saved')") == "not saved"
     assert spring.read_text(encoding="utf-8") == SPRING
     page.run("document.getElementById('save').click()")
     page.wait("text('saved') === 'saved'")
-    assert "k: {value: 1, unit: N/m" in spring.read_text(encoding="utf-8")
+    assert "k: {value: 1, unit: 1/s^2" in spring.read_text(encoding="utf-8")
 
 
 def test_a_change_by_another_editor_shows_at_once(page: Chromium, spring: Path) -> None:

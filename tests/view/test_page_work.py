@@ -75,16 +75,20 @@ def test_effects_of_a_trace_are_accepted_one_by_one(page: Chromium, lesson: Path
     names = page.run("[...document.querySelectorAll('#effects input')].map((one) => one.value)")
     assert set(names) == {"sensor_offset @ sensor.theta", "coulomb @ acceleration"}
     assert "level = 0.1" in page.run("text('effects')")
-    assert page.run(BLOCKS) == ["coulomb"]
+    assert sorted(page.run(BLOCKS)) == ["coulomb", "sensor of theta"]
+    page.run("document.querySelector('#drawing [data-type=sensor]').dispatchEvent("
+             "new MouseEvent('dblclick', {bubbles: true}))")  # fmt: skip
+    at = page.run("document.getElementById('source').selectionStart")
+    assert "theta: {column: theta" in page.run(SOURCE)[at:].splitlines()[0]
 
     tick = "document.querySelector('#effects input[value^={}]').click()"
     page.run(tick.format("coulomb"))
-    page.wait(f"{BLOCKS}.length === 0")
+    page.wait(f"{BLOCKS}.join() === 'sensor of theta'")
     assert "fit again" in page.run("text('chosen')")
     page.run(tick.format("sensor"))
     page.wait("document.getElementById('accept').disabled && !text('chosen')")
     page.run(tick.format("coulomb"))
-    page.wait(f"{BLOCKS}.length === 1 && !document.getElementById('accept').disabled")
+    page.wait(f"{BLOCKS}.join() === 'coulomb' && !document.getElementById('accept').disabled")
     page.run("document.getElementById('accept').click()")
     page.wait(f"{SOURCE}.includes('type: coulomb, rate: omega') && !shows('proposal')")
     assert "offset:" not in page.run(SOURCE)
@@ -92,6 +96,17 @@ def test_effects_of_a_trace_are_accepted_one_by_one(page: Chromium, lesson: Path
     page.run("document.getElementById('save').click()")
     page.wait("text('saved') === 'saved'")
     assert "{type: coulomb, rate: omega, level:" in lesson.read_text(encoding="utf-8")
+
+
+def test_a_proposal_keeps_the_rules_of_axe(page: Chromium) -> None:
+    axe = pytest.importorskip("axe_core_python")
+    page.run("document.getElementById('fit').click()")
+    page.wait("shows('proposal')")
+    page.run("document.getElementById('proposal-words').style.maxHeight = '2rem'")  # it scrolls
+    page.run("document.getElementById('enlarge').click()")
+    page.run((Path(axe.__file__).parent / "axe.min.js").read_text(encoding="utf-8"))
+    rules = page.run("axe.run().then((all) => all.violations.map((rule) => rule.id))")
+    assert rules == []
 
 
 def test_the_report_of_a_fit_opens_beside_the_page(page: Chromium) -> None:

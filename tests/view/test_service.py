@@ -53,7 +53,7 @@ def test_a_page_is_told_what_may_stand_at_its_cursor(service: Service) -> None:
 def test_sliders_have_bounds_units_and_scales() -> None:
     sliders = {s.name: s for s in sliders_of(compile(read_text(SPRING)))}
     k, start, c = sliders["k"], sliders["start"], sliders["c"]
-    assert (k.low, k.high, k.unit, k.free, k.logarithmic, k.line) == (1, 9, "N/m", True, False, 5)
+    assert (k.low, k.high, k.unit, k.free, k.logarithmic, k.line) == (1, 9, "1/s^2", True, False, 5)
     assert (start.value, start.low, start.high) == (pytest.approx(100), 0, pytest.approx(200))
     assert (start.unit, start.factor, start.free) == ("mm", 1e-3, False)
     assert sliders["twice"].follows == "2*k"
@@ -182,6 +182,27 @@ def test_mistakes_have_lines_and_are_drawn_in_red(service: Service) -> None:
     assert service.answer("run", {"key": read["key"]})["problems"]
 
 
+def test_units_that_contradict_are_red_and_run_all_the_same(service: Service) -> None:
+    text = SPRING.replace("of: a, unit: m/s}", "of: a, unit: N}")
+    read: Any = service.answer("read", {"text": text})
+    assert "needs a rate in" in read["problems"][0]["text"]
+    assert read["runs"]
+    assert 'class="block wrong"' in service.answer("draw", {"key": read["key"]})["svg"]
+    assert isinstance(service.answer("run", {"key": read["key"]}), bytes)
+
+
+def test_blocks_stay_where_they_are_while_one_types(service: Service, key_of: KeyOf) -> None:
+    def picture(text: str, like: str = "") -> Any:
+        key = key_of(text)
+        return key, service.answer("draw", {"key": key, "like": like})["svg"]
+
+    first, before = picture(SPRING)
+    line = "  b: {type: gain, of: v, k: -c}\n"
+    second, after = picture(SPRING.replace("presets:", f"{line}presets:"), first)
+    assert 'data-block="b"' in after
+    assert picture(SPRING, second) == (first, before)
+
+
 def test_what_is_no_diagram_is_told(service: Service) -> None:
     read: Any = service.answer("read", {"text": "title: [\n"})
     assert read["problems"][0]["line"] == 2
@@ -241,7 +262,9 @@ def test_a_diagram_that_extends_another_one_has_its_sliders(service: Service, sp
     assert [p["name"] for p in read["parameters"]] == ["k", "start", "twice", "force", "c"]
     assert {p["line"] for p in read["parameters"]} == {0}
     put: Any = service.answer("put", {"key": read["key"], "parameters": {"k": 4.0}})
-    assert put["text"].startswith(f"extends: {base.name}\nparameters:\n  k: {{value: 4, unit: N/m")
+    assert put["text"].startswith(
+        f"extends: {base.name}\nparameters:\n  k: {{value: 4, unit: 1/s^2"
+    )
     assert service.answer("state", {"key": read["key"]})["fresh"]
     os.utime(base, (1, 1))
     assert not service.answer("state", {"key": read["key"]})["fresh"]

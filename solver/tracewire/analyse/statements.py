@@ -7,16 +7,17 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from types import MappingProxyType
 from typing import Literal
 
 from tracewire.analyse.quantities import (
+    NOTHING_FURTHER,
     Further,
     Recorder,
     Subject,
     ask,
     conditions_of,
     measure,
+    silent,
 )
 from tracewire.compile import Model, compile
 from tracewire.diagram import Diagram, Setting, Statement, read
@@ -35,7 +36,6 @@ VERDICTS: tuple[Verdict, ...] = (
     "does not agree",
     "could not be measured",
 )
-NOTHING: Further = MappingProxyType({})
 
 
 @dataclass(frozen=True)
@@ -90,14 +90,14 @@ class Judge:
         self,
         *,
         full: bool = False,
-        further: Further = NOTHING,
+        further: Further = NOTHING_FURTHER,
         workers: int | None = None,
         libraries: Sequence[str | Path] = (),
         tell: Callable[[str], None] | None = None,
     ) -> None:
         self.full, self.further, self.workers = full, further, workers
         self.libraries = tuple(libraries)
-        self.tell = tell if tell is not None else _silent
+        self.tell = tell if tell is not None else silent
         self._recorders: dict[Path, Recorder] = {}
         self._subjects: dict[tuple[Path, str, str], Subject] = {}
 
@@ -174,7 +174,7 @@ def judge(
     diagram: Diagram,
     *,
     full: bool = False,
-    further: Further = NOTHING,
+    further: Further = NOTHING_FURTHER,
     workers: int | None = None,
     libraries: Sequence[str | Path] = (),
     tell: Callable[[str], None] | None = None,
@@ -230,7 +230,3 @@ def _verdict(statement: Statement, bounds: Bounds | None, value: float | str) ->
 def counts_of(rows: Sequence[Judged]) -> Mapping[Verdict, int]:
     """How many rows have each verdict, in the order of VERDICTS."""
     return {verdict: sum(row.verdict == verdict for row in rows) for verdict in VERDICTS}
-
-
-def _silent(_: str) -> None:
-    pass

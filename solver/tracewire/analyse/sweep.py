@@ -41,13 +41,14 @@ class Sweep(Result):
     """Outputs over a grid: `sweep["max(x)"]` has the shape of the grid, in the order of its axes.
 
     `grid` holds the values of each axis in SI, `values` the outputs by name, NaN where a run
-    failed; `errors` says why, by the indices of the point.
+    failed; `errors` says why, by the indices of the point. `units` are the SI units of the axes.
     """
 
     title: str
     grid: Mapping[str, Vector]
     values: Mapping[str, NDArray[np.float64]]
     errors: Mapping[tuple[int, ...], str] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
         if name not in self.values:
@@ -101,7 +102,15 @@ def sweep(
         tuple(int(i) for i in np.unravel_index(number, shape)): text
         for number, text in sorted(store.errors.items())
     }
-    return Sweep(model.flat.title, axes, values, errors)
+    units = {name: _unit(model, name) for name in axes}
+    return Sweep(model.flat.title, axes, values, errors, units)
+
+
+def _unit(model: Model, axis: str) -> str:
+    """The SI unit of a parameter, or of a start value `start.NAME`."""
+    if axis in model.flat.parameters:
+        return model.flat.parameters[axis].unit
+    return model.flat.units.get(axis.removeprefix("start."), "")
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 from collections.abc import Sequence
@@ -9,19 +10,29 @@ from collections.abc import Sequence
 __all__ = ["main"]
 
 INTERRUPTED = 130
+THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+"""How many threads linear algebra takes: numpy reads these when it is imported."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code; see `tracewire.cli.app.main`.
 
     Without arguments those of the process are meant, which ends then: an interrupt while it loads
-    is told as any other, and one after the work changes nothing.
+    is told as any other, and one after the work changes nothing. Linear algebra takes one thread
+    then, unless the user sets OMP_NUM_THREADS or one of THREADS: the matrices of a fit are small,
+    and threads that wait for each other would take the cores from the runs.
     """
+    if arguments is None and "OMP_NUM_THREADS" not in os.environ:
+        for name in THREADS:
+            os.environ.setdefault(name, "1")
     try:
         from tracewire.cli.app import main as run
 
         code = run(arguments)
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, RuntimeError) as error:
+        # Python 3.11 makes a RuntimeError of what is raised while it makes a class
+        if KeyboardInterrupt not in (type(error), type(error.__cause__)):
+            raise
         if sys.stderr is not None:
             sys.stderr.write("interrupted; nothing was finished.\n")
         code = INTERRUPTED

@@ -118,7 +118,10 @@ def _told(error: BaseException) -> tuple[list[Problem], int]:
         return list(error.problems), error.exit_code
     if isinstance(error, USAGE_ERROR):
         return [_usage(error)], 2
-    if isinstance(error, KeyboardInterrupt | typer.Abort):
+    cause = (
+        error.__cause__ if isinstance(error, RuntimeError) else None
+    )  # of Python 3.11, in a class
+    if isinstance(cause or error, KeyboardInterrupt | typer.Abort):
         return [STOPPED], INTERRUPTED
     what = f"internal error ({type(error).__name__}: {error})"
     return [Problem(what, hint="Please report it; --debug shows the traceback.")], 1

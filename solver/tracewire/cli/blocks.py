@@ -45,24 +45,13 @@ def blocks(
       tracewire blocks INTEGRAL_m
       tracewire blocks tracewire --report blocks.html
     """
-    from tracewire.library import describe, describe_json, palette
-
     check_target(report, (".md", ".html"), "report")
     found = _found(name, library or ())
-    if found.block:
-        told: dict[str, object] = describe_json(found.library, found.block)
-        text = describe(found.library, found.block)
-    else:
-        told = {"blocks": [describe_json(found.library, block) for block in found.library]}
-        text = palette(found.library)
-        told |= _more_json(found)
-        text = "\n\n".join(part for part in (found.title, text, _more_text(found)) if part)
-    if report is not None:
-        told["written"] = [_write(report, found)]
+    written = {} if report is None else {"written": [_write(report, found)]}
     if as_json:
-        print_json(told)
+        print_json(_json(found) | written)
     else:
-        print_text(text if report is None else f"written: {report}")
+        print_text(_text(found) if report is None else f"written: {report}")
 
 
 @dataclass(frozen=True)
@@ -120,6 +109,26 @@ def _refuse_of_others(name: str) -> None:
 
     if hint := who_has(name):
         raise BlockError.one(f"'{name}' is no block of tracewire", hint=hint)
+
+
+def _json(found: _Found) -> dict[str, object]:
+    """What was found, for programs."""
+    from tracewire.library import describe_json
+
+    if found.block:
+        return describe_json(found.library, found.block)
+    blocks = [describe_json(found.library, block) for block in found.library]
+    return {"blocks": blocks, **_more_json(found)}
+
+
+def _text(found: _Found) -> str:
+    """What was found, to be read."""
+    from tracewire.library import describe, palette
+
+    if found.block:
+        return describe(found.library, found.block)
+    parts = (found.title, palette(found.library), _more_text(found))
+    return "\n\n".join(part for part in parts if part)
 
 
 def _more_json(found: _Found) -> dict[str, object]:

@@ -9,7 +9,7 @@ import typer
 
 from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries
 from tracewire.cli.output import check_target, print_json, print_problems, print_text, working
-from tracewire.errors import DiagramError
+from tracewire.errors import DiagramError, TracewireError
 
 ENDINGS = (".svg", ".png", ".mmd")
 
@@ -53,10 +53,16 @@ def draw(
     target = output or f"{Path(diagram).stem}.svg"
     check_target(target, ENDINGS, "picture")
     with working(f"drawing {diagram}"):
+        from tracewire.compile import compile, unit_problems
         from tracewire.diagram import read_readable
         from tracewire.draw import draw as picture_of
 
         read, problems = read_readable(diagram, library or ())
+        if not problems:
+            try:
+                problems = tuple(unit_problems(compile(read).flat))
+            except TracewireError as error:
+                problems = tuple(error.problems)
         picture = picture_of(
             read, depth, names=names, units=units, measured=measured, problems=problems
         )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tracewire.cli.delivery import Targets, deliver
+from tracewire.cli.executors import ExecutorAddress, executor_at
 from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries, load_model
 from tracewire.cli.output import note, working
 from tracewire.cli.progress import stages
@@ -100,6 +101,7 @@ def trace(
     asked: Asked,
     targets: Targets,
     rtol: Annotated[float, typer.Option(help="The relative tolerance of runs.")] = 1e-6,
+    executor: ExecutorAddress = "",
     library: Libraries = None,
     as_json: AsJson = False,
     debug: Debug = False,
@@ -132,13 +134,13 @@ def trace(
     check_home(own, targets.output)
     model = _with_files(model, {use: getattr(files, use) for use in ("train", "gate", "validate")})
     check_options(options, model)
-    with working("tracing") as tell:
+    with executor_at(executor) as pool, working("tracing") as tell:
 
         def show(text: str) -> None:
             tell(text)
             note(text)
 
-        found = trace_model(model, options=options, rtol=rtol, progress=stages(show))
+        found = trace_model(model, options=options, rtol=rtol, executor=pool, progress=stages(show))
     deliver(found, model, own, targets, as_json)
 
 

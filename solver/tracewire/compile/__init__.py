@@ -1,5 +1,6 @@
 """From a diagram to a model: flat equations, one tape, and functions written from the tape."""
 
+from tracewire.compile.constants import OF_THE_PAST
 from tracewire.compile.dimensions import unit_problems
 from tracewire.compile.flat import (
     Flat,
@@ -17,6 +18,7 @@ from tracewire.compile.rest import AtRest, at_rest
 from tracewire.compile.statements import statement_problems
 
 __all__ = [
+    "OF_THE_PAST",
     "AtRest",
     "Flat",
     "FlatBlock",

@@ -6,13 +6,17 @@ from collections.abc import Iterable
 
 from tracewire.compile.tape import Tape
 
+OF_THE_PAST = 3
+"""Places behind the parameters that say what delayed signals were."""
+
 
 class Constants:
     """The entries that only read parameters, and their places in the array `c` of a run.
 
     c[0:P] are the parameters themselves; the entries that were collected stand behind them. A
     function written later uses those that are there, and computes what it needs beyond them. Where
-    the model has delays, c[P] is the address of what their signals were, which a run writes there.
+    the model has delays, c[P] is the address of what their signals were, which a run writes there,
+    c[P + 1] that of what a record tells of the time before the run, and c[P + 2] where that begins.
     """
 
     def __init__(self, tape: Tape, parameters: int, delays: bool = False) -> None:
@@ -23,7 +27,7 @@ class Constants:
     @property
     def size(self) -> int:
         """The length of `c`."""
-        return self.parameters + int(self.delays) + len(self.places)
+        return self.parameters + OF_THE_PAST * int(self.delays) + len(self.places)
 
     def collect(self, roots: Iterable[int]) -> None:
         """Give a place to each entry on the way to `roots` that only reads parameters."""

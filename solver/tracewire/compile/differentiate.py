@@ -80,6 +80,8 @@ def _rate(tape: Tape, index: int, inner: list[int]) -> int:
         return push("*", slope, inner[1])
     if entry.op == "past":  # operands: history, s, mode
         return push("+", da, push("*", past_rate(tape, index), inner[1]))
+    if entry.op == "recorded":  # operands: record, s
+        return push("*", past_rate(tape, index), inner[1])
     if len(entry.operands) == 1:
         return (
             push("*", slope_of(tape, entry.op, a, index), da)
@@ -105,9 +107,10 @@ def _rate(tape: Tape, index: int, inner: list[int]) -> int:
 def past_rate(tape: Tape, index: int) -> int:
     """The next derivative of a delayed signal by its own time."""
     entry = tape.entries[index]
-    history, s, mode = entry.operands
-    leaf = tape.push("history_rate", payload=tape.entries[history].payload)
-    return tape.push("past", leaf, s, mode, payload=entry.payload + 1)
+    leaf, *at = entry.operands
+    if entry.op == "past":
+        leaf = tape.push("history_rate", payload=tape.entries[leaf].payload)
+    return tape.push(entry.op, leaf, *at, payload=entry.payload + 1)
 
 
 def _linear_rate(tape: Tape, system: System, inner: list[int]) -> int:

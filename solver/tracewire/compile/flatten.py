@@ -15,7 +15,13 @@ from tracewire.compile.flat import (
     FlatParameter,
     FlatState,
 )
-from tracewire.compile.happenings import block_events, block_memory, diagram_events, memory_name
+from tracewire.compile.happenings import (
+    block_events,
+    block_memory,
+    diagram_events,
+    memory_name,
+    near_ticks,
+)
 from tracewire.compile.loops import order_signals
 from tracewire.compile.many import write_wires
 from tracewire.compile.realise import without_zero_products
@@ -36,7 +42,7 @@ from tracewire.diagram import (
     state_names,
 )
 from tracewire.errors import Place
-from tracewire.formula import CONSTANTS, Call, Expression, Name, Number, names_of, rename
+from tracewire.formula import CONSTANTS, Call, Expression, Name, Number, names_of, parse, rename
 from tracewire.library import Block, Parameter
 
 
@@ -193,6 +199,9 @@ class _Flattener:
 
             name = f"{path}events[{number}]"
             self.events += diagram_events(event, name, values, read, path, self.events)
+            if event.every is not None and event.offset is not None:
+                every, offset = read(event.every), read(event.offset)
+                self.require += near_ticks(every, offset, event.place)
 
     def add_subsystem(self, use: BlockUse, inside: Diagram, scope: _Scope) -> None:
         path = f"{scope.path}{use.name}."
@@ -288,6 +297,10 @@ class _Flattener:
                 self.units[name] = use.unit or output.unit
                 self.show(name, path, use.shown)
         self.events += block_events(block, path, states, written, place)
+        for happening in block.events:
+            if happening.every is not None:
+                every, offset = written(parse(happening.every)), written(parse(happening.offset))
+                self.require += near_ticks(every, offset, place)
         self.memories += block_memory(block, path, states, written, place)
 
     def setting(self, use: BlockUse, parameter: Parameter, scope: _Scope) -> Expression:

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from tracewire.compile.flat import FlatEvent, FlatMemory, FlatTransition
-from tracewire.diagram import Crosses, Event, Value
+from tracewire.diagram import Condition, Crosses, Event, Value
 from tracewire.errors import Place
 from tracewire.formula import Call, Expression, Name, Number, parse, parse_condition, to_text
 from tracewire.library import Block
 
+MOST_PERIODS = 1e9
+NEAR = "Give the clock an offset between 0 and its period: the ticks are at offset + k*period."
 Write = Callable[[Expression], Expression]
 """A formula of a block with its names replaced by full ones."""
 
@@ -109,6 +111,14 @@ def clock(period: Expression, offset: Expression) -> Expression:
     if isinstance(offset, Number):
         return waiting if offset.value > 0 else periods
     return Call("if", (Call(">", (offset, Number(0.0))), waiting, periods))
+
+
+def near_ticks(period: Expression, offset: Expression, place: Place) -> list[Condition]:
+    """What keeps the ticks of a clock apart: beyond, offset + k*period is the same for many k."""
+    if offset == Number(0.0):
+        return []
+    most = Call("*", (Number(MOST_PERIODS), period))
+    return [Condition(Call("<=", (Call("abs", (offset,)), most)), place, NEAR)]
 
 
 def told_clock(formula: Expression) -> str:

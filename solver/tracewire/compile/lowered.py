@@ -84,8 +84,8 @@ class Transition:
 class Delay:
     """A signal that is read with a delay: its entry, and those of the delay and the longest one.
 
-    `mode` is the number of its mode, `shortest` the least delay as a formula of parameters, `text`
-    what the signal is in the diagram.
+    `mode` is the number of its mode, `shortest` and `most` are the least and the longest delay as
+    formulas of parameters, `text` is what the signal is in the diagram.
     """
 
     signal: int
@@ -93,6 +93,7 @@ class Delay:
     longest: int
     mode: int
     shortest: Expression
+    most: Expression
     text: str
 
 

@@ -19,6 +19,7 @@ from tracewire.formula import Call, Expression, Name, Number, to_text
 
 MOST_FULL = 60  # unknowns of a linear system without zeros
 MOST_WORK = 300_000  # entries of its elimination
+PRESCRIBED = frozenset({"t", "param", "const", "table", "mode"})  # leaves that no state moves
 
 
 def comparing(strict: bool) -> str:
@@ -414,9 +415,12 @@ class Lowering:
         return push("-", value, push("*", base, whole))
 
     def dry(self, arguments: tuple[Expression, ...]) -> int:
-        """slip*sign(u), or a level within +-stick while the mode holds u at zero."""
+        """slip*sign(u), or a level within +-stick while the mode holds u at zero. What no state
+        moves cannot be held: the sign of a prescribed u that rests at zero is 0."""
         push = self.tape.push
         guard, slip, stick = (self.lower(argument) for argument in arguments)
+        if self.tape.leaves([guard]) <= PRESCRIBED:
+            return push("*", self.sign_of(guard, to_text(arguments[0])), slip)
         sign = self.sign_of(guard, to_text(arguments[0]), holds=True)
         if slip == stick or self.static(guard):
             return push("*", sign, slip)
@@ -455,8 +459,11 @@ class Lowering:
         stretch = self.out.modes[mode].leaf
         kept = push("past", push("history", payload=number), s, stretch)
         begun = push("ge", stretch, tape.constant(1.0))
-        entry = push("select", begun, kept, substitute(tape, earlier, {self.t: s}))
-        self.out.delays.append(Delay(-1, own, fixed[1], mode, shortest, text))
+        told = push("recorded", push("record", payload=number), s)
+        is_told = push("ge", s, push("record_begin"))
+        earlier = push("select", is_told, told, substitute(tape, earlier, {self.t: s}))
+        entry = push("select", begun, kept, earlier)
+        self.out.delays.append(Delay(-1, own, fixed[1], mode, shortest, longest, text))
         self.delayed[arguments] = entry
         return entry
 

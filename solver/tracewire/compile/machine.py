@@ -238,7 +238,7 @@ class _Body:
         match entry.op:
             case "t":
                 return "%t"
-            case "table" | "history" | "history_rate":
+            case "table" | "history" | "history_rate" | "record":
                 return f"i64 {entry.payload}"
             case "state" | "param":
                 return self.load("x", int(entry.payload))
@@ -246,6 +246,8 @@ class _Body:
                 return self.load("m", int(entry.payload))
             case "hold":
                 return self.load("m", self.writer.modes + int(entry.payload))
+            case "record_begin":
+                return self.load("c", self.writer.constants.parameters + 2)
         raise AssertionError(f"no IR of the leaf {entry.op}")
 
     def load(self, array: str, place: int) -> str:
@@ -319,9 +321,11 @@ class _Body:
             case "segment" | "slope":
                 rest = ", ".join(f"double {operand}" for operand in a[1:])
                 return [f"{name} = call double @{op}(ptr %k, {a[0]}, {rest})"]
-            case "past":
-                address = self.load("c", self.writer.constants.parameters)
-                rest = f"double {a[1]}, double {a[2]}, i64 {entry.payload}"
+            case "past" | "recorded":
+                own = op == "recorded"
+                address = self.load("c", self.writer.constants.parameters + int(own))
+                stretch = "0.0" if own else a[2]
+                rest = f"double {a[1]}, double {stretch}, i64 {entry.payload}"
                 return [f"{name} = call double @past(double {address}, {a[0]}, {rest})"]
         raise AssertionError(f"no IR of {op}")
 

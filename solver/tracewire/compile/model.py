@@ -213,9 +213,9 @@ class Model:
 
         x[n]: states. m[2*M]: the values of the modes, and behind them 1.0 for each guard that is
         held at zero. c: what `prepare` makes of the parameters, which it takes as x; behind these
-        the address of what delayed signals were (see `past`) where there are any. k: the tables,
-        k[j] is the offset of table j; there: count N, x[N], y[N], slope[N-1]. `out` is zeroed by
-        the caller. Functions, with the length of out: prepare (C), rhs (n), outputs (R),
+        what is known of the past of delayed signals (see `past`), where there are any. k: the
+        tables, k[j] is the offset of table j; there: count N, x[N], y[N], slope[N-1]. `out` is
+        zeroed by the caller. Functions, with the length of out: prepare (C), rhs (n), outputs (R),
         guards (M), guard_rates (M), timed (2T), starts (n), resets, delayed (D: signals that are
         read with a delay), lags (2D: the delays, and the longest they may be), pace (2: of the
         guards, and while something is held), and guard_sizes (M), as all `sizes` a function of
@@ -266,7 +266,7 @@ class Model:
         """Every signal by name, in the order of computation: to find what went wrong.
 
         The arguments are those of the C functions, with the parameters p for the constants; behind
-        them the address of what delayed signals were, where there are any.
+        them what is known of the past of delayed signals, where there are any.
         """
         names = [*self.flat.signals, *(f"{state.name}'" for state in self.flat.states)]
         low = self.lowered

@@ -86,7 +86,7 @@ def _pace(tape: Tape, index: int, found: Mapping[int, int]) -> int:
             return tape.push("+", *inner)
         case "select":
             return tape.push("select", entry.operands[0], inner[1], inner[2])
-        case "segment" | "past":  # operands: table or history, u, mode
+        case "segment" | "past" | "recorded":  # operands: table, history or record, u
             return inner[1]
     return inner[0]
 

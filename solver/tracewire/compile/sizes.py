@@ -21,7 +21,7 @@ from collections.abc import Sequence
 from tracewire.compile.differentiate import gradients, past_rate, slope_of
 from tracewire.compile.tape import Tape
 
-NO_VALUE = ("newton", "table", "unknown", "history", "history_rate")
+NO_VALUE = ("newton", "table", "unknown", "history", "history_rate", "record")
 EXACT = ("ge", "gt", "and", "or", "not", "floor", "slope")
 
 
@@ -64,7 +64,7 @@ def _size(tape: Tape, index: int, found: dict[int, int], states: int) -> int:
         case "segment":  # operands: table, u, mode
             steep = push("abs", push("slope", a, b))
             return push("+", push("*", steep, found[entry.operands[1]]), own)
-        case "past":  # operands: history, s, mode
+        case "past" | "recorded":  # operands: history or record, s
             steep = push("abs", past_rate(tape, index))
             return push("+", push("*", steep, found[entry.operands[1]]), own)
         case "atan2":

@@ -14,12 +14,12 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from tracewire.compile import libm
-from tracewire.compile.constants import Constants
+from tracewire.compile.constants import OF_THE_PAST, Constants
 from tracewire.compile.past import past
 from tracewire.compile.tape import CLOSE, LEAST_SHARE, SEARCHES, Tape
 
 LONGEST_INLINE = 60
-INLINE = ("const", "table", "history", "history_rate")
+INLINE = ("const", "table", "history", "history_rate", "record")
 
 Function = Callable[..., tuple[float, ...]]
 
@@ -118,8 +118,8 @@ class Writer:
         doc = (
             '    """The constants of a run: its parameters, and what is computed of them alone."""'
         )
-        address = "0.0" if self.constants.delays else ""
-        returned = ", ".join(part for part in ("*p", address, body.returned) if part)
+        nothing = ", ".join(["0.0"] * OF_THE_PAST) if self.constants.delays else ""
+        returned = ", ".join(part for part in ("*p", nothing, body.returned) if part)
         return "\n".join(["def prepare(p):", doc, *body.lines, f"    return ({returned},)", ""])
 
 
@@ -181,9 +181,14 @@ class _Body:
                 return f"k, {entry.payload}"
             case "history" | "history_rate":
                 return f"c[{self.writer.constants.parameters}], {entry.payload}"
-            case "past":
-                texts = (_bare(self.texts[operand]) for operand in entry.operands)
-                return f"past({', '.join(texts)}, {entry.payload})"
+            case "record":
+                return f"c[{self.writer.constants.parameters + 1}], {entry.payload}"
+            case "record_begin":
+                return f"c[{self.writer.constants.parameters + 2}]"
+            case "past" | "recorded":
+                texts = [_bare(self.texts[operand]) for operand in entry.operands]
+                stretch = ["0.0"] if entry.op == "recorded" else []
+                return f"past({', '.join([*texts, *stretch])}, {entry.payload})"
             case "newton":
                 return self.search(index)
             case "pick":

@@ -34,7 +34,9 @@ It is infinite where J is singular at the guess.
 Delays. `past`, payload r, operands a leaf, a time s and a mode, is the derivative of order r at the
 time s of what a delayed signal was. The mode is the number of the smooth stretch in which s lies.
 The leaf says which signal, `history` for r = 0 and `history_rate` beyond: how the past moves with a
-parameter is what a derivative by the leaf is multiplied with.
+parameter is what a derivative by the leaf is multiplied with. `recorded` is the same of what a
+record tells of the time before the run, from `record_begin` on, which moves with nothing; its leaf
+is `record`, and it has no mode.
 """
 
 from __future__ import annotations
@@ -143,7 +145,7 @@ class Tape:
         return float(entry.payload) if entry.op == "const" else None
 
     def _simplified(self, op: str, operands: tuple[int, ...]) -> int | None:
-        if not operands or op in ("segment", "slope", "past", "newton", "pick"):
+        if not operands or op in ("segment", "slope", "past", "recorded", "newton", "pick"):
             return None
         values = [self.value(operand) for operand in operands]
         if all(value is not None for value in values):

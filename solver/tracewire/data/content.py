@@ -10,6 +10,8 @@ from pathlib import Path
 from tracewire.errors import DataError, Place, Problem, unknown
 
 MOST_BYTES = 200_000_000
+MOST_UNPACKED = 1_000_000_000
+"""Bytes of the arrays that a file of another format holds, once they are unpacked."""
 AS_TEXT = "Save it as text, in UTF-8."
 AS_CSV = "Open it, and save the sheet or table as CSV (text with commas)."
 UNPACK = "Unpack it, and name the file with the numbers."

@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.data.content import MOST_UNPACKED
 from tracewire.data.quiet import Attempts
 from tracewire.data.vectors import Column, Group
 from tracewire.errors import DataError, Place
 from tracewire.extras import import_extra
 
-MOST_BYTES = 1_000_000_000
 MOST_COLUMNS = 200  # of a matrix
 MOST_DEPTH = 20
 UNITS = ("units", "unit", "Units", "Unit")
@@ -91,8 +91,8 @@ def data_sets(group: Any, name: str = "", depth: int = 0) -> Iterator[tuple[str,
 
 
 def _values(data: Any) -> NDArray[Any]:
-    if data.nbytes > MOST_BYTES:
-        raise ValueError(f"'{data.name}' holds more than {MOST_BYTES / 1e9:g} GB")
+    if data.nbytes > MOST_UNPACKED:
+        raise ValueError(f"'{data.name}' holds more than {MOST_UNPACKED / 1e9:g} GB")
     values = np.asarray(data[()])
     if values.dtype.kind in "OS":  # texts of any length are bytes
         texts = [v.decode("utf-8", "replace") if isinstance(v, bytes) else v for v in values.flat]

@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-MOST_BYTES = 1_000_000_000
+from tracewire.data.content import MOST_UNPACKED
+
 MOST_DEPTH = 20
 MATRIX, COMPRESSED = 14, 15
 NUMBERS = {
@@ -61,7 +62,7 @@ def variables_of(content: bytes) -> dict[str, Value]:
     if order is None:
         raise Damaged("its header has no mark of the byte order")
     found: dict[str, Value] = {}
-    left = [MOST_BYTES]
+    left = [MOST_UNPACKED]
     at = 128
     while at + 8 <= len(content):
         kind, data, at = _element(content, at, order)
@@ -82,7 +83,7 @@ def _unpacked(data: bytes, left: list[int]) -> bytes:
         raise Damaged(str(error)) from None
     left[0] -= len(made)
     if left[0] < 0:
-        raise Damaged(f"it holds more than {MOST_BYTES / 1e9:g} GB")
+        raise Damaged(f"it holds more than {MOST_UNPACKED / 1e9:g} GB")
     return made
 
 
@@ -127,7 +128,7 @@ def _matrix(data: bytes, order: str, depth: int) -> tuple[str, Value]:
     if kind_of_array == 17:  # objects have another layout: their name stands where the shape does
         return _text(shape_data), Other(OTHERS[17])
     shape = tuple(int(n) for n in _numbers(kind, shape_data, order))
-    if len(shape) < 2 or min(shape) < 0 or math.prod(shape) > MOST_BYTES:
+    if len(shape) < 2 or min(shape) < 0 or math.prod(shape) > MOST_UNPACKED:
         raise Damaged(f"an array in it has the shape {shape}")
     _, name_data, at = _element(data, at, order)
     name, count = _text(name_data), math.prod(shape)

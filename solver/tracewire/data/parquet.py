@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.data.content import MOST_UNPACKED
 from tracewire.data.quiet import Attempts
 from tracewire.data.vectors import Column, Group
 from tracewire.errors import DataError, Place
 from tracewire.extras import import_extra
 
-MOST_BYTES = 1_000_000_000
 UNITS = (b"units", b"unit")
 
 
@@ -33,8 +33,8 @@ def groups_of_parquet(content: bytes, path: Path, place: Place) -> list[Group]:
     file = attempt(lambda: parquet.ParquetFile(pyarrow.BufferReader(content)))
     schema, metadata = file.schema_arrow, file.metadata
     groups = [metadata.row_group(n) for n in range(metadata.num_row_groups)]
-    if sum(group.total_byte_size for group in groups) > MOST_BYTES:
-        what = f"'{path}' holds more than {MOST_BYTES / 1e9:g} GB"
+    if sum(group.total_byte_size for group in groups) > MOST_UNPACKED:
+        what = f"'{path}' holds more than {MOST_UNPACKED / 1e9:g} GB"
         raise DataError.one(what, place, hint="Split it, or keep every n-th row.")
 
     def read(n: int) -> NDArray[Any]:

@@ -21,7 +21,7 @@ from tracewire.diagram.shapes import (
     Text,
 )
 from tracewire.formula import FUNCTIONS
-from tracewire.library import Library, bounds_text, wiring
+from tracewire.library import Library, bounds_text, joined_doc, wiring
 
 MOST = 60
 
@@ -107,9 +107,9 @@ class _Completer:
             block = self.library[kind]
             for port in block.inputs:
                 shape = SHAPES["wires" if port.many else "wire"]
-                found[port.name] = shape, _doc(port.doc, port.unit, wiring(port))
+                found[port.name] = shape, joined_doc(port.doc, port.unit, wiring(port))
             for one in block.parameters:
-                doc = _doc(one.doc, one.unit, bounds_text(one))
+                doc = joined_doc(one.doc, one.unit, bounds_text(one))
                 found[one.name] = SHAPES[OF_KINDS[one.kind]], doc
         elif self.inside is not None and kind in self.inside.subsystems:
             own = self.inside.subsystems[kind]
@@ -144,6 +144,9 @@ class _Completer:
             yield from (Proposal(name, inside.title, name) for name, inside in own.items())
             yield from (Proposal(n, self.library[n].doc, n) for n in sorted(self.library))
             return
+        if level.key == "variant" and shape == OF_A_BLOCK["variant"].shape:
+            yield from self.variants(level)
+            return
         for one in _choices(shape):
             if isinstance(one, Listed) and one.alone:
                 yield from self.values(one.of, level)
@@ -157,6 +160,15 @@ class _Completer:
                 names |= dict.fromkeys(self.inside.parameters if self.inside else (), "a parameter")
                 yield from (Proposal(name, doc, name) for name, doc in names.items())
                 yield from _functions()
+
+    def variants(self, level: Level) -> Iterator[Proposal]:
+        """The bodies of the subsystem that a line uses, and the parameters that may choose one."""
+        if self.inside is None or self.type_of(level) not in self.inside.subsystems:
+            return
+        for variant in self.inside.subsystems[self.type_of(level)].variants:
+            yield Proposal(variant, "a variant", variant)
+        for name in self.inside.parameters:
+            yield Proposal(name, "a parameter with the number of a variant", name)
 
     def names(self, kind: str, deep: bool = False) -> Iterator[tuple[str, str]]:
         """The names of a kind in the diagram as it was read last, and what each is.
@@ -209,7 +221,3 @@ def _functions() -> Iterator[Proposal]:
     for name, function in FUNCTIONS.items():
         if not function.instead:
             yield Proposal(name, "a function", f"{name}(")
-
-
-def _doc(*parts: str) -> str:
-    return "; ".join(part.rstrip(".") for part in parts if part)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import keyword
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from tracewire.diagram.grammar import OF_A_BLOCK, OF_KINDS, SHAPES, TOP
@@ -21,7 +21,7 @@ from tracewire.diagram.shapes import (
     Text,
 )
 from tracewire.formula import CONSTANTS, FUNCTIONS, is_name
-from tracewire.library import Block, Input, Library, Parameter, bounds_text, wiring
+from tracewire.library import Block, Input, Library, Parameter, bounds_text, joined_doc, wiring
 
 Schema = dict[str, Any]
 DRAFT = "http://json-schema.org/draft-07/schema#"
@@ -161,11 +161,11 @@ def _use(name: str, block: Block) -> Schema:
 
 def _port(port: Input) -> Schema:
     shape = _shape(Named("wires" if port.many else "wire"))
-    return {"description": _doc((port.doc, _unit(port.unit), wiring(port)))} | shape
+    return {"description": joined_doc(port.doc, _unit(port.unit), wiring(port))} | shape
 
 
 def _parameter(parameter: Parameter) -> Schema:
-    doc = _doc((parameter.doc, _unit(parameter.unit), bounds_text(parameter)))
+    doc = joined_doc(parameter.doc, _unit(parameter.unit), bounds_text(parameter))
     found: Schema = {"description": doc}
     bounds = {
         "minimum": parameter.low,
@@ -184,7 +184,3 @@ def _parameter(parameter: Parameter) -> Schema:
 
 def _unit(unit: str) -> str:
     return f"in {unit}" if unit else ""
-
-
-def _doc(parts: Iterable[str]) -> str:
-    return "; ".join(part.rstrip(".") for part in parts if part)

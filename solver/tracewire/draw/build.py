@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 from tracewire.diagram import (
     BlockUse,
@@ -18,9 +19,11 @@ from tracewire.diagram import (
 )
 from tracewire.draw.details import details_of, event_text, input_details, settings_text
 from tracewire.draw.font import SMALL, shortened
-from tracewire.draw.graph import Connection, Graph, Look, Mark, Node, Port
+from tracewire.draw.graph import Connection, Graph, Look, Mark, Node, Plot, Port
+from tracewire.draw.needed import Needed
 from tracewire.draw.numbers import inner_numbers, numbers_of, setting_numbers
 from tracewire.draw.orient import oriented
+from tracewire.draw.sensors import sensor_nodes
 from tracewire.draw.shapes import Drawn, port_width, shape_of, subsystem_look, tag_look
 from tracewire.errors import Problem
 from tracewire.formula import Call, Name, Number, names_of
@@ -44,7 +47,9 @@ class DrawOptions:
     """What a picture shows.
 
     depth: how many levels of subsystems are open. names, units: what stands on the wires.
-    measured: whether signals with a sensor are marked. effects: blocks that are drawn in colour.
+    measured: whether signals with a sensor are marked, and the sensors that have terms are drawn.
+    effects: blocks in colour, `sensors`: measured signals whose sensors are. needed: what data need
+    at blocks, by their full names.
     """
 
     depth: int = 0
@@ -52,6 +57,8 @@ class DrawOptions:
     units: bool = False
     measured: bool = False
     effects: Collection[str] = ()
+    sensors: Collection[str] = ()
+    needed: Mapping[str, Needed] = field(default_factory=dict)
 
 
 def graph_of(
@@ -63,7 +70,7 @@ def graph_of(
     tags = tuple(builder.tag(diagram, name) for name in diagram.inputs)
     nodes, wires = builder.level(diagram, "", "", own, numbers_of(diagram, {}), options.depth)
     events = tuple(event_text(event) for event in diagram.events)
-    told = tuple(str(replace(problem, exists=())) for problem in problems)
+    told = tuple(map(_in_short, problems))
     nodes, wires = oriented((*tags, *nodes), wires)
     return Graph(diagram.title or diagram.file.stem, nodes, wires, events, told)
 
@@ -93,7 +100,8 @@ class _Builder:
         """The node of an input of the top diagram."""
         return Node(
             name, "", "input", tag_look(name), (Port(f"{name}>", "east"),),
-            input_details(diagram.inputs[name]),
+            input_details(diagram.inputs[name]), mark=self.mark(name, name, ""),
+            plot=self.plot(name),
         )  # fmt: skip
 
     def level(
@@ -123,6 +131,10 @@ class _Builder:
                 events = tuple(event_text(e) for e in _resets(diagram, use.name))
                 node = replace(node, has_event=True, details=(*node.details, *events))
             nodes.append(node)
+        if not path and self.options.measured:
+            for sensor, wire in sensor_nodes(diagram, self.options.sensors):
+                nodes.append(sensor)
+                level.wires += self.wire(level, wire, sensor.ports[0].id, sensor.ports[0].id)
         return (*nodes, *level.strangers.values()), tuple(level.wires)
 
     def node(
@@ -163,6 +175,7 @@ class _Builder:
             labels=labels,
             mark=self.mark(full, where, use.type if use.subsystem else ""),
             measured=self.options.measured and not level.path and self.is_measured(use.name),
+            plot=self.plot(full),
         )
         if use.subsystem is None:
             look = shape_of(Drawn(use.type, settings_text(use), given, count, block, _points(use)))
@@ -189,7 +202,15 @@ class _Builder:
         if full in self.options.effects:
             return "effect"
         inside = type_name and any(name.startswith(f"{type_name}.") for name in self.wrong)
-        return "wrong" if where in self.wrong or full in self.wrong or inside else ""
+        if where in self.wrong or full in self.wrong or inside:
+            return "wrong"
+        needed = self.options.needed.get(full)
+        return "" if needed is None or needed.explained else "needed"
+
+    def plot(self, full: str) -> Plot | None:
+        """What data need at a block."""
+        needed = self.options.needed.get(full)
+        return None if needed is None else needed.plot()
 
     def is_measured(self, name: str) -> bool:
         return any(signal.partition(".")[0] == name for signal in self.measured)
@@ -266,6 +287,12 @@ class _Builder:
         if self.options.units and unit:
             parts.append(f"[{unit}]")
         return shortened(" ".join(parts), MOST_NAME, SMALL)
+
+
+def _in_short(problem: Problem) -> str:
+    """A mistake without what exists instead, and with the file's name for its path."""
+    place = replace(problem.place, file=Path(problem.place.file).name)
+    return str(replace(problem, exists=(), place=place))
 
 
 def _block(diagram: Diagram, use: BlockUse) -> Block | None:

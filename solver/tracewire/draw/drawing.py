@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +11,7 @@ from tracewire.draw.build import DrawOptions, graph_of
 from tracewire.draw.graph import Graph
 from tracewire.draw.layout import Layout, layout_of
 from tracewire.draw.mermaid import mermaid_of
+from tracewire.draw.needed import Needed
 from tracewire.draw.png import png_of
 from tracewire.draw.svg import svg_of
 from tracewire.errors import OptionError, Problem, unknown
@@ -68,19 +69,25 @@ def draw(
     units: bool = False,
     measured: bool = False,
     effects: Collection[str] = (),
+    sensors: Collection[str] = (),
+    needed: Mapping[str, Needed] | None = None,
     problems: Sequence[Problem] = (),
+    like: Drawing | None = None,
 ) -> Drawing:
     """The picture of a diagram, laid out from left to right with feedback drawn backwards.
 
     depth: how many levels of subsystems are open. names, units: the name and the unit of each
-    signal on its wire. measured: the names of blocks with a sensor in blue. effects: blocks in
-    green. problems: what is wrong with the diagram, in red at its place. The same diagram gives the
-    same picture. Raises OptionError: a depth below 0.
+    signal on its wire. measured: the names of blocks with a sensor in blue, and the sensors that
+    have terms. effects: blocks in green, and `sensors` the measured signals whose sensors are.
+    needed: what data need at a block, as a plot below it; the block is amber where no effect gives
+    it. problems: what is wrong with the diagram, in red at its place. like: a picture of a similar
+    diagram, whose blocks keep their order from top to bottom. The same diagram gives the same
+    picture. Raises OptionError: a depth below 0.
     """
     if depth < 0:
         what = f"the depth of a picture cannot be {depth}"
         raise OptionError.one(what, hint="0 draws subsystems as boxes; 1 opens one level of them.")
-    options = DrawOptions(depth, names, units, measured, effects)
+    options = DrawOptions(depth, names, units, measured, effects, sensors, needed or {})
     graph = graph_of(diagram, options, problems)
-    layout = layout_of(graph)
+    layout = layout_of(graph, None if like is None else like.layout)
     return Drawing(graph, layout, svg_of(graph, layout))

@@ -8,7 +8,7 @@ from typing import Literal
 Side = Literal["west", "east"]
 Outline = Literal["box", "triangle", "circle", "pill", "bar", "tag", "frame"]
 """`tag` is an input or output of the diagram, `frame` a subsystem that is open."""
-Mark = Literal["", "wrong", "effect"]
+Mark = Literal["", "wrong", "effect", "needed"]
 Line = tuple[tuple[float, float], ...]
 """A line through points."""
 
@@ -40,6 +40,17 @@ class Look:
 
 
 @dataclass(frozen=True)
+class Plot:
+    """A small plot below the name of a block: dots and lines in a box from (-1, -1) to (1, 1), y
+    upwards, and the words below it. `zero` is where x is 0; None: outside of the box."""
+
+    dots: Line
+    lines: tuple[Line, ...]
+    words: str
+    zero: float | None
+
+
+@dataclass(frozen=True)
 class Node:
     """A block of the picture. `id` is its full name, `name` what is written below it.
 
@@ -62,6 +73,7 @@ class Node:
     measured: bool = False
     is_subsystem: bool = False
     labels: tuple[float, float] = (0.0, 0.0)
+    plot: Plot | None = None
     nodes: tuple[Node, ...] = ()
     wires: tuple[Connection, ...] = ()
 

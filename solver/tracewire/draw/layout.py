@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 from tracewire.draw.elk import lay_out
 from tracewire.draw.font import SIZE, SMALL, text_width
 from tracewire.draw.graph import Connection, Graph, Node, Port
+from tracewire.draw.needed import SIZE as PLOT
 
 Point = tuple[float, float]
 
@@ -32,11 +33,12 @@ OPTIONS = {
     "elk.layered.spacing.nodeNodeBetweenLayers": "26",
     "elk.layered.spacing.edgeNodeBetweenLayers": "12",
     "elk.layered.spacing.edgeEdgeBetweenLayers": "9",
-    "elk.layered.thoroughness": "3",
+    "elk.layered.thoroughness": "1",
 }
 """ELK's own names; https://eclipse.dev/elk/reference/options.html tells each."""
 STRAIGHT = {"elk.layered.priority.straightness": "10"}
 COMPACT = {
+    "elk.layered.thoroughness": "3",
     "elk.layered.nodePlacement.strategy": "NETWORK_SIMPLEX",
     "elk.layered.considerModelOrder.strategy": "NODES_AND_EDGES",
 }
@@ -74,14 +76,19 @@ class Layout:
     dots: tuple[Point, ...]
 
 
-def layout_of(graph: Graph) -> Layout:
+def layout_of(graph: Graph, like: Layout | None = None) -> Layout:
     """The layout of a graph: left to right, wires at right angles, the same each time.
 
-    Feedback shall stand below: where it does not, the picture is laid out upside down, too.
+    like: the layout of a similar graph; blocks that are in both keep their order from top to
+    bottom. Feedback shall stand below: where it does not, a picture that is like no other is laid
+    out upside down, too.
     """
     few = sum(1 for _ in all_wires(graph)) <= MOST_COMPACT
-    layout = _read(lay_out(_root(graph, few, upside_down=False)), graph)
-    if few and _feedback_height(graph, layout) > 0:
+    root = _root(graph, few, upside_down=False)
+    if like is not None:
+        _keep_order(root, like, {node.id for node in all_nodes(graph) if node.flipped})
+    layout = _read(lay_out(root), graph)
+    if like is None and few and _feedback_height(graph, layout) > 0:
         other = mirrored(_read(lay_out(_root(graph, few, upside_down=True)), graph))
         if _feedback_height(graph, other) <= 0:
             return other
@@ -102,6 +109,22 @@ def _root(graph: Graph, few: bool, upside_down: bool) -> dict[str, Any]:
         "children": [_child(node, labels, upside_down) for node in graph.nodes],
         "edges": _edges(graph.nodes, graph.wires),
     }
+
+
+def _keep_order(part: dict[str, Any], like: Layout, flipped: Collection[str]) -> None:
+    """Ask ELK to leave the blocks in the order from top to bottom that they have in a layout.
+
+    A new block in a feedback (`flipped`) stands below those.
+    """
+    for child in part.get("children", ()):
+        id = child["id"].removeprefix("node ")
+        place = like.nodes.get(id)
+        middle = like.height if place is None else place.y + place.height / 2
+        if place is not None or id in flipped:
+            child["layoutOptions"]["elk.position"] = f"(0,{middle:.1f})"
+        _keep_order(child, like, flipped)
+    if "children" in part:
+        part["layoutOptions"]["elk.layered.crossingMinimization.semiInteractive"] = "true"
 
 
 def _feedback_height(graph: Graph, layout: Layout) -> float:
@@ -142,6 +165,17 @@ def _label(text: str, size: float) -> dict[str, Any]:
     return {"text": text, "width": text_width(text, size), "height": size * LINE_HEIGHT}
 
 
+def _below(node: Node) -> list[dict[str, Any]]:
+    """What stands below a block: its name, and its plot with the words of that."""
+    name = _label(node.name, SIZE)
+    if node.plot is None:
+        return [name] if node.name else []
+    words = _label(node.plot.words, SMALL)
+    wide, high = PLOT
+    width = max(name["width"], words["width"], wide)
+    return [{"text": node.name, "width": width, "height": name["height"] + high + words["height"]}]
+
+
 def _child(node: Node, labels: dict[str, str], upside_down: bool) -> dict[str, Any]:
     options = {
         "elk.portConstraints": "FIXED_ORDER" if node.ordered else "FIXED_SIDE",
@@ -155,7 +189,7 @@ def _child(node: Node, labels: dict[str, str], upside_down: bool) -> dict[str, A
         "width": node.look.width,
         "height": node.look.height,
         "layoutOptions": options,
-        "labels": [_label(node.name, SIZE)] if node.name else [],
+        "labels": _below(node),
         "ports": [_port(node, port, n, labels, upside_down) for n, port in enumerate(node.ports)],
     }
     if node.nodes:

@@ -13,7 +13,11 @@ BRACKETS: dict[Outline, tuple[str, str]] = {
     "triangle": ("[/", "/]"),
     "tag": (">", "]"),
 }
-CLASSES = {"wrong": "fill:#fdecea,stroke:#c62828", "effect": "fill:#e6f4ea,stroke:#1a7f37"}
+CLASSES = {
+    "wrong": "fill:#fdecea,stroke:#c62828",
+    "effect": "fill:#e6f4ea,stroke:#1a7f37",
+    "needed": "fill:#fff6e0,stroke:#b45309",
+}
 
 
 def mermaid_of(graph: Graph) -> str:

@@ -137,7 +137,8 @@ def _compare(drawn: Drawn) -> Look:
     return text_box("≥" if drawn.ports > 1 else f"≥ {drawn.settings.get('level', '0')}", drawn)
 
 
-def _lines(*lines: str) -> Shape:
+def lines_box(*lines: str) -> Shape:
+    """A box with lines of text."""
     width = round(max(map(text_width, lines)) + 16)
     return lambda drawn: Look(
         "box", width, max(_height(drawn), LINE * len(lines) + 12), lines=lines
@@ -259,8 +260,8 @@ SHAPES: dict[str, Shape] = {
     "high_pass": _icon(icons.HIGH_PASS),
     "band_pass": _icon(icons.BAND_PASS),
     "notch": _icon(icons.NOTCH),
-    "state_space": _lines("x′ = A x + B u", "y = C x + D u"),
-    "discrete_state_space": _lines("x⁺ = A x + B u", "y = C x + D u"),
+    "state_space": lines_box("x′ = A x + B u", "y = C x + D u"),
+    "discrete_state_space": lines_box("x⁺ = A x + B u", "y = C x + D u"),
     "pid": _function("PID(s)"),
     "discrete_pid": _function("PID(z)"),
     "unit_delay": _function(raised("z", -1)),

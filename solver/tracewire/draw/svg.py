@@ -6,8 +6,9 @@ from collections.abc import Iterator, Mapping
 from xml.sax.saxutils import escape, quoteattr
 
 from tracewire.draw.font import FAMILY, SIZE, SMALL, shortened, text_width
-from tracewire.draw.graph import Connection, Graph, Node
-from tracewire.draw.layout import Layout, Point, Rectangle, all_nodes, all_wires
+from tracewire.draw.graph import Connection, Graph, Node, Plot
+from tracewire.draw.layout import LINE_HEIGHT, Layout, Point, Rectangle, all_nodes, all_wires
+from tracewire.draw.needed import SIZE as PLOT
 from tracewire.draw.outlines import arrow, number, outline, path, rim
 
 MARGIN = 6.0
@@ -22,6 +23,7 @@ COLOURS = {
     "subsystem": ("#fdf8ec", "#8a6d1f"),
     "effect": ("#e6f4ea", "#1a7f37"),
     "bar": ("#3b4a5a", "#3b4a5a"),
+    "needed": ("#fff6e0", "#b45309"),
     "wrong": ("#fdecea", "#c62828"),
 }
 """The fill and the line of each kind of block."""
@@ -42,6 +44,9 @@ STYLE = f"""
 .tracewire .axis.ink{{stroke:#1f2933}}
 .tracewire .mistake{{fill:#c62828}}
 .tracewire .measured{{fill:#0b63a5}}
+.tracewire .need{{fill:#3b4a5a}}
+.tracewire .law{{fill:none;stroke:#b45309;stroke-width:1.6;stroke-linejoin:round}}
+.tracewire .law.effect{{stroke:#1a7f37}}
 .tracewire .event{{fill:none;stroke:#b45309;stroke-width:1.3}}
 """
 
@@ -139,11 +144,32 @@ def _block(node: Node, layout: Layout) -> Iterator[str]:
         name = layout.names[node.id]
         kind = "measured" if node.measured else ""
         yield _write(node.name, name.x + name.width / 2, name.y + SIZE, kind, "middle")
+        if node.plot is not None:
+            yield from _plot(node.plot, node.mark, name)
     if node.has_event:
         x, y = place.x + place.width - 7, place.y - 4
         flash = path([(x + 3, y - 6), (x - 1, y), (x + 3, y), (x - 1, y + 6)])
         yield f'<path class="event" d="{flash}"/>'
     yield "</g>"
+
+
+def _plot(plot: Plot, mark: str, below: Rectangle) -> Iterator[str]:
+    """The plot of what is needed, and its words, at the foot of what stands below a block."""
+    wide, high = PLOT
+    x, y = below.x + below.width / 2, below.y + SIZE * LINE_HEIGHT + high / 2
+    half = (wide / 2 - 4, high / 2 - 5)
+    yield f'<path class="axis" d="{path([(x - wide / 2, y), (x + wide / 2, y)])}"/>'
+    if plot.zero is not None:
+        at = x + plot.zero * half[0]
+        yield f'<path class="axis" d="{path([(at, y - high / 2 + 2), (at, y + high / 2 - 2)])}"/>'
+    for a, b in plot.dots:
+        place = f'cx="{number(x + a * half[0])}" cy="{number(y - b * half[1])}"'
+        yield f'<circle class="need" {place} r="1.6"/>'
+    kind = "law" if mark == "needed" else "law effect"
+    for line in plot.lines:
+        drawn = path([(x + a * half[0], y - b * half[1]) for a, b in line])
+        yield f'<path class="{kind}" d="{drawn}"/>'
+    yield _write(plot.words, x, below.y + below.height - 3, "small", "middle")
 
 
 def _kind(node: Node) -> str:

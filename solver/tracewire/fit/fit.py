@@ -37,8 +37,9 @@ from tracewire.residual import (
     load_measured,
     whole_segment,
     with_measured_signals,
+    with_past,
 )
-from tracewire.solve import parameter_values, refuse_delays
+from tracewire.solve import parameter_values
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -102,8 +103,6 @@ def fit(
     series = tuple(measured)
     if not series:
         raise DataError([Problem("there is no measured series to fit to")])
-    if method == "multiple_shooting":
-        refuse_delays(model, "each segment of multiple_shooting", "method growing_windows, or ")
     model = with_measured_signals(model, series)
     train = [m for m in series if m.use == "train"]
     refuse_unusable(series, train)
@@ -111,8 +110,11 @@ def fit(
     unknowns = chosen_unknowns(model, train, values, free, fixed)
     refuse_presets_of_free(model, train, [u.name for u in unknowns])
     unknowns = [replace(u, scale=_size(scale or {}, u.name, u.scale)) for u in unknowns]
+    if method == "multiple_shooting":
+        moving = [u.name for u in unknowns]
+        train = [with_past(model, m, "each segment of multiple_shooting", moving) for m in train]
     segments = [whole_segment(model, m) for m in train]
-    others = [whole_segment(model, m) for m in series if m not in train]
+    others = [whole_segment(model, m) for m in series if m.use != "train"]
     criterion = Criterion(model, segments, unknowns, parameters or {}, rtol, loss=loss)
     refuse_few_samples(criterion)
 

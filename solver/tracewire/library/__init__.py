@@ -9,6 +9,7 @@ from tracewire.library.describe import (
     describe_json,
     describe_origin,
     describe_parts,
+    joined_doc,
     palette,
     wiring,
 )
@@ -63,6 +64,7 @@ __all__ = [
     "find_synonym",
     "folder_of",
     "installed_packages",
+    "joined_doc",
     "load_library",
     "package_blocks",
     "package_file",

@@ -162,6 +162,11 @@ def _at_once(block: Block, output: Output) -> str:
     return f"depends at once on {', '.join(names)}" if names else "no feedthrough"
 
 
+def joined_doc(*parts: str) -> str:
+    """Short texts about one thing as one, without those that are empty."""
+    return "; ".join(part.rstrip(".") for part in parts if part)
+
+
 def wiring(port: Input) -> str:
     """What an input takes, in words."""
     text = "one wire or several, each with a sign" if port.many else "a wire"

@@ -34,7 +34,7 @@ NAMES: dict[str, dict[Tool, str]] = {
     "chirp": {"Simulink": "Chirp Signal", "": "sweep, swept sine, sine sweep"},
     "constant": {"Modelica": "Const", "Xcos": "CONST, CONST_m, CONST_f"},
     "counter": {"Xcos": "Counter", "": "count, edge counter"},
-    "coulomb": {"": "coulomb friction"},
+    "coulomb": {"": "coulomb friction, karnopp"},
     "dead_zone": {"Simulink": "Dead Zone", "Xcos": "DEADBAND", "": "deadband"},
     "debounce": {"": "debouncer, glitch filter, contact bounce"},
     "delay": {
@@ -126,7 +126,7 @@ NAMES: dict[str, dict[Tool, str]] = {
         "Simulink": "Band-Limited White Noise, Random Number",
         "Modelica": "NormalNoise, BandLimitedWhiteNoise",
         "Xcos": "RAND_m",
-        "": "white noise, gaussian noise, normal noise, random, randn",
+        "": "white noise, gaussian noise, normal noise, coloured noise, random, randn",
     },
     "not": {"Modelica": "Not", "": "NOT gate, inverter, negation"},
     "notch": {"": "notch filter, band stop, bandstop"},
@@ -308,7 +308,7 @@ INSTEAD: dict[str, str] = {
         "Define it in the section 'subsystems', and use its name as the type."
     ),
     "lever, ideal lever": "A lever without mass is a 'gain' of its position and one of its force.",
-    "preisach": "It is no block yet: 'maxwell_slip' and 'bouc_wen' have hysteresis with memory.",
+    "preisach": "Write include: tracewire:hysteresis.yaml, which has it as a subsystem.",
     "terminator, ground": "A signal that nothing reads needs no block.",
     **{f"sensor_{name}": SENSOR.format(name) for name in SENSOR_TERMS},
 }

@@ -27,6 +27,7 @@ from tracewire.residual.noise_estimate import (
     estimate_noise,
     noise_level,
 )
+from tracewire.residual.past import longest_delay, with_past
 from tracewire.residual.segment import (
     OWN,
     SENSED,
@@ -93,6 +94,7 @@ __all__ = [
     "half_square",
     "likely_input_noise",
     "load_measured",
+    "longest_delay",
     "measured_series",
     "noise_in",
     "noise_level",
@@ -112,4 +114,5 @@ __all__ = [
     "start_from_data",
     "whole_segment",
     "with_measured_signals",
+    "with_past",
 ]

@@ -118,6 +118,7 @@ class Shooting:
             atol=atol,
             preset=measured.preset,
             inputs=measured.inputs,
+            past=measured.past,
             limits=self.limits,
             budget=self.budget,
             sensitivities=asked or (),
@@ -145,7 +146,7 @@ class Shooting:
         except SimulationError as error:  # values that the diagram does not allow: nothing runs
             count = len(self.segments)
             errors = dict.fromkeys(range(count), error)
-            return Shots({}, errors, count * self.limits.steps, frozenset())
+            return Shots({}, errors, 0, frozenset())
         with np.errstate(over="ignore", invalid="ignore"):  # what overflows is not usable
             shown = sensing.shown(runs)
             slopes = sensing.derivatives(runs, answers) / sigma[:, None]

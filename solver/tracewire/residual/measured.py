@@ -37,7 +37,8 @@ class Measured:
     criterion, `weights` single signals. A drift counts from `drift_from` (s), the first sample
     unless given. Samples before `counts_from` (s) do not count. `inputs` maps a named input to its
     times and values, a smooth one (`residual.inputs`) to points of a spline, and `input_sigma`
-    to the standard deviation of its noise, white from sample to sample. `start` holds
+    to the standard deviation of its noise, white from sample to sample. `past` maps a delayed
+    signal to what it was, for runs that begin within the series (`with_past`). `start` holds
     start values of this series by state, None where free; without any, a run begins at the start of
     the diagram's span. `parameters` are those of the diagram that have a value of their own in this
     series, `free` the bounds of those that a fit may change. `series` is its name in the diagram,
@@ -69,6 +70,7 @@ class Measured:
     remarks: tuple[str, ...] = ()
     drift_from: float | None = None
     input_sigma: Mapping[str, float] = field(default_factory=dict)
+    past: Mapping[str, Driving] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         check = ArrayCheck(self.name)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import OptionError, unknown
@@ -11,34 +12,54 @@ from tracewire.residual.measured import Measured
 from tracewire.residual.segment import Segment
 from tracewire.solve import parameter_values
 
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+Rows = NDArray[np.intp]
 POINTS = 17
 DEGREE = 4
 
 
 def start_from_data(model: Model, measured: Measured, row: int) -> dict[str, float]:
-    """The states at a row of a series that the data tell: by a local quartic through 17 samples.
+    """The states at a row of a series that the data tell."""
+    told = states_from_data(model, measured, np.array([row]))
+    return {name: float(values[0]) for name, values in told.items()}
+
+
+def states_from_data(model: Model, measured: Measured, rows: Rows) -> dict[str, Vector]:
+    """The states (N,) at rows (N,) of a series that the data tell: by local quartics through 17
+    samples.
 
     A state that is measured is read off the quartic, and a state that is the rate of a measured one
     off its derivative; other states are not in the result.
     """
-    found: dict[str, float] = {}
-    first = int(np.clip(row - POINTS // 2, 0, max(len(measured.t) - POINTS, 0)))
-    rows = slice(first, first + POINTS)
-    t = measured.t[rows] - measured.t[row]
-    width = float(np.max(np.abs(t))) or 1.0
-    degree = min(DEGREE, len(t) - 1)
+    found: dict[str, Vector] = {}
+    first = np.clip(rows - POINTS // 2, 0, max(len(measured.t) - POINTS, 0))
+    near = first[:, None] + np.arange(min(POINTS, len(measured.t)))
     states = {state.name: state for state in model.flat.states}
     for name, values in measured.values.items():
         if name not in states:
             continue
         sensor = measured.sensor(name)
-        signal = sensor.signal(values[rows], measured.t[rows] - measured.zero)
-        quartic = np.polynomial.Polynomial.fit((t - sensor.delay) / width, signal, degree)
-        found[name] = float(quartic(0.0))
+        t = measured.t[near] - measured.t[rows, None] - sensor.delay
+        signal = sensor.signal(values[near], measured.t[near] - measured.zero)
+        found[name], slope = _quartics(t, signal)
         rate = states[name].rate
         if isinstance(rate, Name) and rate.name in states and rate.name not in measured.values:
-            found[rate.name] = float(quartic.deriv()(0.0)) / width
+            found[rate.name] = slope
     return found
+
+
+def _quartics(t: Matrix, signal: Matrix) -> tuple[Vector, Vector]:
+    """The values (N,) and slopes (N,) at t = 0 of the quartics through signals (N, 17)."""
+    middle, half = (t[:, -1] + t[:, 0]) / 2, (t[:, -1] - t[:, 0]) / 2
+    half[half == 0] = 1.0
+    powers = np.arange(min(DEGREE, t.shape[1] - 1) + 1)
+    z = ((t - middle[:, None]) / half[:, None])[:, :, None] ** powers
+    q, r = np.linalg.qr(z)
+    quartic = np.linalg.solve(r, np.einsum("nij,ni->nj", q, signal)[:, :, None])[:, :, 0]
+    zero = (-middle / half)[:, None]
+    slopes = quartic[:, 1:] * powers[1:] * zero ** powers[:-1]
+    return np.sum(quartic * zero**powers, axis=1), np.sum(slopes, axis=1) / half
 
 
 def whole_segment(model: Model, measured: Measured) -> Segment:

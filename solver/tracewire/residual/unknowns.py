@@ -113,6 +113,18 @@ def free_names(model: Model, measured: Sequence[Measured]) -> list[str]:
     return [*own, *others, *dict.fromkeys(starts)]
 
 
+def moved_by_fit(model: Model, free: Collection[str] | None = None) -> set[str]:
+    """The parameters that a fit changes, all with bounds or those that `free` names, and those that
+    follow them."""
+    flat = model.flat.parameters
+    moving = set(_with_bounds(model) if free is None else free)
+    while more := {
+        n for n, p in flat.items() if n not in moving and moving & {*names_of(p.formula)}
+    }:
+        moving |= more
+    return moving
+
+
 def refuse_readers_of_free(model: Model, free: Collection[str] | None = None) -> None:
     """Refuse starts and sensors of measured series that read what a fit changes, all parameters
     with bounds or those that `free` names: they are computed once, when a series is read, and would
@@ -120,13 +132,7 @@ def refuse_readers_of_free(model: Model, free: Collection[str] | None = None) ->
 
     Raises OptionError with all of them.
     """
-    flat = model.flat.parameters
-    moving = set(_with_bounds(model) if free is None else free)
-    while more := {
-        n for n, p in flat.items() if n not in moving and moving & {*names_of(p.formula)}
-    }:
-        moving |= more
-    problems = []
+    moving, problems = moved_by_fit(model, free), []
     for series in model.diagram.measured.values():
         read = {f"start of '{name}'": (value, "free") for name, value in series.start.items()}
         for signal, channel in series.channels.items():

@@ -18,6 +18,7 @@ from tracewire.compile import Model
 from tracewire.residual.criterion import Criterion
 from tracewire.residual.linearised import Linearised, Projection
 from tracewire.residual.measured import Measured
+from tracewire.residual.past import longest_delay
 from tracewire.residual.segment import Segment
 from tracewire.residual.starts import start_from_data, whole_segment
 
@@ -42,7 +43,8 @@ def cut(model: Model, section: Section, length: int, free: Sequence[str]) -> lis
 
     A window that begins where the series does begins as the series says; where that start is
     declared, it is not free. Where no state is free at all, as with a prescribed motion, there is
-    one window, whose run begins where the series does: what has a memory keeps it.
+    one window, whose run begins where the series does: what has a memory keeps it. The first window
+    is at least as long as the longest delay, so that the others find their past in the record.
     """
     measured = section.measured
     whole = whole_segment(model, measured)
@@ -51,6 +53,8 @@ def cut(model: Model, section: Section, length: int, free: Sequence[str]) -> lis
         return [replace(whole, rows=np.arange(first, section.end))]
     count = max(round((section.end - first) / length), 1)
     edges = np.linspace(first, section.end, count + 1).astype(int).tolist()
+    known = float(measured.t[0]) + longest_delay(model, measured)
+    edges = [a for a in edges if a in (first, section.end) or measured.t[a - 1] >= known]
     windows = []
     for a, b in pairwise(edges):
         if a == int(whole.rows[0]):

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from tracewire.show.bifurcation_figures import plot_bifurcation, plot_section
     from tracewire.show.comparison_figures import plot_comparisons
     from tracewire.show.diagnostic_figures import plot_diagnostics, plot_profiles
+    from tracewire.show.diagram_picture import draw_trace
     from tracewire.show.document import Report, report_script, report_style
     from tracewire.show.event_rows import jump_times
     from tracewire.show.figures import group_signals, plot_run
@@ -53,6 +54,7 @@ __all__ = [
     "Report",
     "Table",
     "animate",
+    "draw_trace",
     "expected_text",
     "extent_of",
     "fit_text",
@@ -106,6 +108,7 @@ FILE_OF = {
     "animation": "animate frame_times",
     "bifurcation_figures": "plot_bifurcation plot_section",
     "comparison_figures": "plot_comparisons",
+    "diagram_picture": "draw_trace",
     "diagnostic_figures": "plot_diagnostics plot_profiles",
     "document": "Report report_script report_style",
     "event_rows": "jump_times",

@@ -16,6 +16,7 @@ from tracewire.show.style import (
     BAND,
     BEFORE,
     MEASURED,
+    NOTHING,
     QUIET,
     UNCOUNTED,
     USES,
@@ -41,8 +42,6 @@ FAR = 4.0
 """A model before the fit that is this many times as far away is left out of the axis' limits."""
 LEAST_LINEAR = 0.01
 """Of the larger residual: up to this, at least, a bent axis is linear."""
-NOTHING = 1e-6
-"""A residual of less than this part of the noise is 0."""
 RESOLVED = 1e-9
 """What changes by less than this part of its size is drawn as constant."""
 
@@ -160,7 +159,9 @@ def _bend(panel: Axes, linear: float, largest: Vector) -> None:
     panel.set_yscale("symlog", linthresh=linear, linscale=1.0)
     decade = 10.0 ** np.floor(np.log10(top))
     tick = next(decade * n for n in (5, 2, 1) if decade * n <= top)
-    panel.set_yticks([-tick, 0.0, tick])
+    near = float(f"{linear:.0e}")  # what shows that the axis is bent
+    ticks = [near, tick] if near < tick / 2 else [tick]
+    panel.set_yticks([*(-at for at in reversed(ticks)), 0.0, *ticks])
     panel.set_ylim(-1.3 * top, 1.3 * top)
 
 

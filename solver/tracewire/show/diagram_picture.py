@@ -1,23 +1,127 @@
-"""The picture with which a report opens: the diagram, and in colour what a trace added to it."""
+"""The picture with which a report opens: the diagram, and in colour what a trace says of it."""
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 
-from tracewire.diagram import Diagram
-from tracewire.draw import draw
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.diagram import Diagram, split_index
+from tracewire.draw import Drawing, Needed, draw
 from tracewire.show.document import Figure
+from tracewire.show.trace_law import along, depends_on, has_law, is_function, is_sure, means_over
+from tracewire.trace import Force, Found, Missing, signal_of, unit_at
 
 PLAIN = "The blocks and wires of the diagram; blue names are measured"
-COLOURED = f"{PLAIN}, and green is what the trace added"
+COLOURED = f"{PLAIN}, green is what the trace added, and below its sum is what the data need there"
+LACKING = f"{PLAIN}, and amber is where something is missing that no effect explains"
+MOST_POINTS = 80
+"""Of a line in a plot that is 100 px wide."""
+AMONG = (0.1, 0.5, 0.9)
+"""Quantiles of a second variable at which a force over two variables is drawn."""
+
+Vector = NDArray[np.float64]
 
 
-def diagram_figure(diagram: Diagram, effects: Collection[str] = ()) -> Figure:
-    """The figure that shows a diagram; `effects` are the blocks that are drawn in colour."""
+def diagram_figure(diagram: Diagram) -> Figure:
+    """The figure that shows a diagram."""
+    return Figure("diagram.svg", PLAIN, lambda path: draw(diagram, measured=True).write(path))
+
+
+def traced_figure(found: Found) -> Figure:
+    """The figure that shows the diagram of a trace, with what it added, or what is missing."""
 
     def plot(path: Path) -> Path:
-        return draw(diagram, measured=True, effects=effects).write(path)
+        return draw_trace(found).write(path)
 
-    caption = COLOURED if effects else PLAIN
-    return Figure("diagram.svg", caption, plot)
+    lacking = LACKING if found.missing is not None else PLAIN
+    return Figure("diagram.svg", COLOURED if found.effects else lacking, plot)
+
+
+def draw_trace(found: Found, effects: Collection[str] | None = None) -> Drawing:
+    """The picture of a trace: its effects in green, and at their places what the data need there.
+
+    effects: those that are accepted, by their texts; None: all. Subsystems with an effect are open,
+    and the blocks of the diagram stand as in its own picture.
+    Raises OptionError: no such effect, or a choice from a trace that was loaded.
+    """
+    chosen = [effect for effect in found.effects if effects is None or str(effect) in effects]
+    diagram = found.apply(effects=effects)
+    blocks = [effect.block for effect in chosen if effect.block]
+    sensors = [effect.sensor for effect in chosen if effect.sensor]
+    needed = dict(_needed(found, {effect.place for effect in chosen}))
+    depth = max((name.count(".") for name in (*blocks, *needed)), default=0)
+    before = draw(found.original, depth, measured=True)
+    return draw(
+        diagram, depth, measured=True, effects=blocks, sensors=sensors, needed=needed, like=before
+    )
+
+
+def _needed(found: Found, places: set[str]) -> Mapping[str, Needed]:
+    """What the data need, by the full name of the block that it is needed at."""
+    needed = {}
+    if has_law(found):
+        needed = {
+            split_index(force.place)[0]: _given(found, force)
+            for force in _forces(found)
+            if force.place in places and len(force.needed)
+        }
+    if found.missing is not None:
+        kind, _, signal = found.missing.place.partition(".")
+        place = signal if kind in ("sensor", "drive") and signal else found.missing.place
+        needed[split_index(place)[0]] = _lacking(found, found.missing)
+    return needed
+
+
+def _forces(found: Found) -> tuple[Force, ...]:
+    try:
+        return found.forces
+    except Exception:  # the figure of the forces tells why, and this one shows the diagram
+        return ()
+
+
+def _given(found: Found, force: Force) -> Needed:
+    """What is needed where effects were added: means of the data, and the law that was fitted."""
+    over = depends_on(force)
+    at, means = along(force, over), means_over(force, over)
+    order = np.argsort(at, kind="stable")
+    lines = (_line(at[order], force.fitted[order]),) if is_function(at, force.fitted) else ()
+    sure = is_sure(means)
+    dots = tuple(zip(means.at[sure].tolist(), means.mean[sure].tolist(), strict=True))
+    most = max(abs(y) for line in lines or (dots,) for _, y in line)
+    return Needed(dots, lines, _words(found, force.place, force.names[over], most))
+
+
+def _lacking(found: Found, missing: Missing) -> Needed:
+    """What is missing at a place, as a function of its first variable where samples are near."""
+    rows = list(_rows(missing))
+    lines = tuple(_line(missing.grid[0][known], row[known]) for row, known in rows if any(known))
+    if not lines:
+        return Needed(explained=False)
+    names = [signal_of(found, missing.place, name) for name in missing.variables]
+    most = max(abs(y) for line in lines for _, y in line)
+    return Needed((), lines, _words(found, missing.place, ", ".join(names), most), explained=False)
+
+
+def _rows(missing: Missing) -> Iterator[tuple[Vector, NDArray[np.bool_]]]:
+    """The force over the first variable, and where samples are near, at some values of a second."""
+    torque, density = missing.torque, missing.density
+    if len(missing.grid) == 1:
+        yield torque, density > 0
+    elif len(missing.grid) == 2:
+        weight = np.cumsum(density.sum(axis=0))
+        numbers = np.searchsorted(weight, np.array(AMONG) * weight[-1])
+        for number in dict.fromkeys(numbers.tolist()):
+            yield torque[:, number], density[:, number] > 0
+
+
+def _line(x: Vector, y: Vector) -> tuple[tuple[float, float], ...]:
+    every = np.unique(np.linspace(0, len(x) - 1, min(len(x), MOST_POINTS)).astype(int))
+    return tuple(zip(x[every].tolist(), y[every].tolist(), strict=True))
+
+
+def _words(found: Found, place: str, over: str, most: float) -> str:
+    unit = unit_at(found, place)
+    return f"needed: up to {most:.2g}{f' {unit}' if unit else ''} over {over}"

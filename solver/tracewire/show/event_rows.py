@@ -18,6 +18,8 @@ STRONG = ("impact", "reset", "rest")
 WEAK = ("crossing", "scheduled", "transition")
 WIDTH = 700
 """Marks nearer to each other than this part of the span cannot be told apart: they are a bar."""
+SHORTEST = 0.006
+"""Of the span: a bar that is shorter is drawn so long, or it would look like a mark."""
 DENSE = 0.45
 """The opacity of such a bar, which would be the loudest part of the figure."""
 
@@ -47,11 +49,12 @@ def draw_events(panel: Axes, run: Run, rows: Sequence[str], shaded: bool = False
     last = len(rows) - 1
     for block, intervals in stick_intervals(run).items():
         at = position.get(block, last)
-        _draw_bars(panel, intervals, at, 0.3, facecolor=STICK, edgecolor=QUIET, linewidth=0.8)
+        seen = [(begin, max(end, begin + SHORTEST * _span(run))) for begin, end in intervals]
+        _draw_bars(panel, seen, at, 0.3, facecolor=STICK, edgecolor=QUIET, linewidth=0.8)
     counts = [0] * len(rows)
     for event in run.events:
         counts[position.get(event.block, last)] += 1
-    apart = float(run.t[-1] - run.t[0]) / WIDTH
+    apart = _span(run) / WIDTH
     for kinds, color, half in ((WEAK, QUIET, 0.2), (STRONG, MARK, 0.38)):
         for row in range(len(rows)):
             times = [
@@ -72,6 +75,10 @@ def draw_events(panel: Axes, run: Run, rows: Sequence[str], shaded: bool = False
     panel.tick_params(axis="y", length=0)
     legend = _legend(run.events, shaded)
     panel.set_title(legend, fontsize=8.5, color="#555555", loc="left", pad=3)
+
+
+def _span(run: Run) -> float:
+    return float(run.t[-1] - run.t[0])
 
 
 def _draw_bars(

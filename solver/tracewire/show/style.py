@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 ENDINGS = (".png", ".svg", ".pdf")
 WIDTH = 9.0
+NOTHING = 1e-6
+"""An error of less than this part of the noise is 0."""
 
 # told apart with every kind of colour vision (Okabe and Ito, 2008)
 LINES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")

@@ -70,7 +70,9 @@ def plot_sweep(sweep: Sweep, path: str | Path) -> Path:
                 values = sweep.grid[axes[0]]
                 panel.plot(values, sweep[name].ravel(), ".-", color=LINES[0], markersize=4)
                 panel.set_ylabel(cut(name))
-            below[-1].set_xlabel(axes[0])
+                if not np.any(np.mod(sweep[name][np.isfinite(sweep[name])], 1)):  # such as counts
+                    panel.locator_params(axis="y", integer=True)
+            below[-1].set_xlabel(_axis(sweep, axes[0]))
             return save(figure, path)
         figure, below = panels([3.6] * len(names), sweep.title)
         for panel, name in zip(below, names, strict=True):
@@ -81,9 +83,13 @@ def plot_sweep(sweep: Sweep, path: str | Path) -> Path:
             )  # fmt: skip
             panel.grid(False)
             figure.colorbar(mesh, ax=panel, pad=0.01).set_label(cut(name))
-            panel.set_ylabel(axes[1])
-        below[-1].set_xlabel(axes[0])
+            panel.set_ylabel(_axis(sweep, axes[1]))
+        below[-1].set_xlabel(_axis(sweep, axes[0]))
         return save(figure, path)
+
+
+def _axis(sweep: Sweep, name: str) -> str:
+    return with_unit(name, sweep.units.get(name, ""))
 
 
 def _one(colour: str) -> Colormap:

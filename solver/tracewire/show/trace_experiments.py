@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from tracewire.trace import Experiment, Found
 
-NOTHING = 0.1
+LEAST_TOLD = 0.1
 """A separation in sigma that needs no number."""
 START, AMPLITUDE, FREQUENCY = "start.", " amplitude", " frequency"
 
@@ -40,7 +40,7 @@ def experiment_words(found: Found, experiment: Experiment) -> str:
     others = [row["separation"] for row in experiment.map if {"separation"} < row.keys() <= keys]
     if len(others) > 1:
         low, high = min(others), max(*others, experiment.separation)
-        least = f"{low:.2g}" if low >= NOTHING else f"less than {NOTHING:g}"
+        least = f"{low:.2g}" if low >= LEAST_TOLD else f"less than {LEAST_TOLD:g}"
         told += f" (by {least} to {high:.2g} at the settings that were searched)"
     return f"{told}."
 

@@ -21,7 +21,7 @@ from tracewire.show.style import (
     styled,
     with_unit,
 )
-from tracewire.trace import Force, Found, unit_at
+from tracewire.trace import Force, Found, Means, unit_at
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -58,8 +58,7 @@ def plot_law(found: Found, path: Path) -> Path:
         figure = Figure(figsize=(8.0, 3.6 * len(chosen) + 0.6), layout="constrained")
         grid = figure.subplots(len(chosen), 1, squeeze=False)
         for (panel,), force in zip(grid, chosen, strict=True):
-            over = 0 if _held_by(force.q, force) > _held_by(force.v, force) else 1
-            _draw(panel, force, over, found)
+            _draw(panel, force, depends_on(force), found)
             panel.set_ylabel(_label(force, found))
         _explain(figure, grid.flat)
         return save(figure, path)
@@ -105,18 +104,15 @@ def _label(force: Force, found: Found) -> str:
 
 def _draw(panel: Axes, force: Force, over: int, found: Found) -> tuple[float, float]:
     """Draw a force over q (0) or v (1); the limits that hold the law and the means."""
-    values = force.v if over else force.q
-    if force.means:
-        there = force.means[over]
-        middles, means, errors = there.at, there.mean, there.error
-    else:
-        middles, means, errors = binned(values, force.needed)
+    values = along(force, over)
+    there = means_over(force, over)
+    middles, means, errors = there.at, there.mean, there.error
     panel.axhline(0.0, color=BEFORE, linewidth=1.2, linestyle="--", zorder=2,
                   label="before: not in the diagram")  # fmt: skip
     panel.errorbar(middles, means, 2 * errors, color=MEASURED, linestyle="", marker="o",
                    markersize=4.5, markerfacecolor="white", zorder=4,
                    label="needed: mean, ±2 standard errors")  # fmt: skip
-    sure = errors <= FAR * np.median(errors)  # where there are few data, means are far off
+    sure = is_sure(there)
     shown = [*means[sure], *(means - errors)[sure], *(means + errors)[sure], *force.fitted, 0.0]
     low, high = float(np.nanmin(shown)), float(np.nanmax(shown))
     every = max(1, math.ceil(len(values) / MOST_DOTS))
@@ -127,7 +123,7 @@ def _draw(panel: Axes, force: Force, over: int, found: Found) -> tuple[float, fl
                    label="needed at each sample")  # fmt: skip
     if np.any(force.fitted):
         order = np.argsort(values, kind="stable")
-        line = _is_function(values, force.fitted)
+        line = is_function(values, force.fitted)
         look = {"linewidth": 1.8} if line else {"linestyle": "", "marker": ".", "markersize": 2.5}
         panel.plot(values[order][::every], force.fitted[order][::every], color=AFTER, zorder=3,
                    label="after: the fitted law", **look)  # fmt: skip
@@ -139,7 +135,27 @@ def _draw(panel: Axes, force: Force, over: int, found: Found) -> tuple[float, fl
     return low - margin, high + margin
 
 
-def binned(values: Vector, needed: Vector, bins: int = BINS) -> tuple[Vector, Vector, Vector]:
+def depends_on(force: Force) -> int:
+    """The variable on which a law depends most: 0 is the coordinate, 1 the rate."""
+    return 0 if _held_by(force.q, force) > _held_by(force.v, force) else 1
+
+
+def along(force: Force, over: int) -> Vector:
+    """The samples of the coordinate (0) or of the rate (1)."""
+    return force.v if over else force.q
+
+
+def means_over(force: Force, over: int) -> Means:
+    """What is needed in bins of a variable: as the trace has fitted it, else of the samples."""
+    return force.means[over] if force.means else binned(along(force, over), force.needed)
+
+
+def is_sure(means: Means) -> NDArray[np.bool_]:
+    """Which means have an error like that of most: where there are few data, they are far off."""
+    return np.asarray(means.error <= FAR * np.median(means.error))
+
+
+def binned(values: Vector, needed: Vector, bins: int = BINS) -> Means:
     """Middles of bins with equally many samples, the mean there and its standard error.
 
     What is needed has spikes where windows begin and end: the outermost twentieth on either side
@@ -152,10 +168,10 @@ def binned(values: Vector, needed: Vector, bins: int = BINS) -> tuple[Vector, Ve
     middles = np.array([np.median(x[part]) for part in parts])
     means = np.array([np.mean(y[part]) for part in parts])
     errors = np.array([np.std(y[part]) / math.sqrt(len(part)) for part in parts])
-    return middles, means, errors
+    return Means(middles, means, errors)
 
 
-def _is_function(values: Vector, law: Vector) -> bool:
+def is_function(values: Vector, law: Vector) -> bool:
     """Whether a law is a function of one variable, jumps included."""
     whole = float(np.ptp(law))
     spreads = np.array([float(np.std(part)) for part in _fine(values, law)])

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from tracewire.show.diagram_picture import diagram_figure
+from tracewire.show.diagram_picture import traced_figure
 from tracewire.show.document import Figure, Report, Section
 from tracewire.show.fit_tables import sentence
 from tracewire.show.trace_experiments import experiment_words
@@ -124,8 +124,7 @@ def trace_report(found: Found) -> Report:
 
 
 def _answer(found: Found) -> Section:
-    added = [effect.block for effect in found.effects if effect.block]
-    figures: tuple[Figure, ...] = (diagram_figure(found.diagram, added),)
+    figures: tuple[Figure, ...] = (traced_figure(found),)
     figures += _figure(
         has_law(found), found, plot_law, "law.png",
         "The force that the data need, and the law that was found",

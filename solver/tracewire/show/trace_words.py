@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterable, Sequence
 
 from tracewire.library import SENSOR_TERMS
+from tracewire.show.style import NOTHING
 from tracewire.trace import (
     ChannelError,
     Explained,
@@ -36,8 +37,6 @@ NEARLY_ALL = 0.995
 """From here on a share would round to 100 %, which it is not."""
 WORTH_TELLING = 0.01
 """A parameter that moved by less than this part of itself is not worth a word."""
-NOTHING = 1e-6
-"""An error of less than this part of the noise is 0."""
 MOST_DIGITS = 10
 PLAIN = 1e-4, 1e6
 """Numbers between these are written without an exponent."""

@@ -132,7 +132,7 @@ from tracewire.solve.limits import Limits, beyond_budget
 from tracewire.solve.many import simulate_many
 from tracewire.solve.observers import Section
 from tracewire.solve.options import START, Options, refuse_unknown_options, with_options, with_row
-from tracewire.solve.parallel import carry_out, cores
+from tracewire.solve.parallel import WorkerEnded, carry_out, cores
 from tracewire.solve.parameters import parameter_values
 from tracewire.solve.passage import Passage
 from tracewire.solve.problem import InitialValueProblem, initial_value_problem
@@ -166,6 +166,7 @@ __all__ = [
     "SpanRuns",
     "Statistics",
     "Tell",
+    "WorkerEnded",
     "beyond_budget",
     "carry_out",
     "cores",

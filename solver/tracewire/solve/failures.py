@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.compile import Model
+from tracewire.compile import OF_THE_PAST, Model
 from tracewire.errors import Place, Problem, SimulationError
 from tracewire.solve.core.arrays import Arrays, Flow, Progress
 from tracewire.solve.core.codes import (
@@ -199,7 +199,7 @@ def not_finite(model: Model, flow: Flow, t: float, x: Vector) -> tuple[str, floa
     for name, value in zip(model.states, x.tolist(), strict=True):
         if not math.isfinite(value):
             return name, value
-    given = len(model.parameters) + bool(model.lowered.delays)
+    given = len(model.parameters) + OF_THE_PAST * bool(model.lowered.delays)
     arrays = (x, flow.m, flow.c[:given], flow.k)
     names, values = model.all_signals(t, *(array.tolist() for array in arrays))
     for name, value in zip(names, values, strict=True):

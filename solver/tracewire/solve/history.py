@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from tracewire.compile import Model
-from tracewire.errors import OptionError, Place, Problem, SimulationError
+from tracewire.errors import OptionError, Place, Problem, SimulationError, unknown
 from tracewire.solve.core.arrays import FIRST, Arrays, History, Sensitivity
 from tracewire.solve.core.codes import T
 from tracewire.solve.core.history import DEGREE, EACH, HEAD, ROOM
+from tracewire.solve.held import Driving, Held, values_at
 from tracewire.solve.once_per_model import once_per_model
 
+Matrix = NDArray[np.float64]
 Ints = NDArray[np.int64]
 FIRST_PIECES = 3 * ROOM
 FIRST_MOVES = 512
@@ -46,6 +51,65 @@ def new_history(model: Model, sensitivity: Sensitivity) -> History:
         rows=np.zeros((count, w)),
         node_lags=np.zeros((4, count)),
     )
+
+
+class Past(NamedTuple):
+    """What is told of delayed signals before the start of a run, from the time `begin` in s on, as
+    the rows that the functions of a model read (see `compile.past`)."""
+
+    begin: float
+    rows: Matrix
+
+    @property
+    def address(self) -> float:
+        """Where the rows are; 0 where there are none."""
+        return float(self.rows.__array_interface__["data"][0]) if self.rows.size else 0.0
+
+
+UNTOLD = Past(math.inf, np.empty((0, 0)))
+
+
+def past_of(model: Model, given: Mapping[str, tuple[ArrayLike, ArrayLike]]) -> Past:
+    """What is told of delayed signals, by the names of these: times and values of all of them.
+
+    Its jumps are no events: steps become as short there as their error asks for.
+
+    Raises OptionError: a signal that is not delayed, one that is left out, what is no table.
+    """
+    if not given:
+        return UNTOLD
+    texts = [delay.text for delay in model.lowered.delays]
+    problems = [unknown("delayed signal", name, texts) for name in given if name not in texts]
+    for text in dict.fromkeys(texts):
+        if text not in given:
+            what = f"the past of '{text}' is not told, and that of others is"
+            problems.append(Problem(what, hint="Give all of them, or none."))
+    if problems:
+        raise OptionError(problems)
+    known = {name: _as_driving(name, one) for name, one in given.items()}
+    begin = max(float(one[0][0]) for one in known.values())
+    times = np.unique(np.concatenate([one[0] for one in known.values()]))
+    times = np.append(times[times >= begin], times[-1] + 1.0)  # the last value stays
+    left, right = times[:-1], times[1:]
+    rows = np.zeros((len(times), HEAD + EACH * len(texts)))
+    rows[0, :2] = len(left), rows.shape[1]
+    pieces = rows[1:]
+    pieces[:, 0], pieces[:, 1], pieces[:, 2] = left, (left + right) / 2, 2 / (right - left)
+    for number, text in enumerate(texts):
+        one, own = known[text], HEAD + EACH * number + 1
+        first = values_at(one, left)
+        last = first if isinstance(one, Held) else values_at(one, right)
+        pieces[:, own], pieces[:, own + 1] = (first + last) / 2, (last - first) / 2
+    return Past(begin, rows)
+
+
+def _as_driving(name: str, given: tuple[ArrayLike, ArrayLike]) -> Driving:
+    """The past of a signal as arrays. Raises OptionError."""
+    t, u = (np.asarray(part, dtype=float).ravel() for part in given)
+    if not (len(t) == len(u) > 1 and np.isfinite([t, u]).all() and (t[1:] > t[:-1]).all()):
+        hint = "Give two times or more that ascend, as many values, and no NaN."
+        raise OptionError([Problem(f"the past of '{name}' is not usable", hint=hint)])
+    return Held(t, u) if isinstance(given, Held) else (t, u)
 
 
 def refuse_delays(model: Model, what: str, instead: str = "") -> None:

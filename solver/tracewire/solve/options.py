@@ -28,6 +28,7 @@ class Options(TypedDict, total=False):
     step: float | None
     preset: str
     inputs: Mapping[str, tuple[ArrayLike, ArrayLike]] | None
+    past: Mapping[str, tuple[ArrayLike, ArrayLike]] | None
     limits: Limits | Mapping[str, float] | None
 
 

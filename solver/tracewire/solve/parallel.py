@@ -40,6 +40,10 @@ AHEAD = 2  # tasks that wait, for each worker
 JOBS = 8  # that a process keeps
 
 
+class WorkerEnded(SimulationError):
+    """A worker of an executor was killed, and the executor does not replace it."""
+
+
 class Crew(Generic[T]):
     """Who carries out a job: `submit` its arguments, and take from `done` what became of them."""
 
@@ -76,7 +80,7 @@ class Crew(Generic[T]):
     def done(self) -> Iterator[tuple[tuple[Any, ...], T | TracewireError]]:
         """What has ended, at least one task, with its arguments.
 
-        Raises SimulationError where a worker has ended that the executor does not replace.
+        Raises WorkerEnded where a worker has ended that the executor does not replace.
         """
         ended, _ = wait(self.waiting, return_when=FIRST_COMPLETED)
         for future in ended:
@@ -85,7 +89,7 @@ class Crew(Generic[T]):
                 results, seconds = future.result()
             except BrokenExecutor as error:
                 what = f"a worker of the executor has ended ({error})"
-                raise SimulationError([Problem(what, hint="Give a new executor.")]) from error
+                raise WorkerEnded([Problem(what, hint="Give a new executor.")]) from error
             self.seconds = seconds / len(tasks)
             yield from zip(tasks, results, strict=True)
 
@@ -152,7 +156,7 @@ def carry_out(
     `take` gets what became of each task, in the order in which they end, and gives the task that
     goes on from it, or None. After Ctrl-C what has begun comes to its end and is given, too.
 
-    Raises OptionError: less than one worker, a job that cannot be sent; SimulationError where a
+    Raises OptionError: less than one worker, a job that cannot be sent; WorkerEnded where a
     worker has ended that the executor does not replace.
     """
     ready = list(reversed(tasks))

@@ -73,7 +73,8 @@ def refuse_unmet(model: Model, values: Mapping[str, float]) -> None:
         if not evaluate(known.formula, values, known.place):
             read = [name for name in names_of(known.formula) if name in values]
             shown = ", ".join(f"{name} = {values[name]:.6g}" for name in read)
-            what = f"the parameters do not meet '{to_text(known.formula)}': {shown}"
+            what = f"the parameters do not meet '{to_text(known.formula)}'"
+            what += f": {shown}" if shown else ""
             problems.append(Problem(what, known.place, (), known.hint))
     if problems:
         raise SimulationError(problems)

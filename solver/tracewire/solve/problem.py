@@ -13,6 +13,7 @@ from tracewire.compile import Model
 from tracewire.errors import OptionError, unknown
 from tracewire.options import options_of
 from tracewire.solve.core.methods import NAMES
+from tracewire.solve.history import Past, past_of
 from tracewire.solve.limits import Limits
 from tracewire.solve.options import Options, refuse_unknown_options, with_row
 from tracewire.solve.parameters import parameter_values
@@ -34,7 +35,8 @@ class InitialValueProblem:
     at all, as where an analysis looks at its states only. `sensitivities` are the
     names of parameters and start values by which the signals are differentiated, and `moving` the
     parameters that move with them. `constants` is what the model computes from its parameters
-    alone, `tables` its tables and inputs, packed. `given` are the options that it was made of.
+    alone, `tables` its tables and inputs, packed, `past` what is told of delayed signals before the
+    start. `given` are the options that it was made of.
     """
 
     model: Model
@@ -50,6 +52,7 @@ class InitialValueProblem:
     constants: Vector
     tables: Vector
     start: Vector
+    past: Past
     sampled: bool = True
 
     def with_values(
@@ -106,7 +109,8 @@ def _problem(
     tolerance = tolerance_of(model, rtol, atol, method, step, end - begin, longest)
     if tables is None:
         tables = packed(tables_of(model, values, given.get("inputs") or {}))
-    constants = constants_of(model, values)
+    past = past_of(model, given.get("past") or {})
+    constants = constants_of(model, values, past)
     start = start_of(model, constants, tables, given.get("start") or {})
     return InitialValueProblem(
         model=model,
@@ -122,5 +126,6 @@ def _problem(
         constants=constants,
         tables=tables,
         start=start,
+        past=past,
         sampled=sampled,
     )

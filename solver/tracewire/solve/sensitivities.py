@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -55,16 +55,21 @@ class Moving:
 
 
 UNMOVED = Moving()
-Reads = dict[str, Set[str]]
-"""The parameters that follow others, and what their formulas read."""
+
+
+@dataclass(frozen=True, eq=False)
+class Following:
+    """How parameters follow what is asked for: what moves, as it is for all values, and, where the
+    values matter, the parameters that follow, with what moves of those that their formulas read.
+    Each stands behind what it reads."""
+
+    moving: Moving
+    order: tuple[tuple[str, tuple[str, ...]], ...] = ()
 
 
 @once_per_model
-def _known_moving(
-    model: Model,
-) -> dict[tuple[str, tuple[str, ...], frozenset[str]], tuple[Moving, Reads, Set[str]]]:
-    """What moves, by preset, what is asked for and what is given, as far as it is for all values
-    the same, and the parameters of which it is not."""
+def _known_following(model: Model) -> dict[tuple[str, tuple[str, ...], frozenset[str]], Following]:
+    """How parameters follow, by preset, what is asked for and what is given."""
     return {}
 
 
@@ -81,62 +86,85 @@ def moving_with(
     """
     if not asked:
         return UNMOVED
-    kept, key = _known_moving(model), (preset, asked, frozenset(given))
+    kept, key = _known_following(model), (preset, asked, frozenset(given))
     known = kept.get(key)
-    if known is None:  # the same for all values, where nothing that moves follows others
-        formulas = model.parameter_formulas(preset)
-        every = {name: formulas.keys() & names_of(formula) for name, formula in formulas.items()}
-        reads: Reads = {name: read for name, read in every.items() if read and name not in given}
-        led = {name for leader in asked for name in _led(leader, formulas, reads)}
-        names = tuple(name for name in formulas if name in led and name in model.read_parameters)
-        rates = np.array([[float(name == leader) for leader in asked] for name in names])
-        known = Moving(names, rates.reshape(-1, len(asked))), reads, led & reads.keys()
+    if known is None:
+        known = _following(model, asked, given, preset)
         if len(kept) < MOST_KEPT:
             kept[key] = known
-    moving, reads, following = known
-    if not following:
-        return moving
+    if not known.order:
+        return known.moving
+    rates = _rates(model.parameter_formulas(preset), asked, known.order, values)
+    return _moving(known.moving.names, asked, rates)
+
+
+def _following(
+    model: Model, asked: tuple[str, ...], given: Mapping[str, float], preset: str
+) -> Following:
+    """How parameters follow what is asked for, where some are given and follow no other."""
     formulas = model.parameter_formulas(preset)
-    columns = [_followers(formulas, reads, values, leader) for leader in asked]
-    rates = np.array([[column.get(name, 0.0) for column in columns] for name in moving.names])
-    return Moving(moving.names, rates.reshape(-1, len(asked)))
+    reads: dict[str, list[str]] = {}  # of those that follow others
+    for name, formula in formulas.items():
+        read = names_of(formula)
+        if name not in given and (others := [other for other in formulas if other in read]):
+            reads[name] = others
+    led = {name for leader in asked for name in _led(leader, formulas, reads)}
+    names = tuple(name for name in formulas if name in led and name in model.read_parameters)
+    order: dict[str, tuple[str, ...]] = {}
+
+    def put(name: str) -> None:
+        if name in reads and name not in order:
+            mine = tuple(read for read in reads[name] if read in led)
+            for read in mine:
+                put(read)
+            order[name] = mine
+
+    for name in formulas:
+        if name in led:
+            put(name)
+    if not all(isinstance(formulas[name], Name) for name in order):
+        return Following(_moving(names, asked, {}), tuple(order.items()))
+    return Following(_moving(names, asked, _rates(formulas, asked, tuple(order.items()), {})))
 
 
 def _led(
-    leader: str, formulas: Mapping[str, Expression], reads: Mapping[str, Set[str]]
+    leader: str, formulas: Mapping[str, Expression], reads: Mapping[str, Sequence[str]]
 ) -> set[str]:
     """A parameter and all that follow it."""
     found = {leader} & formulas.keys()
     for _ in reads if found else ():
-        more = {name for name, read in reads.items() if read & found}
+        more = {name for name, read in reads.items() if not found.isdisjoint(read)}
         if more <= found:
             break
         found |= more
     return found
 
 
-def _followers(
+def _moving(
+    names: tuple[str, ...], asked: tuple[str, ...], rates: Mapping[str, Sequence[float]]
+) -> Moving:
+    nothing = [0.0] * len(asked)
+    rows = np.array([rates.get(name, nothing) for name in names])
+    return Moving(names, rows.reshape(-1, len(asked)))
+
+
+def _rates(
     formulas: Mapping[str, Expression],
-    reads: Mapping[str, Set[str]],
+    asked: tuple[str, ...],
+    order: Sequence[tuple[str, tuple[str, ...]]],
     values: Mapping[str, float],
-    leader: str,
-) -> dict[str, float]:
-    """d parameter / d leader of all parameters that follow it; `reads` has those that follow any,
-    and what they read."""
-    found = {leader: 1.0} if leader in formulas else {}
-
-    def rate(name: str) -> float:
-        if name not in found:
-            inner = {read: rate(read) for read in reads.get(name, ())}
-            found[name] = sum(
-                _partial(formulas[name], values, read) * inner[read]
-                for read in inner
-                if inner[read] != 0.0
-            )
-        return found[name]
-
-    for name in reads if found else ():
-        rate(name)
+) -> dict[str, list[float]]:
+    """d parameter / d leader of what is asked for and of all that follow it, by each leader."""
+    found = {name: [float(name == leader) for leader in asked] for name in asked}
+    for name, read in order:
+        row = [0.0] * len(asked)
+        for other in read:
+            partial = _partial(formulas[name], values, other)
+            inner = zip(row, found[other], strict=True)
+            row = [r + partial * i if i != 0.0 else r for r, i in inner]
+        if name in asked:
+            row[asked.index(name)] = 1.0
+        found[name] = row
     return found
 
 

@@ -10,7 +10,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.compile import Model
+from tracewire.compile import OF_THE_PAST, Model
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.solve.core.arrays import (
     Arrays,
@@ -33,14 +33,14 @@ from tracewire.solve.core.flow import FREE, FUNCTIONS
 from tracewire.solve.core.locate import SAMPLES
 from tracewire.solve.core.memory import MODEL_FUNCTION
 from tracewire.solve.core.methods import METHODS
-from tracewire.solve.history import new_history
+from tracewire.solve.history import Past, new_history
 from tracewire.solve.once_per_model import once_per_model
 from tracewire.solve.sensitivities import new_sensitivity
 
 Vector = NDArray[np.float64]
 MOST_STIFF = 64  # mode combinations of a run that are remembered as stiff
 LOG_VALUES = 1_000_000  # numbers that the log of the core may hold before it is emptied
-NOTHING: Vector = np.zeros(1)
+UNREAD: Vector = np.zeros(1)  # an argument that a function of the model does not read
 ADDRESSED = ctypes.c_char * 0
 MOST_FUNCTIONS = 256  # of models that are called in turn
 
@@ -106,11 +106,14 @@ def default_modes(model: Model) -> Vector:
     return np.array([*usual, *[0.0] * len(usual)], dtype=float)
 
 
-def constants_of(model: Model, values: Mapping[str, float]) -> Vector:
-    """What a model computes from its parameters alone."""
+def constants_of(model: Model, values: Mapping[str, float], past: Past) -> Vector:
+    """What a model computes from its parameters alone, and where the past of delayed signals is."""
     parameters = np.array([*values.values(), 0.0])  # never empty
     constants = np.zeros(max(1, model.sizes.constants))
-    _call(model.address("prepare"), parameters, NOTHING, NOTHING, NOTHING, constants)
+    _call(model.address("prepare"), parameters, UNREAD, UNREAD, UNREAD, constants)
+    if model.lowered.delays:
+        first = len(model.parameters)
+        constants[first : first + OF_THE_PAST] = 0.0, past.address, past.begin
     return constants
 
 
@@ -119,7 +122,7 @@ def start_of(model: Model, constants: Vector, tables: Vector, given: Mapping[str
     names = model.states
     problems = [unknown("state", name, names) for name in given if name not in names]
     x = np.zeros(len(names))
-    _call(model.address("starts"), NOTHING, default_modes(model), constants, tables, x)
+    _call(model.address("starts"), UNREAD, default_modes(model), constants, tables, x)
     for n, name in enumerate(names if given else ()):
         if name in given:
             x[n] = given[name]

@@ -34,6 +34,7 @@ def simulate(
     step: float | None = None,
     preset: str = "",
     inputs: Mapping[str, tuple[ArrayLike, ArrayLike]] | None = None,
+    past: Mapping[str, tuple[ArrayLike, ArrayLike]] | None = None,
     limits: Limits | Mapping[str, float] | None = None,
     progress: Tell | None = None,
     sensitivities: Sequence[str] = (),
@@ -47,10 +48,12 @@ def simulate(
     5), `rk4` (fixed `step` in s, order 4), or `auto`: dormand_prince, dop853 where rtol is
     1e-8 or less, and rosenbrock where a mode combination turns out to be stiff. `atol` is given as
     a number or by state; else it is rtol/1000 of the largest value so far of each state, or of 1,
-    whichever is less. `inputs` gives measured inputs as (times, values), joined
-    by straight lines; `Held(times, values)` holds each value until the next. `limits` is a record
-    or a dictionary such as `{"seconds": 60}`. `progress` is told
-    about ten times a second the part of the span that is done, and the seconds that are left.
+    whichever is less. `inputs` gives measured inputs as (times, values), joined by straight lines;
+    `Held(times, values)` holds each value until the next. `past` gives in the same way what delayed
+    signals were before the start, by the name of the signal, in place of `before` from its first
+    time on. `limits` is a record or a dictionary such as `{"seconds": 60}`.
+    `progress` is told about ten times a second the part of the span that is done, and the seconds
+    that are left.
     `sensitivities` names parameters and start values (`start.theta`) whose forward sensitivities
     are wanted.
 
@@ -71,6 +74,7 @@ def simulate(
         step=step,
         preset=preset,
         inputs=inputs,
+        past=past,
         limits=limits,
     )
     integrator = Integrator(problem, progress=progress)

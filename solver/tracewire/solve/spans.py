@@ -81,6 +81,7 @@ def simulate_spans(
     atol: Mapping[str, float] | None = None,
     preset: str = "",
     inputs: Mapping[str, tuple[ArrayLike, ArrayLike]] | None = None,
+    past: Mapping[str, tuple[ArrayLike, ArrayLike]] | None = None,
     limits: Limits | None = None,
     budget: float = np.inf,
     sensitivities: Sequence[str] = (),
@@ -94,7 +95,7 @@ def simulate_spans(
     run that begins beyond it fails. `halt` says whether the user wants to stop. A run that fails
     does not end the others. Raises OptionError for arguments that do not fit, and Interrupted.
     """
-    if any(span.follows for span in spans):
+    if any(span.follows for span in spans) and not past:
         refuse_delays(model, "a span that follows another")
     always = set(spans[0].start).intersection(*(span.start for span in spans))
     problem = initial_value_problem(
@@ -108,6 +109,7 @@ def simulate_spans(
         atol=atol,
         preset=preset,
         inputs=inputs,
+        past=past,
         limits=limits,
     )
     integrator = Integrator(problem, halt=halt or Halt())

@@ -76,6 +76,11 @@ class FoundEffect:
     def __str__(self) -> str:
         return f"{self.name} @ {self.place}"
 
+    @property
+    def sensor(self) -> str:
+        """The measured signal whose sensor the effect changes; '' for other effects."""
+        return "" if self.block else self.place.removeprefix("sensor.")
+
 
 @dataclass(frozen=True)
 class Ranked:

@@ -142,9 +142,10 @@ class TraceOptions:
     comes back to where it was."""
     uncommon: tuple[str, ...] = (
         "harmonic", "parametric", "cogging", "position_friction", "sensor_quad", "sensor_gain",
-        "stiffness_drift", "viscous_drift", "friction_drift", "sensor_drift",
+        "stiffness_drift", "viscous_drift", "friction_drift", "sensor_drift", "drive_2nd_harm",
+        "drive_3rd_harm",
     )  # fmt: skip
-    """Effects that come after common ones where both predict as well."""
+    """Effects that come after common ones where both predict as well: waves, drifts, gains."""
 
     most_samples: int = 5000
     """Samples of the windows on which effects are screened and refits begin; longer records show

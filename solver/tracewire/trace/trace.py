@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
 from typing import Any
 
 from tracewire.compile import Model
@@ -33,6 +34,7 @@ def trace(
     *,
     options: TraceOptions | Mapping[str, Any] | None = None,
     rtol: float = 1e-6,
+    executor: Executor | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Found:
     """Trace the residual of a diagram on its measured series to an effect that it lacks.
@@ -42,14 +44,16 @@ def trace(
     reach, BIC ranks them and stretches that no fit saw accept them; elsewhere models are chosen by
     what they predict on blocks of time that their fits did not see. The errors reported come from a
     third stretch. `options`, a record or a dictionary, says what is tried, and
-    from when on an effect is believed. Ctrl-C ends it with what was found so far.
+    from when on an effect is believed. With an `executor` of `concurrent.futures` its workers do
+    the refits that do not need each other, with the same result to the last bit; what is left when
+    one of them ends is done here. Ctrl-C ends it with what was found so far.
 
     Raises DataError where the series cannot be used, FitError where the model does not run, or
     where `rtol` is too loose for such small noise.
     """
     options = options_of(TraceOptions, options, "a trace")
     tell = progress or (lambda text: None)
-    search = begun(subject, measured, rtol, within(options.budget, tell), options)
+    search = begun(subject, measured, rtol, within(options.budget, tell), options, executor)
     interrupted = False
     prediction: Prediction | None = None
     try:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from tracewire.compile import compile
 from tracewire.diagram import Diagram, set_sensors, set_values
+from tracewire.draw import draw
 from tracewire.errors import OptionError, Problem, TracewireError
 
 if TYPE_CHECKING:
@@ -60,24 +61,23 @@ class Job:
         return told | {"seconds": seconds}
 
     def proposal(self, effects: Collection[str] | None = None) -> dict[str, Any]:
-        """The text of the diagram with the result, its words, and the blocks that it adds.
+        """The text and the picture of the diagram with the result, and its words.
 
         effects: those of a trace that are accepted, by their texts; None accepts all. Raises
         OptionError: no such effect.
         """
         from tracewire.fit import Fit
+        from tracewire.show import draw_trace
 
         if self.result is None:
             raise OptionError(self.problems)
         if isinstance(self.result, Fit):
-            text, added, told = self._fitted(self.result).text, [], []
+            diagram, told = self._fitted(self.result), []
+            picture = draw(diagram, measured=True, like=draw(self.diagram, measured=True))
         else:
-            diagram = self.result.apply(effects=effects)
-            added = [name for name in diagram.blocks if name not in self.diagram.blocks]
-            kept = [e for e in self.result.effects if effects is None or str(e) in effects]
-            added += [effect.block for effect in kept if "." in effect.block]  # in a subsystem
-            text, told = diagram.text, _effects_told(self.result)
-        return {"words": self.words, "text": text, "added": added, "effects": told}
+            diagram, told = self.result.apply(effects=effects), _effects_told(self.result)
+            picture = draw_trace(self.result, effects)
+        return {"words": self.words, "text": diagram.text, "effects": told, "svg": picture.svg}
 
     @cached_property
     def report(self) -> str:
@@ -134,7 +134,7 @@ class Job:
         from tracewire.show import paragraph_of
         from tracewire.trace import trace
 
-        found = trace(compile(self.diagram), progress=self._tell)
+        found = trace(compile(set_values(self.diagram, self.values)), progress=self._tell)
         self.words = (paragraph_of(found),)
         self.result = found
 

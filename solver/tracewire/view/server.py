@@ -28,8 +28,8 @@ HOST = "127.0.0.1"
 NAMES = (HOST, "localhost")
 SITES = (None, "same-origin", "none")
 """What a browser may say of the page that asks: itself, or the user's own hand."""
-MOST_BYTES = 4_000_000
-"""Of the body of a request."""
+MOST_OF_BODY = 4_000_000
+"""Bytes of the body of a request."""
 IDLE = 60.0
 """Seconds after which a connection without a request is closed."""
 REPORT = re.compile(r"report-([0-9a-f]{1,64})\.html")
@@ -126,7 +126,7 @@ class Handler(BaseHTTPRequestHandler):
     def do_POST(self) -> None:
         """A request of the page, in JSON."""
         length = self.headers.get("Content-Length", "")
-        if not length.isdigit() or int(length) > MOST_BYTES:
+        if not length.isdigit() or int(length) > MOST_OF_BODY:
             self.close_connection = True
             self._say(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, "The request is too large.")
             return

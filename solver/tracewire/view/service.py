@@ -10,7 +10,7 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-from tracewire.diagram import complete, load_text, set_values, word_before
+from tracewire.diagram import MOST_BYTES, complete, load_text, set_values, word_before
 from tracewire.draw import draw
 from tracewire.errors import DiagramError, OptionError, Problem, TracewireError, unknown
 from tracewire.files import write_file, writing
@@ -29,8 +29,6 @@ Answer = Mapping[str, Any] | bytes
 MOST_EVENTS = 100_000
 MOST_VERSIONS = 12
 MOST_TABS = 100
-MOST_BYTES = 1_000_000
-"""Of the text of a diagram."""
 PRESENTED = "this page was started with --present, and changes no file"
 
 
@@ -137,12 +135,22 @@ class Service:
         return {"word": word_before(before), "proposals": [asdict(one) for one in found]}
 
     def draw(self, request: Request) -> Answer:
-        """The picture of a version as SVG, with its mistakes in red."""
+        """The picture of a version as SVG, with its mistakes in red.
+
+        `like` is the key of the version whose picture the page shows: blocks stay where they are.
+        """
         version = self._version(request)
         if version.diagram is None:
             raise DiagramError(version.problems)
-        picture = draw(version.diagram, measured=True, problems=version.problems)
-        return {"svg": picture.svg}
+        if version.drawing is None:
+            before = self._versions.get(str(request.get("like")))
+            version.drawing = draw(
+                version.diagram,
+                measured=True,
+                problems=version.problems,
+                like=None if before is None else before.drawing,
+            )
+        return {"svg": version.drawing.svg}
 
     def put(self, request: Request) -> Answer:
         """The text of a version with other values of parameters, in the units of the file."""
@@ -280,14 +288,7 @@ class Service:
         effects = request.get("effects")
         if effects is not None and not (isinstance(effects, list) and all(map(_is_text, effects))):
             raise OptionError.one("the accepted effects are no list", hint="Name them by texts.")
-        proposal = self._ended(request.get("id")).proposal(effects)
-        version = read_version(proposal["text"], self.file, self.library)
-        if version.diagram is None:
-            return told(version.problems)
-        added = proposal["added"]
-        depth = max((name.count(".") for name in added), default=0)
-        picture = draw(version.diagram, depth, measured=True, effects=added)
-        return proposal | {"svg": picture.svg}
+        return self._ended(request.get("id")).proposal(effects)
 
     def report(self, id: str) -> str:
         """The report of a fit or trace that is done, as an HTML page. Raises OptionError."""

@@ -8,8 +8,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Lock
 
-from tracewire.compile import Model, compile
+from tracewire.compile import Model, compile, unit_problems
 from tracewire.diagram import Diagram, read_readable_text
+from tracewire.draw import Drawing
 from tracewire.errors import Problem, TracewireError
 from tracewire.library import Library
 from tracewire.view.comparison import SeriesConditions
@@ -17,12 +18,12 @@ from tracewire.view.comparison import SeriesConditions
 
 @dataclass(eq=False)
 class Version:
-    """A text, the diagram as far as it could be read, its mistakes, and the model if it has none.
+    """A text, the diagram as far as it could be read, its mistakes, and the model if it can be run.
 
     `shown` names the signals to draw; the model records those that the scene reads, too. `stamp`
     tells the state of the other files that the diagram names. `lock` is held by what runs the
-    model. `panels` is set by the first run: the signals that are drawn together; `series` by the
-    first run of each measured series.
+    model. `drawing` is set when it is first drawn, `panels` by the first run: the signals that are
+    drawn together; `series` by the first run of each measured series.
     """
 
     key: str
@@ -35,6 +36,7 @@ class Version:
     lock: Lock = field(default_factory=Lock)
     panels: list[list[str]] = field(default_factory=list)
     series: dict[str, SeriesConditions] = field(default_factory=dict)
+    drawing: Drawing | None = None
 
 
 def read_version(text: str, file: Path, library: Library) -> Version:
@@ -47,6 +49,7 @@ def read_version(text: str, file: Path, library: Library) -> Version:
         diagram, problems = read_readable_text(text, file, library)
         if not problems:
             plain = compile(diagram)
+            problems = tuple(unit_problems(plain.flat))  # it runs all the same
             sensed = [name for one in diagram.measured.values() for name in one.channels]
             shown = compile(diagram, sensed).recorded
             model = compile(diagram, [*sensed, *plain.read_by_scene])

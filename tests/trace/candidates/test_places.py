@@ -429,6 +429,39 @@ def test_what_cannot_be_tried_at_a_place_is_said() -> None:
     assert "'flow' has no coordinate: " in position + flow
 
 
+def test_subsystems_that_get_no_effect_are_said(tmp_path: Path) -> None:
+    body = """
+    outputs: [x]
+    blocks:
+      x: {type: integrator, of: v}
+      v: {type: integrator, of: force}
+      force: {type: sum, of: [-x]}
+"""
+    (tmp_path / "parts.yaml").write_text(f"subsystems:\n  shipped:{body}", encoding="utf-8")
+    file = tmp_path / "top.yaml"
+    twice = body.replace("    outputs", "    variants: {a: {}, b: {}}\n    outputs")
+    file.write_text(
+        "include: parts.yaml\nparameters: {law: 1}\nsubsystems:\n"
+        f"  own:{body}  pair:{body}  link:{body}  law_of:{twice}"
+        """blocks:
+  own: {type: own}
+  left: {type: pair}
+  right: {type: pair}
+  chain: {type: link, replicate: 3}
+  part: {type: shipped}
+  chosen: {type: law_of, variant: law}
+""",
+        encoding="utf-8",
+    )
+    model = compile(read(file))
+    assert untried(model.diagram, find_places(model)) == [
+        "nothing is tried at sums inside 'left', 'right': several blocks are made from 'pair'",
+        "nothing is tried at sums inside 'chain': it is a row of blocks",
+        "nothing is tried at sums inside 'part': its definition stands in parts.yaml",
+        "nothing is tried at sums inside 'chosen': a parameter chooses its body",
+    ]
+
+
 def test_a_place_with_both_is_not_talked_about() -> None:
     text = """
         blocks:

@@ -52,7 +52,8 @@ def ended(
         tried = []
         for other in screen:
             added = Added(known[other], {known[other].parameter: 0.02})
-            trial = search.refits.fitted(best, [*best.effects, added], now.windows.segments)
+            refit = search.refits.refit(best, [*best.effects, added], now.windows.segments)
+            (trial,) = search.refits.trials(best, [refit])
             if trial is not None and other in rows:
                 tried.append(Tried(trial, Proposal((rows[other],), 1.0), 0.0, 0.0))
         ranked = search.refits.ranked(best, tried)

@@ -129,7 +129,8 @@ def test_an_effect_that_cannot_be_run_is_left_out_with_a_reason() -> None:
     coulomb = candidates_of(search.bench)["coulomb @ force"]
     nowhere = replace(coulomb, signals={"rate": "nowhere"})
     added = [Added(nowhere, {"level": 0.1})]
-    assert search.refits.fitted(now, added, now.windows.segments) is None
+    refit = search.refits.refit(now, added, now.windows.segments)
+    assert search.refits.trials(now, [refit]) == [None]
     (told,) = search.words
     assert told.startswith("coulomb @ force was not tried: ") and "'nowhere'" in told
 

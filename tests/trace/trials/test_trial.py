@@ -159,5 +159,6 @@ def test_a_sum_of_a_row_is_told_and_no_end_of_a_search() -> None:
     search = search_of(bench)
     now = search.declared()
     coulomb = Added(candidates_of(bench)["coulomb @ force_1"], {"level": 0.1})
-    assert search.refits.fitted(now, [coulomb], now.windows.segments) is None
+    refit = search.refits.refit(now, [coulomb], now.windows.segments)
+    assert search.refits.trials(now, [refit]) == [None]
     assert "coulomb @ force_1 was not tried: block 'force_1' is one of the row" in search.words[0]

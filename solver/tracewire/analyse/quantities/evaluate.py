@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,7 @@ Value = Any
 """A number, a word, or values (N,) at samples or events."""
 Further = Mapping[str, Callable[..., float]]
 """Quantities that the caller knows, by name; they are given the texts of their arguments."""
+NOTHING_FURTHER: Further = MappingProxyType({})
 SMOOTH = frozenset(("+", "-", "*", "/", "**", "neg", "sin", "cos", "tan", "exp", "sqrt"))
 """Functions that have no guard."""
 

@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from tracewire.analyse.quantities.evaluate import At, Further, resolve
+from tracewire.analyse.quantities.evaluate import NOTHING_FURTHER, At, Further, resolve
 from tracewire.analyse.quantities.of_motions import OF_MOTIONS
 from tracewire.analyse.quantities.of_runs import OF_RUNS
 from tracewire.analyse.quantities.subject import Subject
@@ -15,7 +15,6 @@ from tracewire.errors import AnalysisError, OptionError, Problem
 from tracewire.formula import Expression, to_text
 
 FUNCTIONS = MappingProxyType(OF_RUNS | OF_MOTIONS)
-NOTHING: Further = MappingProxyType({})
 
 
 def ask(
@@ -35,7 +34,7 @@ def measure(
     quantity: Expression,
     subject: Subject,
     reference: Subject | None = None,
-    further: Further = NOTHING,
+    further: Further = NOTHING_FURTHER,
 ) -> float | str:
     """The value of a quantity: a number in SI, or a word.
 

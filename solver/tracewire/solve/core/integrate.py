@@ -66,7 +66,7 @@ from tracewire.solve.core.history import (
     longest_followed,
     point_to_history,
 )
-from tracewire.solve.core.locate import AT_ONCE, NOTHING
+from tracewire.solve.core.locate import AT_ONCE, NOTHING, TOO_LONG
 from tracewire.solve.core.methods import (
     EXPONENT,
     FIXED_STEP,
@@ -179,7 +179,8 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
             return status
         method, ratio = ints[CURRENT], now[RATIO]
         how = locate.find(core, method)
-        if how == AT_ONCE and trial.ends[1] > SOON * now[LENGTH]:
+        at_once = how == AT_ONCE and trial.ends[1] > SOON * now[LENGTH]
+        if at_once or how == TOO_LONG:
             now[H] = trial.ends[1] / 16
             continue
         if how != NOTHING:
@@ -240,7 +241,8 @@ def _first_sizes(core: int) -> None:
 def _usual_tolerance(rtol: float, largest: float) -> float:
     """The absolute tolerance of a state that was as large as that: no finer than its rounding,
     which is all that moves a state of size 1e12 where friction holds it at zero."""
-    return max(ABSOLUTE * rtol * min(1.0, largest), RESOLVED * largest)
+    usual = max(ABSOLUTE * rtol * min(1.0, largest), RESOLVED * largest)
+    return max(usual, 1e-300)  # of a state of 1e-310 it would be zero
 
 
 @helper

@@ -56,7 +56,8 @@ MOST_ROUNDS = 200
 SOON = 0.01  # of a step
 POLISH = 3  # corrections of a located instant
 BACK = 1e-4  # of a step: how far back a secant begins
-NOTHING, INSIDE, AT_ONCE = 0, 1, 2
+SHOWS = 100.0  # so many times its noise a guard rises until the first sample, if it does
+NOTHING, INSIDE, AT_ONCE, TOO_LONG = 0, 1, 2, 3
 
 
 @helper
@@ -161,7 +162,7 @@ def find(core: int, method: int) -> int:
     """The first crossings inside a step whose margins at the start are known.
 
     Fills `found` with theta in (0, 1] for what crosses first, else with infinity. AT_ONCE: it
-    crosses right where the step begins.
+    crosses right where the step begins. TOO_LONG: it rises first and falls before the first sample.
     """
     watched = watch_of(core)
     rows, start, found = watched.rows, watched.start, watched.found
@@ -192,7 +193,7 @@ def find(core: int, method: int) -> int:
         for i in range(count):
             below = rows[first + 1, i] < min(start[i], 0.0) - floors[i]
             found[i] = 1.0 if below and found[i] > 0.0 else np.inf
-        return AT_ONCE
+        return TOO_LONG if _rises(core, floors) else AT_ONCE
     any_found = False
     for i in range(count):
         if found[i] == 0.0:
@@ -212,6 +213,20 @@ def find(core: int, method: int) -> int:
         if found[i] - earliest > 4 * ROOT:
             found[i] = np.inf
     return INSIDE
+
+
+@unit
+def _rises(core: int, floors: Vector) -> bool:
+    """Whether a guard that is found below zero by a sample moves away from zero where the step
+    begins, and so fast that a shorter step shows it."""
+    watched, trial, rates = watch_of(core), trial_of(core), trial_of(core).guards
+    guard_rates(core, trial.ends[0], progress_of(core).x, rates)
+    first = trial.ends[1] / (SAMPLES - 1)
+    for i in range(len(floors)):
+        rises = watched.sign[i] * rates[watched.mode[i]] * first > SHOWS * floors[i]
+        if rises and watched.kind[i] == GUARD and watched.found[i] < np.inf:
+            return True
+    return False
 
 
 @unit

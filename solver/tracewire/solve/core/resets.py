@@ -30,6 +30,7 @@ from tracewire.solve.core.codes import (
     DOWN,
     FINISHED,
     IMPACT,
+    NO_END,
     SIGN,
     TRANSITION,
     TWO_WRITES,
@@ -37,7 +38,7 @@ from tracewire.solve.core.codes import (
 )
 from tracewire.solve.core.decide import first_higher
 from tracewire.solve.core.flow import FREE, RESTING, SLIDING
-from tracewire.solve.core.modes import JUMP, levels, rate_levels
+from tracewire.solve.core.modes import JUMP, levels, margin, mode_value, rate_levels
 from tracewire.solve.core.readings import (
     guard_rates,
     guard_values,
@@ -47,6 +48,9 @@ from tracewire.solve.core.readings import (
 from tracewire.solve.core.record import log
 from tracewire.solve.core.saltation import reset_sensitivities
 from tracewire.solve.core.units import helper, unit
+
+MOST_RESETS = 100
+MOST_FOLLOWED = 4  # rounds in which guards follow the modes of others
 
 
 @unit
@@ -99,8 +103,10 @@ def fire_transitions(core: int, t: float, x: Vector, moved: Ints) -> int:
         reset = plan.transitions[row, 4]
         if reset >= 0:
             fired[reset] = 1
+    along = np.empty(len(plan.kind))
     if np.any(fired):
-        status = next_stage(core, t, x)
+        guard_rates(core, t, x, along)
+        status = _join_carried(core, t, x, fired)
         if status == FINISHED:
             status = write(core, t, before, x, fired)
         if status != FINISHED:
@@ -108,9 +114,14 @@ def fire_transitions(core: int, t: float, x: Vector, moved: Ints) -> int:
     copy(to, flow.m)
     if np.any(fired):
         reset_sensitivities(core, t, before, fired, old)
+        contact.struck(core, t, before, x)
     for memory in np.flatnonzero(moved):
         log(core, t, TRANSITION, memory, int(np.sign(flow.m[memory] - old[memory])), before, x)
-    return FINISHED
+    for reset in np.flatnonzero(fired):
+        i = plan.resets[reset, 0]
+        if i >= 0:
+            log(core, t, plan.resets[reset, 4], i, UP if old[i] > 0.5 else DOWN, before, x)
+    return _fire_driven(core, t, x, along) if np.any(fired) else FINISHED
 
 
 @helper
@@ -131,18 +142,17 @@ def later(due: int) -> int:
 
 
 @unit
-def next_stage(core: int, t: float, x: Vector) -> int:
-    """Before a transition writes states: mark the resets whose guards this stage has carried over
-    zero, for what is written may carry them back. A status."""
+def _join_carried(core: int, t: float, x: Vector, fired: Ints) -> int:
+    """Beside what transitions fire, mark the resets whose guards this stage has carried over zero:
+    all that is due at once reads the same states. A new stage begins. A status."""
     crossings = crossings_of(core)
     if crossings.known[0] == 0:
         return FINISHED
     due = crossings.due.copy()
     status = carried(core, t, crossings.x, x, crossings.m, crossings.bound, due)
     for reset in range(len(due)):
-        crossings.due[reset] = (
-            1 if due[reset] or crossings.due[reset] > 0 else later(crossings.due[reset])
-        )
+        fired[reset] |= due[reset]
+        crossings.due[reset] = later(crossings.due[reset])
     begin_stage(core, x)
     return status
 
@@ -183,7 +193,7 @@ def carried(
     for reset in range(len(plan.resets)):
         i, direction = plan.resets[reset, 0], plan.resets[reset, 1]
         was, due[reset] = due[reset], 0
-        if i < 0 or was == CROSSED or plan.kind[i] != SIGN or plan.is_timed[i]:
+        if i < 0 or was == CROSSED or plan.kind[i] != SIGN:
             continue
         if flow.bound[i] != FREE or bound[i] != FREE or flow.m[i] == old[i]:
             continue
@@ -212,11 +222,90 @@ def carried(
 
 @unit
 def fire_carried(core: int, t: float, x: Vector, due: Ints) -> int:
-    """Fire the resets that are due because a jump has carried their guards over zero. A status."""
-    before, old = x.copy(), flow_of(core).m.copy()
+    """Fire the resets that are due because a jump has carried their guards over zero, and the
+    impacts that they drive. A status."""
+    before, old, along = x.copy(), flow_of(core).m.copy(), np.empty(len(plan_of(core).kind))
+    guard_rates(core, t, x, along)
     status = write(core, t, before, x, due)
     if status != FINISHED:
         return status
     reset_sensitivities(core, t, before, due, old)
     contact.struck(core, t, before, x)
-    return FINISHED
+    return _fire_driven(core, t, x, along)
+
+
+@unit
+def _fire_driven(core: int, t: float, x: Vector, along: Vector) -> int:
+    """Fire the impacts of bodies that lie on a stop and that a reset has driven against it, then
+    those that these drive. `along`: the rates of the guards before the reset. A status."""
+    flow, plan, progress = flow_of(core), plan_of(core), progress_of(core)
+    due = np.zeros(len(plan.resets), dtype=np.int64)
+    for _ in range(MOST_RESETS):
+        follow(core, t, x)  # a rate is that of the field that holds now
+        driven_together(core, t, x, along, due)
+        if not np.any(due):
+            return FINISHED
+        before, old = x.copy(), flow.m.copy()
+        guard_rates(core, t, x, along)
+        status = write(core, t, before, x, due)
+        if status != FINISHED:
+            return status
+        reset_sensitivities(core, t, before, due, old)
+        contact.struck(core, t, before, x)
+        for reset in np.flatnonzero(due):
+            i = plan.resets[reset, 0]
+            way = UP if contact.side_of(core, reset) < 0 else DOWN
+            log(core, t, plan.resets[reset, 4], i, way, before, x)
+            progress.which[0], progress.which[1] = 1, i
+    progress.info[0] = t
+    return NO_END
+
+
+@unit
+def follow(core: int, t: float, x: Vector) -> None:
+    """Set the modes of the guards that a jump has carried over their levels.
+
+    Not those of what fires now, nor those inside of an algebraic loop: these are decided later.
+    """
+    flow, plan, crossings = flow_of(core), plan_of(core), crossings_of(core)
+    guards, level = np.empty(len(plan.kind)), np.empty(len(plan.kind))
+    levels(core, t, x, level)
+    for _ in range(MOST_FOLLOWED):
+        guard_values(core, t, x, guards)
+        changed = False
+        for i in range(len(plan.kind)):
+            later = crossings.how[i] >= 0 or plan.loop[i] >= 0
+            if not later and margin(core, i, guards[i]) < -level[i]:
+                flow.m[i], changed = mode_value(core, i, guards[i]), True
+        if not changed:
+            return
+
+
+@unit
+def driven_together(core: int, t: float, x: Vector, old: Vector, due: Ints) -> None:
+    """Mark the resets whose guard is zero and was driven over it by the jump: they are due now."""
+    flow = flow_of(core)
+    plan = plan_of(core)
+    modes = len(plan.kind)
+    candidates = 0
+    for reset in range(len(plan.resets)):
+        i, was = plan.resets[reset, 0], due[reset]
+        fits = i >= 0 and plan.kind[i] == SIGN and not plan.is_timed[i]
+        due[reset] = fits and was == 0 and plan.resets[reset, 1] != 0 and flow.bound[i] == FREE
+        candidates += due[reset]
+    if candidates == 0:
+        return
+    values = np.empty((4, modes))
+    guards, level, along, small = values[0], values[1], values[2], values[3]
+    guard_values(core, t, x, guards)
+    levels(core, t, x, level)
+    for reset in np.flatnonzero(due):
+        i = plan.resets[reset, 0]
+        due[reset] = abs(guards[i]) <= level[i]
+    if not np.any(due):
+        return
+    guard_rates(core, t, x, along)
+    rate_levels(core, t, x, small)
+    for reset in np.flatnonzero(due):
+        i, side = plan.resets[reset, 0], contact.side_of(core, reset)
+        due[reset] = side * along[i] < -small[i] and side * old[i] >= -small[i]

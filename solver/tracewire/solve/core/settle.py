@@ -5,7 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from tracewire.solve.core import contact
-from tracewire.solve.core.arrays import Ints, Vector, flow_of, plan_of, progress_of
+from tracewire.solve.core.arrays import (
+    Ints,
+    Matrix,
+    Vector,
+    crossings_of,
+    flow_of,
+    plan_of,
+    progress_of,
+)
 from tracewire.solve.core.codes import (
     FINISHED,
     FLOOR,
@@ -14,6 +22,7 @@ from tracewire.solve.core.codes import (
     NO_SLIDE,
     NOT_UNIQUE,
     SIGN,
+    TIME,
     UNSETTLED,
     WARNINGS,
 )
@@ -33,7 +42,15 @@ from tracewire.solve.core.flow import (
     bind,
     held,
 )
-from tracewire.solve.core.modes import JUMP, NOTHING, levels, margin, mode_value, rate_levels
+from tracewire.solve.core.modes import (
+    JUMP,
+    NOTHING,
+    inside,
+    levels,
+    margin,
+    mode_value,
+    rate_levels,
+)
 from tracewire.solve.core.readings import guard_rates, guard_values
 from tracewire.solve.core.resets import fire_transitions
 from tracewire.solve.core.surface import pin
@@ -58,6 +75,7 @@ def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
     progress = progress_of(core)
     modes = len(plan.kind)
     guards, after, level = np.empty(modes), np.empty(modes), np.empty(modes)
+    marked = np.empty((2, modes))
     seen = np.empty((0, 3 * modes))  # until a second round needs it, which is rare
     flags = np.empty((3, modes), dtype=np.int64)
     zero, moved = flags[0], flags[1]
@@ -68,7 +86,11 @@ def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
         guard_values(core, t, x, guards)
         flags[:] = 0
         for i in range(modes):
-            if plan.is_timed[i] or plan.kind[i] == MEMORY or flow.bound[i] == RESTING:
+            if plan.is_timed[i]:
+                if _is_carried(core, i, guards[i], level[i]):
+                    flow.m[i] = mode_value(core, i, guards[i])
+                continue
+            if plan.kind[i] == MEMORY or flow.bound[i] == RESTING:
                 continue
             if flow.bound[i] == SLIDING and abs(guards[i]) > JUMP * level[i]:
                 bind(core, i, FREE)  # a jump has carried the run off the surface
@@ -110,17 +132,19 @@ def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
             fixed = zero[i] == 1 or marks[i] == LEFT
             if not fixed and not margin(core, i, guards[i]) >= -level[i]:
                 wrong[i] = 1
+            if plan.is_timed[i] and _is_carried(core, i, guards[i], level[i]):
+                wrong[i] = 1
         if not np.any(wrong):
             if rounds < MOST_EDGES and _floor_edges(core, t, x, marks):
                 rounds += 1
                 continue
             if flow.counts[SLIDING]:
                 pin(core, t, x)  # what is held stands still, also behind a gear
-            left_rates(core, t, x, marks, after)
+            marked_guards(core, t, x, marks, marked)
             status = fire_transitions(core, t, x, wrong)
             if status != FINISHED or not np.any(wrong):
                 return status
-            forget(core, t, x, after, marks)
+            forget(core, t, x, marked, marks)
         if len(seen) == 0:
             seen = np.full((MOST_ROUNDS, 3 * modes), np.nan)
         key = seen[min(rounds, MOST_ROUNDS - 1)]
@@ -135,32 +159,38 @@ def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
 
 
 @unit
-def left_rates(core: int, t: float, x: Vector, marks: Ints, out: Vector) -> None:
-    """The rates of the guards before resets, where `forget` will ask for them."""
+def marked_guards(core: int, t: float, x: Vector, marks: Ints, out: Matrix) -> None:
+    """The guards (row 0) and their rates (row 1) before resets, where `forget` asks for them."""
+    if np.any(marks != 0):
+        guard_values(core, t, x, out[0])
     if np.any(marks == LEFT):
-        guard_rates(core, t, x, out)
+        guard_rates(core, t, x, out[1])
 
 
 @unit
-def forget(core: int, t: float, x: Vector, before: Vector, marks: Ints) -> None:
-    """Take the marks away after resets, but for those of guards whose slide has just ended and that
-    the resets do not concern: decided anew they might be held again, with a fraction of 1."""
-    some = bool(np.any(marks == LEFT))
-    for i in range(len(marks)):
-        if marks[i] != LEFT:
-            marks[i] = 0
-    if not some:
+def forget(core: int, t: float, x: Vector, before: Matrix, marks: Ints) -> None:
+    """Take the marks away after resets, but for those of guards that the resets do not concern.
+
+    A guard that is known to be zero still is: it was located there, but for the rounding of the
+    time. One whose slide has just ended, decided anew, might be held again, with a fraction of 1.
+    """
+    if not np.any(marks != 0):
         return
     modes = len(marks)
-    guards, along, level, small = np.empty(modes), np.empty(modes), np.empty(modes), np.empty(modes)
+    numbers = np.empty((4, modes))
+    guards, along, level, small = numbers[0], numbers[1], numbers[2], numbers[3]
     guard_values(core, t, x, guards)
-    guard_rates(core, t, x, along)
     levels(core, t, x, level)
-    rate_levels(core, t, x, small)
+    if np.any(marks == LEFT):
+        guard_rates(core, t, x, along)
+        rate_levels(core, t, x, small)
     for i in range(modes):
-        same = abs(along[i] - before[i]) <= small[i]
-        if not (same and margin(core, i, guards[i]) >= -JUMP * level[i]):
+        if marks[i] == KNOWN and abs(guards[i] - before[0, i]) > level[i]:
             marks[i] = 0
+        elif marks[i] == LEFT:
+            same = abs(along[i] - before[1, i]) <= small[i]
+            if not (same and margin(core, i, guards[i]) >= -JUMP * level[i]):
+                marks[i] = 0
 
 
 @unit
@@ -190,6 +220,17 @@ def _floor_edges(core: int, t: float, x: Vector, marks: Ints) -> bool:
         changed = changed or value != flow.m[i]
         flow.m[i] = value
     return changed
+
+
+@helper
+def _is_carried(core: int, i: int, guard: float, level: float) -> bool:
+    """Whether the jump of another mode has carried a timed guard over zero: that of
+    `t - 0.7 + wave/2` is a line between the jumps of the wave. What is nearer to zero changes at
+    the time that is computed for it."""
+    plan = plan_of(core)
+    if plan.kind[i] != SIGN or crossings_of(core).how[i] == TIME:
+        return False
+    return inside(core, i, guard) < -2 * JUMP * level
 
 
 @helper

@@ -49,17 +49,24 @@ from tracewire.solve.core.flow import (
     bind,
 )
 from tracewire.solve.core.history import is_delayed, mark_jumps
-from tracewire.solve.core.modes import JUMP, levels, margin, mode_value, rate_levels
+from tracewire.solve.core.modes import JUMP, levels
 from tracewire.solve.core.readings import guard_rates, guard_values
 from tracewire.solve.core.record import log
-from tracewire.solve.core.resets import begin_stage, carried, fire_carried, later, write
+from tracewire.solve.core.resets import (
+    MOST_RESETS,
+    begin_stage,
+    carried,
+    driven_together,
+    fire_carried,
+    follow,
+    later,
+    write,
+)
 from tracewire.solve.core.saltation import enter, leave, reset_sensitivities
-from tracewire.solve.core.settle import KNOWN, LEFT, forget, left_rates, settle
+from tracewire.solve.core.settle import KNOWN, LEFT, forget, marked_guards, settle
 from tracewire.solve.core.units import helper, unit
 
 CHATTER_PART = 1e-6
-MOST_RESETS = 100
-MOST_FOLLOWED = 4  # rounds in which guards follow the modes of others
 
 
 @helper
@@ -192,7 +199,7 @@ def _resets(
             return status
         reset_sensitivities(core, t, before, due, flow_of(core).m)
         contact.struck(core, t, before, x)
-        _follow(core, t, x)  # whether a rate has turned is a matter of the field that holds now
+        follow(core, t, x)  # whether a rate has turned is a matter of the field that holds now
         for reset in np.flatnonzero(due):
             i = plan.resets[reset, 0]
             side = contact.side_of(core, reset)
@@ -202,7 +209,7 @@ def _resets(
                 core, t, before, modes_before, x, i, speed[i], side
             )
             jumps[i] = x - before
-        _driven_together(core, t, before, x, along, due)
+        driven_together(core, t, x, along, due)
         guard_rates(core, t, x, along)
         copy(modes_before, flow_of(core).m)
     progress.info[0] = t
@@ -219,13 +226,12 @@ def _carry_on(core: int, t: float, x: Vector, fired: Ints, marks: Ints) -> int:
     if len(due) == 0:
         return FINISHED
     no_crossings(core)
-    waits, along = np.full(len(plan.kind), contact.FLIES), np.empty(len(plan.kind))
+    waits, marked = np.full(len(plan.kind), contact.FLIES), np.empty((2, len(plan.kind)))
     for _ in range(MOST_RESETS):
         for reset in range(len(due)):
             due[reset] = crossings.due[reset]
         status = carried(core, t, crossings.x, x, crossings.m, crossings.bound, due)
         for reset in range(len(due)):
-            due[reset] |= max(crossings.due[reset], 0)
             crossings.due[reset] = later(crossings.due[reset])
         if status != FINISHED or not np.any(due):
             return status
@@ -235,68 +241,16 @@ def _carry_on(core: int, t: float, x: Vector, fired: Ints, marks: Ints) -> int:
             fired[i], progress.which[0], progress.which[1] = reset, 1, i
         begin_stage(core, x)
         states, modes, held = x.copy(), flow.m.copy(), flow.bound.copy()
-        left_rates(core, t, x, marks, along)
+        marked_guards(core, t, x, marks, marked)
         status = fire_carried(core, t, x, due)
         if status == FINISHED:
-            forget(core, t, x, along, marks)
+            forget(core, t, x, marked, marks)
             status = settle(core, t, x, marks, False)
         if status != FINISHED:
             return status
         _write_log(core, t, states, x, due, fired, waits, modes, held)
     progress.info[0] = t
     return ENDLESS
-
-
-@unit
-def _follow(core: int, t: float, x: Vector) -> None:
-    """Set the modes of the guards that a jump has carried over their levels.
-
-    Not those of what fires now, nor those inside of an algebraic loop: these are decided later.
-    """
-    flow, plan, crossings = flow_of(core), plan_of(core), crossings_of(core)
-    guards, level = np.empty(len(plan.kind)), np.empty(len(plan.kind))
-    levels(core, t, x, level)
-    for _ in range(MOST_FOLLOWED):
-        guard_values(core, t, x, guards)
-        changed = False
-        for i in range(len(plan.kind)):
-            later = crossings.how[i] >= 0 or plan.loop[i] >= 0
-            if not later and margin(core, i, guards[i]) < -level[i]:
-                flow.m[i], changed = mode_value(core, i, guards[i]), True
-        if not changed:
-            return
-
-
-@unit
-def _driven_together(
-    core: int, t: float, before: Vector, x: Vector, old: Vector, due: Ints
-) -> None:
-    """Mark the resets whose guard is zero and was driven over it by the jump: they are due now."""
-    flow = flow_of(core)
-    plan = plan_of(core)
-    modes = len(plan.kind)
-    candidates = 0
-    for reset in range(len(plan.resets)):
-        i, was = plan.resets[reset, 0], due[reset]
-        fits = i >= 0 and plan.kind[i] == SIGN and not plan.is_timed[i]
-        due[reset] = fits and was == 0 and plan.resets[reset, 1] != 0 and flow.bound[i] == FREE
-        candidates += due[reset]
-    if candidates == 0:
-        return
-    values = np.empty((4, modes))
-    guards, level, along, small = values[0], values[1], values[2], values[3]
-    guard_values(core, t, x, guards)
-    levels(core, t, x, level)
-    for reset in np.flatnonzero(due):
-        i = plan.resets[reset, 0]
-        due[reset] = abs(guards[i]) <= level[i]
-    if not np.any(due):
-        return
-    guard_rates(core, t, x, along)
-    rate_levels(core, t, x, small)
-    for reset in np.flatnonzero(due):
-        i, side = plan.resets[reset, 0], contact.side_of(core, reset)
-        due[reset] = side * along[i] < -small[i] and side * old[i] >= -small[i]
 
 
 @unit

@@ -16,21 +16,51 @@ def opened(diagram: Diagram) -> dict[str, BlockUse]:
     in one that it extends, no other block may be made from it, and no other definition may have
     its name. A body that a parameter chooses has no block of its own in the text.
     """
+    return {path: use for path, use, why in _looked_into(diagram) if not why}
+
+
+def closed(diagram: Diagram) -> dict[str, str]:
+    """Why subsystems with sums are not looked into, by the path of a block or a row of blocks."""
+    return {
+        path: why
+        for path, use, why in _looked_into(diagram)
+        if why and any(inside.type == "sum" for inside in _blocks(use))
+    }
+
+
+def _looked_into(diagram: Diagram) -> Iterator[tuple[str, BlockUse, str]]:
+    """The blocks that are subsystems, and why one gets no effect ('' where it may). What is inside
+    of one that gets none for all of it is left out; a row stands once, by its name."""
     uses = Counter(_used(diagram))
     names = Counter(name for name, _ in {*_defined(diagram)})
 
-    def of(inside: Diagram, path: str) -> Iterator[tuple[str, BlockUse]]:
+    def of(inside: Diagram, path: str) -> Iterator[tuple[str, BlockUse, str]]:
         for name, use in inside.blocks.items():
             sub = use.subsystem
-            if sub is None or use.row or sub.file != diagram.file or uses[sub.place] > 1:
+            if sub is None:
                 continue
-            if sub.variants and not sub.variant:
-                continue
-            if names[sub.name] == 1:
-                yield path + name, use
-            yield from of(sub, f"{path}{name}.")
+            if use.row:
+                yield path + use.row, use, "it is a row of blocks"
+            elif sub.file != diagram.file:
+                yield path + name, use, f"its definition stands in {sub.file.name}"
+            elif uses[sub.place] > 1:
+                yield path + name, use, f"several blocks are made from '{sub.name}'"
+            elif sub.variants and not sub.variant:
+                yield path + name, use, "a parameter chooses its body"
+            else:
+                unclear = f"several definitions are called '{sub.name}'"
+                yield path + name, use, "" if names[sub.name] == 1 else unclear
+                yield from of(sub, f"{path}{name}.")
 
-    return dict(of(diagram, ""))
+    return of(diagram, "")
+
+
+def _blocks(use: BlockUse) -> Iterator[BlockUse]:
+    """The blocks inside of a block, at any depth."""
+    if use.subsystem is not None:
+        for inside in use.subsystem.blocks.values():
+            yield inside
+            yield from _blocks(inside)
 
 
 def _used(diagram: Diagram) -> Iterator[Place]:

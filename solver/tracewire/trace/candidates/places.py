@@ -10,7 +10,7 @@ from typing import Literal
 from tracewire.compile import Flat, FlatBlock, FlatState, Model
 from tracewire.diagram import Diagram, element_name, find_signal, split_index
 from tracewire.formula import Name, names_of
-from tracewire.trace.candidates.inside import local_name, opened
+from tracewire.trace.candidates.inside import closed, local_name, opened
 
 PASSED = ("sum", "gain", "divide")
 MOST_TOLD = 6
@@ -71,8 +71,16 @@ def find_places(model: Model) -> list[Place]:
 
 
 def untried(diagram: Diagram, places: Sequence[Place]) -> list[str]:
-    """What cannot be tried at sums that have no rate, or no coordinate, in words."""
-    found = []
+    """What cannot be tried, in words: at sums inside some subsystems, and at those that have no
+    rate, or no coordinate."""
+    shut: dict[str, list[str]] = {}
+    for path, why in closed(diagram).items():
+        shut.setdefault(why, []).append(f"'{path}'")
+    found = [
+        f"nothing is tried at sums inside {', '.join(paths[:MOST_TOLD])}"
+        f"{' ...' if len(paths) > MOST_TOLD else ''}: {why}"
+        for why, paths in shut.items()
+    ]
     effects = diagram.library.effects()
     for place in places:
         missing = [s for s, signal in (("q", place.q), ("v", place.v)) if not signal]

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tracewire.compile import Model
 from tracewire.errors import DataError, FormulaError, Problem, TracewireError
 from tracewire.formula import Name, same_quantity
-from tracewire.residual import Measured, Section, channel_noise, cut
+from tracewire.residual import Measured, Section, channel_noise, cut, with_past
 from tracewire.solve import values_at, with_points
 from tracewire.trace.thresholds import CheckOptions
 from tracewire.trace.trials.trial import Bench
@@ -57,7 +57,7 @@ def refuse_mistakes(
     best, found = np.inf, None
     for mistake in chain(_shifts(model, train[0], m, before, rtol, options), _units(model, m)):
         length, steps = options.mistake_window, options.mistake_steps
-        after = declared_s2(model, [mistake.undone(m)], rtol, length, steps)
+        after = declared_s2(model, [_with_own_past(model, mistake.undone(m))], rtol, length, steps)
         if after < best:
             best, found = after, mistake
         if best < options.mistake_undone:
@@ -65,6 +65,11 @@ def refuse_mistakes(
     if found is not None and best * options.mistake_nearer < before:
         what = f"the series '{m.name}' is explained {before / best:.0f} times better {found.what}"
         raise DataError([Problem(what, hint=found.hint)])
+
+
+def _with_own_past(model: Model, m: Measured) -> Measured:
+    """A series that was changed, with what it tells now of delayed signals."""
+    return with_past(model, replace(m, past={}), "each window") if m.past else m
 
 
 def declared_s2(

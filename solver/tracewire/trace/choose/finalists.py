@@ -386,7 +386,7 @@ class Pool:
         segments: Sequence[Segment] | None = None,
     ) -> Trial | None:
         windows = now.windows
-        fitted = self.search.refits.fitted(
+        refit = self.search.refits.refit(
             now,
             effects,
             windows.segments if segments is None else segments,
@@ -397,6 +397,7 @@ class Pool:
             settling=1,
             values=values,
         )
+        (fitted,) = self.search.refits.trials(now, [refit])
         self.spent += (fitted or now).windows.criterion.steps
         return fitted
 

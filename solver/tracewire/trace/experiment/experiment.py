@@ -23,6 +23,7 @@ from tracewire.residual import (
     of_diagram,
     opened,
     settled,
+    with_past,
 )
 from tracewire.solve import Limits, simulate
 from tracewire.trace.experiment.rig import Rig, Setting, rig_of
@@ -104,7 +105,7 @@ def _separation(
     set_here, inputs = rig.parameters(setting), rig.inputs(setting)
     start = rig.start(setting)
     blank = {signal: np.zeros(len(rig.t)) for signal in bench.signals}
-    base = replace(rig.template, t=rig.t, values=blank, inputs=inputs, drift_from=0.0)
+    base = replace(rig.template, t=rig.t, values=blank, inputs=inputs, past={}, drift_from=0.0)
     whole = Segment(base, 0.0, np.arange(len(rig.t)), start)
     mine = {**bench.all_values(one), **set_here}
     maker = Criterion(
@@ -123,6 +124,7 @@ def _separation(
         limits=limits,
     )
     measured = replace(base, values=dict(zip(base.values, shown.T, strict=True)))
+    measured = with_past(bench.declared, measured, "each window of an experiment")
     edges = np.linspace(0, len(rig.t), _count(one, rig, options.windows) + 1).astype(int)
     segments = []
     for a, b in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):

@@ -93,6 +93,7 @@ def runs_of(
         atol=absolute_tolerances(model, segment.measured, rtol),
         preset=segment.measured.preset,
         inputs={**segment.measured.inputs, **(inputs or {})},
+        past=segment.measured.past,
         limits=LIMITS,
         sensitivities=asked,
     )

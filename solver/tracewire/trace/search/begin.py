@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 
 from tracewire.compile import Model
 from tracewire.fit import Fit
@@ -13,14 +14,15 @@ from tracewire.residual import (
     load_measured,
     refuse_readers_of_free,
     with_measured_signals,
+    with_past,
 )
-from tracewire.solve import refuse_delays
 from tracewire.trace.candidates.places import find_places, untried
 from tracewire.trace.check.option_checks import check_options
 from tracewire.trace.check.refusals import check_series, remarks
 from tracewire.trace.check.spikes import without_spikes
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.search.search import Search
+from tracewire.trace.search.workers import Workers
 from tracewire.trace.trials.stretches import share_out, shortest_window
 from tracewire.trace.trials.trial import Bench
 
@@ -31,6 +33,7 @@ def begun(
     rtol: float,
     progress: Callable[[str], None],
     options: TraceOptions,
+    executor: Executor | None = None,
 ) -> Search:
     """The search on a subject, ready to run."""
     values: dict[str, float] = {}
@@ -40,12 +43,12 @@ def begun(
         subject = subject.model
     series = tuple(load_measured(subject) if measured is None else measured)
     model = with_measured_signals(subject, series)
-    refuse_delays(model, "each window of a trace")
     check_series(model, series, options.check)
     refuse_readers_of_free(model)
     check_options(options, model)
     sigma = channel_noise([m for m in series if m.use != "validate"])
     series = tuple(without_spikes(m, sigma, options.check) for m in series)
+    series = tuple(with_past(model, m, "each window of a trace") for m in series)
     stretches = share_out(series, options.split)
     shortest = shortest_window(stretches, options.split)
     inputs = InputCovariance(sigma, model, series, shortest)
@@ -53,4 +56,5 @@ def begun(
     places = find_places(model)
     words = [*remarks(series, options.check), *stretches.words]
     words += untried(model.diagram, [place for place in places if place.q])
-    return Search(bench, stretches, places, shortest, values, progress, words)
+    workers = Workers(executor)
+    return Search(bench, stretches, places, shortest, values, progress, words, workers)

@@ -11,6 +11,7 @@ from tracewire.errors import FitError
 from tracewire.trace.candidates.candidate import is_default
 from tracewire.trace.search.refits import few_of, target_of
 from tracewire.trace.search.search import Search
+from tracewire.trace.search.workers import Refit
 from tracewire.trace.trials.trial import Added, Trial
 
 
@@ -71,10 +72,20 @@ def _refitted(
     search: Search, trial: Trial, effects: Sequence[Added], fixed: dict[str, float] | None = None
 ) -> Trial | None:
     """The trial with other effects on the same windows; None where that does not run."""
-    segments = trial.windows.segments
-    return search.refits.fitted(
-        trial, effects, segments, fixed=fixed, target=target_of(trial, search.options)
-    )
+    (smaller,) = search.refits.trials(trial, [_refit(search, trial, effects, fixed)])
+    return smaller
+
+
+def _refit(
+    search: Search,
+    trial: Trial,
+    effects: Sequence[Added],
+    fixed: dict[str, float] | None = None,
+    words: str = "",
+) -> Refit:
+    """The trial with other effects on the same windows, to be refitted."""
+    segments, target = trial.windows.segments, target_of(trial, search.options)
+    return search.refits.refit(trial, effects, segments, fixed=fixed, target=target, words=words)
 
 
 def _exchanged(search: Search, best: Trial, number: int) -> tuple[Trial, tuple[Rival, ...]]:
@@ -89,13 +100,13 @@ def _exchanged(search: Search, best: Trial, number: int) -> tuple[Trial, tuple[R
     few = _few_short(search, best)
     options = search.options
     most = options.search.rivals if search.returns else options.screen.many
-    for added, _ in known[:most]:
-        if str(added) in kept:
-            continue
-        effects = [*best.effects[:number], added, *best.effects[number + 1 :]]
-        if _is_far_behind(search, few, effects):
-            continue
-        trial = _refitted(search, best, effects)
+    each = [
+        [*best.effects[:number], added, *best.effects[number + 1 :]]
+        for added, _ in known[:most]
+        if str(added) not in kept
+    ]
+    near = [_refit(search, best, effects) for effects in _not_far_behind(search, few, each)]
+    for trial in search.refits.trials(best, near):
         if trial is not None:
             results.append((trial.quality(part), trial, trial.effects[number]))
     results.append((best.quality(part), best, effect))
@@ -140,13 +151,17 @@ def _few_short(search: Search, best: Trial) -> Trial | None:
     return few if few.s2 < search.options.trial.gate_noise else None
 
 
-def _is_far_behind(search: Search, few: Trial | None, effects: Sequence[Added]) -> bool:
-    """Whether rivals do so badly on few short windows that long ones need not be tried."""
+def _not_far_behind(
+    search: Search, few: Trial | None, each: Sequence[list[Added]]
+) -> list[list[Added]]:
+    """The effects that do not so badly on few short windows that long ones need not be tried."""
     if few is None:
-        return False
-    target = search.options.search.behind * few.rss
-    trial = search.refits.fitted(few, effects, few.windows.segments, target=target)
-    return trial is None or trial.rss > target
+        return list(each)
+    target, refits = search.options.search.behind * few.rss, search.refits
+    segments = few.windows.segments
+    tried = [refits.refit(few, effects, segments, target=target) for effects in each]
+    trials = refits.trials(few, tried)
+    return [e for e, t in zip(each, trials, strict=True) if t is not None and t.rss <= target]
 
 
 def _known_rivals(search: Search, effect: Added) -> list[tuple[Added, float]]:
@@ -225,11 +240,17 @@ def _pruned(search: Search, best: Trial) -> Trial:
     while len(best.effects) > 1:
         costs = []
         at_noise = best.s2 < options.trial.gate_noise
-        for effect in best.effects:
-            if at_noise and _errors_from_nothing(best, effect) > options.search.certain:
-                continue
-            search.tell(f"trying without {effect}")
-            smaller = _refitted(search, best, [e for e in best.effects if e is not effect])
+        tried = [
+            _refit(
+                search,
+                best,
+                [e for e in best.effects if e is not effect],
+                words=f"trying without {effect}",
+            )
+            for effect in best.effects
+            if not at_noise or _errors_from_nothing(best, effect) <= options.search.certain
+        ]
+        for smaller in search.refits.trials(best, tried):
             if smaller is None:
                 continue
             loss = smaller.quality(best.part) - best.quality(best.part)

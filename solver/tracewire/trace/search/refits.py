@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tracewire.errors import DiagramError, FitError, OptionError
+from tracewire.errors import TracewireError
 from tracewire.residual import CREEPS, SETTLING, Segment
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal
+from tracewire.trace.search.workers import Refit, Workers
 from tracewire.trace.thresholds import SearchOptions
 from tracewire.trace.trials.trial import Added, Bench, Trial, begun_there
 
@@ -35,11 +36,12 @@ class Tried:
 
 @dataclass(frozen=True)
 class Refits:
-    """What refits share; `words` gets what could not be tried."""
+    """What refits share, and who carries them out; `words` gets what could not be tried."""
 
     bench: Bench
     tell: Callable[[str], None]
     words: list[str]
+    workers: Workers
 
     @property
     def options(self) -> SearchOptions:
@@ -72,24 +74,32 @@ class Refits:
         segments = now.windows.segments
         rows = few_of(segments, self.options.few)
         few, least = [segments[n] for n in rows], float(now.windows.squares[rows].sum())
-        begun = []
-        for number, proposal in enumerate(proposals, start=1):
-            names = " and ".join(proposal.names)
-            self.tell(f"refitting with {names} ({number} of {len(proposals)})")
-            first = self.options.first_steps
-            added = [row.added for row in proposal.rows]
-            effects = (*now.effects, *added)
-            trial = self.fitted(now, effects, few, steps=first, values=proposal.values)
-            if trial is not None and trial.rss > least:  # the promised size led it astray
-                small = [
-                    one.having(one.candidate.parameter, self.options.small * one.coefficient)
-                    for one in added
-                ]
-                again = self.fitted(now, (*now.effects, *small), few, steps=first) or trial
-                trial = min(trial, again, key=lambda one: one.rss)
-            if trial is not None:
-                begun.append(Tried(trial, proposal))
-        return begun
+        first = [
+            self.refit(
+                now,
+                (*now.effects, *(row.added for row in proposal.rows)),
+                few,
+                steps=self.options.first_steps,
+                values=proposal.values,
+                words=f"refitting with {' and '.join(proposal.names)}",
+            )
+            for proposal in proposals
+        ]
+        trials = self.trials(now, first)
+        astray = [n for n, trial in enumerate(trials) if trial is not None and trial.rss > least]
+        again = self.trials(now, [self._from_small(now, proposals[n], few) for n in astray])
+        for n, other in zip(astray, again, strict=True):  # the promised size led it astray
+            trials[n] = min((t for t in (trials[n], other) if t), key=lambda trial: trial.rss)
+        return [Tried(t, p) for t, p in zip(trials, proposals, strict=True) if t is not None]
+
+    def _from_small(self, now: Trial, proposal: Proposal, few: Sequence[Segment]) -> Refit:
+        """A proposal refitted from a small part of what it promises."""
+        small = [
+            row.added.having(row.candidate.parameter, self.options.small * row.added.coefficient)
+            for row in proposal.rows
+        ]
+        effects = (*now.effects, *small)
+        return self.refit(now, effects, few, steps=self.options.first_steps)
 
     def whole(self, now: Trial, begun: Sequence[Tried], target: float = np.inf) -> list[Tried]:
         """The best of what was begun, refitted on all windows and ranked.
@@ -114,7 +124,8 @@ class Refits:
             names = named(one.trial, now)
             self.tell(f"refitting {names} on all windows ({number} of {len(kept)})")
             there = begun_there(segments, one.trial, rows)
-            trial = self.fitted(one.trial, one.trial.effects, there, target=target)
+            refit = self.refit(one.trial, one.trial.effects, there, target=target)
+            (trial,) = self.trials(one.trial, [refit])
             if trial is not None:
                 tried.append(Tried(trial, one.proposal))
                 target = min(target, target_of(trial, self.bench.options))
@@ -134,7 +145,7 @@ class Refits:
         ]
         return sorted(rows, key=lambda one: one.rise)
 
-    def fitted(
+    def refit(
         self,
         now: Trial,
         effects: Sequence[Added],
@@ -146,32 +157,44 @@ class Refits:
         creeps: float = CREEPS,
         settling: int = SETTLING,
         values: Mapping[str, float] | None = None,
-    ) -> Trial | None:
-        """The model with other effects, refitted from where it stood, or from other values of what
-        is declared; None if it does not run."""
-        known = now.windows.criterion.parameters
+        words: str = "",
+    ) -> Refit:
+        """The model with other effects, to be refitted from where it stood, or from other values of
+        what is declared; `words` are told with its number among others."""
         steps = self.options.steps if steps is None else steps
-        try:
-            return self.bench.fitted(
-                effects,
-                segments,
-                now.length,
-                {**now.values, **(values or {})},
-                fixed=known if fixed is None else fixed,
-                steps=steps,
-                budget=self.options.slower * steps * len(segments) * now.cost,
-                target=target,
-                good=now.good,
-                creeps=creeps,
-                settling=settling,
-            )
-        except (FitError, DiagramError, OptionError) as error:
-            there = {str(effect) for effect in now.effects}
-            names = " and ".join(str(e) for e in effects if str(e) not in there)
-            beginning = f"{names} was not tried: "
-            if names and not any(words.startswith(beginning) for words in self.words):
-                self.words.append(f"{beginning}{error.problems[0].what}")
-            return None
+        return Refit(
+            tuple(effects),
+            tuple(segments),
+            now.length,
+            {**now.values, **(values or {})},
+            {
+                "fixed": now.windows.criterion.parameters if fixed is None else fixed,
+                "steps": steps,
+                "budget": self.options.slower * steps * len(segments) * now.cost,
+                "target": target,
+                "good": now.good,
+                "creeps": creeps,
+                "settling": settling,
+            },
+            words,
+        )
+
+    def trials(self, now: Trial, refits: Sequence[Refit]) -> list[Trial | None]:
+        """The trial of each refit, side by side where there are workers; None where a model does
+        not run."""
+        there = {str(effect) for effect in now.effects}
+        trials: list[Trial | None] = []
+        ended = self.workers.fitted(self.bench, refits, self.tell, self.words.append)
+        for refit, result in zip(refits, ended, strict=True):
+            if isinstance(result, TracewireError):
+                names = " and ".join(str(e) for e in refit.effects if str(e) not in there)
+                beginning = f"{names} was not tried: "
+                if names and not any(words.startswith(beginning) for words in self.words):
+                    self.words.append(f"{beginning}{result.problems[0].what}")
+                trials.append(None)
+            else:
+                trials.append(result)
+        return trials
 
 
 def few_of(segments: Sequence[Segment], count: int) -> list[int]:

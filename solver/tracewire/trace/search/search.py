@@ -21,6 +21,7 @@ from tracewire.trace.screen.screening import Proposal, Screen, screened
 from tracewire.trace.screen.shortlist import distinct, shortlist
 from tracewire.trace.screen.tangent import Tangent
 from tracewire.trace.search.refits import Refits, Tried, named
+from tracewire.trace.search.workers import Workers
 from tracewire.trace.trials.judge import Verdict, gate
 from tracewire.trace.trials.stretches import Stretches
 from tracewire.trace.trials.trial import Bench, Trial
@@ -49,6 +50,7 @@ class Search:
     values: Mapping[str, float]
     tell: Callable[[str], None]
     words: list[str]
+    workers: Workers = field(default_factory=Workers)
     steps: list[Step] = field(default_factory=list)
     first: Trial | None = None
     best: Trial | None = None
@@ -78,7 +80,7 @@ class Search:
     @property
     def refits(self) -> Refits:
         """How proposals are refitted."""
-        return Refits(self.bench, self.tell, self.words)
+        return Refits(self.bench, self.tell, self.words, self.workers)
 
     @property
     def free(self) -> tuple[str, ...]:

@@ -2,6 +2,11 @@
 
 import {make, part} from "./page.js";
 
+part("enlarge").addEventListener("click", () => {
+  const large = document.body.classList.toggle("enlarged");
+  part("enlarge").setAttribute("aria-pressed", String(large));
+});
+
 export function showDrawing(svg, jump) {
   const parsed = new DOMParser().parseFromString(svg, "image/svg+xml").documentElement;
   if (parsed.nodeName !== "svg") {

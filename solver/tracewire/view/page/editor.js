@@ -49,10 +49,14 @@ export class Editor {
     this.number();
   }
 
-  // the name of a block, to the line that begins with it
+  // the name of a block, to the line that begins with it; `sensor of x` to that of the measured x
   find(block) {
-    const last = block.split(".").pop();
-    const line = this.area.value.split("\n").findIndex((text) => text.trimStart().startsWith(`${last}:`));
+    const sensor = block.startsWith("sensor of ");
+    const name = block.split(/[. ]/).pop().split("[")[0];
+    const lines = this.area.value.split("\n");
+    const from = sensor ? lines.findIndex((text) => text.startsWith("measured:")) : 0;
+    const written = new RegExp(sensor ? `\\b${name}\\b` : `^\\s*${name}:`);
+    const line = lines.findIndex((text, n) => n >= from && written.test(text));
     if (line >= 0) this.jump(line + 1);
   }
 

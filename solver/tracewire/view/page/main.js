@@ -13,7 +13,7 @@ import {Work} from "./work.js";
 const TYPING = 200;  // ms without a key before the text is read
 const LOOK = 500;    // ms between two looks at the file
 
-const state = {key: "", names: "", runs: false, path: "", saved: "", digest: "", seen: "", present: false, ended: false};
+const state = {key: "", drawn: "", names: "", runs: false, path: "", saved: "", digest: "", seen: "", present: false, ended: false};
 const plots = new Plots();
 const scene = new Scene((time) => plots.point(time));
 const runner = new Runner(wanted, ran);
@@ -134,11 +134,15 @@ async function read() {
 
 async function picture(mine) {
   part("drawing").classList.add("old");
-  const answer = await ask("draw", {key: state.key}).catch((error) => ({problems: [{text: lost(error)}]}));
+  const key = state.key;
+  const answer = await ask("draw", {key, like: state.drawn})
+    .catch((error) => ({problems: [{text: lost(error)}]}));
   if (mine !== reading) return;
   part("drawing").classList.remove("old");
-  if (answer.svg) showDrawing(answer.svg, (block) => editor.find(block));
-  else part("drawing").replaceChildren(make("p", {textContent: answer.problems[0].text}));
+  if (answer.svg) {
+    state.drawn = key;
+    showDrawing(answer.svg, (block) => editor.find(block));
+  } else part("drawing").replaceChildren(make("p", {textContent: answer.problems[0].text}));
 }
 
 // needed: the first one is chosen where none was

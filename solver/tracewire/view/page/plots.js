@@ -8,6 +8,8 @@ const MEASURED = "#4D4D4D";
 const GUTTER = 64;  // pixels, without the label
 const LABEL = 20;
 const MOST_ROWS = 8;
+const CLOSE = 3;     // pixels between marks
+const MANY = 20;     // marks of a row
 const PAUSE = 250;  // ms without a new run after which curves are drawn in their full width
 
 const plain = (u, splits) => splits.map((v) => (v === null ? "" : String(+v.toPrecision(10))));
@@ -129,7 +131,7 @@ export class Plots {
   residual(name, head, last) {
     const panel = head.panels.find((one) => one.lines.some((line) => line.name === name));
     const unit = panel && panel.unit && panel.unit !== "1" ? ` [${panel.unit}]` : "";
-    const made = this.options((large() ? 120 : 90) + (last ? 24 : 0), last, {label: `residual${unit}`});
+    const made = this.options((large() ? 120 : 90) + (last ? 24 : 0), last, {label: `residual${unit}`, space: 13});
     made.legend = {show: false};
     made.series = [{label: "t"}, {label: "residual", stroke: MEASURED, width: 1, points: {show: false}}];
     const plot = new uPlot(made, [[0, 1], [null, null]], this.holder);
@@ -236,12 +238,26 @@ function backdrop(u, panel) {
   });
 }
 
+// from where to where marks stand closer than they are told apart; null where they do not
+function bar(events, x) {
+  if (events.length < MANY) return null;
+  const ends = [x(events[0].t), x(events[events.length - 1].t)];
+  return ends[1] - ends[0] < CLOSE * devicePixelRatio * events.length ? ends : null;
+}
+
 function marks(u, rows, events) {
   inside(u, (c, box, x) => {
     c.lineWidth = devicePixelRatio;
+    const crowded = rows.map((block) => bar(events.filter((event) => event.block === block), x));
+    crowded.forEach((ends, row) => {
+      if (!ends) return;
+      c.fillStyle = faded("#B22222", 0.25);
+      const [top, bottom] = [-0.3, 0.3].map((half) => u.valToPos(row + half, "y", true));
+      c.fillRect(ends[0], top, ends[1] - ends[0], bottom - top);
+    });
     for (const event of events) {
       const row = rows.indexOf(event.block);
-      if (row < 0) continue;
+      if (row < 0 || crowded[row]) continue;
       const strong = STRONG[event.kind];
       const half = strong ? 0.38 : 0.2;
       c.strokeStyle = strong ? "#B22222" : "#6b6b6b";

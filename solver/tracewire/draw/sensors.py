@@ -1,0 +1,61 @@
+"""Sensors that do something to their signals, each as a block behind its signal."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+
+from tracewire.diagram import Channel, Diagram, Series, Wire, find_signal, split_index
+from tracewire.draw.details import value_text
+from tracewire.draw.graph import Mark, Node, Port
+from tracewire.draw.shapes import Drawn, lines_box
+from tracewire.library import SENSOR_TERMS
+
+
+def sensor_nodes(diagram: Diagram, effects: Collection[str]) -> Iterator[tuple[Node, Wire]]:
+    """The sensors of a diagram that have terms, and the wire to each.
+
+    effects: signals whose sensors are drawn in colour. A signal of the inside of a subsystem has no
+    wire in this picture, and so no sensor.
+    """
+    for signal in dict.fromkeys(name for one in diagram.measured.values() for name in one.channels):
+        having = [one for one in diagram.measured.values() if signal in one.channels]
+        terms = [
+            term for term in SENSOR_TERMS if any(getattr(s.channels[signal], term) for s in having)
+        ]
+        found = find_signal(diagram, signal)
+        if not terms or found is None:
+            continue
+        name, index = split_index(found)
+        mark: Mark = "effect" if signal in effects else ""
+        id = f"sensor of {signal}"  # no block has a blank in its name
+        node = Node(
+            id,
+            "sensor",
+            "sensor",
+            lines_box(*terms)(Drawn("sensor", {}, {}, 1)),
+            (Port(f"{id}<", "west"),),
+            tuple(_details(signal, having, terms)),
+            mark=mark,
+        )
+        yield node, Wire(name, index=index)
+
+
+def _details(signal: str, series: list[Series], terms: list[str]) -> Iterator[str]:
+    """The lines of the tooltip: the numbers of each series."""
+    yield f"the sensor of {signal}"
+    for one in series:
+        numbers = ", ".join(_numbers(one.channels[signal], terms))
+        if numbers:
+            yield f"{one.name}: {numbers}"
+
+
+def _numbers(channel: Channel, terms: list[str]) -> Iterator[str]:
+    for term in terms:
+        value = getattr(channel, term)
+        if value is not None:
+            unit = SENSOR_TERMS[term].unit
+            if "{}" in unit:
+                inner = unit.startswith("1/") and not channel.unit.isalnum()
+                text = f"({channel.unit})" if inner else channel.unit
+                unit = unit.format(text) if channel.unit else ""
+            yield f"{term} = {value_text(value)} {unit}".rstrip()

@@ -1,0 +1,101 @@
+"""Who carries out the refits of a search: this process, or an executor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from typing import Any
+
+from tracewire.errors import DiagramError, FitError, OptionError, TracewireError
+from tracewire.residual import Segment
+from tracewire.solve import Halt, WorkerEnded, carry_out
+from tracewire.trace.trials.trial import Added, Bench, Trial
+
+REFUSED = (FitError, DiagramError, OptionError)
+"""How a refit may end without a trial: it does not run, or the effects cannot be wired."""
+
+
+@dataclass(frozen=True, eq=False)
+class Refit:
+    """One refit: what `Bench.fitted` takes, and what is told of it."""
+
+    effects: tuple[Added, ...]
+    segments: tuple[Segment, ...]
+    length: int
+    values: Mapping[str, float]
+    options: Mapping[str, Any]
+    words: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Fitting:
+    """The job of the workers: refits of the trials of a trace. It is sent to them once."""
+
+    bench: Bench
+
+    def run(self, number: int, refit: Refit, halt: Halt) -> Trial:
+        """The trial of a refit. Raises what `Bench.fitted` raises."""
+        return self.bench.fitted(
+            refit.effects, refit.segments, refit.length, refit.values, **refit.options
+        )
+
+
+@dataclass
+class Workers:
+    """An executor of `concurrent.futures` as long as it works; else, and without one, this process.
+
+    The trials are the same to the last bit, whoever fits them. Where a worker has ended that the
+    executor does not replace, this process does what was left, and `note` is told.
+    """
+
+    executor: Executor | None = None
+
+    def fitted(
+        self,
+        bench: Bench,
+        refits: Sequence[Refit],
+        tell: Callable[[str], None],
+        note: Callable[[str], None],
+    ) -> list[Trial | TracewireError]:
+        """The trial of each refit, or why there is none, in the order of the refits. Raises errors
+        other than REFUSED, and KeyboardInterrupt."""
+        found: dict[int, Trial | TracewireError] = {}
+        if self.executor is not None and len(refits) > 1:
+            try:
+                self._sent(self.executor, bench, refits, found, tell)
+            except WorkerEnded as error:
+                self.executor = None
+                note(f"{error.problems[0].what}: what was left was done without the executor")
+        for number, refit in enumerate(refits):
+            if number not in found:
+                _tell(refit, len(found) + 1, len(refits), tell)
+                try:
+                    found[number] = Fitting(bench).run(number, refit, Halt())
+                except REFUSED as error:
+                    found[number] = error
+        return [found[number] for number in range(len(refits))]
+
+    def _sent(
+        self,
+        executor: Executor,
+        bench: Bench,
+        refits: Sequence[Refit],
+        found: dict[int, Trial | TracewireError],
+        tell: Callable[[str], None],
+    ) -> None:
+        """Let the executor do all refits. Raises KeyboardInterrupt after Ctrl-C."""
+
+        def take(task: tuple[Any, ...], result: Trial | TracewireError) -> None:
+            if isinstance(result, TracewireError) and not isinstance(result, REFUSED):
+                raise result
+            found[task[0]] = result
+            _tell(task[1], len(found), len(refits), tell)
+
+        if carry_out(Fitting(bench).run, list(enumerate(refits)), take, executor=executor):
+            raise KeyboardInterrupt
+
+
+def _tell(refit: Refit, number: int, count: int, tell: Callable[[str], None]) -> None:
+    if refit.words:
+        tell(f"{refit.words} ({number} of {count})")
