@@ -92,8 +92,24 @@ sys.exit(main())
 """
 
 
-def test_an_interrupt_while_the_program_loads_is_told() -> None:
+LOST = """
+import sys
+class Lost:
+    def __del__(self):
+        raise KeyboardInterrupt
+class Interrupt:
+    def find_spec(self, name, *_):
+        if name == "tracewire.cli.app":
+            Lost()
+sys.meta_path.insert(0, Interrupt())
+from tracewire.cli import main
+sys.exit(main())
+"""
+
+
+@pytest.mark.parametrize("program", [LOADING, LOST])
+def test_an_interrupt_while_the_program_loads_is_told(program: str) -> None:
     environment = {**os.environ, "PYTHONPATH": ":".join(p for p in sys.path if p)}
-    command = [sys.executable, "-c", LOADING, "blocks"]
+    command = [sys.executable, "-c", program, "blocks"]
     done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=300)
     assert (done.returncode, done.stderr) == (130, "interrupted; nothing was finished.\n")

@@ -6,25 +6,34 @@ import os
 import signal
 import sys
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sys import UnraisableHookArgs
 
 __all__ = ["main"]
 
 INTERRUPTED = 130
 THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 """How many threads linear algebra takes: numpy reads these when it is imported."""
+SOON = 0.01
+"""Seconds after which an interrupt that was lost comes again."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code; see `tracewire.cli.app.main`.
 
     Without arguments those of the process are meant, which ends then: an interrupt while it loads
-    is told as any other, and one after the work changes nothing. Linear algebra takes one thread
-    then, unless the user sets OMP_NUM_THREADS or one of THREADS: the matrices of a fit are small,
-    and threads that wait for each other would take the cores from the runs.
+    is told as any other, one that Python would lose comes again, and one after the work changes
+    nothing. Linear algebra takes one thread then, unless the user sets OMP_NUM_THREADS or one of
+    THREADS: the matrices of a fit are small, and threads that wait for each other would take the
+    cores from the runs.
     """
-    if arguments is None and "OMP_NUM_THREADS" not in os.environ:
-        for name in THREADS:
-            os.environ.setdefault(name, "1")
+    if arguments is None:
+        sys.unraisablehook = _ask_again
+        if "OMP_NUM_THREADS" not in os.environ:
+            for name in THREADS:
+                os.environ.setdefault(name, "1")
     try:
         from tracewire.cli.app import main as run
 
@@ -39,3 +48,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if arguments is None:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
     return code
+
+
+def _ask_again(lost: UnraisableHookArgs) -> None:
+    """Interrupt the process once more where Python cannot raise it, as in a callback of an import:
+    there it would print a traceback and go on."""
+    if not isinstance(lost.exc_value, KeyboardInterrupt):
+        sys.__unraisablehook__(lost)
+        return
+    from threading import Timer
+
+    again = Timer(SOON, signal.raise_signal, [signal.SIGINT])
+    again.daemon = True
+    again.start()
