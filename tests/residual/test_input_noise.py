@@ -178,11 +178,11 @@ def test_residuals_whitened_by_the_noise_of_inputs_are_white(length: int) -> Non
                     dict(zip(model.states, state.tolist(), strict=True)), ())
             for a, state in _true_states(model, seed, length)
         ]  # fmt: skip
-        covariance = InputCovariance({"x": SENSOR_NOISE}, model, [measured], 50).factor
+        whitening = InputCovariance({"x": SENSOR_NOISE}, model, [measured], 50).whitening
         sigma = {"x": SENSOR_NOISE}
         plain = Criterion(model, segments, [], TRUE, 1e-9, sigma, weighting="sum")
         white = Criterion(
-            model, segments, [], TRUE, 1e-9, sigma, weighting="sum", covariance=covariance
+            model, segments, [], TRUE, 1e-9, sigma, weighting="sum", whitening=whitening
         )
         residual = np.concatenate(white.residuals(np.zeros(0)))
         squares.append(np.mean(residual**2))
@@ -212,10 +212,10 @@ def _true_states(model: Model, seed: int, length: int) -> list[tuple[int, Vector
 def test_derivatives_are_whitened_as_residuals_are() -> None:
     model, measured = made(CART, ("x",)), cart(5)
     segment = Segment(measured, 0.0, np.arange(1, 60), {"x": 0.0, "v": 0.2}, ("x", "v"))
-    covariance = InputCovariance({"x": SENSOR_NOISE}, model, [measured], 50).factor
+    whitening = InputCovariance({"x": SENSOR_NOISE}, model, [measured], 50).whitening
     unknowns = free_unknowns(model, None, TRUE)
     criterion = Criterion(
-        model, [segment], unknowns, {}, 1e-10, {"x": SENSOR_NOISE}, covariance=covariance
+        model, [segment], unknowns, {}, 1e-10, {"x": SENSOR_NOISE}, whitening=whitening
     )
     z = criterion.begin()
     _, (slopes,) = criterion.residuals_and_derivatives(z)
@@ -230,7 +230,7 @@ def test_derivatives_are_whitened_as_residuals_are() -> None:
 def test_a_window_of_another_series_or_without_noise_of_inputs_stays_as_it_is() -> None:
     model, measured = made(CART, ("x",)), cart(1, None)
     covariance = InputCovariance({"x": SENSOR_NOISE}, model, [measured], 50)
-    assert covariance.factor(Segment(measured, 0.0, np.arange(50))) is None
+    assert covariance.whitening(Segment(measured, 0.0, np.arange(50))) is None
 
 
 def test_a_window_of_which_the_middle_is_left_out_is_whitened_by_its_own_rows() -> None:
@@ -238,12 +238,30 @@ def test_a_window_of_which_the_middle_is_left_out_is_whitened_by_its_own_rows() 
     model, measured = made(CART, ("x",)), cart(1)
     covariance = InputCovariance({"x": SENSOR_NOISE}, model, [measured], 50)
     rows = np.arange(1, 60)
-    whole = covariance.factor(Segment(measured, 0.0, rows))
+    whole = covariance.whitening(Segment(measured, 0.0, rows))
     kept = np.flatnonzero((rows < 20) | (rows > 40))
-    part = covariance.factor(Segment(measured, 0.0, rows[kept]))
+    part = covariance.whitening(Segment(measured, 0.0, rows[kept]))
     assert whole is not None and part is not None
-    expected = (whole @ whole.T)[np.ix_(kept, kept)]
-    assert part @ part.T == pytest.approx(expected, rel=1e-9)
+    expected = np.linalg.inv(whole.T @ whole)[np.ix_(kept, kept)]
+    assert np.linalg.inv(part.T @ part) == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_long_window_is_whitened_by_the_size_of_its_residuals_alone(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    model, measured = made(CART, ("x",)), cart(1)
+    segment = Segment(measured, 0.0, np.arange(1, 400))
+    sizes = []
+    for largest in (1500, 300):
+        monkeypatch.setattr("tracewire.residual.input_noise.LARGEST", largest)
+        covariance = InputCovariance({"x": SENSOR_NOISE}, model, [measured], 50)
+        white = covariance.whitening(segment)
+        assert white is not None
+        sizes.append(1 / white if white.ndim == 1 else np.linalg.norm(np.linalg.inv(white), axis=1))
+    full, alone = sizes
+    assert full.shape == alone.shape == (399,)
+    assert np.ptp(alone) == 0
+    assert alone[0] == pytest.approx(full.mean(), rel=0.5)  # one size, of a noise that grows
 
 
 def test_a_longer_window_has_more_of_the_noise() -> None:

@@ -45,8 +45,8 @@ class Criterion:
     `parameters` holds what is fixed, by the names that unknowns have; `sigma` the noise of each
     signal instead of the declared one, `limits` what one run may cost. Where segments are
     `chained`, states that are not free go on from one to the next, where it begins at its end.
-    `covariance` gives, for a segment, the factor L of the covariance L L' of its residuals where
-    these are not white: the residuals and their derivatives are then L^-1 times the above.
+    `whitening` gives, for a segment whose residuals are not white, the matrix W, or its diagonal,
+    that makes them so: the residuals and their derivatives are then W times the above.
 
     A segment whose run fails counts as 100 times the spread of its data, and is told in `failures`.
 
@@ -67,7 +67,7 @@ class Criterion:
         loss: str = "linear",
         limits: Limits = LIMITS,
         chained: bool = False,
-        covariance: Callable[[Segment], Matrix | None] | None = None,
+        whitening: Callable[[Segment], Matrix | Vector | None] | None = None,
     ) -> None:
         if loss not in LOSSES:
             raise OptionError([unknown("loss", loss, LOSSES)])
@@ -77,7 +77,7 @@ class Criterion:
         self.rtol, self.limits = rtol, limits
         self.weighting, self.loss = weighting, loss
         self.sigma = _sigma_of(self.segments, sigma, needed=loss != "linear")
-        self.covariance = covariance
+        self.whitening = whitening
         self.evaluations = 0
         self.runs, self.steps, self.budget = 0, 0, np.inf
         self.failure: SimulationError | None = None
@@ -111,7 +111,7 @@ class Criterion:
         """The same criterion on other segments, of the same series."""
         fresh = Criterion(
             self.model, segments, self.unknowns, self.parameters, self.rtol,
-            weighting=weighting or self.weighting, limits=self.limits, covariance=self.covariance,
+            weighting=weighting or self.weighting, limits=self.limits, whitening=self.whitening,
         )  # fmt: skip
         fresh.loss = self.loss
         fresh.sigma = {s.measured.name: self.sigma[s.measured.name] for s in segments}
@@ -319,16 +319,15 @@ class Criterion:
 
     def whiten(self, n: int, rows: Vector) -> Vector:
         """Rows (N, signals) or (N*signals, ...) of segment n, in sigma, as its residuals are."""
-        from scipy.linalg import solve_triangular
-
-        factor = None if self.covariance is None else self.covariance(self.segments[n])
-        if factor is None:
+        whitening = None if self.whitening is None else self.whitening(self.segments[n])
+        if whitening is None:
             return rows
-        flat = rows.reshape(len(factor), -1)
-        return np.asarray(solve_triangular(factor, flat, lower=True).reshape(rows.shape))
+        flat = rows.reshape(len(whitening), -1)
+        white = whitening @ flat if whitening.ndim == 2 else whitening[:, None] * flat
+        return np.asarray(white.reshape(rows.shape))
 
     def _whitened(self, n: int, near: Linearised) -> Linearised:
-        if self.covariance is None:
+        if self.whitening is None:
             return near
         residual, slopes = self.whiten(n, near.residual), self.whiten(n, near.slopes)
         return replace(near, residual=residual, slopes=slopes)

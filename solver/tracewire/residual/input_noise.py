@@ -59,11 +59,12 @@ class InputCovariance:
         self.sigma, self.model, self.length = dict(sigma), model, length
         self.series = {m.name: m for m in series if m.input_sigma}
         self._responses: dict[str, InputResponse] = {}
-        self._known: dict[tuple[str, int, bytes], Matrix] = {}
+        self._known: dict[tuple[str, int, bytes], Matrix | Vector] = {}
 
-    def factor(self, segment: Segment) -> Matrix | None:
-        """The lower factor L (M, M) of the covariance L L' of a window's residuals in sigma, by
-        sample and signal; None where the series declares no noise of an input."""
+    def whitening(self, segment: Segment) -> Matrix | Vector | None:
+        """The W (M, M) that makes a window's residuals in sigma white, by sample and signal: W C W'
+        is 1 for their covariance C. Of long windows its diagonal (M,), as if they did not
+        correlate. None where the series declares no noise of an input."""
         name = segment.measured.name
         if name not in self.series:
             return None
@@ -71,12 +72,14 @@ class InputCovariance:
         first = int(np.searchsorted(measured.t, segment.begin))
         key = name, min(first, int(segment.rows[0])), segment.rows.tobytes()
         if key not in self._known:
-            if sum(factor.size for factor in self._known.values()) > KEPT:
+            if sum(known.size for known in self._known.values()) > KEPT:
                 self._known.clear()
-            self._known[key] = self._factor(measured, key[1], segment.rows)
+            self._known[key] = self._made(measured, key[1], segment.rows)
         return self._known[key]
 
-    def _factor(self, measured: Measured, first: int, rows: NDArray[np.intp]) -> Matrix:
+    def _made(self, measured: Measured, first: int, rows: NDArray[np.intp]) -> Matrix | Vector:
+        from scipy.linalg import solve_triangular
+
         name = measured.name
         if name not in self._responses:
             self._responses[name] = response_in_windows(self.model, measured, {}, self.length)
@@ -87,10 +90,12 @@ class InputCovariance:
         if size > LARGEST:  # a free run: its covariance would fill the memory
             noise = response.noise(measured.input_sigma, [window], ())
             more = np.array([noise[signal].size for signal in response.signals]) / level
-            return np.asarray(np.diag(np.tile(np.sqrt(1 + more**2), len(rows))))
+            return np.asarray(np.tile(1 / np.sqrt(1 + more**2), len(rows)))
         made = response.impulses(measured.input_sigma, window)[rows - first]
         scaled = (made / level[:, None]).reshape(size, -1)
-        return np.linalg.cholesky(np.eye(size) + scaled @ scaled.T)
+        factor = np.linalg.cholesky(np.eye(size) + scaled @ scaled.T)
+        # no value of C is below 1, so that none of its inverse is above it
+        return np.asarray(solve_triangular(factor, np.eye(size), lower=True, check_finite=False))
 
 
 def likely_input_noise(

@@ -398,7 +398,7 @@ class Bench:
             self.sigma,
             weighting="sum",
             chained=True,
-            covariance=self.inputs.factor if self.inputs and self.inputs.series else None,
+            whitening=self.inputs.whitening if self.inputs and self.inputs.series else None,
             limits=Limits(
                 options.least_steps + options.steps_a_sample * longest,
                 options.seconds,
