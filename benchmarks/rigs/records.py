@@ -18,10 +18,13 @@ from benchmarks.rigs import (
     joints,
     labs,
     machines,
+    motions,
     mounts,
     plants,
+    processes,
     servos,
     structures,
+    swings,
     vibrations,
 )
 from benchmarks.rigs.record import Record
@@ -84,6 +87,18 @@ RECORDS: Mapping[str, Callable[[], Record]] = {
     "r54_telephone": flights.telephone,
     "r55_plate": structures.plate,
     "r56_cell": circuits.cell,
+    "r57_foam": swings.foam,
+    "r58_seismometer": swings.seismometer,
+    "r59_needle": swings.needle,
+    "r60_gearbox": motions.gearbox,
+    "r61_pin": motions.pin,
+    "r62_magnets": motions.magnets,
+    "r63_scooter": motions.scooter,
+    "r64_dryer": processes.dryer,
+    "r65_accumulator": processes.accumulator,
+    "r66_capacitor": swings.capacitor,
+    "r67_strut": processes.strut,
+    "r68_wheel": motions.wheel,
 }
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
-from benchmarks.rigs.truth import Truth
+from benchmarks.rigs.hidden import Truth
 
 Grade = Literal["right", "with more", "partly", "wrong"]
 Effect = Mapping[str, Any]

@@ -86,3 +86,13 @@ def test_the_second_wave_of_a_force_ripple_is_named_with_its_pitch_or_not_at_all
     assert judged("r44_ripple", "null") == "right"
     assert judged("r44_ripple", "effect", effect("cogging @ forces", pitch=0.0151)) == "right"
     assert judged("r44_ripple", "effect", effect("cogging @ forces", pitch=0.02)) == "wrong"
+
+
+def test_what_is_the_same_on_a_record_is_right_within_its_bounds() -> None:
+    """One way round, bristles that bend at once rub as friction that is higher near rest does."""
+    at_once = effect("lugre @ force", deflection=1e-6)
+    slowly = effect("lugre @ force", deflection=1e-3)
+    assert judged("r61_pin", "effect", at_once) == "right"
+    assert judged("r61_pin", "effect", slowly) == "wrong"
+    assert judged("r63_scooter", "effect", effect("drive_gain @ drive.F")) == "right"
+    assert judged("r63_scooter", "effect", effect("drive_lag @ drive.F")) == "wrong"
