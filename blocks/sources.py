@@ -28,12 +28,15 @@ harmonic = Block(
         Parameter("phase", "rad", default=0.0),
     ),
     outputs=(Output("force", "amplitude*sin(2*pi*t/period + phase)", doc="acts on the body"),),
-    # Whole numbers of waves in the record, so that no frequency up to 60/T is missed. The phase is
-    # that at t = 0: series that begin anywhere in the wave give it under their `parameters`.
+    # Whole numbers of waves in the record, so that no frequency up to 60/T is missed, and above it
+    # the lines of the residual's spectrum. The phase is that at t = 0: series that begin anywhere
+    # in the wave give it under their `parameters`.
     effect=Effect(
         "amplitude",
         shapes={
-            "period": Shape(tuple(1 / n for n in range(1, 61)), of="T", low=1e-9, most=1.0),
+            "period": Shape(
+                tuple(1 / n for n in range(1, 61)), of="T", low=1e-9, most=1.0, line=True
+            ),
             "phase": Shape((0.0, QUARTER), low=-4 * QUARTER),  # sine and cosine
         },
         each=("phase",),

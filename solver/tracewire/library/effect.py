@@ -41,7 +41,8 @@ class Shape:
     `drives` they are the place in that range, on a logarithmic scale. low: the least value that the
     parameter may take in a refit, in SI. least, most: between which multiples of `of` the record
     can tell a value. A `wave` is a length along the coordinate that comes back: it is at least a
-    few samples long, and those lengths are tried first that a scan of all finds best. A `fixed`
+    few samples long, and those lengths are tried first that a scan of all finds best. A `line` is a
+    period in time: those of the lines in the spectrum of the residual are tried, too. A `fixed`
     shape has the first of its values, and no fit changes it.
     """
 
@@ -51,6 +52,7 @@ class Shape:
     least: float | None = None
     most: float | None = None
     wave: bool = False
+    line: bool = False
     fixed: bool = False
 
 

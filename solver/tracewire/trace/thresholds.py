@@ -139,7 +139,7 @@ class CandidateOptions:
     """Of the largest rate: what is slower rests."""
     parts: tuple[float, ...] = (-1.3, -0.6, 0.4, 1.0, 1.4)
     """Of the root mean square of a signal: where the size of an effect is looked at."""
-    variants: int = 128
+    variants: int = 160
     """Choices of the shapes of one candidate that are screened, at most."""
     memory_tolerance: float = 1e-4
     """The relative tolerance of what memories put out: a thousandth of it is no matter to a
@@ -148,13 +148,17 @@ class CandidateOptions:
     """The part of a drive's variance that its sine may leave."""
 
     samples_in_a_wave: float = 4.0
-    """Samples that a wave along the coordinate takes at least, at the median rate."""
+    """Samples that a wave takes at least: along the coordinate at the median rate, or in time."""
     most_waves: int = 400
     """Waves in the longest way of the coordinate, at most."""
     lengths_a_wave: int = 2
     """Lengths that are scanned for each wave more on the way."""
     wave_peaks: int = 6
     """Lengths of the best waves that are tried first."""
+    line_chance: float = 1e-3
+    """The probability that white noise has a line in its spectrum as high as one that is tried."""
+    line_near: int = 25
+    """Frequencies, 1 over the length of the record apart, among whose power a line stands out."""
     teeth: int = 48
     """The most teeth, slots or poles of a turn that are tried one by one."""
 

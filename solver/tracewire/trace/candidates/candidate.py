@@ -47,6 +47,8 @@ class Candidate:
     """Shapes that no fit changes."""
     waves: tuple[str, ...] = ()
     """Shapes that are lengths of a wave along the coordinate."""
+    lines: tuple[str, ...] = ()
+    """Shapes that are periods in time, as of a line in the spectrum of the residual."""
     alias: tuple[str, ...] = ()
     """Effects that imitate this one on many records."""
     each: tuple[str, ...] = ()

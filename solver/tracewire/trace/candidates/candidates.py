@@ -174,6 +174,7 @@ def _candidate(
         resolved=resolved,
         scales={name: shape.of for name, shape in effect.shapes.items()},
         waves=tuple(name for name, shape in effect.shapes.items() if shape.wave),
+        lines=tuple(name for name, shape in effect.shapes.items() if shape.line),
         fixed=tuple(name for name, shape in effect.shapes.items() if shape.fixed),
         alias=effect.alias,
         each=effect.each,
@@ -241,6 +242,8 @@ def _limits(
     if shape.wave:
         least = options.samples_in_a_wave * sizes["step"]
         return max(shape.low, least, high / options.most_waves), high
+    if shape.line:
+        low = max(shape.low, bounds[0], options.samples_in_a_wave * sizes["dt"])
     return low, max(high, *grid)
 
 

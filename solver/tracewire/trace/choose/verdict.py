@@ -120,6 +120,11 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
         missed = harmed or gain >= max(np.log1p(options.near), options.map_gain)
         verdict: Verdict = "unexplained" if missed else "null"
         dependences, missing = maps[0]
+        if above and not missed:
+            search.words.append(
+                f"the residual is {declared[-1].s2 ** 0.5:.2g} σ, and no effect or smooth function"
+                " explains it: the noise is larger than σ, or the record is disturbed otherwise"
+            )
     else:
         enough = _is_enough(prediction, share.share, share.share - error)
         if _only_uncommon(taken, options):

@@ -14,6 +14,7 @@ from tracewire.residual import Unknown, Windows, eliminated
 from tracewire.trace.candidates.candidate import Candidate, is_default
 from tracewire.trace.candidates.histories import Variant, histories
 from tracewire.trace.candidates.levels import Trajectory
+from tracewire.trace.candidates.lines import with_lines
 from tracewire.trace.candidates.waves import as_measured, scanned
 from tracewire.trace.screen.answers import without, without_starts
 from tracewire.trace.screen.tangent import Tangent
@@ -218,6 +219,7 @@ def screened(
     model = windows.criterion.model
     measured = as_measured(windows, tangent.trajectories)
     options = tangent.options
+    candidates = with_lines(candidates, windows, options.candidate)
     if scan:
         candidates = scanned(
             model, candidates, measured, tangent.used, residual, answer, options.candidate

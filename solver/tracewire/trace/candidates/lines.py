@@ -1,0 +1,109 @@
+"""Lines of a spectrum: the periods in time that a residual shows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracewire.residual import Windows
+from tracewire.trace.candidates.candidate import Candidate
+from tracewire.trace.thresholds import CandidateOptions
+
+Vector = NDArray[np.float64]
+FINER = 4
+"""Frequencies of the spectrum for each that is independent: a refit finds what lies between."""
+
+
+def with_lines(
+    candidates: Sequence[Candidate], windows: Windows, options: CandidateOptions
+) -> list[Candidate]:
+    """The candidates, those of a period in time with the lines of the residual before their
+    grid."""
+    if not any(candidate.lines for candidate in candidates):
+        return list(candidates)
+    periods = line_periods(windows, options)
+    found = []
+    for candidate in candidates:
+        for shape in candidate.lines:
+            low, high = candidate.limits[shape]
+            own = tuple(period for period in periods if low <= period <= high)
+            grid = (*own, *candidate.shapes[shape])
+            candidate = replace(candidate, shapes={**candidate.shapes, shape: grid})
+        found.append(candidate)
+    return found
+
+
+def line_periods(windows: Windows, options: CandidateOptions) -> list[float]:
+    """The periods in s of the highest lines in the spectrum of the residual, the highest first.
+
+    The power of all signals and series is added up, without what the starts of windows imitate and
+    without phases, which are those of each series. A line is a peak that stands so far above the
+    median power on both sides that white noise hardly has one: power is exponential there.
+    """
+    power, step = _spectrum(windows)
+    if not len(power):
+        return []
+    usual = _usual(power, FINER * options.line_near) / np.log(2)
+    least = np.log(len(power) / FINER / options.line_chance)
+    inner = power[1:-1]
+    peak = (inner >= power[:-2]) & (inner > power[2:]) & (inner > least * usual[1:-1])
+    lines = 1 + np.flatnonzero(peak)
+    best = lines[np.argsort(-power[lines], kind="stable")][: options.wave_peaks]
+    return [1 / (step * _top(power, n)) for n in best.tolist()]
+
+
+def _usual(power: Vector, near: int) -> Vector:
+    """The median power beside each place, on the side where it is higher: the starts of windows
+    leave little power below their frequency."""
+    from scipy.ndimage import median_filter
+
+    sides = (
+        median_filter(power, near, origin=at, mode="nearest")
+        for at in (-(near // 2), (near - 1) // 2)
+    )
+    return np.asarray(np.maximum(*sides))
+
+
+def _spectrum(windows: Windows) -> tuple[Vector, float]:
+    """The power of the residual at multiples of a frequency, and that frequency in Hz; up to the
+    highest that all series resolve."""
+    series: dict[str, list[int]] = {}
+    segments = windows.criterion.segments
+    for n, segment in enumerate(segments):
+        series.setdefault(segment.measured.name, []).append(n)
+    times = [segments[own[0]].measured.t for own in series.values()]
+    interval = min(float(np.median(np.diff(t))) for t in times)
+    longest = max(float(t[-1] - t[0]) for t in times)
+    count = FINER * int(longest / interval + 1)
+    power = np.zeros(count // 2 + 1)
+    for t, own in zip(times, series.values(), strict=True):
+        power += _power(windows, own, t, interval, count)
+    slowest = max(float(np.median(np.diff(t))) for t in times)
+    highest = int(count * interval / (2 * slowest))
+    return power[: highest + 1], 1 / (count * interval)
+
+
+def _power(
+    windows: Windows, numbers: Sequence[int], t: Vector, interval: float, count: int
+) -> Vector:
+    """The power of some windows of one series, tapered over all of it by a Hann window."""
+    begin, length = float(t[0]), max(float(t[-1] - t[0]), interval)
+    signals = len(windows.near[numbers[0]].residual.T)
+    even = np.zeros((count, signals))
+    for n in numbers:
+        near, own = windows.near[n], windows.criterion.segments[n].t
+        taper = np.sin(np.pi * (own - begin) / length) ** 2
+        rows = np.round((own - begin) / interval).astype(int)
+        left = near.projection.off(near.residual.ravel()).reshape(near.residual.shape)
+        even[rows] = taper[:, None] * left
+    return np.asarray(np.sum(np.abs(np.fft.rfft(even, axis=0)) ** 2, axis=1))
+
+
+def _top(power: Vector, n: int) -> float:
+    """Where the parabola through a peak and its neighbours is highest, in places of the array."""
+    before, at, after = np.log(np.maximum(power[n - 1 : n + 2], 1e-300))
+    bend = before - 2 * at + after
+    return n + (0.5 * float((before - after) / bend) if bend < 0 else 0.0)
