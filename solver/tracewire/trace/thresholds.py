@@ -157,6 +157,8 @@ class CandidateOptions:
     """Lengths of the best waves that are tried first."""
     line_chance: float = 1e-3
     """The probability that white noise has a line in its spectrum as high as one that is tried."""
+    line_finer: int = 4
+    """Frequencies of the spectrum for each that is independent: a refit finds what lies between."""
     line_near: int = 25
     """Frequencies, 1 over the length of the record apart, among whose power a line stands out."""
     teeth: int = 48

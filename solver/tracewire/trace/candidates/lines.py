@@ -13,8 +13,6 @@ from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.thresholds import CandidateOptions
 
 Vector = NDArray[np.float64]
-FINER = 4
-"""Frequencies of the spectrum for each that is independent: a refit finds what lies between."""
 
 
 def with_lines(
@@ -43,11 +41,11 @@ def line_periods(windows: Windows, options: CandidateOptions) -> list[float]:
     without phases, which are those of each series. A line is a peak that stands so far above the
     median power on both sides that white noise hardly has one: power is exponential there.
     """
-    power, step = _spectrum(windows)
+    power, step = _spectrum(windows, options.line_finer)
     if not len(power):
         return []
-    usual = _usual(power, FINER * options.line_near) / np.log(2)
-    least = np.log(len(power) / FINER / options.line_chance)
+    usual = _usual(power, options.line_finer * options.line_near) / np.log(2)
+    least = np.log(len(power) / options.line_finer / options.line_chance)
     inner = power[1:-1]
     peak = (inner >= power[:-2]) & (inner > power[2:]) & (inner > least * usual[1:-1])
     lines = 1 + np.flatnonzero(peak)
@@ -67,7 +65,7 @@ def _usual(power: Vector, near: int) -> Vector:
     return np.asarray(np.maximum(*sides))
 
 
-def _spectrum(windows: Windows) -> tuple[Vector, float]:
+def _spectrum(windows: Windows, finer: int) -> tuple[Vector, float]:
     """The power of the residual at multiples of a frequency, and that frequency in Hz; up to the
     highest that all series resolve."""
     series: dict[str, list[int]] = {}
@@ -77,7 +75,7 @@ def _spectrum(windows: Windows) -> tuple[Vector, float]:
     times = [segments[own[0]].measured.t for own in series.values()]
     interval = min(float(np.median(np.diff(t))) for t in times)
     longest = max(float(t[-1] - t[0]) for t in times)
-    count = FINER * int(longest / interval + 1)
+    count = finer * int(longest / interval + 1)
     power = np.zeros(count // 2 + 1)
     for t, own in zip(times, series.values(), strict=True):
         power += _power(windows, own, t, interval, count)
