@@ -57,6 +57,15 @@ measured:
     signals: {x: {column: x, gain: {value: 1, fit: [0.5, 2]}}}
     inputs: {u: {column: u}}
 """
+DAMPER = """\
+span: [0, 2]
+inputs: [v]
+parameters: {c: {value: 2, fit: [0, 9]}}
+blocks:
+  oil: {type: viscous, rate: v, c: c}
+  force: {type: sum, of: [oil], place: {v: v}}
+"""
+LAGGED = Levels({"v": Level(1.0, 2.0), "force": Level(2.0, 4.0)}, 10.0, 0.01)
 OWN = """
 subsystems:
   magnet:
@@ -109,6 +118,18 @@ def test_an_effect_is_wired_to_the_signals_of_its_place() -> None:
     assert (coulomb.block, coulomb.coefficient) == ("coulomb", "coulomb.level")
     assert (coulomb.signals, coulomb.sign) == ({"rate": "omega"}, 1)
     assert coulomb.parameter == "level"
+
+
+def test_effects_read_a_drive_as_an_effect_at_it_leaves_it_in_any_order() -> None:
+    """A damper whose motion is prescribed: a lag of that motion is one of its friction, too."""
+    diagram = read_text(DAMPER)
+    model = compile(diagram)
+    known = named(find_candidates(model, find_places(model), LAGGED, OPTIONS.candidate))
+    lag, friction = known["drive_lag @ drive.v"], known["coulomb @ force"]
+    chosen = [(lag, {"tau": 0.1}), (friction, {"level": 2.0})]
+    texts = [with_effects(diagram, order).text for order in (chosen, chosen[::-1])]
+    assert texts[0] == texts[1]
+    assert "coulomb: {type: coulomb, rate: v_seen" in texts[0]
 
 
 def test_shapes_are_sizes_of_the_signals() -> None:

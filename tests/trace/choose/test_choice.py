@@ -169,6 +169,20 @@ def test_a_wave_gives_way_to_the_common_law_that_it_imitates() -> None:
     assert chosen([declared, wave, far], 2.0, 0.0, 0.3).taken == 1
 
 
+def test_common_effects_with_fewer_numbers_go_before_a_wave_that_takes_little_more() -> None:
+    """Whatever they are: a wave of three numbers follows what a law that is nearly right leaves."""
+    declared = replace(model(), left=(1.0, 1.0))
+    wave = replace(model("a", "wave", numbers=8, uncommon=1), left=(0.04, 0.05))
+    common = replace(model("b", "c", numbers=4), left=(0.06, 0.07))
+    worse = replace(model("d", numbers=3), left=(0.065, 0.075))
+    assert chosen([declared, wave, common, worse], 2.0, 0.0, 0.2, 0.4).taken == 2
+    far = replace(common, left=(0.08, 0.09))
+    assert chosen([declared, wave, far], 2.0, 0.0, 0.2).taken == 1, "it takes a part away"
+    decisive = replace(wave, left=(0.002, 0.002))
+    few = replace(common, left=(0.03, 0.03))
+    assert chosen([declared, decisive, few], 2.0, 0.0, 1.0).taken == 1, "it takes all but a tenth"
+
+
 def test_a_decay_that_shows_nearly_all_in_its_first_blocks_is_sure() -> None:
     """That these differ from the later ones is no doubt; one block alone would be."""
     decay = np.array([3.0, 1.0, 0.5, 0.3, 0.2, 0.1, 0.1, 0.05, 0.02, 0.0])

@@ -18,9 +18,11 @@ def changes_of(
 
     values: by parameter (`level`, `width`; `offset` of a sensor), in SI. Each is written with round
     bounds for a fit, the coefficient with bounds well above its value. A shape that is off is not
-    written; one that is not given has the first value that is tried.
+    written; one that is not given has the first value that is tried. Effects at a drive come last,
+    so that all the others read the drive as they leave it, whatever was found first.
     """
-    return [change for one, values in chosen for change in _changes(diagram, one, values)]
+    order = sorted(chosen, key=lambda one: one[0].place.kind == "drive")
+    return [change for one, values in order for change in _changes(diagram, one, values)]
 
 
 def _changes(

@@ -6,9 +6,10 @@ For a model m, a horizon h, a fold f and a block b, with E/n the mean squared he
 
 and T[m,b] is the mean of S over h and f. Models compare by the differences of T over blocks, with
 their standard error. Taken is the model of fewest numbers that is as near the best as one standard
-error or 5 %, then without each effect that costs as little, and with a simpler effect in the place
-of one that imitates it. The logarithm lets a decay be judged by all of its blocks, and not by the
-first alone.
+error or 5 %; where it has a wave, a drift or their kin, the best of common effects that leaves
+hardly more of the squared error with fewer numbers; then without each effect that costs as little,
+and with a simpler effect in the place of one that imitates it. The logarithm lets a decay be judged
+by all of its blocks, and not by the first alone.
 
 The logarithm has no measure of what matters: it counts the last per cent of the squared error as
 much as the first half of it, and there the rest of laws that are only nearly right looks like some
@@ -133,6 +134,17 @@ def choose(
     usable = _usable(totals)
     surer = [n for n in usable if n and is_sure(totals, 0, n, options)]
     among = surer or usable
+    taken = _simplest_near_best(entrants, totals, among, tolerance)
+    while commoner := _commoner(entrants, among, taken, options):
+        taken = _simplest_near_best(entrants, totals, commoner, tolerance)
+    taken = _pruned(entrants, totals, among, taken, options)
+    return choice_of(taken, entrants, scores, folds, options)
+
+
+def _simplest_near_best(
+    entrants: Sequence[Entrant], totals: Array, among: Sequence[int], tolerance: float
+) -> int:
+    """The simplest model that is as near the best as the tolerance or one standard error."""
     best = min(among, key=lambda n: totals[n].mean())
     near = [n for n in among if _cost(totals, n, best) <= max(tolerance, _error(totals, n, best))]
 
@@ -140,9 +152,22 @@ def choose(
         one = entrants[n]
         return one.numbers, one.uncommon, one.unsigned, float(totals[n].mean())
 
-    taken = min(near, key=simplicity)
-    taken = _pruned(entrants, totals, among, taken, options)
-    return choice_of(taken, entrants, scores, folds, options)
+    return min(near, key=simplicity)
+
+
+def _commoner(
+    entrants: Sequence[Entrant], among: Sequence[int], taken: int, options: TraceOptions
+) -> list[int]:
+    """The models with fewer uncommon effects and fewer numbers that leave hardly more of the
+    squared error: waves and drifts follow whatever a law that is nearly right has left."""
+    mine = entrants[taken]
+    return [
+        n
+        for n in among
+        if entrants[n].uncommon < mine.uncommon
+        and entrants[n].numbers < mine.numbers
+        and entrants[n].is_as_good(mine, options)
+    ]
 
 
 def choice_of(
