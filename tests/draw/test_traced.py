@@ -148,6 +148,18 @@ def test_a_new_block_moves_little(file: str, where: str, of: str) -> None:
     assert draw(changed, like=before).svg == after.svg
 
 
+def test_friction_that_is_added_turns_no_feedback_upwards() -> None:
+    diagram = read(PENDULUM)
+    added = "{type: coulomb, rate: omega, level: 1}"
+    changed = add_addend(diagram, "acceleration", "coulomb", added)
+    before = draw(diagram, measured=True)
+    after = draw(changed, measured=True, effects=["coulomb"], like=before)
+    assert kept_order(before, after)[1] >= 0.9
+    place = after.layout.nodes
+    assert min(place[name].y for name in ("friction", "coulomb")) > place["acceleration"].y
+    assert faults(after) == []
+
+
 def test_a_picture_like_itself_is_the_same() -> None:
     before = draw(read(PENDULUM))
     assert draw(read(PENDULUM), like=before).layout == before.layout
