@@ -19,7 +19,7 @@ from tracewire.draw.curves import curve_of
 from tracewire.draw.elk import engine
 from tracewire.draw.graph import Node
 from tracewire.draw.layout import all_nodes, all_wires
-from tracewire.draw.shapes import Drawn, shape_of
+from tracewire.draw.shapes import Drawn, shape_of, subsystem_look
 from tracewire.errors import InstallationError, OptionError
 from tracewire.npm import integrity
 
@@ -118,6 +118,17 @@ def test_a_subsystem_opens_and_shows_what_is_inside() -> None:
     assert ("M_T<rate", "M_T.friction<rate") in [(w.source, w.target) for w in inside.wires]
     assert ("M_T.total>", "M_T>torque") in [(w.source, w.target) for w in inside.wires]
     assert len(list(all_wires(opened.graph))) > len(closed.graph.wires)
+
+
+def test_a_long_title_of_a_subsystem_has_two_lines_where_it_is_closed() -> None:
+    tank = read(DIAGRAMS / "gallery" / "tank.yaml")
+    closed, opened = (node(draw(tank, depth), "tank").look for depth in (0, 1))
+    assert closed.lines == ("Tank that runs out", "through a hole")
+    assert opened.lines == ("Tank that runs out through a hole",)
+    assert closed.width < opened.width
+    assert node(draw(read(TORSION)), "M_T").look.lines == ("plate",)
+    one_word = "x" * 60
+    assert subsystem_look(one_word, 1, (0, 0)).lines[0].endswith("…")
 
 
 @pytest.mark.parametrize(

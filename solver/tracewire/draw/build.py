@@ -183,7 +183,7 @@ class _Builder:
                 look = replace(look, width=look.width + sum(labels))
             return replace(node, look=look)
         title = use.subsystem.title or use.type
-        look = subsystem_look(title, count, labels)
+        look = subsystem_look(title, count, labels, closed=depth <= 0)
         if depth <= 0:
             return replace(node, look=look)
         inside = inner_numbers(use, numbers)
