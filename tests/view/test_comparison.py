@@ -107,6 +107,19 @@ def test_a_fit_proposes_a_text_and_changes_no_file(pendulum: Service, lesson: Pa
     assert report.startswith("<!") and "w0_squared" in report
 
 
+def test_the_run_of_a_proposal_begins_as_the_fit_has_found(pendulum: Service) -> None:
+    alone = fit(compile(read(pendulum.file)), method="least_squares")
+    pendulum.answer("start", {"key": key_of(pendulum), "kind": "fit"})
+    job = ended(pendulum)
+    proposal: Any = pendulum.answer("proposal", {"id": job["id"]})
+    read_back: Any = pendulum.answer("read", {"text": proposal["text"]})
+    request = {"key": read_back["key"], "series": "swing"}
+    head, _ = frame_in(pendulum.answer("run", request | {"proposal": job["id"]}))
+    assert head["measured"]["criterion"] == pytest.approx(alone.criterion, rel=1e-3)
+    plain, _ = frame_in(pendulum.answer("run", request | {"proposal": "another"}))
+    assert plain["measured"]["criterion"] > 10 * alone.criterion  # its start is read off the data
+
+
 def read_values(text: str) -> dict[str, float]:
     return parameter_values(compile(read_text(text, LESSONS / "pendulum.yaml")), {})
 
