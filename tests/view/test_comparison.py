@@ -71,6 +71,14 @@ def test_the_residual_follows_the_parameters(pendulum: Service) -> None:
     assert rms(0.12) < rms(0.0) != rms(0.5)
 
 
+def test_a_start_that_the_series_gives_is_told(pendulum: Service) -> None:
+    key = key_of(pendulum)
+    measured, _ = frame_in(pendulum.answer("run", {"key": key, "series": "swing"}))
+    assert measured["overruled"] == ["theta.start"]
+    plain, _ = frame_in(pendulum.answer("run", {"key": key}))
+    assert plain["overruled"] == []
+
+
 def test_a_wrong_series_and_a_broken_file_are_told(pendulum: Service, lesson: Path) -> None:
     key = key_of(pendulum)
     answer: Any = pendulum.answer("run", {"key": key, "series": "sing"})

@@ -45,6 +45,12 @@ def test_a_fit_is_proposed_and_taken_by_a_click(page: Chromium, lesson: Path) ->
     page.run("choose('series', 'swing')")
     page.wait(OWN_CURVES)
     assert page.run("text('criterion')").endswith("theta 0.7631 rad")
+    disabled = "document.getElementById('p-theta.start').disabled"
+    assert page.run(disabled)  # the series begins as its data tell
+    page.run("choose('series', '')")
+    page.wait(f"!{disabled}")
+    page.run("choose('series', 'swing')")
+    page.wait(OWN_CURVES)
     assert page.run("document.querySelectorAll('.uplot').length") == 3
     page.run("document.getElementById('fit').click()")
     page.wait("shows('proposal')")

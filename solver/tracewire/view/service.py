@@ -222,6 +222,7 @@ class Service:
             return told(error.problems, number)
         version.panels = version.panels or panels_of(run, version.shown)
         head["followed"] = {n: v for n, v in setting.values.items() if n not in setting.given}
+        head["overruled"] = setting.overruled
         return packed(head | frame_of(run, version.panels, arrays), arrays)
 
     def export(self, request: Request) -> Answer:

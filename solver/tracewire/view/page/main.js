@@ -66,7 +66,7 @@ function ran(answer, milliseconds) {
   part("curves").classList.remove("failed", "old");
   plots.show(answer);
   scene.show(answer);
-  parameters.follow(answer.followed);
+  parameters.follow(answer.followed, answer.overruled);
   tell(`run: ${shown(1000 * answer.run_seconds, 2)} ms, shown after ${Math.round(milliseconds)} ms`);
   part("criterion").textContent = criterion(answer);
   part("events").textContent = events(answer);
