@@ -47,6 +47,12 @@ def test_a_sensor_with_terms_is_a_block_behind_its_signal() -> None:
     assert faults(drawing) == []
 
 
+def test_wires_that_were_there_cover_what_they_share_with_an_effect() -> None:
+    added = add_addend(read(PENDULUM), "acceleration", "extra", "{type: gain, of: omega, k: 1}")
+    kinds = re.findall(r'<g class="wire( effect)?"', draw(added, effects=["extra"]).svg)
+    assert kinds == [" effect", " effect", *[""] * (len(kinds) - 2)]
+
+
 def test_a_sensor_without_terms_and_a_plain_picture_have_no_block() -> None:
     assert SENSOR not in nodes(draw(read(PENDULUM), measured=True))
     assert SENSOR not in nodes(draw(late()))

@@ -100,6 +100,8 @@ def test_effects_of_a_trace_are_accepted_one_by_one(page: Chromium, lesson: Path
     names = page.run("[...document.querySelectorAll('#effects input')].map((one) => one.value)")
     assert set(names) == {"sensor_offset @ sensor.theta", "coulomb @ acceleration"}
     assert "level = 0.1" in page.run("text('effects')")
+    assert page.run("text('proposal-words').startsWith('The diagram lacks')")
+    assert page.run("document.querySelectorAll('#proposal-words p').length") > 3
     assert sorted(page.run(BLOCKS)) == ["coulomb", "sensor of theta"]
     page.run("document.querySelector('#drawing [data-type=sensor]').dispatchEvent("
              "new MouseEvent('dblclick', {bubbles: true}))")  # fmt: skip

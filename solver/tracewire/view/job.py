@@ -137,11 +137,11 @@ class Job:
         return set_sensors(set_values(self.diagram, {**rest, **own}), sensors)
 
     def _trace(self) -> None:
-        from tracewire.show import paragraph_of
+        from tracewire.show import sentences_of
         from tracewire.trace import trace
 
         found = trace(compile(set_values(self.diagram, self.values)), progress=self._tell)
-        self.words = (paragraph_of(found),)
+        self.words = sentences_of(found)
         self.result = found
 
 
