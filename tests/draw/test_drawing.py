@@ -12,6 +12,7 @@ from threading import Thread
 
 import pytest
 import tracewire as tw
+from draw.geometry import faults
 from draw.random_diagrams import LIBRARY, text_of
 from tracewire.diagram import BlockUse, read, read_readable, read_text
 from tracewire.draw import Drawing, draw
@@ -118,6 +119,37 @@ def test_a_subsystem_opens_and_shows_what_is_inside() -> None:
     assert ("M_T<rate", "M_T.friction<rate") in [(w.source, w.target) for w in inside.wires]
     assert ("M_T.total>", "M_T>torque") in [(w.source, w.target) for w in inside.wires]
     assert len(list(all_wires(opened.graph))) > len(closed.graph.wires)
+
+
+THROUGH = """\
+blocks:
+  x: {type: integrator, of: part.turned}
+  part: {type: part, a: x}
+  y: {type: gain, of: part.same, k: 1}
+subsystems:
+  part:
+    inputs: [a]
+    outputs: {turned: -b, same: a}
+    blocks: {b: {type: sin, of: a}}
+"""
+
+
+def test_an_input_that_goes_through_a_frame_stays_inside_of_it() -> None:
+    drawing = draw(read_text(THROUGH), 1)
+    frame = drawing.layout.nodes["part"]
+    inner = node(drawing, "part").wires
+    assert {wire.source for wire in inner} >= {"part<a", "part.b>"}
+    for wire in inner:
+        for x, y in drawing.layout.wires[wire.id]:
+            assert frame.x <= x <= frame.x + frame.width
+            assert frame.y <= y <= frame.y + frame.height
+    assert faults(drawing) == []
+
+
+def test_an_output_that_turns_a_sign_shows_that_where_it_is_open() -> None:
+    closed, opened = (texts(groups(draw(read_text(THROUGH), depth))["part"]) for depth in (0, 1))
+    assert "turned" in closed and "−turned" not in closed
+    assert "−turned" in opened and "same" in opened
 
 
 def test_a_long_title_of_a_subsystem_has_two_lines_where_it_is_closed() -> None:
