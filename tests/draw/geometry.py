@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import combinations, pairwise
+from itertools import combinations, pairwise, product
 
 from tracewire.draw import Drawing
 from tracewire.draw.graph import Connection, Node
-from tracewire.draw.layout import Layout, Point, Rectangle
+from tracewire.draw.layout import Layout, Point, Rectangle, all_wires
 
 ROUNDING = 0.01  # px
 
 
 def faults(drawing: Drawing) -> list[str]:
-    """Blocks that overlap, wires that run through blocks or past their ports, skew wires."""
+    """Blocks that overlap, wires that run through blocks or past their ports or on others, skew
+    wires."""
     graph, layout = drawing.graph, drawing.layout
     found = [*_overlaps(graph.nodes, layout), *_wires(graph.nodes, graph.wires, layout)]
+    found += _shared(list(all_wires(graph)), layout)
     todo = list(graph.nodes)
     while todo:
         node = todo.pop()
@@ -65,6 +67,24 @@ def _wires(nodes: Sequence[Node], wires: Sequence[Connection], layout: Layout) -
                 name = layout.names.get(node.id)
                 if name is not None and _overlap(part, name):
                     yield f"wire {wire.id} runs through the name of {node.id}"
+
+
+def _shared(wires: Sequence[Connection], layout: Layout) -> Iterator[str]:
+    """Wires of two signals that lie on each other for more than a crossing."""
+    parts = {
+        wire.id: [(p, q, p[1] == q[1]) for p, q in pairwise(layout.wires[wire.id])]
+        for wire in wires
+    }
+    for one, other in combinations(wires, 2):
+        if one.source == other.source:
+            continue
+        for (p, q, level), (r, s, same) in product(parts[one.id], parts[other.id]):
+            along, across = (0, 1) if level else (1, 0)
+            if level != same or abs(p[across] - r[across]) > 0.5:
+                continue
+            ends = sorted((p[along], q[along])), sorted((r[along], s[along]))
+            if min(ends[0][1], ends[1][1]) - max(ends[0][0], ends[1][0]) > 1:
+                yield f"wire {one.id} lies on wire {other.id}"
 
 
 def _near(one: Point, other: Point) -> bool:

@@ -12,6 +12,7 @@ from threading import Thread
 
 import pytest
 import tracewire as tw
+from draw.geometry import faults
 from draw.random_diagrams import LIBRARY, text_of
 from tracewire.diagram import BlockUse, read, read_readable, read_text
 from tracewire.draw import Drawing, draw
@@ -19,7 +20,7 @@ from tracewire.draw.curves import curve_of
 from tracewire.draw.elk import engine
 from tracewire.draw.graph import Node
 from tracewire.draw.layout import all_nodes, all_wires
-from tracewire.draw.shapes import Drawn, shape_of
+from tracewire.draw.shapes import Drawn, shape_of, subsystem_look
 from tracewire.errors import InstallationError, OptionError
 from tracewire.npm import integrity
 
@@ -118,6 +119,48 @@ def test_a_subsystem_opens_and_shows_what_is_inside() -> None:
     assert ("M_T<rate", "M_T.friction<rate") in [(w.source, w.target) for w in inside.wires]
     assert ("M_T.total>", "M_T>torque") in [(w.source, w.target) for w in inside.wires]
     assert len(list(all_wires(opened.graph))) > len(closed.graph.wires)
+
+
+THROUGH = """\
+blocks:
+  x: {type: integrator, of: part.turned}
+  part: {type: part, a: x}
+  y: {type: gain, of: part.same, k: 1}
+subsystems:
+  part:
+    inputs: [a]
+    outputs: {turned: -b, same: a}
+    blocks: {b: {type: sin, of: a}}
+"""
+
+
+def test_an_input_that_goes_through_a_frame_stays_inside_of_it() -> None:
+    drawing = draw(read_text(THROUGH), 1)
+    frame = drawing.layout.nodes["part"]
+    inner = node(drawing, "part").wires
+    assert {wire.source for wire in inner} >= {"part<a", "part.b>"}
+    for wire in inner:
+        for x, y in drawing.layout.wires[wire.id]:
+            assert frame.x <= x <= frame.x + frame.width
+            assert frame.y <= y <= frame.y + frame.height
+    assert faults(drawing) == []
+
+
+def test_an_output_that_turns_a_sign_shows_that_where_it_is_open() -> None:
+    closed, opened = (texts(groups(draw(read_text(THROUGH), depth))["part"]) for depth in (0, 1))
+    assert "turned" in closed and "−turned" not in closed
+    assert "−turned" in opened and "same" in opened
+
+
+def test_a_long_title_of_a_subsystem_has_two_lines_where_it_is_closed() -> None:
+    tank = read(DIAGRAMS / "gallery" / "tank.yaml")
+    closed, opened = (node(draw(tank, depth), "tank").look for depth in (0, 1))
+    assert closed.lines == ("Tank that runs out", "through a hole")
+    assert opened.lines == ("Tank that runs out through a hole",)
+    assert closed.width < opened.width
+    assert node(draw(read(TORSION)), "M_T").look.lines == ("plate",)
+    one_word = "x" * 60
+    assert subsystem_look(one_word, 1, (0, 0)).lines[0].endswith("…")
 
 
 @pytest.mark.parametrize(

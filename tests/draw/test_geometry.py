@@ -76,4 +76,8 @@ def test_faults_are_found() -> None:
     drawing.layout.nodes[second] = drawing.layout.nodes[first]
     found = faults(drawing)
     assert f"{first} overlaps {second}" in found
+    one = drawing.graph.wires[0]
+    other = next(wire for wire in drawing.graph.wires if wire.source != one.source)
+    drawing.layout.wires[other.id] = drawing.layout.wires[one.id]
+    assert any(" lies on wire " in fault for fault in faults(drawing))
     assert any(fault.startswith(f"port {second}") for fault in found)

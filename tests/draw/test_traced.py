@@ -47,6 +47,12 @@ def test_a_sensor_with_terms_is_a_block_behind_its_signal() -> None:
     assert faults(drawing) == []
 
 
+def test_wires_that_were_there_cover_what_they_share_with_an_effect() -> None:
+    added = add_addend(read(PENDULUM), "acceleration", "extra", "{type: gain, of: omega, k: 1}")
+    kinds = re.findall(r'<g class="wire( effect)?"', draw(added, effects=["extra"]).svg)
+    assert kinds == [" effect", " effect", *[""] * (len(kinds) - 2)]
+
+
 def test_a_sensor_without_terms_and_a_plain_picture_have_no_block() -> None:
     assert SENSOR not in nodes(draw(read(PENDULUM), measured=True))
     assert SENSOR not in nodes(draw(late()))
@@ -146,6 +152,18 @@ def test_a_new_block_moves_little(file: str, where: str, of: str) -> None:
     assert down >= 0.75
     assert faults(after) == []
     assert draw(changed, like=before).svg == after.svg
+
+
+def test_friction_that_is_added_turns_no_feedback_upwards() -> None:
+    diagram = read(PENDULUM)
+    added = "{type: coulomb, rate: omega, level: 1}"
+    changed = add_addend(diagram, "acceleration", "coulomb", added)
+    before = draw(diagram, measured=True)
+    after = draw(changed, measured=True, effects=["coulomb"], like=before)
+    assert kept_order(before, after)[1] >= 0.9
+    place = after.layout.nodes
+    assert min(place[name].y for name in ("friction", "coulomb")) > place["acceleration"].y
+    assert faults(after) == []
 
 
 def test_a_picture_like_itself_is_the_same() -> None:

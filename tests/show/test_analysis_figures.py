@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,7 @@ from tracewire.analyse import (
 from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.errors import OptionError
+from tracewire.show.style import saved_figures
 from tracewire.solve import simulate
 
 RUN = simulate(made(PENDULUM, ("w",)), rtol=1e-8)
@@ -45,6 +47,18 @@ def test_a_portrait_names_its_axes(tmp_path: Path) -> None:
             show.plot_portrait(RUN, x, y, tmp_path / "a.svg")
     with pytest.raises(OptionError, match="there is no sample from 99 s on"):
         show.plot_portrait(RUN, "phi", "w", tmp_path / "a.svg", since=99)
+
+
+def test_a_long_portrait_has_no_gap(tmp_path: Path) -> None:
+    run = simulate(made(PENDULUM, ("w",)), span=(0, 20), times=np.linspace(0, 20, 12001))
+    with saved_figures() as saved:
+        show.plot_portrait(run, "phi", "w", tmp_path / "a.png")
+    lines = [np.array(line.get_xydata()) for line in saved[-1].axes[0].lines]
+    pieces = [points for points in lines if len(points) > 1]
+    assert max(len(points) for points in pieces) < 10_000  # beyond that Matplotlib leaves a gap
+    for one, following in pairwise(pieces):
+        assert np.array_equal(one[-1], following[0])
+    assert sum(len(points) - 1 for points in pieces) == 12000
 
 
 def test_a_portrait_shows_what_sticks(tmp_path: Path) -> None:

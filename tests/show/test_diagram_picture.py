@@ -11,6 +11,7 @@ from tracewire.draw import Drawing, draw
 from tracewire.draw.graph import Node
 from tracewire.draw.layout import all_nodes
 from tracewire.show import draw_trace
+from tracewire.show.diagram_picture import traced_figure
 from tracewire.trace import Force, Found, FoundEffect, Missing
 
 
@@ -39,6 +40,28 @@ def test_blocks_stand_as_in_the_picture_of_the_diagram() -> None:
         for other in before.layout.nodes:
             if before.layout.nodes[one].x < before.layout.nodes[other].x:
                 assert after.layout.nodes[one].x < after.layout.nodes[other].x
+
+
+def test_the_caption_tells_the_marks_that_are_there() -> None:
+    plain = "The blocks and wires of the diagram; blue names are measured"
+    added = f"{plain}, green is what the trace added"
+    plot = "and the plot below a sum is what the data need there"
+    assert traced_figure(FOUND).caption == f"{added}, {plot}"
+    lacking = "amber is where something is missing that no effect explains"
+    both = replace(FOUND, missing=UNEXPLAINED.missing)
+    assert traced_figure(both).caption == f"{added}, {lacking}, {plot}"
+    sensor = replace(sensed(), effects=sensed().effects[-1:])
+    assert traced_figure(sensor).caption == f"{plain}, and green is what the trace added"
+    assert traced_figure(NULL).caption == plain
+
+
+def test_a_number_of_hundreds_is_written_out() -> None:
+    missing = UNEXPLAINED.missing
+    assert missing is not None
+    large = replace(missing, torque=missing.torque * 3255)
+    plot = node(draw_trace(replace(UNEXPLAINED, missing=large)), "torque").plot
+    assert plot is not None
+    assert plot.words == "needed: up to 650 N m over theta"
 
 
 def test_refused_effects_are_not_drawn() -> None:

@@ -178,7 +178,7 @@ def test_the_report_tells_what_was_fitted_and_each_step(tmp_path: Path) -> None:
 def test_the_report_as_html_is_one_file(tmp_path: Path) -> None:
     page = report(FIT).write(tmp_path / "fit.html").read_text(encoding="utf-8")
     assert page.count('src="data:image/png;base64,') >= 4
-    assert page.count('src="data:image/svg+xml;base64,') == 1
+    assert page.count('<img class="drawing" src="data:image/svg+xml;base64,') == 1
     assert list(tmp_path.iterdir()) == [tmp_path / "fit.html"]
 
 

@@ -185,10 +185,32 @@ def test_a_browser_draws_the_curves_and_zooms_all_panels(tmp_path: Path) -> None
     assert told["again"] == told["whole"]
 
 
+@pytest.mark.skipif(not BROWSER, reason="no Chromium here")
+def test_numbers_at_a_bent_axis_do_not_cover_each_other(tmp_path: Path) -> None:
+    panel = {"ticks": [-1.0, -0.03, 0.0, 0.03, 1.0], "at": [90, 52, 50, 48, 10]}
+    script = scripts()
+    begin = script.index("  function apart(")
+    apart = script[begin : script.index("  // without the commas", begin)]
+    page = tmp_path / "apart.html"
+    page.write_text(
+        f'<pre id="told"></pre><script>var ROOM = 12; {apart}; var panel = {json.dumps(panel)};'
+        "var u = {valToPos: function (v) { return panel.at[panel.ticks.indexOf(v)]; }};"
+        "document.getElementById('told').textContent ="
+        " JSON.stringify(apart(u, panel.ticks));</script>",
+        encoding="utf-8",
+    )
+    assert told_on(page, tmp_path) == [-1, None, 0, None, 1]
+
+
 def seen(run: Run, folder: Path) -> Any:
     """What a script finds on the page of a run, in a browser without a window."""
     page = folder / "run.html"
     page.write_text(report(run).html().replace("</body>", PROBE), encoding="utf-8")
+    return told_on(page, folder)
+
+
+def told_on(page: Path, folder: Path) -> Any:
+    """What a page writes into its element `told`."""
     command = [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--dump-dom"]
     command += [f"--user-data-dir={folder / 'profile'}", "--virtual-time-budget=20000"]
     done = subprocess.run([*command, page.as_uri()], capture_output=True, text=True, timeout=120)

@@ -71,6 +71,14 @@ def test_the_residual_follows_the_parameters(pendulum: Service) -> None:
     assert rms(0.12) < rms(0.0) != rms(0.5)
 
 
+def test_a_start_that_the_series_gives_is_told(pendulum: Service) -> None:
+    key = key_of(pendulum)
+    measured, _ = frame_in(pendulum.answer("run", {"key": key, "series": "swing"}))
+    assert measured["overruled"] == ["theta.start"]
+    plain, _ = frame_in(pendulum.answer("run", {"key": key}))
+    assert plain["overruled"] == []
+
+
 def test_a_wrong_series_and_a_broken_file_are_told(pendulum: Service, lesson: Path) -> None:
     key = key_of(pendulum)
     answer: Any = pendulum.answer("run", {"key": key, "series": "sing"})
@@ -105,6 +113,19 @@ def test_a_fit_proposes_a_text_and_changes_no_file(pendulum: Service, lesson: Pa
     assert proposal["effects"] == []
     report = pendulum.report(job["id"])
     assert report.startswith("<!") and "w0_squared" in report
+
+
+def test_the_run_of_a_proposal_begins_as_the_fit_has_found(pendulum: Service) -> None:
+    alone = fit(compile(read(pendulum.file)), method="least_squares")
+    pendulum.answer("start", {"key": key_of(pendulum), "kind": "fit"})
+    job = ended(pendulum)
+    proposal: Any = pendulum.answer("proposal", {"id": job["id"]})
+    read_back: Any = pendulum.answer("read", {"text": proposal["text"]})
+    request = {"key": read_back["key"], "series": "swing"}
+    head, _ = frame_in(pendulum.answer("run", request | {"proposal": job["id"]}))
+    assert head["measured"]["criterion"] == pytest.approx(alone.criterion, rel=1e-3)
+    plain, _ = frame_in(pendulum.answer("run", request | {"proposal": "another"}))
+    assert plain["measured"]["criterion"] > 10 * alone.criterion  # its start is read off the data
 
 
 def read_values(text: str) -> dict[str, float]:

@@ -18,6 +18,7 @@ pytestmark = needs_browser
 LESSONS = Path(__file__).parents[2] / "diagrams" / "lessons"
 SOURCE = "document.getElementById('source').value"
 BLOCKS = "[...document.querySelectorAll('#drawing .block.effect')].map((one) => one.dataset.block)"
+OWN_CURVES = "text('criterion').startsWith('Criterion of swing: 291')"
 SHIFT = 0.05  # rad
 
 
@@ -42,17 +43,41 @@ def page(browser: Chromium, lesson: Path) -> Iterator[Chromium]:
 def test_a_fit_is_proposed_and_taken_by_a_click(page: Chromium, lesson: Path) -> None:
     before = lesson.read_text(encoding="utf-8")
     page.run("choose('series', 'swing')")
-    page.wait("text('criterion').startsWith('Criterion of swing: 291')")
+    page.wait(OWN_CURVES)
+    assert page.run("text('criterion')").endswith("theta 0.7631 rad")
+    disabled = "document.getElementById('p-theta.start').disabled"
+    assert page.run(disabled)  # the series begins as its data tell
+    page.run("choose('series', '')")
+    page.wait(f"!{disabled}")
+    page.run("choose('series', 'swing')")
+    page.wait(OWN_CURVES)
     assert page.run("document.querySelectorAll('.uplot').length") == 3
     page.run("document.getElementById('fit').click()")
     page.wait("shows('proposal')")
     assert "converged" in page.run("text('proposal-words')")
     assert not page.run("shows('effects')")
+    page.wait(f"!{OWN_CURVES}")  # the curves are those of the proposal, until one looks away
+    page.run("document.getElementById('preview').click()")
+    page.wait(OWN_CURVES)
     page.run("document.getElementById('accept').click()")
     page.wait("text('criterion') && !text('criterion').includes(': 291')")
     assert not page.run("shows('proposal')")
     assert page.run("text('saved')") == "not saved"
     assert lesson.read_text(encoding="utf-8") == before
+
+
+def test_a_slider_shows_its_own_run_beside_a_proposal(page: Chromium) -> None:
+    page.run("choose('series', 'swing')")
+    page.wait(OWN_CURVES)
+    page.run("document.getElementById('fit').click()")
+    page.wait("shows('proposal')")
+    page.wait(f"!{OWN_CURVES}")
+    page.run("set('p-w0_squared', 999)")
+    page.wait("Number(text('criterion').split(' ')[3].replace(';', '')) > 300000")
+    assert not page.run("document.getElementById('preview').checked")
+    assert page.run("shows('proposal')")
+    page.run("document.getElementById('refuse').click()")
+    assert not page.run("shows('proposal')")
 
 
 def shift_record(file: Path) -> None:
@@ -75,6 +100,8 @@ def test_effects_of_a_trace_are_accepted_one_by_one(page: Chromium, lesson: Path
     names = page.run("[...document.querySelectorAll('#effects input')].map((one) => one.value)")
     assert set(names) == {"sensor_offset @ sensor.theta", "coulomb @ acceleration"}
     assert "level = 0.1" in page.run("text('effects')")
+    assert page.run("text('proposal-words').startsWith('The diagram lacks')")
+    assert page.run("document.querySelectorAll('#proposal-words p').length") > 3
     assert sorted(page.run(BLOCKS)) == ["coulomb", "sensor of theta"]
     page.run("document.querySelector('#drawing [data-type=sensor]').dispatchEvent("
              "new MouseEvent('dblclick', {bubbles: true}))")  # fmt: skip

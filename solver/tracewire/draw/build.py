@@ -156,8 +156,8 @@ class _Builder:
         named = use.subsystem is not None or len(outputs) > 1
         # the signal of a block with one output has the name of the block alone
         ports += [
-            Port(f"{full}>{o if named else ''}", "east", _short(o) if named else "")
-            for o in outputs
+            Port(f"{full}>{o if named else ''}", "east", _short(sign + o) if named else "")
+            for o, sign in zip(outputs, _signs(use, outputs, is_open=depth > 0), strict=True)
         ]
         given = setting_numbers(use, numbers, block)
         count = max(sum(port.side == side for port in ports) for side in ("west", "east"))
@@ -183,7 +183,7 @@ class _Builder:
                 look = replace(look, width=look.width + sum(labels))
             return replace(node, look=look)
         title = use.subsystem.title or use.type
-        look = subsystem_look(title, count, labels)
+        look = subsystem_look(title, count, labels, closed=depth <= 0)
         if depth <= 0:
             return replace(node, look=look)
         inside = inner_numbers(use, numbers)
@@ -195,7 +195,8 @@ class _Builder:
             for name, output in use.subsystem.outputs.items()
             for wire in self.wire(level_inside, output, f"{full}>{name}", f"{full}>{name}")
         )
-        nodes, wires = oriented((*nodes, *level_inside.strangers.values()), (*wires, *ends))
+        knots, ends = _knotted(ends, own.values())
+        nodes, wires = oriented((*nodes, *knots, *level_inside.strangers.values()), (*wires, *ends))
         return replace(node, look=replace(look, outline="frame"), nodes=nodes, wires=wires)
 
     def mark(self, full: str, where: str, type_name: str) -> Mark:
@@ -306,6 +307,34 @@ def _points(use: BlockUse) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """The points of a block that is a table."""
     tables = [value for value in use.settings.values() if isinstance(value, Points)]
     return (tables[0].x, tables[0].y) if tables else ((), ())
+
+
+def _signs(use: BlockUse, outputs: Sequence[str], is_open: bool) -> list[str]:
+    """A minus for each output of an open subsystem that turns the sign of what is inside."""
+    if use.subsystem is None or not is_open:
+        return [""] * len(outputs)
+    return ["−" if use.subsystem.outputs[name].negative else "" for name in outputs]
+
+
+def _knotted(
+    wires: Sequence[Connection], inputs: Collection[str]
+) -> tuple[tuple[Node, ...], tuple[Connection, ...]]:
+    """Wires to the outputs of a frame; one from an input of it gets a knot that is inside.
+
+    ELK leads a wire between two ports of one frame around the outside of it.
+    """
+    knots: list[Node] = []
+    found: list[Connection] = []
+    for wire in wires:
+        if wire.source not in inputs:
+            found.append(wire)
+            continue
+        id = f"{wire.id}="
+        west, east = Port(f"{id}<", "west"), Port(f"{id}>", "east")
+        knots.append(Node(id, "", "wire", Look("bar", 3.0, 3.0), (west, east), (wire.signal,)))
+        found.append(replace(wire, id=west.id, target=west.id))
+        found.append(replace(wire, source=east.id))
+    return tuple(knots), tuple(found)
 
 
 def _short(text: str) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 from typing import Any
 
 from tracewire.draw.elk import lay_out
@@ -48,6 +49,12 @@ MOST_COMPACT = 70
 """Wires up to which a picture is compact; 70 take half a second."""
 
 
+ENOUGH_KEPT = 0.9
+"""The share of pairs of blocks in their order of which a picture is like another one."""
+LEVEL = 20.0
+"""Px within which two blocks stand level."""
+
+
 @dataclass(frozen=True)
 class Rectangle:
     """A place in the picture in px, y downwards."""
@@ -84,15 +91,42 @@ def layout_of(graph: Graph, like: Layout | None = None) -> Layout:
     out upside down, too.
     """
     few = sum(1 for _ in all_wires(graph)) <= MOST_COMPACT
+    if like is None:
+        return _own(graph, few)
     root = _root(graph, few, upside_down=False)
-    if like is not None:
-        _keep_order(root, like, {node.id for node in all_nodes(graph) if node.flipped})
-    layout = _read(lay_out(root), graph)
-    if like is None and few and _feedback_height(graph, layout) > 0:
+    _keep_order(root, like, {node.id for node in all_nodes(graph) if node.flipped})
+    asked = _read(lay_out(root), graph)
+    kept = _order_kept(asked, like)
+    if few and kept < ENOUGH_KEPT:  # the order that was asked for may turn feedback upwards
+        own = _own(graph, few)
+        if _order_kept(own, like) > kept:
+            return own
+    return asked
+
+
+def _own(graph: Graph, few: bool) -> Layout:
+    """The layout of a graph that is like no other one, with its feedback below where it can be."""
+    layout = _read(lay_out(_root(graph, few, upside_down=False)), graph)
+    if few and _feedback_height(graph, layout) > 0:
         other = mirrored(_read(lay_out(_root(graph, few, upside_down=True)), graph))
         if _feedback_height(graph, other) <= 0:
             return other
     return layout
+
+
+def _order_kept(layout: Layout, like: Layout) -> float:
+    """The share of pairs of blocks that stand above each other as in another layout."""
+
+    def middles(one: Layout) -> dict[str, float]:
+        return {id: place.y + place.height / 2 for id, place in one.nodes.items()}
+
+    before, now = middles(like), middles(layout)
+    pairs = [
+        (before[one] - before[other], now[one] - now[other])
+        for one, other in combinations([id for id in before if id in now], 2)
+    ]
+    apart = [(old, new) for old, new in pairs if abs(old) > LEVEL]
+    return sum(old * new > 0 for old, new in apart) / len(apart) if apart else 1.0
 
 
 def _root(graph: Graph, few: bool, upside_down: bool) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from tracewire.library import Block
 PITCH = 18.0  # px between ports
 BOX = (44.0, 40.0)  # px, the least width and height
 MOST_TEXT = 190.0  # px
+MOST_LINE = 110.0  # px of a title in one line
 MOST_GAIN = 74.0
 LINE = 14.0
 AXES = 46.0  # px, the side of a box with a curve
@@ -304,11 +305,25 @@ SHAPES: dict[str, Shape] = {
 """The shape of a type; a type that is not here has its curve, or its name in a box."""
 
 
-def subsystem_look(title: str, ports: int, labels: tuple[float, float]) -> Look:
-    """A closed subsystem: a box with its type; `labels` are the widths of its ports' names."""
-    line = shortened(title, MOST_TEXT)
-    width = max(64.0, text_width(line) + 20 + sum(labels))
-    return Look("box", round(width), max(46.0, PITCH * ports + 10), lines=(line,))
+def subsystem_look(
+    title: str, ports: int, labels: tuple[float, float], closed: bool = True
+) -> Look:
+    """A subsystem: a box with its title; `labels` are the widths of its ports' names.
+
+    The title of an open one is one line above what is inside.
+    """
+    lines = tuple(shortened(line, MOST_TEXT) for line in (_in_two(title) if closed else (title,)))
+    width = max(64.0, max(text_width(line) for line in lines) + 20 + sum(labels))
+    return Look("box", round(width), max(46.0, PITCH * ports + 10), lines=lines)
+
+
+def _in_two(title: str) -> tuple[str, ...]:
+    """A title as one line, or as two of about one width where it is a long one of several words."""
+    words = title.split()
+    if text_width(title) <= MOST_LINE or len(words) < 2:
+        return (title,)
+    ways = [(" ".join(words[:n]), " ".join(words[n:])) for n in range(1, len(words))]
+    return min(ways, key=lambda way: max(text_width(line) for line in way))
 
 
 def tag_look(name: str) -> Look:

@@ -68,7 +68,9 @@ def svg_of(graph: Graph, layout: Layout) -> str:
     frames = [node for node in all_nodes(graph) if node.nodes]
     lines += [line for node in frames for line in _block(node, layout)]
     owners = {port.id: node for node in all_nodes(graph) for port in node.ports}
-    lines += [_wire(owners, wire, layout) for wire in all_wires(graph)]
+    # what an effect shares with other wires was there before it
+    wires = sorted(all_wires(graph), key=lambda wire: _wire_mark(owners, wire) != "effect")
+    lines += [_wire(owners, wire, layout) for wire in wires]
     lines += [
         f'<circle class="dot" cx="{number(x)}" cy="{number(y)}" r="2.4"/>' for x, y in layout.dots
     ]
@@ -104,9 +106,7 @@ def _wire(nodes: Mapping[str, Node], wire: Connection, layout: Layout) -> str:
     line = list(layout.wires[wire.id])
     line[0] = _to_rim(nodes[wire.source], line[0], layout)
     line[-1] = _to_rim(nodes[wire.target], line[-1], layout)
-    marks = {nodes[wire.source].mark, nodes[wire.target].mark} - {""}
-    mark = wire.mark or ("effect" if "effect" in marks else "")
-    kind = f"wire {mark}".strip()
+    kind = f"wire {_wire_mark(nodes, wire)}".strip()
     reached = nodes[wire.target]
     inwards = (line[-1][0] > line[-2][0]) != reached.flipped  # of a frame
     head = arrow(line) if not reached.nodes or inwards else ""
@@ -114,6 +114,12 @@ def _wire(nodes: Mapping[str, Node], wire: Connection, layout: Layout) -> str:
         f'<g class="{kind}" data-signal={_attribute(wire.signal)}>'
         f'<path d="{path(line)}"/>{head}</g>'
     )
+
+
+def _wire_mark(nodes: Mapping[str, Node], wire: Connection) -> str:
+    """The mark of a wire: its own, or that of an effect at one of its ends."""
+    ends = (nodes[wire.source].mark, nodes[wire.target].mark)
+    return wire.mark or ("effect" if "effect" in ends else "")
 
 
 def _to_rim(node: Node, point: Point, layout: Layout) -> Point:

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from tracewire.show.sticking import held_intervals
     from tracewire.show.sweep_figures import plot_chart, plot_sweep
     from tracewire.show.table import Table, shown
-    from tracewire.show.trace_summary import paragraph_of
+    from tracewire.show.trace_summary import paragraph_of, sentences_of
     from tracewire.show.trace_words import value_words
     from tracewire.show.uplot import library_script, library_style
 
@@ -98,6 +98,7 @@ __all__ = [
     "report",
     "report_script",
     "report_style",
+    "sentences_of",
     "shown",
     "statement_data",
     "statements_table",
@@ -128,7 +129,7 @@ FILE_OF = {
     "presentation": "Presentation Presented present",
     "table": "Table shown",
     "sweep_figures": "plot_chart plot_sweep",
-    "trace_summary": "paragraph_of",
+    "trace_summary": "paragraph_of sentences_of",
     "trace_words": "value_words",
     "uplot": "library_script library_style",
 }

@@ -15,8 +15,9 @@ from tracewire.show.trace_law import along, depends_on, has_law, is_function, is
 from tracewire.trace import Force, Found, Missing, signal_of, unit_at
 
 PLAIN = "The blocks and wires of the diagram; blue names are measured"
-COLOURED = f"{PLAIN}, green is what the trace added, and below its sum is what the data need there"
-LACKING = f"{PLAIN}, and amber is where something is missing that no effect explains"
+ADDED = "green is what the trace added"
+LACKING = "amber is where something is missing that no effect explains"
+NEEDED = "the plot below a sum is what the data need there"
 MOST_POINTS = 80
 """Of a line in a plot that is 100 px wide."""
 AMONG = (0.1, 0.5, 0.9)
@@ -36,8 +37,15 @@ def traced_figure(found: Found) -> Figure:
     def plot(path: Path) -> Path:
         return draw_trace(found).write(path)
 
-    lacking = LACKING if found.missing is not None else PLAIN
-    return Figure("diagram.svg", COLOURED if found.effects else lacking, plot)
+    return Figure("diagram.svg", _caption(found), plot)
+
+
+def _caption(found: Found) -> str:
+    """What the marks in the picture of a trace mean, those alone that it has."""
+    plots = has_law(found) or (found.missing is not None and len(found.missing.grid) in (1, 2))
+    marks = ((bool(found.effects), ADDED), (found.missing is not None, LACKING), (plots, NEEDED))
+    *first, last = [PLAIN, *(words for there, words in marks if there)]
+    return f"{', '.join(first)}, and {last}" if first else last
 
 
 def draw_trace(found: Found, effects: Collection[str] | None = None) -> Drawing:
@@ -124,4 +132,5 @@ def _line(x: Vector, y: Vector) -> tuple[tuple[float, float], ...]:
 
 def _words(found: Found, place: str, over: str, most: float) -> str:
     unit = unit_at(found, place)
-    return f"needed: up to {most:.2g}{f' {unit}' if unit else ''} over {over}"
+    size = f"{most:.3g}" if 100 <= most < 1000 else f"{most:.2g}"  # 650 and not 6.5e+02
+    return f"needed: up to {size}{f' {unit}' if unit else ''} over {over}"

@@ -20,7 +20,8 @@ from tracewire.show.zoom import curves_of
 STYLE = """body{font-family:sans-serif;max-width:56rem;margin:2rem auto;padding:0 1rem;color:#222;
 line-height:1.45}
 h2{margin-top:2.2rem;border-bottom:2px solid #e6e6e6;padding-bottom:.2rem}
-figure{margin:1.2rem 0}figcaption{color:#555;font-size:.9rem}img{max-width:100%}
+figure{margin:1.2rem 0}figcaption{color:#555;font-size:.9rem}
+img{max-width:100%}img.drawing{zoom:1.3}
 table{border-collapse:collapse;margin:1rem 0;display:block;overflow-x:auto}
 td,th{border-bottom:1px solid #ddd;padding:.25rem .7rem;text-align:left;vertical-align:top}
 caption{text-align:left;font-weight:bold;padding:.25rem 0}
@@ -197,12 +198,13 @@ def _html_figure(figure: Figure, drawn: Path | str) -> str:
     kind = {".svg": "image/svg+xml"}.get(drawn.suffix, "image/png")
     caption = html.escape(figure.caption)
     opening, curves = "<figure>", ""
+    named = ' class="drawing"' if drawn.suffix == ".svg" else ""  # its letters are small
     if _curves(drawn).is_file():
         opening = '<figure class="curves">'
         text = _curves(drawn).read_text(encoding="utf-8")
         curves = f'<script type="application/json" class="curves">{text}</script>'
     return (
-        f'{opening}<img src="data:{kind};base64,{data}" alt="{caption}">'
+        f'{opening}<img{named} src="data:{kind};base64,{data}" alt="{caption}">'
         f"<figcaption>{caption}</figcaption>{curves}</figure>"
     )
 

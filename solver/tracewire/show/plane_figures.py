@@ -37,7 +37,7 @@ def plot_portrait(run: Run, x: str, y: str, path: str | Path, since: float = -np
         figure, panel = square(run.title)
         many = len(run.t[chosen]) > MANY_POINTS
         across, up = run.as_shown(x)[chosen], run.as_shown(y)[chosen]
-        panel.plot(across, up, color=LINES[0], linewidth=0.9, rasterized=many)
+        _draw_path(panel, across, up, many)
         sticks = _sticks(run, x, y)[chosen]
         if sticks.any():
             panel.plot(
@@ -66,7 +66,7 @@ def plot_polar(run: Run, radius: str, angle: str, path: str | Path, since: float
     with styled():
         figure, panel = square(run.title)
         across, up = r * np.sin(phi), -r * np.cos(phi)
-        panel.plot(across, up, color=LINES[0], linewidth=0.9, rasterized=len(r) > MANY_POINTS)
+        _draw_path(panel, across, up, len(r) > MANY_POINTS)
         mark_start(panel, across[0], up[0])
         panel.plot(0, 0, marker="+", color=MARK, markersize=9)
         panel.set_aspect("equal", adjustable="datalim")
@@ -134,6 +134,13 @@ def square(title: str) -> tuple[Figure, Axes]:
 def mark_start(panel: Axes, x: float, y: float) -> None:
     """A ring where something begins."""
     panel.plot(x, y, "o", markerfacecolor="none", markeredgecolor=MARK, markersize=7)
+
+
+def _draw_path(panel: Axes, x: Vector, y: Vector, rasterized: bool) -> None:
+    """A line through all points. Of a longer one Matplotlib leaves a gap where it parts it."""
+    for begin in range(0, max(len(x) - 1, 1), MANY_POINTS):
+        piece = slice(begin, begin + MANY_POINTS + 1)
+        panel.plot(x[piece], y[piece], color=LINES[0], linewidth=0.9, rasterized=rasterized)
 
 
 def _sticks(run: Run, *names: str) -> NDArray[np.bool_]:

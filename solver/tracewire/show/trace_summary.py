@@ -36,11 +36,16 @@ RANDOM = (
 
 
 def paragraph_of(found: Found) -> str:
+    """What a trace says, as one paragraph; `sentences_of` has its sentences."""
+    return " ".join(sentences_of(found))
+
+
+def sentences_of(found: Found) -> tuple[str, ...]:
     """The headline, then what was fitted, what the effects are, what is left, what cannot be told
     apart, and what declared parameters had absorbed. σ is the noise of a sensor.
     """
     cut = "The trace was interrupted: this is the best result by then." if found.interrupted else ""
-    return " ".join(part for part in (cut, headline_of(found), *details_of(found)) if part)
+    return tuple(part for part in (cut, headline_of(found), *details_of(found)) if part)
 
 
 def details_of(found: Found) -> tuple[str, ...]:

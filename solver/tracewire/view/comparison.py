@@ -6,7 +6,7 @@ What reads and compares measured data is imported when a page asks for it: a pag
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -35,6 +35,11 @@ class SeriesConditions:
     def span(self) -> tuple[float, float]:
         """From the begin of the run to the last sample, in s."""
         return self.segment.begin, float(self.measured.t[-1])
+
+    def begun_at(self, start: Mapping[str, float]) -> SeriesConditions:
+        """The same with other values of the states at its begin."""
+        segment = replace(self.segment, start={**self.segment.start, **start})
+        return replace(self, segment=segment)
 
 
 def conditions_of(model: Model, series: str) -> SeriesConditions:

@@ -79,6 +79,12 @@ class Job:
             picture = draw_trace(self.result, effects)
         return {"words": self.words, "text": diagram.text, "effects": told, "svg": picture.svg}
 
+    def starts(self, series: str) -> Mapping[str, float]:
+        """The start values that a fit has found for a series; none where this is no fit."""
+        from tracewire.fit import Fit
+
+        return self.result.starts.get(series, {}) if isinstance(self.result, Fit) else {}
+
     @cached_property
     def report(self) -> str:
         """The report of the result as an HTML page. Raises OptionError where there is none."""
@@ -131,11 +137,11 @@ class Job:
         return set_sensors(set_values(self.diagram, {**rest, **own}), sensors)
 
     def _trace(self) -> None:
-        from tracewire.show import paragraph_of
+        from tracewire.show import sentences_of
         from tracewire.trace import trace
 
         found = trace(compile(set_values(self.diagram, self.values)), progress=self._tell)
-        self.words = (paragraph_of(found),)
+        self.words = sentences_of(found)
         self.result = found
 
 

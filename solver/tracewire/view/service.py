@@ -189,7 +189,7 @@ class Service:
 
         `tab` names the page, `number` ascends with its requests; `parameters` are in SI. With a
         measured `series` it is a run under the conditions and the preset of that, and compared
-        with it.
+        with it; it begins as the fit whose id is `proposal` has found.
         """
         version = self._version(request)
         tab, number = str(request.get("tab", ""))[:64], int(request.get("number", 0))
@@ -222,6 +222,7 @@ class Service:
             return told(error.problems, number)
         version.panels = version.panels or panels_of(run, version.shown)
         head["followed"] = {n: v for n, v in setting.values.items() if n not in setting.given}
+        head["overruled"] = setting.overruled
         return packed(head | frame_of(run, version.panels, arrays), arrays)
 
     def export(self, request: Request) -> Answer:
@@ -252,8 +253,11 @@ class Service:
         series = str(request.get("series") or "")
         if series and series not in version.series:
             version.series[series] = conditions_of(version.model, series)
+        conditions, job = version.series.get(series), self._job
+        if conditions is not None and job is not None and request.get("proposal") == job.id:
+            conditions = conditions.begun_at(job.starts(series))
         values, preset = in_si(request.get("parameters") or {}), str(request.get("preset") or "")
-        return setting_of(version.model, values, preset, version.series.get(series))
+        return setting_of(version.model, values, preset, conditions)
 
     # --- fits and traces --------------------------------------------------------------------------
 

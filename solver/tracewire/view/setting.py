@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tracewire.compile import Model
-from tracewire.formula import evaluate
+from tracewire.formula import Name, evaluate
 from tracewire.solve import Limits, Run, parameter_values, simulate
 from tracewire.view.comparison import SeriesConditions
 
@@ -36,6 +36,14 @@ class Setting:
             return self.series.span
         begin, end = (float(evaluate(f, self.values)) for f in self.model.flat.span)
         return begin, end
+
+    @property
+    def overruled(self) -> list[str]:
+        """The start values of blocks in whose place the measured series has its own."""
+        own = {} if self.series is None else self.series.segment.start
+        starts = [state.start for state in self.model.flat.states if state.name in own]
+        named = [start.name for start in starts if isinstance(start, Name)]
+        return [name for name in named if name.rpartition(".")[2].startswith("start")]
 
     def run(self, limits: Limits, progress: Callable[[float, float], object] | None = None) -> Run:
         """The run of the setting. Raises OptionError, SimulationError."""

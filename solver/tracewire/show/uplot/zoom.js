@@ -2,6 +2,7 @@
 (function () {
   "use strict";
   var LABEL = 22;  // pixels
+  var ROOM = 12;   // pixels of a number at an axis
   var HINT = "Drag over a panel to zoom, double-click to see all. Click on a name to hide its curve.";
 
   function numbers(text) {
@@ -23,6 +24,18 @@
     var found = [];
     for (var n = Math.ceil(least / step); n * step <= most; n++) found.push(n * step);
     return found;
+  }
+
+  // the numbers at an axis that have room, zero and then the outer ones before the others
+  function apart(u, splits) {
+    var shown = [];
+    splits.slice().sort(function (a, b) {
+      return a === 0 ? -1 : b === 0 ? 1 : Math.abs(b) - Math.abs(a);
+    }).forEach(function (v) {
+      var at = u.valToPos(v, "y");
+      if (shown.every(function (w) { return Math.abs(at - u.valToPos(w, "y")) >= ROOM; })) shown.push(v);
+    });
+    return splits.map(function (v) { return shown.indexOf(v) < 0 ? null : v; });
   }
 
   // without the commas of a locale
@@ -101,7 +114,8 @@
       yAxis.splits = function (u, axis, least, most) {
         return whole(u) ? panel.ticks : round(least, most);
       };
-      yAxis.filter = yAxis.grid.filter = function (u, splits) { return splits; };
+      yAxis.grid.filter = function (u, splits) { return splits; };
+      yAxis.filter = apart;
     }
     if (rows) {
       yAxis.size = gutter + LABEL;

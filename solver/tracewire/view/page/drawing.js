@@ -19,5 +19,8 @@ export function showDrawing(svg, jump) {
     const block = event.target.closest("[data-block]");
     if (block) jump(block.getAttribute("data-block"));
   });
+  const [width, height] = [picture.width.baseVal.value, picture.height.baseVal.value];
+  picture.style.setProperty("--own", `${width}px`);
+  picture.style.setProperty("--ratio", width / height);
   part("drawing").replaceChildren(picture);
 }

@@ -5,7 +5,7 @@ import {showDrawing} from "./drawing.js";
 import {Editor} from "./editor.js";
 import {download, make, part, shown} from "./page.js";
 import {Parameters} from "./parameters.js";
-import {Plots} from "./plots.js";
+import {Plots, unitOf} from "./plots.js";
 import {Runner, lost} from "./runner.js";
 import {Scene} from "./scene.js";
 import {Work} from "./work.js";
@@ -17,21 +17,29 @@ const state = {key: "", drawn: "", names: "", runs: false, path: "", saved: "", 
 const plots = new Plots();
 const scene = new Scene((time) => plots.point(time));
 const runner = new Runner(wanted, ran);
-const parameters = new Parameters(() => runner.wish(), (line) => editor.jump(line));
+const parameters = new Parameters(() => { work.lookAway(); runner.wish(); }, (line) => editor.jump(line));
 const editor = new Editor(() => { tellSaved(); typed(); }, () => state.names);
 
 const work = new Work({
-  request: wanted,
+  request: own,
   drawn: (svg) => showDrawing(svg, (block) => editor.find(block)),
   taken: (text) => { parameters.values.clear(); replaceText(text); },
   refused: () => picture(reading),
+  previewed: () => runner.wish(),
 });
 
-function wanted() {
+// a run of the text with the values of the sliders
+function own() {
   if (!state.runs) return null;
-  const [preset, series] = [part("preset").value, part("series").value];
-  return {key: state.key, parameters: parameters.inSI, preset, series};
+  return {key: state.key, parameters: parameters.inSI, ...conditions()};
 }
+
+// the run that is shown: that of a proposal while it is looked at
+function wanted() {
+  return work.key ? {key: work.key, parameters: {}, proposal: work.id, ...conditions()} : own();
+}
+
+function conditions() { return {preset: part("preset").value, series: part("series").value}; }
 
 function tell(text) { part("status").textContent = text; }
 
@@ -58,9 +66,9 @@ function ran(answer, milliseconds) {
   part("curves").classList.remove("failed", "old");
   plots.show(answer);
   scene.show(answer);
-  parameters.follow(answer.followed);
+  parameters.follow(answer.followed, answer.overruled);
   tell(`run: ${shown(1000 * answer.run_seconds, 2)} ms, shown after ${Math.round(milliseconds)} ms`);
-  part("criterion").textContent = criterion(answer.measured);
+  part("criterion").textContent = criterion(answer);
   part("events").textContent = events(answer);
   part("warnings").replaceChildren(...answer.warnings.map((one) => make("li", {textContent: one})));
   drawn(answer.number);
@@ -69,9 +77,11 @@ function ran(answer, milliseconds) {
 // for programs that look at the page: the number of the run that it shows
 function drawn(number) { document.body.dataset.shown = number ?? ""; }
 
-function criterion(measured) {
+function criterion(answer) {
+  const measured = answer.measured;
   if (!measured || measured.criterion === undefined) return "";
-  const rms = Object.entries(measured.signals).map(([name, one]) => `${name} ${shown(one.rms, 4)}`);
+  const rms = Object.entries(measured.signals).map(([name, one]) =>
+    `${name} ${shown(one.rms, 4)} ${unitOf(answer, name)}`.trim());
   return `Criterion of ${measured.name}: ${shown(measured.criterion, 6)}; rms of the residual: ${rms.join(", ")}`;
 }
 
@@ -106,6 +116,7 @@ function typed() {
 
 async function read() {
   const mine = ++reading;
+  work.lookAway();
   let answer;
   try {
     answer = await ask("read", {text: editor.text});

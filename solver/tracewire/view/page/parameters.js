@@ -109,8 +109,13 @@ export class Parameters {
     row.undo.hidden = !moved;
   }
 
-  // the values of those that follow others, in SI
-  follow(values) {
+  // the values of those that follow others, in SI; the starts that the measured series gives cannot be moved
+  follow(values, overruled) {
+    for (const [name, row] of this.rows) {
+      const given = overruled.includes(name);
+      row.slider.disabled = row.field.disabled = given;
+      if (!row.given.follows) row.formula.textContent = given ? "as the measured series begins" : "";
+    }
     for (const [name, value] of Object.entries(values)) {
       const row = this.rows.get(name);
       if (row && row.given.follows) row.field.value = shown(value / row.given.factor);

@@ -129,9 +129,9 @@ export class Plots {
   }
 
   residual(name, head, last) {
-    const panel = head.panels.find((one) => one.lines.some((line) => line.name === name));
-    const unit = panel && panel.unit && panel.unit !== "1" ? ` [${panel.unit}]` : "";
-    const made = this.options((large() ? 120 : 90) + (last ? 24 : 0), last, {label: `residual${unit}`, space: 13});
+    const unit = unitOf(head, name);
+    const label = unit ? `residual [${unit}]` : "residual";
+    const made = this.options((large() ? 165 : 125) + (last ? 24 : 0), last, {label, space: 18});
     made.legend = {show: false};
     made.series = [{label: "t"}, {label: "residual", stroke: MEASURED, width: 1, points: {show: false}}];
     const plot = new uPlot(made, [[0, 1], [null, null]], this.holder);
@@ -144,8 +144,8 @@ export class Plots {
     const splits = rows.map((_, n) => n);
     const made = this.options((large() ? 26 : 20) * rows.length + (large() ? 70 : 62), true, {
       splits: () => splits,
-      values: () => rows.map((row) => (row.length > 9 ? `${row.slice(0, 8)}…` : row)),
-      ticks: {show: false}, grid: {show: false}, size: GUTTER + LABEL,
+      values: () => rows.map((row) => (row.length > 15 ? `…${row.slice(-14)}` : row)),
+      ticks: {show: false}, grid: {show: false}, size: GUTTER + LABEL, font: `${large() ? 11 : 10}px sans-serif`,
     });
     made.scales.y = {range: () => [-0.6, rows.length - 0.4], dir: -1};
     made.legend = {show: false};
@@ -181,6 +181,12 @@ export class Plots {
       if (!plot.line.hidden) plot.line.style.left = `${plot.valToPos(time, "x")}px`;
     }
   }
+}
+
+// the unit in which a signal is drawn; empty where it has none
+export function unitOf(head, name) {
+  const panel = head.panels.find((one) => one.lines.some((line) => line.name === name));
+  return panel && panel.unit !== "1" ? panel.unit || "" : "";
 }
 
 function faded(color, alpha) {

@@ -5,21 +5,25 @@ import {make, part} from "./page.js";
 import {lost} from "./runner.js";
 
 export class Work {
-  // request: what a run would ask for now; drawn: shows a picture; taken: gets a text; refused: redraws
-  constructor({request, drawn, taken, refused}) {
-    Object.assign(this, {request, drawn, taken, refused});
+  // request: what a run would ask for now; drawn: shows a picture; taken: gets a text;
+  // refused: redraws; previewed: runs what `key` says, a proposal or, where it is empty, the text
+  constructor({request, drawn, taken, refused, previewed}) {
+    Object.assign(this, {request, drawn, taken, refused, previewed});
     this.id = null;
+    this.key = "";
     this.shown = false;
     for (const kind of ["fit", "trace"]) part(kind).addEventListener("click", () => this.begin(kind));
     part("stop").addEventListener("click", () => ask("stop").catch(() => null));
     part("accept").addEventListener("click", () => this.accept());
-    part("refuse").addEventListener("click", () => { this.close(); this.refused(); });
+    part("refuse").addEventListener("click", () => { this.close(); this.refused(); this.previewed(); });
+    part("preview").addEventListener("change", () => this.preview());
   }
 
   async begin(kind) {
     const request = this.request();
     if (request === null) return this.tell("Repair the mistakes of the text first.");
     this.close();
+    this.previewed();
     const answer = await ask("start", {...request, kind}).catch(failed);
     if (answer.problems) return this.tell(answer.problems[0].text);
     this.id = answer.id;
@@ -51,6 +55,7 @@ export class Work {
     this.list(answer.effects);
     part("report").href = `report-${this.id}.html`;
     part("proposal").hidden = false;
+    part("preview").checked = true;
     this.propose(answer);
   }
 
@@ -58,6 +63,24 @@ export class Work {
   propose(answer) {
     this.text = answer.text;
     this.drawn(answer.svg);
+    this.preview();
+  }
+
+  // the curves of what is proposed, where they are wanted
+  async preview() {
+    const text = part("preview").checked ? this.text : "";
+    const mine = this.looking = {};
+    const answer = text ? await ask("read", {text}).catch(failed) : {};
+    if (mine !== this.looking) return;
+    this.key = answer.runs ? answer.key : "";
+    this.previewed();
+  }
+
+  // the curves are those of the text and the sliders again
+  lookAway() {
+    part("preview").checked = false;
+    this.looking = null;
+    this.key = "";
   }
 
   // a box to tick for each effect of a trace
@@ -91,6 +114,7 @@ export class Work {
   }
 
   close() {
+    this.lookAway();
     this.id = this.choice = null;
     part("accept").disabled = false;
     this.shown = false;
