@@ -35,6 +35,12 @@ def test_a_word_of_another_tool_is_told_with_ours(line: str, message: str) -> No
     assert "<text>:2:" in str(refused.value)
 
 
+def test_a_word_that_is_spelled_alike_is_proposed_once() -> None:
+    with pytest.raises(DiagramError) as refused:
+        read_text("blocks:\n  a: {type: pid, of: i, Kp: 2}\n  i: {type: time}\n")
+    assert str(refused.value).count("Did you mean") == 1
+
+
 def test_a_word_whose_meaning_is_given_already_is_not_proposed() -> None:
     with pytest.raises(DiagramError) as refused:
         read_text("blocks:\n  a: {type: gain, of: i, k: 2, gain: 2}\n  i: {type: time}\n")

@@ -15,7 +15,7 @@ from tracewire.diagram.replicate import Replica
 from tracewire.diagram.strict import Entries, Node, Scalar
 from tracewire.diagram.values import read_points, read_value, reads_parameters
 from tracewire.diagram.wires import read_wires
-from tracewire.errors import Place
+from tracewire.errors import Place, unknown
 from tracewire.formula import Expression, Number, evaluate, is_name, names_of, to_text
 from tracewire.library import Block, Input, Parameter
 
@@ -86,7 +86,8 @@ def _check_keys(
             near = get_close_matches(key, OF_A_BLOCK, n=1)
             kind = f"input or parameter of '{type_name}'"
             free = [known for known in own if known not in entries.values]
-            hint = "" if get_close_matches(key, own, n=1) else _hint_of_word(key, free, type_name)
+            told = unknown(kind, key, (*own, *near)).hint
+            hint = "" if told else _hint_of_word(key, free, type_name)
             body.problems.unknown(kind, key, (*own, *near), body.place(at, name), hint)
 
 
