@@ -35,6 +35,20 @@ def test_a_word_of_another_tool_is_told_with_ours(line: str, message: str) -> No
     assert "<text>:2:" in str(refused.value)
 
 
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("gain, of: i, k: 1/mass", "A new parameter is written parameters: {mass: ...}."),
+        ("expression, formula: c*i", "A new parameter is written parameters: {c: ...}."),
+        ("gain, of: t, k: 1", "'t' is the time, and not a signal. Use a block of type time or exp"),
+    ],
+)
+def test_a_name_that_is_not_there_is_told_with_where_it_goes(line: str, message: str) -> None:
+    with pytest.raises(DiagramError) as refused:
+        read_text(f"blocks:\n  a: {{type: {line}}}\n  i: {{type: time}}\n")
+    assert message in str(refused.value)
+
+
 def test_a_word_that_is_spelled_alike_is_proposed_once() -> None:
     with pytest.raises(DiagramError) as refused:
         read_text("blocks:\n  a: {type: pid, of: i, Kp: 2}\n  i: {type: time}\n")
