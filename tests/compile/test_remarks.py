@@ -107,6 +107,7 @@ def test_no_shipped_diagram_has_a_remark(file: Path) -> None:
         ("{type: step, at: 1, height: 5, unit: mm}", "'a' is shown in mm, and its height 5 counts"),
         ("{type: constant, value: {value: 30, unit: deg}, unit: deg}", ""),
         ("{type: constant, value: 0, unit: deg}", ""),
+        ("{type: constant, value: 0.5, unit: deg}", ""),
         ("{type: constant, value: 30, unit: rad}", ""),
         ("{type: constant, value: pi/6, unit: deg}", ""),
         ("{type: step, at: 1, height: {value: 5, unit: mm}, unit: mm}", ""),

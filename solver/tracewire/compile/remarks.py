@@ -17,6 +17,8 @@ STICKING = ("coulomb", "dry_friction", "stribeck")
 """Blocks whose output has two values at rest, and any between them while it sticks."""
 OF_THE_SIGNAL = ("value", "start", "offset", "height", "amplitude", "low", "high", "before")
 """Parameters of blocks that are in the unit of the output, where the declaration names none."""
+LARGE = 360.0
+"""In degrees, mm and so on: of a number in SI that shows as more another unit may be meant."""
 MOST_VALUES = 300_000
 """Signals times evaluations, a second of work; larger models are not looked at."""
 STEP = 1e-2
@@ -32,7 +34,7 @@ def remarks_of(model: Model, parameters: Values) -> list[str]:
 
     A block of a spring or a damper that is wired so that it pushes the body on; a nonlinear
     function of a dry friction, which has a blend of the values on both sides while that sticks; a
-    number without a unit in a block whose signal is shown in another unit than SI.
+    number without a unit that is large in the unit, not of SI, in which its signal is shown.
     """
     return list(_bare(model)) + _of_forces(model, parameters)
 
@@ -51,7 +53,8 @@ def _bare(model: Model) -> Iterator[str]:
             ):
                 continue
             number = value.formula.value if isinstance(value.formula, Number) else 0.0
-            if number and not value.unit and value.factor == 1.0:
+            large = abs(number) > LARGE * use.shown.factor
+            if large and not value.unit and value.factor == 1.0:
                 unit = use.shown.unit
                 yield (
                     f"'{use.name}' is shown in {unit}, and its {parameter.name} {number:g} counts "
