@@ -239,3 +239,22 @@ def test_a_report_is_that_of_one_run(call: Any, swing: Path) -> None:
     assert told.code == 2
     assert "--output, --report, --samples and --events are those of one run" in told.err
     assert "'run.pdf': unknown file ending '.pdf'" in call("run", swing, "--report", "run.pdf").err
+
+
+def test_units_that_contradict_are_told_and_the_run_goes_on(call: Any, tmp_path: Path) -> None:
+    file = tmp_path / "mixed.yaml"
+    lines = "".join(f"  s{n}: {{type: sum, of: [force, angle], unit: N}}\n" for n in range(5))
+    file.write_text(
+        "blocks:\n  force: {type: constant, value: 1, unit: N}\n"
+        f"  angle: {{type: constant, value: 1, unit: rad}}\n{lines}",
+        encoding="utf-8",
+    )
+    told = call("run", file)
+    assert told.code == 0
+    assert "units: " in told.err
+    assert (
+        "mixed.yaml:4:3: block 's0': 'force' (line 2) is in N and 'angle' (line 3) is" in told.err
+    )
+    assert told.err.count("cannot be added") == 3
+    assert "units: 2 more; `tracewire check` tells them all." in told.err
+    assert call("check", file).code == 2

@@ -108,6 +108,45 @@ def test_what_contradicts_is_told_with_both_ends(old: str, new: str, message: st
     assert HINT in first
 
 
+@pytest.mark.parametrize(
+    ("block", "message"),
+    [
+        (
+            "mass, force: u, mass: {value: 2, unit: m}",
+            "<text>:3:35: block 'b': 'b.mass' is in m, and the block takes it in kg. Correct a",
+        ),
+        (
+            "unit_delay, of: u, period: {value: 100, unit: Hz}",
+            "<text>:3:40: block 'b': 'b.period' is in Hz, and the block takes it in s. Correct a",
+        ),
+        (
+            "unit_delay, of: u, period: rate",
+            "<text>:3:40: block 'b': 'rate' (line 1) is in Hz, and the block takes it in s. ",
+        ),
+        (
+            "sine, amplitude: 1, omega: {value: 3, unit: Hz}",
+            "'b.omega' is in Hz, and the block takes it in rad/s. 1 Hz is 2*pi rad/s: write the",
+        ),
+        (
+            "low_pass, of: u, frequency: {value: 3, unit: rad/s}",
+            "'b.frequency' is in rad/s, and the block takes it in Hz. 1 Hz is 2*pi rad/s: write ",
+        ),
+        ("unit_delay, of: u, period: 1/rate", ""),
+        ("unit_delay, of: u, period: {value: 10, unit: ms}", ""),
+        ("sine, amplitude: 1, omega: 2*pi*rate", ""),
+    ],
+)
+def test_the_unit_of_a_value_is_that_of_its_block(block: str, message: str) -> None:
+    found = told(f"""\
+parameters: {{rate: {{value: 100, unit: Hz}}}}
+blocks:
+  b: {{type: {block}}}
+  u: {{type: constant, value: 1}}
+""")
+    assert len(found) == bool(message)
+    assert message in "".join(found)
+
+
 def test_a_row_of_blocks_is_told_once() -> None:
     text = """
 inputs: {u: {unit: m}}

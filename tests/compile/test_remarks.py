@@ -94,3 +94,27 @@ SHIPPED = [
 def test_no_shipped_diagram_has_a_remark(file: Path) -> None:
     model = compile(read(file))
     assert remarks_of(model, parameter_values(model, {})) == []
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        (
+            "{type: constant, value: 30, unit: deg}",
+            "'a' is shown in deg, and its value 30 counts in SI, as 1718.87 deg: write "
+            "{value: 30, unit: deg}, if that is meant",
+        ),
+        ("{type: step, at: 1, height: 5, unit: mm}", "'a' is shown in mm, and its height 5 counts"),
+        ("{type: constant, value: {value: 30, unit: deg}, unit: deg}", ""),
+        ("{type: constant, value: 0, unit: deg}", ""),
+        ("{type: constant, value: 0.5, unit: deg}", ""),
+        ("{type: constant, value: 30, unit: rad}", ""),
+        ("{type: constant, value: pi/6, unit: deg}", ""),
+        ("{type: step, at: 1, height: {value: 5, unit: mm}, unit: mm}", ""),
+    ],
+)
+def test_a_number_in_si_beside_a_unit_that_is_not_is_told(line: str, said: str) -> None:
+    model = made(f"blocks:\n  a: {line}\n")
+    found = remarks_of(model, parameter_values(model, {}))
+    assert len(found) == bool(said)
+    assert said in "".join(found)

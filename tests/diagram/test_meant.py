@@ -68,8 +68,8 @@ def test_other_conditions_of_an_event_are_refused(when: str, said: str) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("k: -1", "k: 30 deg", "a number in a formula has no unit. Numbers are in SI: make a "
-         "parameter of it, {value: 30, unit: deg}."),
+        ("k: -1", "k: 30 deg", "a number in a formula has no unit. Write it as a value: "
+         "{value: 30, unit: deg}."),
         ("k: -1", "k: 2*1.5mm", "{value: 1.5, unit: mm}"),
         ("k: -1", "k: max(limit, 2)", "between braces a comma ends the value of 'k'. "
          'Write k: "max(limit, 2)".'),

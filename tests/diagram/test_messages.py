@@ -7,6 +7,7 @@ from diagram.small_library import PENDULUM, refused
 from tracewire.errors import unknown
 
 SECTIONS = [
+    ("title: Run 2: short\nblocks: {}", 'A text with a colon needs quotes, such as title: "Run 2'),
     ("titel: x\nblocks: {}", "1:1: unknown section 'titel'; there are: blocks, events, every"),
     ("titel: x\nblocks: {}", "Did you mean 'title'?"),
     ("outputs: [a]\nblocks: {}", "It belongs to a subsystem"),
@@ -56,8 +57,8 @@ VALUES = [
     ("[1]", "'parameters' must be a mapping"),
 ]
 BLOCKS = [
-    ("a: 3", "1:13: block 'a': block 'a' must be a mapping. Write it like {type: gain"),
-    ("a: {of: a}", "block 'a' needs 'type'"),
+    ("a: 3", "1:13: block 'a': it must be a mapping. Write it like {type: gain"),
+    ("a: {of: a}", "it needs 'type'"),
     ("a: {type: [gain]}", "a type must be a text"),
     ("a: {type: gian}", "1:20: block 'a': unknown block type 'gian'; there are: expression, gain"),
     ("a: {type: gian}", "Did you mean 'gain'?"),
@@ -121,6 +122,11 @@ BLOCKS = [
     ("a: {type: lookup, of: i, points: [[1, 2], [1, 3]]}", "ascend in x, and 1 is not above 1"),
     ("a: {type: lookup, of: i, points: {file: no.csv}}", "a table from a file needs 'x'"),
     ("a: {type: lookup, of: i, points: {file: no.csv, x: a, y: b}}", "no.csv"),
+]
+BLOCKS += [
+    ("a: {type: sum, of: [i], signs: +}", "there are: of. Write a minus before a signal: of: [a, "),
+    ("a: {type:gain, of: i, k: 1}", "A blank stands behind a colon: type: gain."),
+    ("a: {of: i}", "block 'a': it needs 'type'. Write type: ..."),
 ]
 SUBSYSTEMS = [
     ("outputs: {y: z}", "block 's': unknown signal 'z'; there are: i, k, o.force, o.x, u."),

@@ -74,6 +74,38 @@ def test_28_of_31_common_blocks_of_xcos_are_known_by_their_names() -> None:
     assert all(find_instead(name) for name in COMMON if name not in known)
 
 
+PALETTE = [
+    "ANDBLK",
+    "BIGSOM_f",
+    "CMSCOPE",
+    "CONST_m",
+    "CONVERT",
+    "CSCOPXY",
+    "DEMUX",
+    "DOLLAR_f",
+    "INTEGRAL_f",
+    "IN_f",
+    "LOGICAL_OP",
+    "MUX",
+    "NRMSOM_f",
+    "OUT_f",
+    "PRODUCT",
+    "RELATIONALOP",
+    "SATURATION",
+    "SWITCH2_m",
+    "TEXT_f",
+]
+"""Xcos's own palette of commonly used blocks: help of Scilab 2023.1, Commonlyusedblocks_pal."""
+
+
+def test_each_block_of_the_palette_of_common_ones_of_xcos_is_known_or_explained() -> None:
+    assert len(PALETTE) == 19
+    known = [*library()]
+    assert not [
+        name for name in PALETTE if not find_synonym(name, known) and not find_instead(name)
+    ]
+
+
 def test_there_are_at_least_160_blocks() -> None:
     assert len([*library()]) >= 160
 

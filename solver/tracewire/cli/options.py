@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tracewire.cli.output import working
+from tracewire.cli.output import note, working
 from tracewire.cli.project import with_project
 
 if TYPE_CHECKING:
     from tracewire.compile import Model
     from tracewire.diagram import Diagram
 
+MOST_TOLD = 3
+"""Units that contradict each other, of which each is told in a line."""
 DiagramPath = Annotated[
     str, typer.Argument(metavar="DIAGRAM", help="A diagram file (YAML).", show_default=False)
 ]
@@ -44,9 +46,18 @@ def read_diagram(path: str, libraries: Sequence[str] | None = None) -> Diagram:
 def load_model(
     path: str, libraries: Sequence[str] | None = None, record: Sequence[str] | None = None
 ) -> Model:
-    """The compiled model of a diagram file. Raises DiagramError, BlockError, OptionError."""
+    """The compiled model of a diagram file; units that contradict each other are told on stderr.
+
+    Raises DiagramError, BlockError, OptionError.
+    """
     with working(f"compiling {path}"):
-        from tracewire.compile import compile
+        from tracewire.compile import compile, unit_problems
         from tracewire.diagram import read
 
-        return compile(read(path, libraries or ()), record or ())
+        model = compile(read(path, libraries or ()), record or ())
+        contradictions = unit_problems(model.flat)
+    for problem in contradictions[:MOST_TOLD]:
+        note(f"units: {problem}")
+    if len(contradictions) > MOST_TOLD:
+        note(f"units: {len(contradictions) - MOST_TOLD} more; `tracewire check` tells them all.")
+    return model

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tracewire.compile.flat import Flat, FlatState
+from tracewire.compile.flat import Flat, FlatAsked, FlatState
 from tracewire.errors import Place, Problem
 from tracewire.formula import (
     CONSTANTS,
@@ -64,6 +64,9 @@ class _Units:
         for name, parameter in self.flat.parameters.items():
             self.where = parameter.place
             self.same(name, parameter.formula, "its value")
+        for asked in self.flat.asked:
+            self.where = asked.place
+            self.as_asked(asked)
         for state in self.flat.states:
             self.where = state.place
             self.integral(state)
@@ -114,6 +117,20 @@ class _Units:
         made_of = self.said(formula, made) if isinstance(formula, Name) else ""
         made_of = made_of or f"{what} is in {self.text(made)}"
         self.note(f"{self.said(Name(name), own)}, and {made_of}")
+
+    def as_asked(self, asked: FlatAsked) -> None:
+        """The unit of a value of a block is that of its declaration."""
+        given, wanted = self.term(asked.formula), dimension_of(asked.unit)
+        if given is None or wanted is None:
+            return
+        written = self.text(given, asked.formula)
+        if not self.agree(given, wanted):
+            self.note(f"{self.said(asked.formula, given)}, and the block takes it in {asked.unit}")
+        elif _turns(written) and _turns(asked.unit) and _turns(written) != _turns(asked.unit):
+            # both are 1/s: no other equation can tell them apart
+            hint = "1 Hz is 2*pi rad/s: write the value in the unit of the block."
+            what = f"{self.said(asked.formula, given)}, and the block takes it in {asked.unit}"
+            self.found.append(Problem(what, self.where, hint=hint))
 
     def integral(self, state: FlatState) -> None:
         """The unit of a rate is that of its state over time."""
@@ -181,6 +198,11 @@ class _Units:
         """Where the diagram has a name; nowhere for an input."""
         tables = (self.flat.parameters, self.flat.blocks, self.states)
         return next((table[name].place for table in tables if name in table), Place())
+
+
+def _turns(unit: str) -> str:
+    """What a frequency counts: `Hz` turns, `rad` radians; empty where the unit does not say it."""
+    return next((name for name in ("Hz", "rad/s") if unit == name), "")
 
 
 def _told_once(problems: list[Problem]) -> list[Problem]:

@@ -24,6 +24,16 @@ class FlatParameter:
 
 
 @dataclass(frozen=True)
+class FlatAsked:
+    """A value of a block whose declaration says its unit, by the full name of the parameter."""
+
+    name: str
+    formula: Expression
+    unit: str
+    place: Place = Place()
+
+
+@dataclass(frozen=True)
 class FlatState:
     """A state by its full name: x' = rate, x(t0) = start."""
 
@@ -120,6 +130,7 @@ class Flat:
     `shapes` holds the vectors, `(n,)`, and matrices, `(n, m)`, by name. `outputs` maps the names of
     subsystem ports and of blocks to the signal or state that they are. `require` holds what the
     parameters must meet, `shown` how signals are shown that have a label or a unit that is not SI.
+    `asked` has the values whose unit the declarations of blocks say.
     """
 
     title: str
@@ -142,3 +153,4 @@ class Flat:
     require: tuple[Condition, ...] = ()
     max_step: Expression | None = None
     shown: Mapping[str, Shown] = field(default_factory=dict)
+    asked: tuple[FlatAsked, ...] = ()

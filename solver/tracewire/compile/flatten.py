@@ -9,6 +9,7 @@ from tracewire.compile.curves import curve_tables
 from tracewire.compile.expand import expand_vectors
 from tracewire.compile.flat import (
     Flat,
+    FlatAsked,
     FlatBlock,
     FlatEvent,
     FlatMemory,
@@ -77,6 +78,7 @@ class _Flattener:
         self.memories: list[FlatMemory] = []
         self.blocks: dict[str, FlatBlock] = {}
         self.units: dict[str, str] = {}
+        self.asked: list[FlatAsked] = []
         self.shown: dict[str, Shown] = {}
         self.guesses: dict[str, Expression] = {}
         self.places: dict[str, Place] = {}  # of the outputs of subsystems
@@ -118,6 +120,7 @@ class _Flattener:
             },
             blocks=self.blocks,
             units=self.units,
+            asked=tuple(self.asked),
             shown=self.shown,
             memories=tuple(self.memories),
             require=tuple(self.require),
@@ -324,6 +327,9 @@ class _Flattener:
     def own(self, value: Value, name: str, parameter: Parameter, scope: _Scope) -> Expression:
         """The formula of a value in a block; a named one is a parameter of the run."""
         formula = self.value(value, scope)
+        if parameter.unit and (value.named or not isinstance(formula, Number)):
+            meant = Name(name) if value.named else formula
+            self.asked.append(FlatAsked(name, meant, parameter.unit, value.place))
         if not value.named:
             return formula
         self.parameters[name] = FlatParameter(

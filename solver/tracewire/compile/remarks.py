@@ -1,4 +1,5 @@
-"""What is odd about a model that can be run: forces that push on, functions of a held friction."""
+"""What is odd about a model that can be run: forces that push on, functions of a held friction,
+numbers in SI beside a signal that is shown in degrees."""
 
 from __future__ import annotations
 
@@ -6,14 +7,18 @@ from collections.abc import Iterator, Mapping
 
 from tracewire.compile.flat import Flat
 from tracewire.compile.model import Model
-from tracewire.diagram import BlockUse
+from tracewire.diagram import BlockUse, Value
 from tracewire.errors import FormulaError
-from tracewire.formula import Name, evaluate
+from tracewire.formula import Name, Number, evaluate
 
 FORCES = ("barrier", "dry_friction", "friction", "hysteresis", "stiffness")
 """The families of blocks whose output acts on a body, most of them against its motion."""
 STICKING = ("coulomb", "dry_friction", "stribeck")
 """Blocks whose output has two values at rest, and any between them while it sticks."""
+OF_THE_SIGNAL = ("value", "start", "offset", "height", "amplitude", "low", "high", "before")
+"""Parameters of blocks that are in the unit of the output, where the declaration names none."""
+LARGE = 360.0
+"""In degrees, mm and so on: of a number in SI that shows as more another unit may be meant."""
 MOST_VALUES = 300_000
 """Signals times evaluations, a second of work; larger models are not looked at."""
 STEP = 1e-2
@@ -28,8 +33,37 @@ def remarks_of(model: Model, parameters: Values) -> list[str]:
     """What is odd about a model with these parameters in SI, each in a line.
 
     A block of a spring or a damper that is wired so that it pushes the body on; a nonlinear
-    function of a dry friction, which has a blend of the values on both sides while that sticks.
+    function of a dry friction, which has a blend of the values on both sides while that sticks; a
+    number without a unit that is large in the unit, not of SI, in which its signal is shown.
     """
+    return list(_bare(model)) + _of_forces(model, parameters)
+
+
+def _bare(model: Model) -> Iterator[str]:
+    """Numbers that count in SI, and may be meant in the unit in which their signal is shown."""
+    for use in model.diagram.blocks.values():
+        if use.subsystem is not None or use.shown.factor == 1.0:
+            continue
+        for parameter in model.diagram.library[use.type].parameters:
+            value = use.settings.get(parameter.name)
+            if (
+                parameter.name not in OF_THE_SIGNAL
+                or parameter.unit
+                or not isinstance(value, Value)
+            ):
+                continue
+            number = value.formula.value if isinstance(value.formula, Number) else 0.0
+            large = abs(number) > LARGE * use.shown.factor
+            if large and not value.unit and value.factor == 1.0:
+                unit = use.shown.unit
+                yield (
+                    f"'{use.name}' is shown in {unit}, and its {parameter.name} {number:g} counts "
+                    f"in SI, as {number / use.shown.factor:g} {unit}: write "
+                    f"{{value: {number:g}, unit: {unit}}}, if that is meant"
+                )
+
+
+def _of_forces(model: Model, parameters: Values) -> list[str]:
     probe = _Probe(model.flat, parameters)
     forces = [use for use in model.diagram.blocks.values() if _is_force(model, use)]
     runs = 2 * len(model.states) + 8 * len(forces)

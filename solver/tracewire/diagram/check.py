@@ -16,7 +16,7 @@ from tracewire.diagram.names import (
 )
 from tracewire.diagram.problems import clip
 from tracewire.errors import Place
-from tracewire.formula import number_hint
+from tracewire.formula import is_name, number_hint
 
 
 def check_names(diagram: Diagram, body: Body) -> None:
@@ -58,12 +58,13 @@ def _explain(diagram: Diagram, reference: Reference, body: Body) -> None:
         hint = "A value may use parameters only; for a formula of signals use an expression block."
         problems.add(what, place, tuple(sorted(diagram.parameters)), hint)
     elif sees == "parameter":
-        problems.unknown("parameter", name, diagram.parameters, place, number_hint(name))
+        hint = number_hint(name) or _new_parameter(name)
+        problems.unknown("parameter", name, diagram.parameters, place, hint)
     elif sees == "signal" and name in diagram.parameters:
         hint = "Put it into a block of type constant, and name that."
         problems.add(f"'{shown}' is a parameter, and not a signal", place, (), hint)
     elif sees == "signal" and name == "t":
-        hint = "Use a block of type clock or expression."
+        hint = "Use a block of type time or expression."
         problems.add("'t' is the time, and not a signal", place, (), hint)
     elif use is not None:
         outputs = outputs_of(use, diagram.library) or ()
@@ -77,7 +78,12 @@ def _explain(diagram: Diagram, reference: Reference, body: Body) -> None:
         problems.unknown("signal", name, signals(diagram), place)
     else:
         existing = [*signals(diagram), *diagram.parameters, "t"]
-        problems.unknown("signal or parameter", name, existing, place)
+        problems.unknown("signal or parameter", name, existing, place, _new_parameter(name))
+
+
+def _new_parameter(name: str) -> str:
+    """What to write where a parameter is meant that is not there yet."""
+    return f"A new parameter is written parameters: {{{clip(name)}: ...}}." if is_name(name) else ""
 
 
 def _check_happening(

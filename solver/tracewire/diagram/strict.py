@@ -111,6 +111,8 @@ def compose(text: str, file: Path, problems: Problems) -> Node:
         hint = BROKEN
         if spot and any(map(ELEMENT.search, text.splitlines()[place.line - 1 : place.line])):
             hint = f'{BROKEN} An element of a vector needs quotes between brackets: {{of: "q[1]"}}.'
+        elif "mapping values are not" in said and "{" not in text.splitlines()[place.line - 1]:
+            hint = 'A text with a colon needs quotes, such as title: "Run 2: short".'
         elif spot and text[spot.index + mark :].startswith("- "):
             hint = "A minus stands at its name, without a blank: [a, -b]."
         raise DiagramError.one(f"this is not YAML: {said}", place, hint=hint) from None
@@ -252,6 +254,9 @@ class _Composer:
                 continue
             if _is_empty(value):
                 hint = "Write a value behind the colon, or remove the line."
+                name, colon, rest = key.text.partition(":")
+                if colon and name and rest:
+                    hint = f"A blank stands behind a colon: {clip(name)}: {clip(rest)}."
                 self.problems.add(f"'{key.text}' has no value", key.place, (), hint)
                 continue
             keys[key.text], values[key.text] = key, self.finite(value, key.text)

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from difflib import get_close_matches
 
 from tracewire.diagram.arrays import read_array, read_formulas
 from tracewire.diagram.body import Body, Reference
 from tracewire.diagram.diagram import Array, BlockUse, Diagram, Points, Value, Wire
-from tracewire.diagram.grammar import OF_A_BLOCK
+from tracewire.diagram.grammar import OF_A_BLOCK, WORDS
 from tracewire.diagram.problems import clip
 from tracewire.diagram.replicate import Replica
 from tracewire.diagram.strict import Entries, Node, Scalar
 from tracewire.diagram.values import read_points, read_value, reads_parameters
 from tracewire.diagram.wires import read_wires
-from tracewire.errors import Place
+from tracewire.errors import Place, unknown
 from tracewire.formula import Expression, Number, evaluate, is_name, names_of, to_text
 from tracewire.library import Block, Input, Parameter
 
@@ -36,10 +36,10 @@ def read_blocks(node: Node, body: Body, find: Find) -> dict[str, BlockUse]:
 def _read_block(name: str, key: Scalar, line: Node, body: Body, find: Find) -> BlockUse:
     place = body.place(key, name)
     unread = BlockUse(name, "", {}, {}, place=place)
-    entries = body.entries(line, f"block '{clip(name)}'", EXAMPLE, name)
+    entries = body.entries(line, "it", EXAMPLE, name)
     if entries is None:
         return unread
-    type_node = body.required(entries, "type", f"block '{clip(name)}'", name)
+    type_node = body.required(entries, "type", "it", name)
     type_name = None if type_node is None else body.text(type_node, "a type", name)
     if type_node is None or type_name is None:
         return unread
@@ -85,7 +85,22 @@ def _check_keys(
         if key not in own and key not in OF_A_BLOCK:
             near = get_close_matches(key, OF_A_BLOCK, n=1)
             kind = f"input or parameter of '{type_name}'"
-            body.problems.unknown(kind, key, (*own, *near), body.place(at, name))
+            free = [known for known in own if known not in entries.values]
+            told = unknown(kind, key, (*own, *near)).hint
+            hint = "" if told else _hint_of_word(key, free, type_name)
+            body.problems.unknown(kind, key, (*own, *near), body.place(at, name), hint)
+
+
+def _hint_of_word(key: str, free: Sequence[str], type_name: str) -> str:
+    """What a key is here that is a word of another tool, or the begin of one of ours."""
+    if type_name == "sum" and key in ("sign", "signs", "inputs"):
+        return "Write a minus before a signal: of: [a, -b]."
+    word = key.lower()
+    if word in ("f", "freq", "frequency") and "omega" in free:
+        return "Write omega: 2*pi*..., in rad/s."
+    longer = [name for name in free if len(word) > 1 and name.startswith(word)]
+    meant = longer or [name for name in WORDS.get(word, ()) if name in free]
+    return f"Did you mean '{meant[0]}'?" if meant else ""
 
 
 def _read_guess(node: Node, inside: Diagram | None, body: Body, name: str) -> Value | Array | None:

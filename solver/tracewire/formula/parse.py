@@ -35,6 +35,17 @@ INSTEAD: dict[type[ast.operator], str] = {
 }
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 WITH_UNIT = re.compile(r"(?<![\w.])(\d+(?:\.\d*)?(?:[eE][+-]?\d+)?)\s*([A-Za-z%]+)(?![\w.(])")
+ONLY_WITH_UNIT = re.compile(r"([+-]?\d+(?:\.\d*)?(?:[eE][+-]?\d+)?)\s+([A-Za-z%].*)")
+TWO_FACTORS = re.compile(r"(?<![\w.])(\d+(?:\.\d*)?)\s*([A-Za-z_]\w*|\()")
+OTHERWISE: dict[str, tuple[str, str]] = {
+    "&&": ("'&&'", "Write and."),
+    "||": ("'||'", "Write or."),
+    "?": ("'?'", "Write a if c else b for c ? a : b."),
+    "'": ("a prime", "The rate of a state is what its integrator reads: name that signal."),
+    "!": ("'!'", "Write not."),
+    "=": ("'='", "A formula is what stands on the right of the sign: leave the rest out."),
+}
+"""Signs of other languages: what they are called, and what to write."""
 ZEROS = re.compile(r"(?<![\w.])0+([1-9]\d*)(?![\w.])")
 DECIMAL = re.compile(r"([+-]?\d+),(\d+)")
 BY_NAME = {"wires": "a port", "points": "a table of points"}
@@ -147,7 +158,14 @@ def _parse(text: str, condition: bool, quantity: bool) -> Expression:
 
 
 def _what_was_meant(text: str) -> _Refused | None:
-    """What to say of a number with a unit or with zeros in front; None where that is not it."""
+    """What to say of a number with a unit or with zeros in front, of a sign of another language,
+    or of a product without a sign; None where that is not it."""
+    alone = ONLY_WITH_UNIT.fullmatch(text.strip())
+    if alone is not None:
+        with contextlib.suppress(FormulaError):
+            read_unit(alone[2])
+            hint = f"Write it as a value: {{value: {alone[1]}, unit: {alone[2]}}}."
+            return _Refused("a number in a formula has no unit", 0, hint)
     for found in WITH_UNIT.finditer(text):
         number, unit = found.groups()
         with contextlib.suppress(FormulaError):
@@ -155,9 +173,17 @@ def _what_was_meant(text: str) -> _Refused | None:
             hint = f"Numbers are in SI: make a parameter of it, {{value: {number}, unit: {unit}}}."
             return _Refused("a number in a formula has no unit", found.start(), hint)
     zeros = ZEROS.search(text)
-    if zeros is None:
+    if zeros is not None:
+        return _Refused("a number has zeros in front", zeros.start(), f"Write {zeros.group(1)}.")
+    for sign, (called, hint) in OTHERWISE.items():
+        at = re.search(rf"(?<![<>=!]){re.escape(sign)}(?!=)", text)
+        if at is not None:
+            return _Refused(f"{called} is not part of the formula language", at.start(), hint)
+    product = TWO_FACTORS.search(text)
+    if product is None:
         return None
-    return _Refused("a number has zeros in front", zeros.start(), f"Write {zeros.group(1)}.")
+    hint = f"A product needs a sign: {product[1]}*{product[2]}."
+    return _Refused("it does not parse", product.start(), hint)
 
 
 class _Converter:

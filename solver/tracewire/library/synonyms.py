@@ -121,7 +121,11 @@ NAMES: dict[str, dict[Tool, str]] = {
     "mod": {"": "modulo, remainder"},
     "monostable": {"Simulink": "Monostable", "": "one shot, monoflop, pulse on edge"},
     "multisine": {"": "sum of sines, schroeder, harmonics"},
-    "mux": {"Simulink": "Vector Concatenate", "Modelica": "Multiplex", "Xcos": "MUX, MUX_f"},
+    "mux": {
+        "Simulink": "Vector Concatenate",
+        "Modelica": "Multiplex",
+        "Xcos": "MUX, MUX_f, NRMSOM_f",
+    },
     "noise": {
         "Simulink": "Band-Limited White Noise, Random Number",
         "Modelica": "NormalNoise, BandLimitedWhiteNoise",
@@ -241,7 +245,7 @@ NAMES: dict[str, dict[Tool, str]] = {
         "Xcos": "SUMMATION, BIGSOM_f, SUM_f",
         "": "summer, adder, difference, plus, minus",
     },
-    "switch": {"Xcos": "SWITCH2_m, SWITCH_f", "": "if, conditional"},
+    "switch": {"Xcos": "SWITCH2_m, SWITCH_f, RELAY_f", "": "if, conditional"},
     "table": {
         "Simulink": "1-D Lookup Table, From Workspace",
         "Modelica": "CombiTable1D, CombiTable1Ds, CombiTimeTable",
@@ -262,7 +266,7 @@ NAMES: dict[str, dict[Tool, str]] = {
     "unit_delay": {
         "Simulink": "Unit Delay",
         "Modelica": "UnitDelay",
-        "Xcos": "DOLLAR_m, DOLLAR, REGISTER",
+        "Xcos": "DOLLAR_m, DOLLAR, DOLLAR_f, REGISTER",
         "": "z^-1, 1/z, one sample delay, delay_line",
     },
     "variable_delay": {
@@ -293,7 +297,8 @@ OTHERWISE: dict[str, str] = {
 INSTEAD: dict[str, str] = {
     "logical operator, LOGICAL_OP, LOGIC, logic": "Use 'and', 'or', 'xor' or 'not'.",
     "MinMax, MAXMIN": "Use 'min' or 'max', which take two signals or more.",
-    "scope, CSCOPE, CMSCOPE, CSCOPXY, TOWS_c, display, to workspace, plot, sink": (
+    "scope, CSCOPE, CMSCOPE, CSCOPXY, CFSCOPE, CEVSCPE, AFFICH_m, TOWS_c, display,"
+    " to workspace, plot, sink": (
         "A run keeps the signals that the section 'record' names; --figure draws them."
     ),
     "from file, inport, in, input, IN_f": (
@@ -302,14 +307,37 @@ INSTEAD: dict[str, str] = {
     "outport, out, output, OUT_f": (
         "A subsystem lists its signals in 'outputs'; at the top 'record' names what a run keeps."
     ),
-    "CLOCK_c, CLKCINPUT, CEVENTSCOPE": "A sampled block has its own 'period' and 'offset'.",
+    "CLOCK_c, CLKCINPUT, CEVENTSCOPE, MCLOCK_f, MFCLCK_f, M_freq, freq_div, EVTDLY_c, EVTVARDLY,"
+    " sampleclk, VirtualCLK0": "A sampled block has its own 'period' and 'offset'.",
+    "ANDBLK, ANDLOG_f, IFTHEL_f, ESELECT_f, EVTGEN_f, GENERAL_f, ZCROSS_f, NEGTOPOS_f, POSTONEG_f,"
+    " zero crossing": (
+        "Write an event: events: [{when: x > 1, set: {n: n + 1}}]; a block 'and' joins several."
+    ),
+    "HALT_f, ENDBLK, END_c, stop simulation": "The section 'span' says when a run ends.",
+    "CONVERT, data type conversion": "All signals are real numbers: leave it out.",
+    "FROM, GOTO, GotoTagVisibility, FROMMO, GOTOMO": (
+        "A wire is the name of a signal, which any block of the diagram may read: leave it out."
+    ),
+    "TEXT_f, annotation": "Write a comment behind #, or a 'label' of the block.",
+    "bundle, bus, bus creator, bus selector": (
+        "A vector is a 'mux'. A bundle of named signals is a subsystem that passes its inputs on:"
+        " pose: {inputs: [x, v], outputs: {x: x, v: v}, blocks: {}} gives pose.x and pose.v."
+    ),
+    "belt": (
+        "A stiff belt is a 'gear'. Between two bodies an elastic belt is an 'elastic_gear' without"
+        " gap, and the strands of one that may hang through are two of 'rope'."
+    ),
+    "READC_f, RFILE_f, READAU_f": (
+        "Write a 'table' whose points stand in a file, or a measured series of an input."
+    ),
+    "WFILE_f, WRITEC_f, WRITEAU_f": "'tracewire run --output' writes a file of the signals.",
     "TRIGFUN": "Use 'sin', 'cos', 'tan' and so on, or an 'expression'.",
     "subsystem, superblock, SUPER_f": (
         "Define it in the section 'subsystems', and use its name as the type."
     ),
     "lever, ideal lever": "A lever without mass is a 'gain' of its position and one of its force.",
     "preisach": "Write include: tracewire:hysteresis.yaml, which has it as a subsystem.",
-    "terminator, ground": "A signal that nothing reads needs no block.",
+    "terminator, ground, TRASH_f": "A signal that nothing reads needs no block.",
     **{f"sensor_{name}": SENSOR.format(name) for name in SENSOR_TERMS},
 }
 """What to do instead of what is no block here: its names, divided by commas, and a sentence."""
