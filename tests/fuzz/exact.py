@@ -43,6 +43,7 @@ ROUNDING = 1e-11  # of a guard that is held at zero
 SOON = 1e-5  # after a reset: it may be one of a sequence without end
 LAST_FLIGHTS = 1e-2  # before a body lies
 FLIGHTS = 10  # times as long as the last flights: then a body lies, whatever its force has done
+BEYOND = 1e-10  # a stop: what is more is no rounding
 LOWEST = 2 * CLOSE  # a flight that rises no higher counts as lying
 
 
@@ -189,6 +190,8 @@ class Solution:
         guards = [guard for element in self.system.elements for guard in element.guards()]
         rows = np.array([guard.row for guard in guards]).reshape(len(guards), len(self.z))
         values = rows @ self.z
+        owners = [element for element in self.system.elements for _ in element.guards()]
+        walls = np.array([isinstance(e, Stop) and not e.side for e in owners], dtype=bool)
         armed = values > CLOSE
         if np.any(values < -CLOSE):
             raise Unclear("a guard is passed where a piece begins")
@@ -203,6 +206,8 @@ class Solution:
             below, above = fine < -CLOSE, fine > CLOSE
             if np.any(below.any(axis=1) & (below.argmax(axis=1) < first(above))):
                 raise Unclear("a guard turns where a piece begins")
+            if np.any(walls[~armed] & (fine.min(axis=1, initial=0.0) < -BEYOND)):
+                raise Unclear("flights that are too low to be told")
             hits = self.hits(samples, dict(zip(np.flatnonzero(~armed), fine, strict=True)), armed)
             if hits:
                 self.happen(guards, rows, series, length, hits, armed)
@@ -228,11 +233,7 @@ class Solution:
     ) -> list[int]:
         """The guards that are passed in a cell; `fine` are samples of those that are not armed."""
         found = []
-        near = (
-            samples.min(axis=1, initial=np.inf) < 10 * np.ptp(samples, axis=1)
-            if len(samples)
-            else []
-        )
+        near = samples.min(axis=1, initial=np.inf) < 10 * np.ptp(samples, axis=1)
         for number in np.flatnonzero(near):
             line = samples[number]
             if not armed[number]:  # from where it has left zero
