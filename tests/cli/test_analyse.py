@@ -21,6 +21,7 @@ span: [0, 40]
 every: 0.05
 record: [x, energy]
 parameters:
+  m: {value: 1, unit: kg}
   k: {value: 4, unit: N/m}
   c: {value: 0.4, unit: N s/m}
   f: {value: 0.5, unit: N}
@@ -30,8 +31,8 @@ blocks:
   x: {type: integrator, of: v, start: 1, unit: m}
   v: {type: integrator, of: a, unit: m/s}
   wave: {type: square, amplitude: f, frequency: omega/(2*pi)}
-  a: {type: expression, formula: wave - k*x - c*v}
-  energy: {type: expression, formula: (k*x*x + v*v)/2, unit: J}
+  a: {type: expression, formula: (wave - k*x - c*v)/m}
+  energy: {type: expression, formula: (k*x*x + m*v*v)/2, unit: J}
 presets:
   free: {f: 0, c: 0}
 """
