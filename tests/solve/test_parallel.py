@@ -5,8 +5,10 @@ from __future__ import annotations
 import os
 import re
 import signal
+import struct
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
 from multiprocessing import get_context
@@ -45,6 +47,12 @@ def squared(number: int, halt: Halt) -> int:
     if number == 5:
         raise SimulationError.one("five is refused")
     return number**2
+
+
+def slept(number: int, halt: Halt) -> int:
+    """The first one is done at once, and none of the others."""
+    time.sleep(600 if number else 0)
+    return number
 
 
 def killed(number: int, halt: Halt) -> int:
@@ -145,6 +153,20 @@ def last_words(run: Run) -> float:
     if run.parameters["restitution"] > 0.8:
         os.kill(os.getpid(), signal.SIGKILL)
     return 1.0
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_a_worker_that_is_killed_in_the_middle_of_a_message_is_told(count: int) -> None:
+    """The pool alone would wait for the rest of the message, and never end."""
+    with ProcessPoolExecutor(count, get_context("spawn")) as pool:
+
+        def take(task: tuple[int], result: int | TracewireError) -> None:
+            begun = struct.pack("!i", 1000) + b"a part"
+            os.write(pool._result_queue._writer.fileno(), begun)
+            next(iter(pool._processes.values())).kill()
+
+        with pytest.raises(SimulationError, match="a worker of the executor has ended"):
+            carry_out(slept, [(n,) for n in range(9)], take, executor=pool)
 
 
 def test_runs_that_were_done_before_a_worker_was_killed_are_kept() -> None:

@@ -38,6 +38,7 @@ Arguments = tuple[Any, ...]
 CHUNK = 0.5  # s of work that an executor is given at a time
 AHEAD = 2  # tasks that wait, for each worker
 JOBS = 8  # that a process keeps
+PATIENCE = 2.0  # s until a worker is looked for that was killed while it wrote what it had done
 
 
 class WorkerEnded(SimulationError):
@@ -82,7 +83,10 @@ class Crew(Generic[T]):
 
         Raises WorkerEnded where a worker has ended that the executor does not replace.
         """
-        ended, _ = wait(self.waiting, return_when=FIRST_COMPLETED)
+        ended, _ = wait(self.waiting, PATIENCE, FIRST_COMPLETED)
+        while not ended:
+            _end_where_one_was_killed(self.pool)
+            ended, _ = wait(self.waiting, PATIENCE, FIRST_COMPLETED)
         for future in ended:
             tasks = self.waiting.pop(future)
             try:
@@ -92,6 +96,23 @@ class Crew(Generic[T]):
                 raise WorkerEnded([Problem(what, hint="Give a new executor.")]) from error
             self.seconds = seconds / len(tasks)
             yield from zip(tasks, results, strict=True)
+
+
+def _end_where_one_was_killed(pool: Executor) -> None:
+    """End the processes of a pool of which one was killed, so that its futures end, too.
+
+    The pool sees that by itself, but not where the process was killed in the middle of a message:
+    then the pool waits for the rest of it as long as the other end of that pipe is open, here and
+    in the other processes.
+    """
+    processes = [*(getattr(pool, "_processes", None) or {}).values()]
+    if all(process.exitcode in (None, 0) for process in processes):
+        return
+    for process in processes:
+        process.kill()
+    writer = getattr(getattr(pool, "_result_queue", None), "_writer", None)
+    if writer is not None and not writer.closed:
+        writer.close()
 
 
 class _Here(Executor):
