@@ -84,7 +84,7 @@ class Crew(Generic[T]):
         Raises WorkerEnded where a worker has ended that the executor does not replace.
         """
         ended, _ = wait(self.waiting, PATIENCE, FIRST_COMPLETED)
-        while not ended:
+        while self.waiting and not ended:
             _end_where_one_was_killed(self.pool)
             ended, _ = wait(self.waiting, PATIENCE, FIRST_COMPLETED)
         for future in ended:
