@@ -374,3 +374,50 @@ def test_comparisons_of_multiples_of_a_signal_that_rests_at_zero_are_each_their_
         ("a", "b", "c", "d"),
     )
     assert [found[name][-1] for name in "abcd"] == [0.0, 1.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_relay_slides_that_moves_what_it_reads_through_a_friction_alone(method: str) -> None:
+    """A clutch that sticks hands the relay's force on: the relay takes what keeps both at rest, and
+    has no part in 0, where it was once left and met again, 1e-7 of the span later."""
+    text = """
+span: [0, 10]
+blocks:
+  w1: {type: integrator, of: clutch, start: 0.1}
+  w2: {type: integrator, of: pull, start: 0.1}
+  clutch: {type: dry_friction, rate: slip, slip: 5, stick: 5}
+  slip: {type: expression, formula: w1 - w2}
+  pull: {type: expression, formula: cos(t) - clutch - 3*relay}
+  relay: {type: sign, of: w1}
+"""
+    result = run(text, ("w1", "relay"), method=method, **TIGHT)
+    rests = when(result)[-1]
+    assert [event.kind for event in result.events] == ["stick"]
+    after = result.t > rests
+    assert np.all(result["w1"][after] == 0.0)
+    assert result["relay"][after] == pytest.approx(np.cos(result.t[after]) / 3, abs=1e-9)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_relay_slides_that_moves_what_it_reads_through_a_contact_alone(method: str) -> None:
+    """Two bodies are pressed together; the relay reads the rate of one and drives the other."""
+    text = """
+span: [0, 10]
+blocks:
+  x1: {type: integrator, of: v1}
+  v1: {type: integrator, of: press, start: 0.2}
+  x2: {type: integrator, of: v2}
+  v2: {type: integrator, of: pull, start: 0.2}
+  press: {type: constant, value: 1}
+  pull: {type: expression, formula: 0.5*cos(t) - 1 - 3*relay}
+  gap: {type: expression, formula: x2 - x1}
+  relay: {type: sign, of: v1}
+events:
+  - {when: gap, crosses: down, set: {v1: 0.25*v1 + 0.75*v2, v2: 0.75*v1 + 0.25*v2}}
+"""
+    result = run(text, ("v1", "gap", "relay"), method=method, **TIGHT)
+    assert [event.kind for event in result.events] == ["stick"]
+    after = result.t > when(result)[0]
+    assert np.all(result["v1"][after] == 0.0)
+    assert result["gap"] == pytest.approx(np.zeros(len(result.t)), abs=1e-12)
+    assert result["relay"][after] == pytest.approx(np.cos(result.t[after]) / 6, abs=1e-9)

@@ -2,24 +2,64 @@
 
 While such a mode slides (friction that sticks), what reads it is no choice of two values, but any
 between them: it moves without an event. So what reads it is compared by a guard that is located.
+What a friction that sticks takes is all that the rate of its guard has besides, and the force of
+a contact is all that presses it: so a mode also moves what only a friction or a contact hands on.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
-from tracewire.compile.lowered import Mode
+from tracewire.compile.differentiate import differentiate
+from tracewire.compile.lowered import Lowered, Reset
 from tracewire.compile.tape import Tape
 
 
-def holding(tape: Tape, modes: Sequence[Mode], rates: Sequence[int]) -> frozenset[int]:
+def holding(low: Lowered, rates: Sequence[int], flow: Mapping[int, int]) -> frozenset[int]:
     """The numbers of these modes; `rates` are the derivatives of the guards along the flow."""
-    found = set()
-    for number, (mode, rate) in enumerate(zip(modes, rates, strict=True)):
-        may = mode.kind == "sign" and not mode.timed and "mode" in tape.leaves([rate])
-        if may and mode.leaf in tape.needed([rate]):
-            found.add(number)
-    return frozenset(found)
+    return _holding(low, moving(low, rates, flow))
+
+
+def moving(low: Lowered, rates: Sequence[int], flow: Mapping[int, int]) -> list[frozenset[int]]:
+    """The modes that move the guard of each mode: those that its rate reads, those that move what
+    is held by one of these, and those that move the force of a contact on what the guard reads."""
+    pushed: dict[int, set[int]] = {}
+    for reset in low.resets:
+        if may_rest(low, reset, rates):
+            balanced = modes_read(low.tape, differentiate(low.tape, [rates[reset.trigger]], flow))
+            for state in reset.values:
+                pushed.setdefault(low.states[state], set()).update(balanced)
+    found = [frozenset(modes_read(low.tape, [rate])) for rate in rates]
+    if pushed:
+        read = [pushed.keys() & low.tape.needed([mode.guard]) for mode in low.modes]
+        found = [
+            own.union(*(pushed[state] for state in states))
+            for own, states in zip(found, read, strict=True)
+        ]
+    while True:
+        held = _holding(low, found)
+        more = [own.union(*(found[i] for i in own & held)) for own in found]
+        if more == found:
+            return found
+        found = more
+
+
+def _holding(low: Lowered, moved: Sequence[Collection[int]]) -> frozenset[int]:
+    return frozenset(
+        number
+        for number, mode in enumerate(low.modes)
+        if number in moved[number] and mode.kind == "sign" and not mode.timed
+    )
+
+
+def may_rest(low: Lowered, reset: Reset, rates: Sequence[int]) -> bool:
+    """Whether a reset may be that of a contact: it writes a rate of its guard, and no place."""
+    trigger = reset.trigger
+    if trigger < 0 or low.modes[trigger].kind != "sign":
+        return False
+    written = {low.states[state] for state in reset.values}
+    turns = not written.isdisjoint(low.tape.needed([rates[trigger]]))
+    return turns and written.isdisjoint(low.tape.needed([low.modes[trigger].guard]))
 
 
 def modes_read(tape: Tape, roots: Sequence[int]) -> set[int]:

@@ -9,7 +9,7 @@ from tracewire.compile.curves import PARTS, lower_curve
 from tracewire.compile.differentiate import differentiate, linear_in_t, substitute
 from tracewire.compile.draws import lower_random
 from tracewire.compile.flat import Flat
-from tracewire.compile.holding import holding, modes_read
+from tracewire.compile.holding import holding, modes_read, moving
 from tracewire.compile.kept import kept_states
 from tracewire.compile.linear import solve_linear, work
 from tracewire.compile.lowered import Delay, Lowered, Mode, ModeKind
@@ -105,8 +105,9 @@ class Lowering:
 
     def holding(self) -> frozenset[int]:
         """The modes that a slide may hold; all rates are known."""
-        rates = differentiate(self.tape, [mode.guard for mode in self.out.modes], self.flow())
-        return holding(self.tape, self.out.modes, rates)
+        flow = self.flow()
+        rates = differentiate(self.tape, [mode.guard for mode in self.out.modes], flow)
+        return holding(self.out, rates, flow)
 
     def moving_laws(self) -> frozenset[tuple[str, str]]:
         """The comparisons that move the rate of what they compare, as `laws`; all rates are known.
@@ -115,12 +116,13 @@ class Lowering:
         guard, which are true for the same part of the time, but where a friction holds the guard.
         """
         tape, modes = self.tape, self.out.modes
-        found = {mode for mode, _, _ in self.compared}
-        rates = differentiate(tape, [modes[i].guard for i in found], self.flow())
+        flow = self.flow()
+        rates = differentiate(tape, [mode.guard for mode in modes], flow)
+        movers, held = moving(self.out, rates, flow), holding(self.out, rates, flow)
         moved = {
-            i: reached
-            for i, rate in zip(found, rates, strict=True)
-            if modes[i].leaf in (reached := tape.needed([rate]))
+            i: tape.needed([rates[i], *(rates[other] for other in movers[i] & held)])
+            for i in {mode for mode, _, _ in self.compared}
+            if i in movers[i]
         }
         guards = {modes[i].guard for i in moved}
         guards -= {mode.guard for mode in modes if mode.holds}

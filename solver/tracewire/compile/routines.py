@@ -11,8 +11,8 @@ from typing import Any, Literal
 from tracewire.compile.constants import Constants
 from tracewire.compile.delays import jump_orders
 from tracewire.compile.differentiate import differentiate, gradients
-from tracewire.compile.holding import holding, reads
-from tracewire.compile.lowered import Lowered, Reset
+from tracewire.compile.holding import holding, may_rest, reads
+from tracewire.compile.lowered import Lowered
 from tracewire.compile.machine import MachineWriter, machine_text
 from tracewire.compile.pace import pace
 from tracewire.compile.pointers import address_of, as_c, when_called
@@ -84,7 +84,7 @@ class Routines:
         self.flow[low.entries["t"]] = low.tape.constant(1.0)
         guards = [mode.guard for mode in low.modes]
         self.guard_rates = self.along_the_flow(guards, 1)
-        self.holding = holding(low.tape, low.modes, self.guard_rates)
+        self.holding = holding(low, self.guard_rates, self.flow)
         self.eager: dict[str, Routine] = {
             "rhs": _dense("Rates of the states.", low.rates),
             "outputs": _dense("Recorded signals.", outputs),
@@ -172,7 +172,9 @@ class Routines:
         follow the states, as steps do."""
         low = self.lowered
         searched = [m.guard for m in low.modes if not m.timed and m.kind != "memory"]
-        hit = sorted({reset.trigger for reset in low.resets if self._may_hit(reset)})
+        hit = sorted(
+            {reset.trigger for reset in low.resets if may_rest(low, reset, self.guard_rates)}
+        )
         forces = self.along_the_flow([self.guard_rates[i] for i in hit], 1)
         forces += [self.guard_rates[i] for i in sorted(self.holding)]
         time = {low.entries["t"]: self.tape.constant(1.0)}
@@ -193,20 +195,11 @@ class Routines:
         fractions = {low.modes[i].leaf: self.guard_rates[i] for i in self.holding}
         forces: dict[int, list[int]] = {}
         for reset in low.resets:
-            if self._may_hit(reset):
+            if may_rest(low, reset, self.guard_rates):
                 bends = self.along_the_flow([self.guard_rates[reset.trigger]], 1)
                 for state in reset.values:
                     forces.setdefault(low.states[state], []).extend(bends)
         return jump_orders(low, fractions, forces)
-
-    def _may_hit(self, reset: Reset) -> bool:
-        """Whether a reset may be that of a contact: it writes a rate of its guard, and no place."""
-        low, trigger = self.lowered, reset.trigger
-        if trigger < 0 or low.modes[trigger].kind != "sign":
-            return False
-        written = {low.states[state] for state in reset.values}
-        turns = not written.isdisjoint(self.tape.needed([self.guard_rates[trigger]]))
-        return turns and written.isdisjoint(self.tape.needed([low.modes[trigger].guard]))
 
     @property
     def has_pace(self) -> bool:
