@@ -20,7 +20,8 @@ class Truth:
     truth. `law` is a place and the variable on which a missing force there depends, where the
     verdict `unexplained` that says so is right. `clean`: no effect at all is right. `bounds` are
     the least and the most of a parameter, by `effect @ place` and its name, without which an effect
-    does not count as the one that is meant.
+    does not count as the one that is meant. `besides` are effects that are in the record, too, but
+    so small that none has to be named: such a one is no stranger beside a hidden effect.
     """
 
     title: str
@@ -33,6 +34,7 @@ class Truth:
     law: tuple[str, str] | None = None
     clean: bool = False
     bounds: Mapping[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
+    besides: Labels = ()
 
     def told(self) -> str:
         """What is hidden, with its sizes."""

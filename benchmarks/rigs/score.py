@@ -21,16 +21,18 @@ def grade(truth: Truth, answer: Mapping[str, Any]) -> Grade:
     """How far the JSON of a trace says what is hidden.
 
     'right': every hidden effect is named, or one that is equal to it, or a tie of one that is named
-    is it, and nothing else is; or the answer is another that the truth lists. 'with more': there
-    are others besides. 'partly': some of it is there, or all of it under the verdict unexplained,
-    or a missing force at the right place on other variables. 'wrong': nothing of it is there.
+    is it, and nothing else is but what the truth has besides; or the answer is another that the
+    truth lists. 'with more': there are others. 'partly': some of it is there, or all of it under
+    the verdict unexplained, or a missing force at the right place on other variables. 'wrong':
+    nothing of it is there.
     """
     effects = [effect for effect in answer["effects"] if meant(truth, effect)]
-    strangers = len(answer["effects"]) - len(effects)
+    strangers = [effect for effect in answer["effects"] if not meant(truth, effect)]
     if truth.hidden:
         met, others = matched(truth, effects)
+        more = [effect for effect in (*others, *strangers) if label(effect) not in truth.besides]
         if met == len(truth.hidden) and answer["verdict"] != "unexplained":
-            return "with more" if others + strangers else "right"
+            return "with more" if more else "right"
         return "partly" if met else "wrong"
     law = answer["verdict"] == "unexplained" and tells(truth, answer)
     if not answer["effects"]:
@@ -55,8 +57,8 @@ def meant(truth: Truth, effect: Effect) -> bool:
     )
 
 
-def matched(truth: Truth, effects: Sequence[Effect]) -> tuple[int, int]:
-    """How many hidden effects are met, and how many effects are named that none of them is.
+def matched(truth: Truth, effects: Sequence[Effect]) -> tuple[int, list[Effect]]:
+    """How many hidden effects are met, and the effects that are named and that none of them is.
 
     An effect that is named stands for one hidden effect at most, by its name before by its ties.
     """
@@ -76,7 +78,7 @@ def matched(truth: Truth, effects: Sequence[Effect]) -> tuple[int, int]:
             left.remove(tied[0])
         else:
             missed += 1
-    return len(truth.hidden) - missed, len(left)
+    return len(truth.hidden) - missed, left
 
 
 def told_law(answer: Mapping[str, Any]) -> tuple[str, set[str]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from benchmarks.rigs.further import FURTHER
 from benchmarks.rigs.hidden import Truth
 from benchmarks.rigs.later import LATER
 
@@ -373,5 +374,5 @@ EARLIER: Mapping[str, Truth] = {
     ),
 }
 
-TRUTHS: Mapping[str, Truth] = {**EARLIER, **LATER}
+TRUTHS: Mapping[str, Truth] = {**EARLIER, **LATER, **FURTHER}
 """By rig, in the order of their records."""

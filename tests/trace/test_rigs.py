@@ -76,6 +76,18 @@ def test_a_law_that_no_block_has_is_right_at_its_place() -> None:
     assert judged("r06_tank", "effect", effect("quad_stiffness @ balance")) == "partly"
 
 
+def test_what_is_in_a_record_besides_is_no_stranger_beside_what_is_hidden() -> None:
+    board = effect("position_friction @ torques", pitch=2.09)
+    second = effect("position_friction @ torques", pitch=3.1)
+    lag, ripple = effect("drive_lag @ drive.i"), effect("cogging @ torques")
+    assert judged("r79_telescope", "effect", board, lag, ripple, second) == "right"
+    assert judged("r79_telescope", "effect", board, lag, effect("bias @ torques")) == "with more"
+    assert judged("r79_telescope", "effect", second, lag) == "partly"
+    assert judged("r79_telescope", "effect", ripple) == "wrong"
+    stays = effect("stop_q @ goal")
+    assert judged("r72_piezo", "effect", stays, effect("play_q @ goal")) == "right"
+
+
 def test_a_spring_that_drifts_is_named_with_its_period_or_not_at_all() -> None:
     assert judged("r10_stage", "null") == "right"
     assert judged("r10_stage", "effect", effect("parametric @ forces", period=47.1)) == "right"
