@@ -91,6 +91,15 @@ BAD = {
         "ratio: 0, inertia1: 1, inertia2: 1",
         "the parameters must meet ratio**2 > 0, and ratio = 0.",
     ),
+    "rack": ("radius: 0, inertia: 1, mass: 1", NOT_ABOVE.format("radius", " m", 0)),
+    "lever": (
+        "a: 1, b: 0, inertia: 1",
+        "the parameters must meet b**2 > 0, and b = 0.",
+    ),
+    "belt": (
+        "angle1: u, rate1: u, angle2: u, rate2: u, r1: 0.1, r2: 0, k: 1",
+        "the parameters must meet r2**2 > 0, and r2 = 0.",
+    ),
     "spring_damper": ("of: u, rate: u, k: 1, c: -2", "'c' must be at least 0, not -2."),
     "rope": ("of: u, rate: u, k: 1, length: -1", "'length' must be at least 0, not -1."),
     "elastic_gear": (
