@@ -62,6 +62,7 @@ from tracewire.diagram.names import (
     state_names,
     states,
 )
+from tracewire.diagram.owned import patch_own
 from tracewire.diagram.packages import package_subsystems, who_has
 from tracewire.diagram.quantity_names import EVENT_KINDS, is_quantity, quantity_problems
 from tracewire.diagram.read import read, read_readable, read_readable_text, read_text
@@ -129,6 +130,7 @@ __all__ = [
     "mapping_text",
     "package_subsystems",
     "patch",
+    "patch_own",
     "path_text",
     "quantity_problems",
     "quoted",

@@ -7,7 +7,7 @@ import keyword
 from collections.abc import Mapping
 from typing import Any
 
-from tracewire.diagram.grammar import OF_A_BLOCK, OF_KINDS, SHAPES, TOP
+from tracewire.diagram.grammar import INSIDE, OF_A_BLOCK, OF_KINDS, SHAPES, TOP
 from tracewire.diagram.shapes import (
     Anything,
     Either,
@@ -41,6 +41,7 @@ def schema_of(library: Library) -> Schema:
     definitions: Schema = {name: _shape(shape) for name, shape in SHAPES.items()}
     definitions |= {_own(name): _key(key) for name, key in OF_A_BLOCK.items()}
     definitions["block"] = _block(library)
+    definitions["subsystem"] = _changing(INSIDE, definitions["subsystem"])
     top = definitions["diagram"]
     own = [{"required": [key]} for key in ("subsystems", "include")]
     known = {"if": {"pattern": r"\."}, "else": {"enum": sorted(library)}}  # mylab.magnet has a dot
@@ -56,11 +57,15 @@ def schema_of(library: Library) -> Schema:
         "$schema": DRAFT,
         "title": "A tracewire diagram",
         "description": "https://json-schema.org for editors; `tracewire check` knows more.",
-        "if": {"required": ["extends"]},
-        "then": _object({name: {"description": key.doc} for name, key in TOP.items()}),
-        "else": whole,
+        **_changing(TOP, whole),
         "definitions": definitions,
     }
+
+
+def _changing(keys: Mapping[str, Key], whole: Schema) -> Schema:
+    """The sections of what may extend another one: a change of one has the same names."""
+    names = _object({name: {"description": key.doc} for name, key in keys.items()})
+    return {"if": {"required": ["extends"]}, "then": names, "else": whole}
 
 
 def schema_text(schema: Schema) -> str:
