@@ -304,7 +304,10 @@ OTHERWISE: dict[str, str] = {
 INSTEAD: dict[str, str] = {
     "logical operator, LOGICAL_OP, LOGIC, logic": "Use 'and', 'or', 'xor' or 'not'.",
     "MinMax, MAXMIN": "Use 'min' or 'max', which take two signals or more.",
-    "scope, CSCOPE, CMSCOPE, CSCOPXY, CFSCOPE, CEVSCPE, AFFICH_m, TOWS_c, display,"
+    "CSCOPXY, CANIMXY, CSCOPXY3D, XY graph": (
+        "'tracewire analyse portrait' draws one signal of a run over another."
+    ),
+    "scope, CSCOPE, CMSCOPE, CFSCOPE, CEVSCPE, AFFICH_m, TOWS_c, display,"
     " to workspace, plot, sink": (
         "A run keeps the signals that the section 'record' names; --figure draws them."
     ),
@@ -321,7 +324,9 @@ INSTEAD: dict[str, str] = {
         "Write an event: events: [{when: x > 1, set: {n: n + 1}}]; a block 'and' joins several."
     ),
     "HALT_f, ENDBLK, END_c, stop simulation": "The section 'span' says when a run ends.",
-    "CONVERT, data type conversion": "All signals are real numbers: leave it out.",
+    "CONVERT, data type conversion": (
+        "All signals are real numbers: leave it out. 'floor' and 'quantizer' round."
+    ),
     "FROM, GOTO, GotoTagVisibility, FROMMO, GOTOMO": (
         "A wire is the name of a signal, which any block of the diagram may read: leave it out."
     ),
