@@ -159,6 +159,9 @@ class CandidateOptions:
     """The probability that white noise has a line in its spectrum as high as one that is tried."""
     line_finer: int = 4
     """Frequencies of the spectrum for each that is independent: a refit finds what lies between."""
+    line_sparse: float = 20.0
+    """Times its samples that a record with gaps, or of several rates, may have room for: in what is
+    longer no lines are looked for, as the spectrum would fill the memory."""
     line_near: int = 25
     """Frequencies, 1 over the length of the record apart, among whose power a line stands out."""
     teeth: int = 48

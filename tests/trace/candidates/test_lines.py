@@ -55,3 +55,13 @@ def test_series_with_phases_and_intervals_of_their_own_add_up() -> None:
 def test_noise_has_hardly_a_line(coloured: float) -> None:
     counts = [len(found((1.0, 0.01, n), level=0.0, coloured=coloured)) for n in range(20)]
     assert sum(count > 0 for count in counts) <= 1
+
+
+def test_a_record_with_a_gap_of_years_is_passed_over() -> None:
+    """Its spectrum would take more memory than there is."""
+    model = compile(read_text(OSCILLATOR), record=["x"])
+    t = np.r_[np.arange(0, 30, 0.01), 1e9 + np.arange(0, 30, 0.01)]
+    measured = Measured("run", "train", t, {"x": np.sin(20 * t)}, start={"x": None, "v": 0.0})
+    segments = cut(model, Section(measured, 0, 2400), 120, ("x", "v"))
+    windows = opened(Criterion(model, segments, [], {}, sigma={"x": 1.0}, weighting="sum"))
+    assert line_periods(windows, OPTIONS) == []

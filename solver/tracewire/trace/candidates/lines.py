@@ -41,7 +41,7 @@ def line_periods(windows: Windows, options: CandidateOptions) -> list[float]:
     without phases, which are those of each series. A line is a peak that stands so far above the
     median power on both sides that white noise hardly has one: power is exponential there.
     """
-    power, step = _spectrum(windows, options.line_finer)
+    power, step = _spectrum(windows, options)
     if not len(power):
         return []
     usual = _usual(power, options.line_finer * options.line_near) / np.log(2)
@@ -65,7 +65,7 @@ def _usual(power: Vector, near: int) -> Vector:
     return np.asarray(np.maximum(*sides))
 
 
-def _spectrum(windows: Windows, finer: int) -> tuple[Vector, float]:
+def _spectrum(windows: Windows, options: CandidateOptions) -> tuple[Vector, float]:
     """The power of the residual at multiples of a frequency, and that frequency in Hz; up to the
     highest that all series resolve."""
     series: dict[str, list[int]] = {}
@@ -75,7 +75,9 @@ def _spectrum(windows: Windows, finer: int) -> tuple[Vector, float]:
     times = [segments[own[0]].measured.t for own in series.values()]
     interval = min(float(np.median(np.diff(t))) for t in times)
     longest = max(float(t[-1] - t[0]) for t in times)
-    count = finer * int(longest / interval + 1)
+    if longest / interval > options.line_sparse * sum(len(t) for t in times):
+        return np.zeros(0), 0.0
+    count = options.line_finer * int(longest / interval + 1)
     power = np.zeros(count // 2 + 1)
     for t, own in zip(times, series.values(), strict=True):
         power += _power(windows, own, t, interval, count)
