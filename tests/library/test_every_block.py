@@ -1,7 +1,7 @@
 """Every block of signals, control and bodies: refuses what is wrong, and is used somewhere.
 
 A block added to one of these families needs an exact test `test_...NAME...` in a file beside this
-one, a line in `BAD`, and a place in a diagram of diagrams/gallery.
+one, a line in `BAD`, a source, and a place in a diagram of diagrams/gallery.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from tracewire.compile import compile
 from tracewire.diagram import read, read_text
 from tracewire.errors import TracewireError
 from tracewire.formula import Number
+from tracewire.library import describe
 from tracewire.solve import simulate
 
 GALLERY = Path(__file__).parents[2] / "diagrams" / "gallery"
@@ -153,6 +154,13 @@ def test_a_block_has_an_exact_test(name: str) -> None:
         p.read_text("utf-8") for p in Path(__file__).parent.glob("test_*.py") if p != Path(__file__)
     ]
     assert any(re.search(rf"def test_\w*{name}|^    \"{name}\": \(", text, re.M) for text in tests)
+
+
+@pytest.mark.parametrize("name", BLOCKS)
+def test_a_block_says_where_it_is_from(name: str) -> None:
+    block = library()[name]
+    assert block.source
+    assert block.source in describe(library(), name)
 
 
 @pytest.mark.parametrize("name", BLOCKS)
