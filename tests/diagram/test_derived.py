@@ -174,3 +174,18 @@ def test_what_has_no_line_of_its_own_is_refused(tmp_path: Path) -> None:
             way(diagram, [AddBlock(**{**vars(DRAG), "own": "bodi"})])
         with pytest.raises(OptionError, match="unknown block 'none'"):
             way(diagram, [AddBlock(**{**vars(DRAG), "own": "none.body"})])
+
+
+def test_files_are_found_from_the_folder_of_the_file_that_names_them(tmp_path: Path) -> None:
+    folder = tmp_path / "parts"
+    folder.mkdir()
+    (folder / "drag.csv").write_text("v,f\n0,0\n1,-1\n", encoding="utf-8")
+    table = "      drag: {type: table, of: v, points: {file: drag.csv, x: v, y: f}}\n"
+    parts = PARTS.replace("of: [spring, u]", "of: [spring, u, drag]") + table
+    (folder / "parts.yaml").write_text(parts, encoding="utf-8")
+    text = PLAIN.replace("parts.yaml", "parts/parts.yaml")
+    diagram = read_text(text, tmp_path / "top.yaml")
+    changes = [AddBlock(**{**vars(DRAG), "name": "more", "own": "body"})]
+    new = patch(diagram, changes)
+    assert "force: {of: [spring, u, drag, more]}" in new.text
+    assert said(new) == said(apply(diagram, changes))
