@@ -39,6 +39,8 @@ state_space = Block(
     ),
     states=(State("x", "matrix_times(A, x) + matrix_times(B, of)", "start"),),
     outputs=(Output("y", "matrix_times(C, x) + matrix_times(D, of)"),),
+    source="R. E. Kalman, Mathematical description of linear dynamical systems, J. SIAM Control"
+    " 1 (1963) 152.",
 )
 
 FAR = 1e30  # a limit that nothing reaches: the formulas of a run know no infinity

@@ -30,6 +30,8 @@ unit_delay = Block(
     states=(State("y", "zeros_like(of)", "start"), BEGUN),
     events=tick(y="of"),
     outputs=(Output("y", "y", doc="jumps"),),
+    source="The shift operator of sampled signals: K. J. Astrom, B. Wittenmark,"
+    " Computer-Controlled Systems, 1997.",
 )
 
 discrete_integrator = Block(
@@ -51,6 +53,8 @@ discrete_integrator = Block(
     states=(State("x", "zeros_like(of)", "start"), BEGUN),
     events=tick(x="x + gain*period*of"),
     outputs=(Output("y", "x + weight*gain*period*of", doc="jumps"),),
+    source="Euler's rule at a weight of 0, the trapezoidal rule at 1/2, the backward one at 1:"
+    " K. J. Astrom, B. Wittenmark, Computer-Controlled Systems, 1997.",
 )
 
 discrete_transfer_function = Block(
@@ -88,6 +92,7 @@ discrete_state_space = Block(
     states=(State("x", "zeros_like(matrix_times(A, x))", "start"), BEGUN),
     events=tick(x="matrix_times(A, x) + matrix_times(B, of)"),
     outputs=(Output("y", "matrix_times(C, x) + matrix_times(D, of)"),),
+    source="K. J. Astrom, B. Wittenmark, Computer-Controlled Systems, 1997.",
 )
 
 FAR = 1e30  # a limit that nothing reaches: the formulas of a run know no infinity

@@ -34,6 +34,7 @@ coulomb = Block(
 dry_friction = Block(
     name="dry_friction",
     doc="Dry friction with one level while slipping and another up to which it sticks.",
+    require=("slip <= stick",),
     inputs=(RATE,),
     parameters=(
         Parameter("slip", doc="level while slipping: N m, or N", low=0.0),

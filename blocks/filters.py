@@ -19,6 +19,8 @@ first_order = Block(
     parameters=(LAG_TIME, GAIN, LAG_START),
     states=LAG,
     outputs=(Output("y", "k*x"),),
+    source="It comes to 1 - 1/e of a step within the time constant: K. J. Astrom, R. M. Murray,"
+    " Feedback Systems, 2008.",
 )
 
 lead_lag = Block(
@@ -28,6 +30,8 @@ lead_lag = Block(
     parameters=(Parameter("lead", "s", "the time of the zero"), LAG_TIME, GAIN, LAG_START),
     states=LAG,
     outputs=(Output("y", "k*(x + lead/lag*(of - x))"),),
+    source="Loop shaping by lead and lag compensation: K. J. Astrom, R. M. Murray, Feedback"
+    " Systems, 2008.",
 )
 
 derivative = Block(
@@ -37,6 +41,8 @@ derivative = Block(
     parameters=(LAG_TIME, GAIN, LAG_START),
     states=LAG,
     outputs=(Output("y", "k*(of - x)/lag"),),
+    source="The derivative part of a PID controller: K. J. Astrom, T. Hagglund, Advanced PID"
+    " Control, 2006.",
 )
 
 # low/of = 1/(p^2 + 2*damping*p + 1) and band = p*low, with p = s/(2*pi*frequency)
@@ -60,6 +66,8 @@ second_order = Block(
     parameters=(FREQUENCY, Parameter("damping", doc="the ratio of damping", low=0.0), GAIN, START),
     states=SECOND_ORDER,
     outputs=(Output("y", "k*low"),),
+    source="The equation of a mass on a spring with a damper: K. J. Astrom, R. M. Murray,"
+    " Feedback Systems, 2008.",
 )
 
 low_pass = Block(
@@ -69,6 +77,8 @@ low_pass = Block(
     parameters=(FREQUENCY, BUTTERWORTH, START),
     states=SECOND_ORDER,
     outputs=(Output("y", "low"),),
+    source="With a damping of 1/sqrt(2): S. Butterworth, On the theory of filter amplifiers,"
+    " Wireless Engineer 7 (1930) 536.",
 )
 
 high_pass = Block(
@@ -78,6 +88,7 @@ high_pass = Block(
     parameters=(FREQUENCY, BUTTERWORTH, START),
     states=SECOND_ORDER,
     outputs=(Output("y", "of - low - 2*damping*band"),),
+    source="The low pass with 1/p in the place of p.",
 )
 
 band_pass = Block(
@@ -87,6 +98,7 @@ band_pass = Block(
     parameters=(FREQUENCY, WIDTH, START),
     states=SECOND_ORDER,
     outputs=(Output("y", "2*damping*band"),),
+    source="What the notch takes away: 1 - (p^2 + 1)/(p^2 + 2*damping*p + 1).",
 )
 
 notch = Block(
@@ -96,4 +108,5 @@ notch = Block(
     parameters=(FREQUENCY, WIDTH, START),
     states=SECOND_ORDER,
     outputs=(Output("y", "of - 2*damping*band"),),
+    source="What the band pass leaves: 1 - 2*damping*p/(p^2 + 2*damping*p + 1).",
 )

@@ -53,6 +53,7 @@ friction_table = Block(
             doc="acts on the body; the last level is held beyond the last speed",
         ),
     ),
+    source="A measured curve as those of R. Stribeck, Z. VDI 46 (1902) 1341.",
 )
 
 rolling_resistance = Block(

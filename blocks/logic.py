@@ -20,6 +20,7 @@ compare = Block(
     inputs=(OF, Input("other", doc="what it is compared with", default="level")),
     parameters=(Parameter("level", doc="stands for the other where no wire does", default=0.0),),
     outputs=(Output("y", "1 if of >= other else 0", doc="jumps"),),
+    source="GE of IEC 61131-3.",
 )
 
 and_ = Block(
@@ -28,6 +29,7 @@ and_ = Block(
     inputs=(ALL,),
     parameters=(THRESHOLD,),
     outputs=(Output("y", f"0 if {ZEROS} >= 1 else 1", doc="jumps"),),
+    source="Boolean algebra; AND of IEC 61131-3.",
 )
 
 or_ = Block(
@@ -36,6 +38,7 @@ or_ = Block(
     inputs=(ALL,),
     parameters=(THRESHOLD,),
     outputs=(Output("y", f"1 if {ONES} >= 1 else 0", doc="jumps"),),
+    source="Boolean algebra; OR of IEC 61131-3.",
 )
 
 xor = Block(
@@ -44,6 +47,7 @@ xor = Block(
     inputs=(ALL,),
     parameters=(THRESHOLD,),
     outputs=(Output("y", f"mod({ONES}, 2)", doc="jumps"),),
+    source="Boolean algebra, as a sum modulo 2; XOR of IEC 61131-3.",
 )
 
 not_ = Block(
@@ -52,6 +56,7 @@ not_ = Block(
     inputs=(OF,),
     parameters=(THRESHOLD,),
     outputs=(Output("y", "0 if of >= threshold else 1", doc="jumps"),),
+    source="Boolean algebra; NOT of IEC 61131-3.",
 )
 
 select = Block(
@@ -59,6 +64,7 @@ select = Block(
     doc="That one of several signals whose number, from 0, is nearest to an index.",
     inputs=(Input("index"), Input("of", doc="the signals, in order", many=True)),
     outputs=(Output("y", "pick_element(join(of), index)", doc="jumps with the index"),),
+    source="MUX of IEC 61131-3, whose index is a whole number.",
 )
 
 edge = Block(
@@ -81,6 +87,7 @@ edge = Block(
         ),
     ),
     outputs=(Output("y", "(1 - before)*(1 if of >= threshold else 0)", doc="jumps"),),
+    source="R_TRIG of IEC 61131-3, with the period as its cycle.",
 )
 
 monostable = Block(
@@ -91,6 +98,7 @@ monostable = Block(
     states=(State("left", rate="-1 if left > 0 else 0", start="0", unit="s"),),
     events=(Event("rise", when="of - threshold", crosses="up", set={"left": "duration"}),),
     outputs=(Output("y", "1 if left > 0 else 0", doc="jumps"),),
+    source="A monostable that can be triggered again, as the circuit 74123.",
 )
 
 timer = Block(
@@ -101,6 +109,7 @@ timer = Block(
     states=(State("passed", "1 if of >= threshold else 0", "0", "s"),),
     events=(Event("end", when="of - threshold", crosses="down", set={"passed": "0"}),),
     outputs=(Output("y", "passed", "s"),),
+    source="The elapsed time of TON in IEC 61131-3, without its end.",
 )
 
 jk_flip_flop = Block(
@@ -124,6 +133,7 @@ jk_flip_flop = Block(
         ),
     ),
     outputs=(Output("y", "y", doc="0 or 1, jumps"),),
+    source="The truth table of a JK flip-flop with a rising clock.",
 )
 
 debounce = Block(
@@ -145,4 +155,5 @@ debounce = Block(
         Event("settled", when="passed - duration", crosses="up", set={"y": "1 - y", "passed": "0"}),
     ),
     outputs=(Output("y", "y", doc="0 or 1, jumps"),),
+    source="A counter that each bounce sets to zero.",
 )

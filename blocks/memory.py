@@ -30,7 +30,7 @@ play_operator = Block(
     name="play_operator",
     doc="Play between a driving part and one that it pushes at either end of the gap.",
     inputs=(
-        Input("of", doc="the position of the driving part, without jumps"),
+        Input("of", doc="the position of the driving part", continuous=True),
         Input("rate", doc="its rate: where it turns round, the driven part is left"),
     ),
     parameters=(

@@ -70,4 +70,5 @@ quantizer = Block(
     inputs=(Input("of"),),
     parameters=(Parameter("interval", doc="between two levels", above=0.0),),
     outputs=(Output("y", "interval*floor(of/interval + 1/2)", doc="jumps; halves go up"),),
+    source="The mid-tread quantizer: B. Widrow, I. Kollar, Quantization Noise, 2008.",
 )

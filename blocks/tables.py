@@ -10,6 +10,7 @@ signal_builder = Block(
         Parameter("values", doc="a list: the signal at these times, held before and after them"),
     ),
     outputs=(Output("y", "straight_lines(t, times, values)", doc="jumps: the later value holds"),),
+    source="As Modelica's TimeTable, where two values at one time are a jump.",
 )
 
 lookup_table_2d = Block(

@@ -112,3 +112,30 @@ elastic_gear = Block(
     " Automatica 38 (2002) 1633: the dead-zone model, without the part of it that would pull. The"
     " loss is that of Modelica.Mechanics.Rotational.Components.LossyGear.",
 )
+
+HAULED = "k*(r1*angle1 - r2*angle2) + c*(r1*rate1 - r2*rate2)"
+
+belt = Block(
+    name="belt",
+    doc="An elastic belt between two pulleys, both strands of which stay taut.",
+    require=("r2**2 > 0",),
+    inputs=(
+        Input("angle1", "rad", "of the first pulley"),
+        Input("rate1", "rad/s", "its rate"),
+        Input("angle2", "rad", "of the second pulley"),
+        Input("rate2", "rad/s", "its rate"),
+    ),
+    parameters=(
+        Parameter("r1", "m", "the radius of the first pulley", above=0.0),
+        Parameter("r2", "m", "the radius of the second pulley; below 0: the belt is crossed"),
+        Parameter("k", "N/m", "stiffness of both strands together", low=0.0),
+        Parameter("c", "N s/m", "their damping", default=0.0, low=0.0),
+    ),
+    outputs=(
+        Output("torque1", f"-r1*({HAULED})", "N m", "acts on the first pulley"),
+        Output("torque2", f"r2*({HAULED})", "N m", "acts on the second pulley"),
+        Output("force", HAULED, "N", "the tension of the pulling strand less that of the other"),
+    ),
+    source="The element of Kelvin and Voigt on the way of the belt at both pulleys, without creep."
+    " Where a strand may hang through, it is a 'rope'.",
+)

@@ -24,6 +24,7 @@ pulse = Block(
             doc="jumps",
         ),
     ),
+    source="Modelica.Blocks.Sources.Pulse, with a duty from 0 to 1.",
 )
 
 sawtooth = Block(
@@ -42,6 +43,7 @@ sawtooth = Block(
             doc="jumps",
         ),
     ),
+    source="Modelica.Blocks.Sources.SawTooth.",
 )
 
 # 2*(t - at)/period + 1/2 is a whole number at each peak; between them the wave is a straight line
@@ -63,6 +65,7 @@ triangle = Block(
             f"*(2*({HALVES} - floor({HALVES})) - 1)",
         ),
     ),
+    source="It has its zeros and its peaks where the sine of this period has them.",
 )
 
 chirp = Block(
@@ -82,6 +85,7 @@ chirp = Block(
             "offset + amplitude*sin(2*pi*(first + (last - first)*t/(2*duration))*t + phase)",
         ),
     ),
+    source="The phase is the integral of the frequency.",
 )
 
 multisine = Block(

@@ -88,6 +88,23 @@ def test_the_example_of_variants_is_in_the_gallery() -> None:
     assert example("variants:") in whole
 
 
+def test_the_example_of_a_subsystem_that_extends_another_one_is_one(tmp_path: Path) -> None:
+    part = """
+subsystems:
+  cart:
+    inputs: [u]
+    outputs: [x]
+    blocks:
+      x: {type: integrator, of: v, unit: m}
+      v: {type: integrator, of: force, unit: m/s}
+      spring: {type: gain, of: x, k: -2}
+      force: {type: sum, of: [spring, u]}
+"""
+    (tmp_path / "parts.yaml").write_text(part, encoding="utf-8")
+    text = example("extends: cart") + "inputs: [u]\nblocks: {one: {type: rough_cart, u: u}}\n"
+    assert len(compile(read_text(text, tmp_path / "a.yaml")).flat.states) == 2
+
+
 def test_a_diagram_built_in_python_is_written_as_the_page_shows(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 import runpy
 import tomllib
 from pathlib import Path
@@ -9,6 +11,8 @@ from typing import Any
 
 import pytest
 from library.installed import install
+from tracewire.diagram import is_modeline, schema_of
+from tracewire.library import load_library
 
 
 def run_tests(file: Path) -> int:
@@ -23,7 +27,8 @@ def run_tests(file: Path) -> int:
 def test_a_start_passes_its_test(call: Any, tmp_path: Path, kind: str, ending: str) -> None:
     told = call("new", kind, "bumper", "--to", tmp_path / "further", "--json")
     files = [tmp_path / "further" / f"bumper{ending}", tmp_path / "further" / "test_bumper.py"]
-    assert told.data == {"written": [str(file) for file in files]}
+    more = [tmp_path / "further" / ".tracewire" / "schema.json"] if kind == "diagram" else []
+    assert told.data == {"written": [str(file) for file in files + more]}
     assert run_tests(files[1]) == 1
 
 
@@ -50,7 +55,24 @@ def test_a_library_is_whole(call: Any, tmp_path: Path, monkeypatch: pytest.Monke
     assert run_tests(project / "tests" / "test_my_lab.py") == 2
     assert call("check", project / "example.yaml").code == 0
     assert "`type: my_lab.hard_spring`" in (project / "README.md").read_text(encoding="utf-8")
-    assert not any("$" in file.read_text(encoding="utf-8") for file in project.rglob("*.*"))
+    written = (file for file in project.rglob("*.*") if file.suffix not in ("", ".json"))
+    assert not any(
+        re.search(r"\$(?!schema=)", file.read_text(encoding="utf-8")) for file in written
+    )
+
+
+def test_the_diagrams_of_a_start_name_the_schema_beside_them(call: Any, tmp_path: Path) -> None:
+    assert call("new", "library", "my_lab", "--to", tmp_path).code == 0
+    assert call("new", "diagram", "rig", "--to", tmp_path).code == 0
+    files = sorted(tmp_path.rglob("*.yaml"))
+    assert [file.name for file in files] == ["example.yaml", "masses.yaml", "rig.yaml"]
+    for file in files:
+        first = file.read_text(encoding="utf-8").splitlines()[0]
+        assert is_modeline(first)
+        schema = file.parent / first.partition("$schema=")[2]
+        assert json.loads(schema.read_text(encoding="utf-8")) == schema_of(load_library())
+    again = call("new", "diagram", "other", "--to", tmp_path, "--json").data["written"]
+    assert not any("schema" in path for path in again)
 
 
 @pytest.mark.parametrize("kind", ["block", "diagram", "library"])

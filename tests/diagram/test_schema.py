@@ -10,7 +10,15 @@ from typing import Any
 
 import pytest
 from diagram.whole import WHOLE
-from tracewire.diagram import read_text, schema_of, with_modeline
+from tracewire.diagram import (
+    is_modeline,
+    read,
+    read_text,
+    schema_of,
+    schema_text,
+    with_modeline,
+    write,
+)
 from tracewire.diagram.files import load
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.strict import Items, Node, Scalar, compose
@@ -56,6 +64,20 @@ def test_it_accepts_every_shipped_diagram() -> None:
     assert len(SHIPPED) > 70
     refused = [file for file in SHIPPED if not VALIDATOR.is_valid(content_of(load(file)))]
     assert refused == []
+
+
+def test_every_shipped_diagram_names_the_schema_that_is_shipped() -> None:
+    schema = shipped("diagrams") / "schema.json"
+    for file in [*SHIPPED, *shipped("blocks").glob("*.yaml")]:
+        first = load(file).split("\n", 1)[0]
+        assert is_modeline(first), file
+        assert (file.parent / first.partition("$schema=")[2]).samefile(schema), file
+
+
+def test_the_shipped_schema_is_that_of_the_library() -> None:
+    text = load(shipped("diagrams") / "schema.json")
+    assert text == schema_text(SCHEMA), "write it: tracewire schema --output diagrams/schema.json"
+    assert json.loads(text) == SCHEMA
 
 
 def test_it_accepts_every_section() -> None:
@@ -192,3 +214,23 @@ def test_a_statement_expects_one_thing() -> None:
     assert is_valid({"above": 1})
     assert not is_valid({"above": 1, "between": [1, 2]})
     assert not is_valid({})
+
+
+def test_a_diagram_that_is_written_elsewhere_names_the_same_schema(tmp_path: Path) -> None:
+    (tmp_path / "schema.json").write_text("{}", encoding="utf-8")
+    (tmp_path / "inside").mkdir()
+    text = "{}title: A clock\nblocks: {{t_now: {{type: time}}}}\n"
+    old, new = tmp_path / "old.yaml", tmp_path / "inside" / "new.yaml"
+    for there, moved in (
+        ("schema.json", "../schema.json"),
+        ("absent.json", "absent.json"),
+        ("https://example.org/schema.json", "https://example.org/schema.json"),
+    ):
+        line = "# yaml-language-server: $schema={}\n"
+        old.write_text(text.format(line.format(there)), encoding="utf-8")
+        write(read(old), new, overwrite=True)
+        assert load(new) == text.format(line.format(moved))
+        write(read(old), tmp_path / "beside.yaml", overwrite=True)
+        assert load(tmp_path / "beside.yaml") == load(old)
+    write(read_text(text.format(""), old), new, overwrite=True)
+    assert load(new) == text.format("")

@@ -9,7 +9,11 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from library.values import library, output
+from tracewire.compile import compile
+from tracewire.diagram import read_text
+from tracewire.errors import TracewireError
 from tracewire.library import Block, describe_json
+from tracewire.solve import simulate
 
 REAL = st.floats(-1e3, 1e3)
 SIZE = st.floats(0.0, 1e3)
@@ -44,8 +48,8 @@ FAMILIES = {
     "logic": "compare and or xor not select edge monostable timer jk_flip_flop debounce",
     "delay": "delay variable_delay pade_delay",
     "control": "transfer_function state_space pid",
-    "bodies": "mass rotating_mass gear",
-    "transmission": "spring_damper rope elastic_gear",
+    "bodies": "mass rotating_mass gear rack lever",
+    "transmission": "spring_damper rope elastic_gear belt",
     "brakes": "brake clutch eddy_brake",
     "friction_laws": "stribeck_friction friction_table rolling_resistance",
     "slip": "maxwell_slip maxwell_element",
@@ -254,6 +258,27 @@ def test_levels_of_friction() -> None:
     assert output("quad_drag", rate=-3, c=2) == 18
     assert output("arctan_friction", rate=1e9, level=2, eps=1) == pytest.approx(-2)
     assert output("arctan_friction", rate=0.1, level=2, eps=10) == pytest.approx(-1)
+
+
+@pytest.mark.parametrize(
+    ("levels", "told"),
+    [
+        ("slip: 2, stick: 1", "the parameters must meet slip <= stick, and slip = 2, stick = 1."),
+        ("slip: high, stick: 1", "the parameters do not meet 'high <= 1': high = 2. Its block"),
+    ],
+)
+def test_dry_friction_that_slips_above_its_sticking_level_is_refused(
+    levels: str, told: str
+) -> None:
+    text = f"""
+parameters: {{high: 2}}
+blocks:
+  v: {{type: integrator, of: b, start: 1}}
+  b: {{type: dry_friction, rate: v, {levels}}}
+"""
+    with pytest.raises(TracewireError) as refused:
+        simulate(compile(read_text(text)), span=(0, 1))
+    assert str(refused.value).startswith("<text>:5:3: block 'b': " + told)
 
 
 def test_dry_friction_sticks_at_its_slip_level_unless_told() -> None:

@@ -90,6 +90,74 @@ def test_gear_is_held_by_friction_on_both_shafts_together(method: str) -> None:
 
 
 @EACH_METHOD
+@pytest.mark.parametrize("torque", [-2.0, 0.6])
+def test_rack_accelerates_as_the_equations_of_pinion_and_rack_say(
+    torque: float, method: str
+) -> None:
+    blocks = f"""
+  one: {{type: constant, value: {torque}}}
+  two: {{type: constant, value: 5}}
+  r: {{type: rack, torque: one, force: two, radius: 0.2, inertia: 0.12, mass: 4, start: 0.5,
+      start_rate: 3}}
+"""
+    result = drawn(blocks, 2, method, "r.x, r.v, r.angle, r.rate")
+    # the acceleration of the rack and the force of the teeth on it
+    a, _ = np.linalg.solve([[4, -1], [0.12 / 0.2, 0.2]], [5, torque])
+    t = result.t
+    assert result["r.v"] == pytest.approx(3 + a * t, abs=1e-9)
+    assert result["r.x"] == pytest.approx(0.5 + 3 * t + a * t**2 / 2, abs=1e-9)
+    assert 0.2 * result["r.rate"] == pytest.approx(result["r.v"], rel=1e-14)
+    assert 0.2 * result["r.angle"] == pytest.approx(result["r.x"], rel=1e-14)
+
+
+@EACH_METHOD
+@pytest.mark.parametrize("b", [0.5, -0.5])
+def test_lever_swings_as_the_spring_at_one_end_and_the_masses_say(b: float, method: str) -> None:
+    """A weight at the first end pulls against a spring at the second one."""
+    blocks = f"""
+  weight: {{type: constant, value: 3}}
+  spring: {{type: stiffness, of: l.x2, k: 200}}
+  l: {{type: lever, force1: weight, force2: spring, a: 2, b: {b}, inertia: 0.3, mass1: 0.4,
+      mass2: 0.4}}
+"""
+    result = drawn(blocks, 5, method, "l.x1, l.v1, l.x2, l.v2, l.angle, l.rate")
+    rest = 2 * 3 / (200 * 0.25)  # where the law of the lever holds
+    omega = np.sqrt(200 * 0.25 / (0.3 + 0.4 * 4 + 0.4 * 0.25))
+    exact = rest * (1 - np.cos(omega * result.t))
+    rate = rest * omega * np.sin(omega * result.t)
+    assert result["l.angle"] == pytest.approx(exact, abs=1e-7)
+    assert result["l.x1"] == pytest.approx(2 * exact, abs=1e-7)
+    assert result["l.x2"] == pytest.approx(-b * exact, abs=1e-7)
+    assert result["l.v1"] == pytest.approx(2 * rate, abs=1e-6)
+    assert result["l.v2"] == pytest.approx(-b * rate, abs=1e-6)
+
+
+@EACH_METHOD
+@pytest.mark.parametrize("r2", [0.2, -0.2])
+def test_belt_lets_its_pulleys_swing_against_each_other(r2: float, method: str) -> None:
+    """The stretch z = r1*angle1 - r2*angle2 swings; what the belt does not feel goes on."""
+    blocks = f"""
+  one: {{type: rotating_mass, torque: b.torque1, inertia: 0.05, start_rate: 4}}
+  two: {{type: rotating_mass, torque: b.torque2, inertia: 0.4}}
+  b: {{type: belt, angle1: one.angle, rate1: one.rate, angle2: two.angle, rate2: two.rate,
+      r1: 0.1, r2: {r2}, k: 300, c: 2}}
+"""
+    result = drawn(blocks, 4, method, "one.rate, two.rate, one.angle, two.angle, b.force")
+    t = result.t
+    # z'' + (c*z' + k*z)*(r1^2/J1 + r2^2/J2) = 0 from z = 0, z' = 0.1*4
+    share = 0.1**2 / 0.05 + 0.2**2 / 0.4
+    decay = share * 2 / 2
+    omega = np.sqrt(share * 300 - decay**2)
+    z = 0.4 / omega * np.exp(-decay * t) * np.sin(omega * t)
+    assert 0.1 * result["one.angle"] - r2 * result["two.angle"] == pytest.approx(z, abs=1e-7)
+    # the belt acts on both by one force: J1*rate1/r1 + J2*rate2/r2 is kept
+    kept = 0.05 * result["one.rate"] / 0.1 + 0.4 * result["two.rate"] / r2
+    assert kept == pytest.approx(np.full(len(t), 2.0), abs=1e-9)
+    slope = 0.1 * result["one.rate"] - r2 * result["two.rate"]
+    assert result["b.force"] == pytest.approx(300 * z + 2 * slope, abs=1e-5)
+
+
+@EACH_METHOD
 def test_spring_damper_between_two_bodies_keeps_their_momentum(method: str) -> None:
     blocks = """
   a: {type: mass, force: spring, mass: 1, start: 1, start_rate: 2}

@@ -1,7 +1,7 @@
 """Every block of signals, control and bodies: refuses what is wrong, and is used somewhere.
 
 A block added to one of these families needs an exact test `test_...NAME...` in a file beside this
-one, a line in `BAD`, and a place in a diagram of diagrams/gallery.
+one, a line in `BAD`, a source, and a place in a diagram of diagrams/gallery.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from tracewire.compile import compile
 from tracewire.diagram import read, read_text
 from tracewire.errors import TracewireError
 from tracewire.formula import Number
+from tracewire.library import describe
 from tracewire.solve import simulate
 
 GALLERY = Path(__file__).parents[2] / "diagrams" / "gallery"
@@ -91,6 +92,15 @@ BAD = {
         "ratio: 0, inertia1: 1, inertia2: 1",
         "the parameters must meet ratio**2 > 0, and ratio = 0.",
     ),
+    "rack": ("radius: 0, inertia: 1, mass: 1", NOT_ABOVE.format("radius", " m", 0)),
+    "lever": (
+        "a: 1, b: 0, inertia: 1",
+        "the parameters must meet b**2 > 0, and b = 0.",
+    ),
+    "belt": (
+        "angle1: u, rate1: u, angle2: u, rate2: u, r1: 0.1, r2: 0, k: 1",
+        "the parameters must meet r2**2 > 0, and r2 = 0.",
+    ),
     "spring_damper": ("of: u, rate: u, k: 1, c: -2", "'c' must be at least 0, not -2."),
     "rope": ("of: u, rate: u, k: 1, length: -1", "'length' must be at least 0, not -1."),
     "elastic_gear": (
@@ -144,6 +154,13 @@ def test_a_block_has_an_exact_test(name: str) -> None:
         p.read_text("utf-8") for p in Path(__file__).parent.glob("test_*.py") if p != Path(__file__)
     ]
     assert any(re.search(rf"def test_\w*{name}|^    \"{name}\": \(", text, re.M) for text in tests)
+
+
+@pytest.mark.parametrize("name", BLOCKS)
+def test_a_block_says_where_it_is_from(name: str) -> None:
+    block = library()[name]
+    assert block.source
+    assert block.source in describe(library(), name)
 
 
 @pytest.mark.parametrize("name", BLOCKS)

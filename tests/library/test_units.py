@@ -124,6 +124,8 @@ def test_the_gains_of_a_controller_have_the_units_of_its_signals() -> None:
     [
         ("y: {type: mass, force: volts, mass: M}", "it needs a rate in m/s^2"),
         ("y: {type: rotating_mass, torque: pressed, inertia: J}", "it needs a rate in 1/s^2"),
+        ("y: {type: rack, torque: pressed, radius: way, inertia: J, mass: M}", "a rate in m/s^2"),
+        ("y: {type: lever, force1: volts, a: way, b: way, inertia: J}", "it needs a rate in 1/s^2"),
         (
             "y: {type: gear, torque2: pressed, ratio: 2, inertia1: J, inertia2: J}",
             "it needs a rate in 1/s^2",

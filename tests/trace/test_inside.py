@@ -1,4 +1,4 @@
-"""A trace that finds what is missing inside a subsystem."""
+"""A trace that finds what is missing inside a subsystem, of its own text or an included file."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tracewire.compile import compile
-from tracewire.diagram import read
+from tracewire.diagram import read, set_values
+from tracewire.fit import fit
 from tracewire.solve import simulate
 from tracewire.trace import trace
 
@@ -34,19 +35,32 @@ measured:
 FRICTION = "of: [spring, u, drag]"
 
 
-@pytest.mark.slow
-def test_a_friction_inside_a_subsystem_is_named_and_written_there(tmp_path: Path) -> None:
-    file = tmp_path / "arm.yaml"
-    drag = "\n      drag: {type: coulomb, rate: omega, level: 0.06}\nblocks:\n  arm:"
-    whole = ARM.replace("of: [spring, u]", FRICTION).replace("\nblocks:\n  arm:", drag)
+def recorded(folder: Path, whole: str) -> None:
+    """Write the record of an arm that has a friction."""
+    file = folder / "arm.yaml"
     file.write_text(whole, encoding="utf-8")
     t = np.arange(0.0, 8.0, 0.02)
     u = 0.5 * np.sin(2.2 * t) + 0.4 * np.sin(0.9 * t + 1)
     run = simulate(compile(read(file)), times=t, inputs={"u": (t, u)})
     x = run["arm.theta"] + 1e-3 * np.random.default_rng(1).standard_normal(len(t))
     rows = (f"{a},{b},{c}" for a, b, c in zip(t, x, u, strict=True))
-    (tmp_path / "run.csv").write_text("\n".join(["t,x,u", *rows]), encoding="utf-8")
-    file.write_text(ARM + MEASURED, encoding="utf-8")
+    (folder / "run.csv").write_text("\n".join(["t,x,u", *rows]), encoding="utf-8")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("included", [False, True], ids=["own", "included"])
+def test_a_friction_inside_a_subsystem_is_named_and_written(tmp_path: Path, included: bool) -> None:
+    drag = "\n      drag: {type: coulomb, rate: omega, level: 0.06}\nblocks:\n  arm:"
+    whole = ARM.replace("of: [spring, u]", FRICTION).replace("\nblocks:\n  arm:", drag)
+    recorded(tmp_path, whole)
+    text = ARM + MEASURED
+    if included:
+        begin, end = text.index("subsystems:"), text.index("blocks:\n  arm")
+        part = text[begin:end]
+        (tmp_path / "part.yaml").write_text(part, encoding="utf-8")
+        text = "include: part.yaml\n" + text[:begin] + text[end:]
+    file = tmp_path / "arm.yaml"
+    file.write_text(text, encoding="utf-8")
     diagram = read(file)
     found = trace(compile(diagram))
     assert found.verdict == "effect"
@@ -55,4 +69,13 @@ def test_a_friction_inside_a_subsystem_is_named_and_written_there(tmp_path: Path
     assert abs(effect.params["level"] - 0.06) < 1e-3
     new = found.apply(diagram)
     assert "      coulomb: {type: coulomb, rate: omega, level: {value: 0.0" in new.text
-    assert "torque: {type: sum, of: [spring, u, coulomb], unit: N m}" in new.text
+    if included:
+        assert (tmp_path / "part.yaml").read_text(encoding="utf-8") == part
+        assert "arm: {type: own_arm, u: u}" in new.text
+        assert "    extends: arm\n    blocks:\n      torque: {of: [spring, u, coulomb]}" in new.text
+        again = fit(compile(new), method="least_squares")
+        assert abs(again.values["arm.coulomb.level"] - 0.06) < 1e-3
+        fitted = set_values(new, again.values).text
+        assert "\n    parameters: {k: {value: " in fitted  # that of the file stays
+    else:
+        assert "torque: {type: sum, of: [spring, u, coulomb], unit: N m}" in new.text

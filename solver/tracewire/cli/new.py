@@ -12,6 +12,7 @@ import typer
 
 from tracewire.cli.options import AsJson, Debug
 from tracewire.cli.output import print_json, print_text
+from tracewire.cli.schema import USUAL, write_schema
 from tracewire.errors import OptionError, Problem
 from tracewire.files import write_file, writing
 from tracewire.formula import is_name, name_hint
@@ -63,12 +64,14 @@ def block(name: Name, to: Folder = ".", as_json: AsJson = False, debug: Debug = 
 def diagram(name: Name, to: Folder = ".", as_json: AsJson = False, debug: Debug = False) -> None:
     """Write NAME.yaml, a diagram that runs, and its test. Files that exist stay as they are.
 
+    The diagram names .tracewire/schema.json to editors, which is written, too.
+
     \b
     Example:
       tracewire new diagram rig
     """
     _check_name(name, "a diagram")
-    written = _write(DIAGRAM, Path(to), {"name": name})
+    written = [*_write(DIAGRAM, Path(to), {"name": name}), *_schema(Path(to))]
     _tell(written, f"'tracewire run {written[0]}' runs it.", as_json)
 
 
@@ -98,6 +101,7 @@ def library(name: Name, to: Folder = ".", as_json: AsJson = False, debug: Debug 
     spring = {"name": "hard_spring", "type": f"{name}.hard_spring", "option": ""}
     written = _write(LIBRARY, Path(to), known, {"block.py.txt": spring})
     folder = Path(to) / known["distribution"]
+    written += _schema(folder)
     _tell(written, f"'python -m pip install -e {folder}' installs it; see its README.", as_json)
 
 
@@ -132,6 +136,17 @@ def _write(
         with writing(target):
             write_file(target, text.substitute((others or {}).get(template, known)))
     return [*targets]
+
+
+def _schema(folder: Path) -> list[Path]:
+    """Write the schema that the diagrams of a start name to an editor, unless there is one."""
+    from tracewire.diagram import schema_of
+
+    target = folder / USUAL
+    if target.exists():
+        return []
+    write_schema(schema_of(load_library()), target, folder=True)
+    return [target]
 
 
 def _tell(written: list[Path], then: str, as_json: bool) -> None:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -62,10 +61,7 @@ def schema(
         return
     files = {Path(name): load_text(Path(name)) for name in diagrams or ()}
     texts = {file: with_modeline(text, file, target) for file, text in files.items()}
-    with writing(target):
-        if output is None:
-            target.parent.mkdir(exist_ok=True)
-        write_file(target, json.dumps(made, indent=1, ensure_ascii=False) + "\n")
+    write_schema(made, target, output is None)
     written = [str(target)]
     for file, text in texts.items():
         if text != files[file]:
@@ -77,3 +73,14 @@ def schema(
     else:
         for name in written:
             print_text(f"written: {name}")
+
+
+def write_schema(made: dict[str, Any], target: Path, folder: bool) -> None:
+    """Write a schema to a file, and make its folder where that is asked for. Raises OptionError."""
+    from tracewire.diagram import schema_text
+    from tracewire.files import write_file, writing
+
+    with writing(target):
+        if folder:
+            target.parent.mkdir(exist_ok=True)
+        write_file(target, schema_text(made))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+from tracewire.compile.continuous import ContinuousPort, jump_problems
 from tracewire.compile.curves import curve_tables
 from tracewire.compile.expand import expand_vectors
 from tracewire.compile.flat import (
@@ -42,7 +43,7 @@ from tracewire.diagram import (
     split_index,
     state_names,
 )
-from tracewire.errors import Place
+from tracewire.errors import DiagramError, Place
 from tracewire.formula import CONSTANTS, Call, Expression, Name, Number, names_of, parse, rename
 from tracewire.library import Block, Parameter
 
@@ -50,7 +51,8 @@ from tracewire.library import Block, Parameter
 def flatten(diagram: Diagram) -> Flat:
     """The flat equations of a checked diagram.
 
-    Raises DiagramError where the shapes of vectors do not go together.
+    Raises DiagramError where the shapes of vectors do not go together, and where a port that must
+    not get a jump is wired to one.
     """
     flattener = _Flattener(diagram)
     flat = expand_vectors(flattener.flat(), flattener.places, tuple(diagram.record.values()))
@@ -83,6 +85,7 @@ class _Flattener:
         self.guesses: dict[str, Expression] = {}
         self.places: dict[str, Place] = {}  # of the outputs of subsystems
         self.sampled: list[SampledPort] = []
+        self.continuous: list[ContinuousPort] = []
         self.told: list[str] = []  # the states that a run keeps where nothing says which
         self.require: list[Condition] = []  # of blocks
 
@@ -95,6 +98,7 @@ class _Flattener:
         self.add_parameters(top, "", {})
         self.add_diagram(top, "", "", inputs)
         self.add_samples()
+        self.refuse_jumps()
         scope = _Scope(top, "", inputs)
         span = top.span or (Value(Number(0.0)), Value(Number(1.0)))
         record = tuple(top.record) or tuple(self.told) or tuple(self.states)
@@ -138,6 +142,19 @@ class _Flattener:
                 self.top.inputs,
                 self.parameters,
             )
+
+    def refuse_jumps(self) -> None:
+        """Raises DiagramError: a port that must not get a jump is wired to one."""
+        found = jump_problems(
+            self.continuous,
+            self.signals,
+            self.states,
+            self.events,
+            self.memories,
+            self.parameters,
+        )
+        if found:
+            raise DiagramError(found)
 
     def show(self, name: str, path: str, shown: Shown) -> None:
         """Note how a signal of the block at `path` is shown, if it is not by its name in SI."""
@@ -257,7 +274,9 @@ class _Flattener:
                 event, wire = f"{path}.{port.sampled}", scope.wire(wires[0])
                 self.sampled.append(SampledPort(sample, wire, event, place))
             elif wires:
-                names[port.name] = scope.wire(wires[0])
+                names[port.name] = wire = scope.wire(wires[0])
+                if port.continuous:
+                    self.continuous.append(ContinuousPort(port.name, block.name, wire, place))
             else:
                 default = block.port_defaults[port.name]
                 names[port.name] = rename(default, lambda name: names.get(name, Name(name)))

@@ -48,7 +48,7 @@ from tracewire.diagram.files import MOST_BYTES, STDIN, absent_series, load_stdin
 from tracewire.diagram.files import load as load_text
 from tracewire.diagram.layout import laid_out
 from tracewire.diagram.loops import cycles, shown_cycle
-from tracewire.diagram.modeline import with_modeline
+from tracewire.diagram.modeline import is_modeline, with_modeline
 from tracewire.diagram.names import (
     element_name,
     find_parameter,
@@ -62,12 +62,13 @@ from tracewire.diagram.names import (
     state_names,
     states,
 )
+from tracewire.diagram.owned import patch_own
 from tracewire.diagram.packages import package_subsystems, who_has
 from tracewire.diagram.quantity_names import EVENT_KINDS, is_quantity, quantity_problems
 from tracewire.diagram.read import read, read_readable, read_readable_text, read_text
 from tracewire.diagram.rename import renamed
 from tracewire.diagram.rewire import add_to_drive, rewired
-from tracewire.diagram.schema import schema_of
+from tracewire.diagram.schema import schema_of, schema_text
 from tracewire.diagram.write import write, written_out
 from tracewire.diagram.yaml_text import mapping_text, quoted
 
@@ -121,6 +122,7 @@ __all__ = [
     "find_signal",
     "find_state",
     "is_count",
+    "is_modeline",
     "is_quantity",
     "laid_out",
     "load_stdin",
@@ -128,6 +130,7 @@ __all__ = [
     "mapping_text",
     "package_subsystems",
     "patch",
+    "patch_own",
     "path_text",
     "quantity_problems",
     "quoted",
@@ -141,6 +144,7 @@ __all__ = [
     "rewired",
     "row_ends",
     "schema_of",
+    "schema_text",
     "sensor_numbers",
     "series_parts",
     "set_sensors",

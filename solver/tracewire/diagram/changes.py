@@ -21,6 +21,7 @@ from tracewire.diagram.edit import add_addend, many_port, with_addend
 from tracewire.diagram.edit_own import add_own, declared_parameter
 from tracewire.diagram.edit_sensors import add_sensor, column_factor, series_of
 from tracewire.diagram.names import find_signal, split_index
+from tracewire.diagram.owned import apply_own, patch_own
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.rewire import add_to_drive, readers_of, rewired, seen_name, sole_wire
 from tracewire.diagram.rewrite import as_written
@@ -38,7 +39,8 @@ class AddBlock:
     units of the block. to: a sum by its definition (`torque`, `bearing.total` for the sum `total`
     in the definition of the subsystem `bearing`), or a drive, which is a named input or a source.
     element: of a sum of vectors the number of the element that it is added to, and how many there
-    are: a gain behind the block makes a vector of it.
+    are: a gain behind the block makes a vector of it. own: the path of the block whose subsystem
+    has the sum, where an included file defines that: it gets a definition of its own (`owned`).
     """
 
     name: str
@@ -48,6 +50,7 @@ class AddBlock:
     to: str
     drive: bool = False
     element: tuple[int, int] | None = None
+    own: str = ""
 
 
 @dataclass(frozen=True)
@@ -82,7 +85,9 @@ def patch(diagram: Diagram, changes: Sequence[Change]) -> Diagram:
         match change:
             case AddBlock(name, to=to, drive=True):
                 diagram = add_to_drive(diagram, to, name, _line(change))
-            case AddBlock(name, to=to, element=element):
+            case AddBlock(name, to=to, element=element, own=own):
+                if own:
+                    diagram, to = patch_own(diagram, own, to)
                 diagram = add_addend(diagram, to, name, _line(change), element=element)
             case AddSensorTerm(signal, kind, value, fit):
                 diagram = add_sensor(diagram, signal, kind, value, fit)
@@ -99,7 +104,9 @@ def apply(diagram: Diagram, changes: Sequence[Change]) -> Diagram:
     """
     for change in changes:
         match change:
-            case AddBlock(to=to, drive=drive):
+            case AddBlock(to=to, drive=drive, own=own):
+                if own:
+                    diagram, to = apply_own(diagram, own, to)
                 diagram = (_to_drive if drive else _to_sum)(diagram, to, change)
             case AddSensorTerm():
                 diagram = _with_sensor_term(diagram, change)

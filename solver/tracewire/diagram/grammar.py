@@ -381,6 +381,8 @@ TOP = {  # in the order in which `format` puts them
 }
 INSIDE = {
     "title": _TITLE,
+    "extends": Key(TEXT, "The subsystem of an included file that this one changes: cart."),
+    "remove": Key(Listed(TEXT, alone=True), "What is taken away of what is extended: [friction]."),
     "inputs": _INPUTS,
     "outputs": Key(
         Either((Mapped(Text(names="wire"), "new"), Listed(Text(names="port"), alone=True))),

@@ -9,6 +9,7 @@ from pathlib import Path
 from tracewire.errors import OptionError, Place
 
 MODELINE = re.compile(r"^#\s*yaml-language-server\s*:.*$", re.MULTILINE)
+ADDRESS = re.compile(r"^#\s*yaml-language-server\s*:\s*\$schema=(\S+)", re.MULTILINE)
 
 
 def with_modeline(text: str, file: Path, schema: Path) -> str:
@@ -29,6 +30,30 @@ def with_modeline(text: str, file: Path, schema: Path) -> str:
         return text[: found.start()] + line + kept + text[found.end() :]
     ending = "\r\n" if "\r\n" in text else "\n"
     return f"{mark}{line}{ending}{text.removeprefix(mark)}"
+
+
+def is_modeline(line: str) -> bool:
+    """Whether a line tells an editor where the schema is."""
+    return MODELINE.fullmatch(line) is not None
+
+
+def moved_modeline(text: str, old: Path, new: Path) -> str:
+    """The text of the file `old` as the file `new` has it: its line still names the same schema.
+
+    An address on the network, and a path to what is not there, stay as they are.
+    """
+    found = ADDRESS.search(text)
+    if found is None:
+        return text
+    schema = old.resolve().parent / found[1]
+    try:
+        is_there = schema.is_file()
+    except (OSError, ValueError):
+        is_there = False
+    moved = _relative(schema, new.resolve().parent)
+    if not is_there or re.search(r"\s", moved):
+        return text
+    return text[: found.start(1)] + moved + text[found.end(1) :]
 
 
 def _relative(path: Path, folder: Path) -> str:

@@ -218,7 +218,8 @@ def _path(inside: Node, node: Node) -> tuple[str, ...] | None:
 def elsewhere(diagram: Diagram) -> TracewireError:
     """The error of an edit of a subsystem that stands in a file which is included."""
     what = f"the subsystem '{diagram.name}' is defined in another file"
-    hint = "Edit that file, or move the subsystem into the diagram's own."
+    own = f"own_{diagram.name}: {{extends: {diagram.name}}}"
+    hint = f"Edit that file, or write one that extends it: {own}."
     return OptionError.one(what, diagram.place, hint=hint)
 
 

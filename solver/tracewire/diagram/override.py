@@ -88,7 +88,9 @@ def _at(root: Entries, path: tuple[str, ...]) -> Node:
 
 
 def _refuse_included(outline: Outline, node: Node) -> None:
-    if node.place.file in outline.included:
-        what = f"'{'.'.join(outline.path(node)[1:])}' is defined in a file that is included"
+    path = outline.path(node)
+    # a subsystem that stands in the tree is one of the diagram's own, which may extend it
+    if node.place.file in outline.included and path[0] != "subsystems":
+        what = f"'{'.'.join(path[1:])}' is defined in a file that is included"
         hint = "Edit that file, or move it into the diagram's own."
         raise OptionError.one(what, node.place, hint=hint)

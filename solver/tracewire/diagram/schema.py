@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import keyword
 from collections.abc import Mapping
 from typing import Any
 
-from tracewire.diagram.grammar import OF_A_BLOCK, OF_KINDS, SHAPES, TOP
+from tracewire.diagram.grammar import INSIDE, OF_A_BLOCK, OF_KINDS, SHAPES, TOP
 from tracewire.diagram.shapes import (
     Anything,
     Either,
@@ -38,7 +39,9 @@ def schema_of(library: Library) -> Schema:
     it does not know: `tracewire check` does.
     """
     definitions: Schema = {name: _shape(shape) for name, shape in SHAPES.items()}
+    definitions |= {_own(name): _key(key) for name, key in OF_A_BLOCK.items()}
     definitions["block"] = _block(library)
+    definitions["subsystem"] = _changing(INSIDE, definitions["subsystem"])
     top = definitions["diagram"]
     own = [{"required": [key]} for key in ("subsystems", "include")]
     known = {"if": {"pattern": r"\."}, "else": {"enum": sorted(library)}}  # mylab.magnet has a dot
@@ -54,11 +57,30 @@ def schema_of(library: Library) -> Schema:
         "$schema": DRAFT,
         "title": "A tracewire diagram",
         "description": "https://json-schema.org for editors; `tracewire check` knows more.",
-        "if": {"required": ["extends"]},
-        "then": _object({name: {"description": key.doc} for name, key in TOP.items()}),
-        "else": whole,
+        **_changing(TOP, whole),
         "definitions": definitions,
     }
+
+
+def _changing(keys: Mapping[str, Key], whole: Schema) -> Schema:
+    """The sections of what may extend another one: a change of one has the same names."""
+    names = _object({name: {"description": key.doc} for name, key in keys.items()})
+    return {"if": {"required": ["extends"]}, "then": names, "else": whole}
+
+
+def schema_text(schema: Schema) -> str:
+    """A schema as the text of a file: a line for each definition, and for each type of a block."""
+    return f"{_lines(schema, 4)}\n"
+
+
+def _lines(value: Any, depth: int) -> str:
+    """JSON with a line for each part, down to a depth."""
+    if not depth or not isinstance(value, dict | list) or not value:
+        return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, list):
+        return "[\n" + ",\n".join(_lines(part, depth - 1) for part in value) + "\n]"
+    parts = (f"{json.dumps(key)}: {_lines(part, depth - 1)}" for key, part in value.items())
+    return "{\n" + ",\n".join(parts) + "\n}"
 
 
 def _shape(shape: Shape) -> Schema:
@@ -145,9 +167,9 @@ def _use(name: str, block: Block) -> Schema:
     properties: dict[str, Schema] = {"type": {"const": name, "description": block.doc}}
     properties |= {port.name: _port(port) for port in block.inputs}
     properties |= {parameter.name: _parameter(parameter) for parameter in block.parameters}
-    for own, key in OF_A_BLOCK.items():
+    for own in OF_A_BLOCK:
         if own != "place" or name == "sum":
-            properties.setdefault(own, _key(key))
+            properties.setdefault(own, {"$ref": f"#/definitions/{_own(own)}"})
     needed = [port.name for port in block.inputs if port.default is None]
     needed += [p.name for p in block.parameters if p.default is None]
     # an editor offers all that is required at once, by the title
@@ -157,6 +179,11 @@ def _use(name: str, block: Block) -> Schema:
     # of a row the first and the last block may have inputs of their own
     is_row = {"required": ["replicate"]}
     return found | {"if": {"not": is_row}, "then": {"required": needed}}
+
+
+def _own(key: str) -> str:
+    """The definition of a key that blocks of all types have, to which each of them refers."""
+    return f"block.{key}"
 
 
 def _port(port: Input) -> Schema:

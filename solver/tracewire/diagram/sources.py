@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from tracewire.diagram.body import Body
+from tracewire.diagram.derived import with_bases
 from tracewire.diagram.extend import merged, without
 from tracewire.diagram.files import load
 from tracewire.diagram.grammar import INCLUDED, TOP
@@ -78,12 +79,20 @@ class Sources:
             base = self._base(extends, file, body)
             if base is None:
                 return None
-            return merged(without(base, names, self.problems), _changes(own))
+            return self._derived(merged(without(base, names, self.problems), _changes(own)))
         if removed is not None:
             what = "'remove' takes parts of another diagram away, and this one extends none"
             hint = "Write extends: FILE, or take the parts away here."
             self.problems.add(what, own.keys["remove"].place, (), hint)
-        return _changes(own)
+        return self._derived(_changes(own))
+
+    def _derived(self, entries: Entries) -> Entries:
+        """The sections of a file, its subsystems with what they extend of the included files."""
+        bases: dict[str, Node] = {}
+        for _, included in self.included(entries):
+            there = included.entries.values.get("subsystems")
+            bases |= there.values if isinstance(there, Entries) else {}
+        return with_bases(entries, bases, self.problems)
 
     def _base(self, node: Node, file: Path, body: Body) -> Entries | None:
         place = node.place
@@ -187,7 +196,7 @@ class Sources:
         body.check_keys(entries, INCLUDED, "section of an included file", hint=hint)
         if "libraries" in entries.values:
             self.packages.read(entries.values["libraries"], body)
-        return Included(file, text, self._with_included(entries, body))
+        return Included(file, text, self._derived(self._with_included(entries, body)))
 
 
 def _changes(entries: Entries) -> Entries:

@@ -9,6 +9,7 @@ from tracewire.diagram.body import Body
 from tracewire.diagram.diagram import Diagram
 from tracewire.diagram.edit_series import path_text
 from tracewire.diagram.files import absent_series
+from tracewire.diagram.modeline import moved_modeline
 from tracewire.diagram.packages import Packages
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.read import read_text
@@ -21,7 +22,8 @@ from tracewire.files import write_file
 
 
 def write(diagram: Diagram, path: str | Path, overwrite: bool = False) -> Path:
-    """Write the diagram's text to a file, and return its path.
+    """Write the diagram's text to a file, and return its path. In another folder the line that
+    names its schema to an editor gets the path from there.
 
     Raises OptionError where another file is there already and `overwrite` is not said, or the file
     cannot be written; DiagramError where files that the diagram names are not found from there.
@@ -38,7 +40,7 @@ def write(diagram: Diagram, path: str | Path, overwrite: bool = False) -> Path:
             lost = [p for name, p in absent_series(moved).items() if name not in there]
             if lost:
                 raise DiagramError(lost)
-        write_file(target, diagram.text)
+        write_file(target, moved_modeline(diagram.text, diagram.file, target))
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         what = f"the file cannot be written: {reason}"

@@ -59,7 +59,7 @@ def document(sections: Mapping[str, Node]) -> str:
 
 
 def _sections(sections: Mapping[str, Node], indent: int) -> list[str]:
-    order = ("remove", *INSIDE) if indent else TOP
+    order = INSIDE if indent else TOP
     names = [*(name for name in order if name in sections), *(sections.keys() - {*order})]
     found = []
     for name in names:

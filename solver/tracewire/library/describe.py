@@ -171,6 +171,7 @@ def wiring(port: Input) -> str:
     """What an input takes, in words."""
     text = "one wire or several, each with a sign" if port.many else "a wire"
     text += "" if port.sampled is None else f", sampled at each {port.sampled}"
+    text += ", without jumps" if port.continuous else ""
     return text if port.default is None else f"{text}; not connected: {port.default}"
 
 

@@ -21,6 +21,7 @@ class Input:
 
     `sampled` is the event, a clock, at which the port takes a new value: that of its wire just
     before the tick; where the same clock holds that value already, it passes at once.
+    `continuous`: the block is not defined for a signal that jumps; what is certain to is refused.
     `default` is a formula for the port where nothing is connected; without it a wire is needed.
     """
 
@@ -30,6 +31,7 @@ class Input:
     many: bool = False
     default: str | None = None
     sampled: str | None = None
+    continuous: bool = False
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ NAMES: dict[str, dict[Tool, str]] = {
     "abs": {"Simulink": "Abs", "Xcos": "ABS_VALUE"},
     "and": {"Modelica": "And", "": "AND gate"},
     "band_pass": {"": "bandpass, band pass filter"},
+    "belt": {"Simulink": "Belt Drive, Belt Pulley", "": "timing belt, toothed belt, pulleys"},
     "bouncing_body": {"": "bouncing ball, restitution"},
     "brake": {
         "Simulink": "Disc Brake, Drum Brake, Band Brake",
@@ -81,8 +82,8 @@ NAMES: dict[str, dict[Tool, str]] = {
     "gain": {"Modelica": "Gain", "Xcos": "GAINBLK, GAINBLK_f, GAIN_f", "": "amplifier, multiply"},
     "gear": {
         "Simulink": "Gear Box, Simple Gear",
-        "Modelica": "IdealGear, IdealGearR2T",
-        "": "gearbox, transmission, rack, rack and pinion, belt drive",
+        "Modelica": "IdealGear",
+        "": "gearbox, transmission",
     },
     "hard_stop": {"": "end stop, mechanical stop"},
     "high_pass": {"": "highpass, high pass filter"},
@@ -100,6 +101,7 @@ NAMES: dict[str, dict[Tool, str]] = {
         "": "sr_flip_flop, rs_flip_flop, flip flop",
     },
     "lead_lag": {"Simulink": "Lead-Lag", "": "lead compensator, lag compensator, lead, PDT1"},
+    "lever": {"Simulink": "Ideal Lever", "": "rocker, beam on a fulcrum"},
     "limited_integrator": {
         "Simulink": "Integrator Limited",
         "Modelica": "LimIntegrator",
@@ -161,6 +163,11 @@ NAMES: dict[str, dict[Tool, str]] = {
         "Simulink": "Quantizer",
         "Xcos": "QUANT_f",
         "": "quantiser, quantise, round, ADC",
+    },
+    "rack": {
+        "Simulink": "Rack & Pinion, Wheel and Axle",
+        "Modelica": "IdealGearR2T, IdealRollingWheel",
+        "": "rack and pinion, rolling wheel",
     },
     "ramp": {"Modelica": "Ramp", "Xcos": "RAMP"},
     "random_steps": {
@@ -297,7 +304,10 @@ OTHERWISE: dict[str, str] = {
 INSTEAD: dict[str, str] = {
     "logical operator, LOGICAL_OP, LOGIC, logic": "Use 'and', 'or', 'xor' or 'not'.",
     "MinMax, MAXMIN": "Use 'min' or 'max', which take two signals or more.",
-    "scope, CSCOPE, CMSCOPE, CSCOPXY, CFSCOPE, CEVSCPE, AFFICH_m, TOWS_c, display,"
+    "CSCOPXY, CANIMXY, CSCOPXY3D, XY graph": (
+        "'tracewire analyse portrait' draws one signal of a run over another."
+    ),
+    "scope, CSCOPE, CMSCOPE, CFSCOPE, CEVSCPE, AFFICH_m, TOWS_c, display,"
     " to workspace, plot, sink": (
         "A run keeps the signals that the section 'record' names; --figure draws them."
     ),
@@ -314,7 +324,9 @@ INSTEAD: dict[str, str] = {
         "Write an event: events: [{when: x > 1, set: {n: n + 1}}]; a block 'and' joins several."
     ),
     "HALT_f, ENDBLK, END_c, stop simulation": "The section 'span' says when a run ends.",
-    "CONVERT, data type conversion": "All signals are real numbers: leave it out.",
+    "CONVERT, data type conversion": (
+        "All signals are real numbers: leave it out. 'floor' and 'quantizer' round."
+    ),
     "FROM, GOTO, GotoTagVisibility, FROMMO, GOTOMO": (
         "A wire is the name of a signal, which any block of the diagram may read: leave it out."
     ),
@@ -322,10 +334,6 @@ INSTEAD: dict[str, str] = {
     "bundle, bus, bus creator, bus selector": (
         "A vector is a 'mux'. A bundle of named signals is a subsystem that passes its inputs on:"
         " pose: {inputs: [x, v], outputs: {x: x, v: v}, blocks: {}} gives pose.x and pose.v."
-    ),
-    "belt": (
-        "A stiff belt is a 'gear'. Between two bodies an elastic belt is an 'elastic_gear' without"
-        " gap, and the strands of one that may hang through are two of 'rope'."
     ),
     "READC_f, RFILE_f, READAU_f": (
         "Write a 'table' whose points stand in a file, or a measured series of an input."
@@ -335,7 +343,6 @@ INSTEAD: dict[str, str] = {
     "subsystem, superblock, SUPER_f": (
         "Define it in the section 'subsystems', and use its name as the type."
     ),
-    "lever, ideal lever": "A lever without mass is a 'gain' of its position and one of its force.",
     "preisach": "Write include: tracewire:hysteresis.yaml, which has it as a subsystem.",
     "terminator, ground, TRASH_f": "A signal that nothing reads needs no block.",
     **{f"sensor_{name}": SENSOR.format(name) for name in SENSOR_TERMS},

@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from tracewire.diagram import is_modeline
 from tracewire.shipped import shipped
 
 FOLDERS = {"a": "a_torsion", "b": "b_triple", "c": "c_review"}
@@ -47,6 +48,8 @@ def _read(paper: str, path: Path) -> Header:
     for line in path.read_text(encoding="utf-8").splitlines():
         if not line.startswith("#"):
             break
+        if is_modeline(line):
+            continue
         lines.append(line.removeprefix("#").strip())
     title = lines[0]
     parts = _parts(" ".join(lines[1:]).strip())

@@ -317,6 +317,20 @@ def test_what_an_effect_would_change_elsewhere_is_no_place(old: str, new: str) -
     assert not [place for place in places(CART.replace(old, new)) if place.kind == "sum"]
 
 
+def test_a_row_of_sums_is_no_place_and_that_is_said() -> None:
+    text = """
+        blocks:
+          x: {type: integrator, of: v}
+          v: {type: integrator, of: f_1}
+          f: {type: sum, of: [x, -v], replicate: 2}
+        """
+    model = compile(read_text(text), backend="quick")
+    assert find_places(model) == []
+    assert untried(model.diagram, []) == [
+        "nothing is tried at the sums 'f': they are a row of blocks"
+    ]
+
+
 SHALLOW = "\n          body: {type: cart, u: u, w: -w}\n        subsystems:"
 
 
@@ -354,15 +368,6 @@ def test_two_definitions_of_one_name_are_no_places() -> None:
                 blocks: {x: {type: integrator, of: f}, f: {type: sum, of: [u, -x]}}""",
     )
     assert not [place for place in places(text) if place.kind == "sum"]
-
-
-def test_a_sum_of_an_included_file_is_no_place(tmp_path: Path) -> None:
-    lines = dedent(CART).splitlines()
-    at = lines.index("subsystems:")
-    (tmp_path / "cart.yaml").write_text("\n".join(lines[at:]), encoding="utf-8")
-    top = "\n".join(["include: cart.yaml", *lines[:at]])
-    model = compile(read_text(top, tmp_path / "top.yaml"), backend="quick")
-    assert not [place for place in find_places(model) if place.kind == "sum"]
 
 
 def test_an_effect_inside_a_subsystem_is_wired_to_the_names_there() -> None:
@@ -457,7 +462,6 @@ def test_subsystems_that_get_no_effect_are_said(tmp_path: Path) -> None:
     assert untried(model.diagram, find_places(model)) == [
         "nothing is tried at sums inside 'left', 'right': several blocks are made from 'pair'",
         "nothing is tried at sums inside 'chain': it is a row of blocks",
-        "nothing is tried at sums inside 'part': its definition stands in parts.yaml",
         "nothing is tried at sums inside 'chosen': a parameter chooses its body",
     ]
 

@@ -55,6 +55,7 @@ def _changes(
         place.definition,
         place.kind == "drive",
         place.element,
+        place.own,
     )
     known = {n: own for n, own in _own(candidate, values).items() if n in diagram.measured}
     if known:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
+from pathlib import Path
 
 from tracewire.diagram import BlockUse, Diagram, find_signal
 from tracewire.errors import Place
@@ -14,9 +15,15 @@ def opened(diagram: Diagram) -> dict[str, BlockUse]:
 
     An effect is added to the text of a definition. So that has to be in the diagram's own text or
     in one that it extends, no other block may be made from it, and no other definition may have
-    its name. A body that a parameter chooses has no block of its own in the text.
+    its name. What an included file defines stays as it is: the block gets a definition that extends
+    it (`AddBlock.own`). A body that a parameter chooses has no block of its own in the text.
     """
     return {path: use for path, use, why in _looked_into(diagram) if not why}
+
+
+def is_included(diagram: Diagram, use: BlockUse) -> bool:
+    """Whether an included file defines the subsystem that a block is."""
+    return use.subsystem is not None and use.subsystem.file != diagram.file
 
 
 def closed(diagram: Diagram) -> dict[str, str]:
@@ -26,6 +33,16 @@ def closed(diagram: Diagram) -> dict[str, str]:
         for path, use, why in _looked_into(diagram)
         if why and any(inside.type == "sum" for inside in _blocks(use))
     }
+
+
+def rows_of_sums(diagram: Diagram) -> list[str]:
+    """The rows of sums where an effect could be added otherwise, by their paths."""
+    found: dict[str, None] = {}
+    for path in ("", *opened(diagram)):
+        for use in diagram_at(diagram, path).blocks.values():
+            if use.row and use.type == "sum":
+                found.setdefault(f"{path}.{use.row}" if path else use.row)
+    return [*found]
 
 
 def _looked_into(diagram: Diagram) -> Iterator[tuple[str, BlockUse, str]]:
@@ -41,18 +58,36 @@ def _looked_into(diagram: Diagram) -> Iterator[tuple[str, BlockUse, str]]:
                 continue
             if use.row:
                 yield path + use.row, use, "it is a row of blocks"
-            elif sub.file != diagram.file:
-                yield path + name, use, f"its definition stands in {sub.file.name}"
-            elif uses[sub.place] > 1:
-                yield path + name, use, f"several blocks are made from '{sub.name}'"
+            elif inside.file != diagram.file:
+                yield path + name, use, f"it stands inside a subsystem of {inside.file.name}"
             elif sub.variants and not sub.variant:
                 yield path + name, use, "a parameter chooses its body"
+            elif sub.file != diagram.file:
+                yield path + name, use, _not_extended(diagram, use, sub)
+                yield from of(sub, f"{path}{name}.")
+            elif uses[sub.place] > 1:
+                yield path + name, use, f"several blocks are made from '{sub.name}'"
             else:
                 unclear = f"several definitions are called '{sub.name}'"
                 yield path + name, use, "" if names[sub.name] == 1 else unclear
                 yield from of(sub, f"{path}{name}.")
 
     return of(diagram, "")
+
+
+def _not_extended(diagram: Diagram, use: BlockUse, sub: Diagram) -> str:
+    """Why a block cannot get a definition that extends that of an included file; '' if it can."""
+    if use.place.file != str(diagram.file):
+        return f"its line stands in {Path(use.place.file).name}"
+    if sub.variants:
+        return f"its definition stands in {sub.file.name}, and has variants"
+    visible = diagram.subsystems
+    needed = [one for one in sub.blocks.values() if one.subsystem is not None]
+    hidden = [one.type for one in needed if one.type not in {*sub.subsystems, *visible}]
+    if use.type not in visible or hidden:
+        seen = (hidden or [use.type])[0]
+        return f"the diagram does not include the file that defines '{seen}'"
+    return ""
 
 
 def _blocks(use: BlockUse) -> Iterator[BlockUse]:

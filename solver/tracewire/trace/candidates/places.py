@@ -10,7 +10,14 @@ from typing import Literal
 from tracewire.compile import Flat, FlatBlock, FlatState, Model
 from tracewire.diagram import Diagram, element_name, find_signal, split_index
 from tracewire.formula import Name, names_of
-from tracewire.trace.candidates.inside import closed, local_name, opened
+from tracewire.trace.candidates.inside import (
+    closed,
+    diagram_at,
+    is_included,
+    local_name,
+    opened,
+    rows_of_sums,
+)
 
 PASSED = ("sum", "gain", "divide")
 MOST_TOLD = 6
@@ -26,7 +33,8 @@ class Place:
     ('' where there is none), and `others`, (q, v) of the sums of other rates. `drive` holds the
     drives of the diagram, at a drive itself only that. `within` is the path of the subsystem that
     a sum stands in, '' at the top; its signals have their names of the flat equations. `element`
-    is the number of an element, and how many there are, of a sum of vectors.
+    is the number of an element, and how many there are, of a sum of vectors. `own` is `within`
+    where an included file defines the subsystem: an effect needs a definition of its own there.
     """
 
     name: str
@@ -39,6 +47,7 @@ class Place:
     drive: tuple[str, ...] = ()
     within: str = ""
     element: tuple[int, int] | None = None
+    own: str = ""
 
 
 def find_places(model: Model) -> list[Place]:
@@ -52,6 +61,8 @@ def find_places(model: Model) -> list[Place]:
     inside subsystems is a place where each is the only block of its type (see `opened`). Each
     element of a sum of vectors is a place; sums of matrices are not tried.
 
+    A sum of a row is no place: a row has one line, and each block of it other signals.
+
     Drives: the named inputs that something reads, and the blocks whose output depends on nothing
     but the time (sine, square, step, ramp, table, a formula of t) and that something reads.
 
@@ -61,7 +72,11 @@ def find_places(model: Model) -> list[Place]:
     Sensors: the signals that a series measures in a column of its own; but not an input.
     """
     drives = tuple(_drives(model))
-    sums = _sums(model.flat, drives, opened(model.diagram))
+    inside = opened(model.diagram)
+    sums = _sums(model.flat, drives, inside)
+    included = {path for path, use in inside.items() if is_included(model.diagram, use)}
+    sums = [replace(p, own=p.within) if p.within in included else p for p in sums]
+    sums = [place for place in sums if not _in_row(model.diagram, place)]
     sums = [place for place in sums if place.within or not _is_drive(model, place, drives)]
     return [
         *(_seen_from(model, place) for place in sums),
@@ -71,8 +86,8 @@ def find_places(model: Model) -> list[Place]:
 
 
 def untried(diagram: Diagram, places: Sequence[Place]) -> list[str]:
-    """What cannot be tried, in words: at sums inside some subsystems, and at those that have no
-    rate, or no coordinate."""
+    """What cannot be tried, in words: at sums inside some subsystems, at rows of sums, and at sums
+    that have no rate, or no coordinate."""
     shut: dict[str, list[str]] = {}
     for path, why in closed(diagram).items():
         shut.setdefault(why, []).append(f"'{path}'")
@@ -80,6 +95,10 @@ def untried(diagram: Diagram, places: Sequence[Place]) -> list[str]:
         f"nothing is tried at sums inside {', '.join(paths[:MOST_TOLD])}"
         f"{' ...' if len(paths) > MOST_TOLD else ''}: {why}"
         for why, paths in shut.items()
+    ]
+    found += [
+        f"nothing is tried at the sums '{path}': they are a row of blocks"
+        for path in rows_of_sums(diagram)
     ]
     effects = diagram.library.effects()
     for place in places:
@@ -157,6 +176,12 @@ def _seen_from(model: Model, place: Place) -> Place:
     others = tuple(body for body in others if any(body))
     drive = tuple(name for name in place.drive if visible(name))
     return replace(place, q=q, v=v, a=a, others=others, drive=drive)
+
+
+def _in_row(diagram: Diagram, place: Place) -> bool:
+    """Whether a sum is one of a row, which have one line."""
+    inside = diagram_at(diagram, place.within)
+    return inside.blocks[place.definition.rpartition(".")[2]].row != ""
 
 
 def _is_reached(name: str, block: FlatBlock, inside: Collection[str]) -> bool:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tracewire.diagram import Diagram, add_addend, add_to_drive, quoted
+from tracewire.diagram import Diagram, add_addend, add_to_drive, patch_own, quoted
 from tracewire.errors import OptionError
 from tracewire.formula import number_text
 from tracewire.trace.candidates.inside import diagram_at, local_name
@@ -81,7 +81,10 @@ def add_table(diagram: Diagram, place: Place, missing: Missing, file: str) -> Di
     )
     if place.kind == "drive":
         return add_to_drive(diagram, place.definition, name, line)
-    return add_addend(diagram, place.definition, name, line, element=place.element)
+    to = place.definition
+    if place.own:
+        diagram, to = patch_own(diagram, place.own, to)
+    return add_addend(diagram, to, name, line, element=place.element)
 
 
 def wires_of(place: Place) -> Mapping[str, str]:

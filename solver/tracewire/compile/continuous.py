@@ -1,0 +1,132 @@
+"""Ports that must not get a signal that jumps: what is certain to jump is refused.
+
+Certain to jump are, of signals that are wired directly or through sums, gains and delays:
+
+    a if b >= c else d    where a and d are different numbers (step, relay, compare, switch)
+    a if b >= c else d    where b and c read t alone, and a or d jumps (pulse)
+    floor(u)              (square, sawtooth, quantizer)
+    mod(u, a)             where u jumps, or reads t alone
+    what draws a number   (noise, random_steps)
+    a state               that stands still and that events set (zero_order_hold, counter, toggle)
+
+Of anything else nothing is said: whether it jumps depends on where the run goes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Mapping, Sequence
+from dataclasses import dataclass
+
+from tracewire.compile.flat import FlatEvent, FlatMemory, FlatParameter, FlatState
+from tracewire.errors import FormulaError, Place, Problem
+from tracewire.formula import Call, Expression, Name, Number, evaluate, names_of
+
+PASSED = ("+", "-", "neg", "stack", "[]", "sum", "join")
+FIRST = ("delayed", "/")
+"""Functions of which the first argument alone counts."""
+
+
+@dataclass(frozen=True)
+class ContinuousPort:
+    """A port that must not get a jump, what is wired to it, and the place of its block."""
+
+    port: str
+    type: str
+    wire: Expression
+    place: Place
+
+
+def jump_problems(
+    ports: Sequence[ContinuousPort],
+    signals: Mapping[str, Expression],
+    states: Mapping[str, FlatState],
+    events: Sequence[FlatEvent],
+    memories: Sequence[FlatMemory],
+    parameters: Mapping[str, FlatParameter],
+) -> list[Problem]:
+    """The ports that are wired to what is certain to jump, before vectors are expanded."""
+    if not ports:
+        return []
+    reset = {name for event in events for name in event.set}
+    reset |= {name for memory in memories for move in memory.transitions for name in move.set}
+    still = {name for name, state in states.items() if state.rate == Number(0.0)}
+    search = _Search(signals, parameters, reset & still)
+    found = []
+    for port in ports:
+        name = search.jumping(port.wire, ())
+        if name:
+            what = f"input '{port.port}' of a {port.type} gets '{name}', which jumps"
+            hint = "What moves this block has no jumps: put a rate_limiter or a first_order before."
+            found.append(Problem(what, port.place, (), hint))
+    return found
+
+
+class _Search:
+    """The search for a jump, back from a formula through the signals that it reads."""
+
+    def __init__(
+        self,
+        signals: Mapping[str, Expression],
+        parameters: Mapping[str, FlatParameter],
+        held: Container[str],
+    ) -> None:
+        self.signals, self.parameters, self.held = signals, parameters, held
+
+    def jumping(self, node: Expression, seen: tuple[str, ...]) -> str:
+        """The signal by which a formula is certain to jump; '' where that is not certain."""
+        own = seen[-1] if seen else "this"
+        if isinstance(node, Number):
+            return ""
+        if isinstance(node, Name):
+            if node.name in self.held:
+                return node.name
+            formula = self.signals.get(node.name)
+            if formula is None or node.name in seen:
+                return ""
+            return self.jumping(formula, (*seen, node.name))
+        function, arguments = node.function, node.arguments
+        if function in PASSED:
+            return next(filter(None, (self.jumping(part, seen) for part in arguments)), "")
+        if function in FIRST:
+            return self.jumping(arguments[0], seen)
+        if function == "*":
+            for part, other in (arguments, arguments[::-1]):
+                if self.number(other):
+                    return self.jumping(part, seen)
+        if _draws(node) or (function == "floor" and self.number(node) is None):
+            return own
+        if function == "mod":
+            return own if self.is_timed(node) else self.jumping(arguments[0], seen)
+        if function == "if" and self.number(arguments[0]) is None:
+            values = [self.number(value) for value in arguments[1:]]
+            if None not in values and values[0] != values[1]:
+                return own
+            if self.is_timed(arguments[0]):
+                return next(filter(None, (self.jumping(part, seen) for part in arguments[1:])), "")
+        return ""
+
+    def is_timed(self, node: Expression) -> bool:
+        """Whether a formula reads the time, and nothing else but parameters."""
+        return {*names_of(node)} - self.parameters.keys() == {"t"}
+
+    def number(self, node: Expression) -> float | None:
+        """The value of a formula of numbers and parameters; None of any other."""
+        names = names_of(node)
+        if not all(name in self.parameters for name in names):
+            return None
+        values = {name: self.number(self.parameters[name].formula) for name in names}
+        if None in values.values():
+            return None
+        try:
+            return evaluate(
+                node, {name: value for name, value in values.items() if value is not None}
+            )
+        except FormulaError:
+            return None
+
+
+def _draws(node: Expression) -> bool:
+    """Whether a random number is a part of a formula."""
+    if not isinstance(node, Call):
+        return False
+    return node.function == "random_number" or any(map(_draws, node.arguments))
