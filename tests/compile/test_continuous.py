@@ -81,3 +81,17 @@ subsystems:
 """
     with pytest.raises(DiagramError, match=r"block 'inside.play': .* gets 'wave', which jumps"):
         compile(read_text(text))
+
+
+def test_a_long_chain_of_doubled_signals_is_looked_through_once() -> None:
+    """Back along each wire it would be 2**2000 ways, and too deep for a recursion."""
+    chain = "".join(f"  u{n}: {{type: sum, of: [u{n - 1}, u{n - 1}]}}\n" for n in range(1, 2000))
+    text = f"""
+blocks:
+  u0: {{type: square, amplitude: 1, frequency: 2}}
+{chain}
+  sine: {{type: sine, amplitude: 1, omega: 3}}
+  play: {{type: play_operator, of: u1999, rate: sine, width: 0.1}}
+"""
+    with pytest.raises(DiagramError, match="gets 'u0', which jumps"):
+        compile(read_text(text))

@@ -14,7 +14,7 @@ Of anything else nothing is said: whether it jumps depends on where the run goes
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from tracewire.compile.flat import FlatEvent, FlatMemory, FlatParameter, FlatState
@@ -53,7 +53,7 @@ def jump_problems(
     search = _Search(signals, parameters, reset & still)
     found = []
     for port in ports:
-        name = search.jumping(port.wire, ())
+        name = search.jumping(port.wire)
         if name:
             what = f"input '{port.port}' of a {port.type} gets '{name}', which jumps"
             hint = "What moves this block has no jumps: put a rate_limiter or a first_order before."
@@ -68,41 +68,47 @@ class _Search:
         self,
         signals: Mapping[str, Expression],
         parameters: Mapping[str, FlatParameter],
-        held: Container[str],
+        held: Collection[str],
     ) -> None:
-        self.signals, self.parameters, self.held = signals, parameters, held
+        self.signals, self.parameters = signals, parameters
+        self.jumps = {name: name for name in held}
+        """Of each signal that was looked at the one by which it jumps, or ''."""
+        self.values: dict[str, float | None] = {}
+        formulas = {name: parameter.formula for name, parameter in parameters.items()}
+        for name in _in_order(parameters, formulas, self.values):
+            self.values[name] = self.number(formulas[name])
 
-    def jumping(self, node: Expression, seen: tuple[str, ...]) -> str:
+    def jumping(self, wire: Expression) -> str:
         """The signal by which a formula is certain to jump; '' where that is not certain."""
-        own = seen[-1] if seen else "this"
+        for name in _in_order(names_of(wire), self.signals, self.jumps):
+            self.jumps[name] = self._jumping(self.signals[name], name)
+        return self._jumping(wire, "this")
+
+    def _jumping(self, node: Expression, own: str) -> str:
+        """The same of a formula whose signals are known; `own` is the one that it is a part of."""
         if isinstance(node, Number):
             return ""
         if isinstance(node, Name):
-            if node.name in self.held:
-                return node.name
-            formula = self.signals.get(node.name)
-            if formula is None or node.name in seen:
-                return ""
-            return self.jumping(formula, (*seen, node.name))
+            return self.jumps.get(node.name, "")
         function, arguments = node.function, node.arguments
         if function in PASSED:
-            return next(filter(None, (self.jumping(part, seen) for part in arguments)), "")
+            return next(filter(None, (self._jumping(part, own) for part in arguments)), "")
         if function in FIRST:
-            return self.jumping(arguments[0], seen)
+            return self._jumping(arguments[0], own)
         if function == "*":
             for part, other in (arguments, arguments[::-1]):
                 if self.number(other):
-                    return self.jumping(part, seen)
+                    return self._jumping(part, own)
         if _draws(node) or (function == "floor" and self.number(node) is None):
             return own
         if function == "mod":
-            return own if self.is_timed(node) else self.jumping(arguments[0], seen)
+            return own if self.is_timed(node) else self._jumping(arguments[0], own)
         if function == "if" and self.number(arguments[0]) is None:
             values = [self.number(value) for value in arguments[1:]]
             if None not in values and values[0] != values[1]:
                 return own
             if self.is_timed(arguments[0]):
-                return next(filter(None, (self.jumping(part, seen) for part in arguments[1:])), "")
+                return next(filter(None, (self._jumping(part, own) for part in arguments[1:])), "")
         return ""
 
     def is_timed(self, node: Expression) -> bool:
@@ -111,18 +117,31 @@ class _Search:
 
     def number(self, node: Expression) -> float | None:
         """The value of a formula of numbers and parameters; None of any other."""
-        names = names_of(node)
-        if not all(name in self.parameters for name in names):
-            return None
-        values = {name: self.number(self.parameters[name].formula) for name in names}
-        if None in values.values():
+        values = {name: self.values.get(name) for name in names_of(node)}
+        known = {name: value for name, value in values.items() if value is not None}
+        if len(known) < len(values):
             return None
         try:
-            return evaluate(
-                node, {name: value for name, value in values.items() if value is not None}
-            )
+            return evaluate(node, known)
         except FormulaError:
             return None
+
+
+def _in_order(
+    names: Iterable[str], formulas: Mapping[str, Expression], known: Container[str]
+) -> Iterator[str]:
+    """The names that formulas are needed of and that are not known, each after those that it reads;
+    without a recursion, which a long chain would break."""
+    due, begun = list(names), set[str]()
+    while due:
+        name = due[-1]
+        if name in known or name not in formulas or name in begun:
+            due.pop()
+            if name in begun and name not in known:
+                yield name
+            continue
+        begun.add(name)
+        due += [other for other in names_of(formulas[name]) if other not in begun]
 
 
 def _draws(node: Expression) -> bool:
