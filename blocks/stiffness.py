@@ -16,7 +16,9 @@ PAPER = (
 OF = Input("of", doc="the deflection")
 # whole numbers of waves in the record, or on the way that is gone: what lies between two of them
 # is at most half a wave off at either end, so that no frequency is missed
-PERIODS = Shape(tuple(1 / n for n in range(1, 61)), of="T", low=1e-9, most=1.0)
+PERIODS = Shape(
+    tuple(1 / n for n in range(1, 61)), of="T", low=1e-9, most=1.0, line=True, modulates="of"
+)
 PITCHES = Shape((1.0, 0.5, 0.25), of="stroke", most=1.0, wave=True)
 # sine and cosine; the sign of the amplitude does the other half of the circle
 PHASES = Shape((0.0, QUARTER), low=-4 * QUARTER)

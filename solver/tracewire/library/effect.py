@@ -42,8 +42,10 @@ class Shape:
     parameter may take in a refit, in SI. least, most: between which multiples of `of` the record
     can tell a value. A `wave` is a length along the coordinate that comes back: it is at least a
     few samples long, and those lengths are tried first that a scan of all finds best. A `line` is a
-    period in time: those of the lines in the spectrum of the residual are tried, too. A `fixed`
-    shape has the first of its values, and no fit changes it.
+    period in time: those of the lines in the spectrum of the residual are tried, too. A period with
+    `modulates` is that of a wave that multiplies the input of this name: the residual has lines at
+    the sums and differences of the frequencies of both, so that these are tried. A `fixed` shape
+    has the first of its values, and no fit changes it.
     """
 
     at: tuple[float, ...]
@@ -53,6 +55,7 @@ class Shape:
     most: float | None = None
     wave: bool = False
     line: bool = False
+    modulates: str = ""
     fixed: bool = False
 
 

@@ -164,6 +164,14 @@ class CandidateOptions:
     longer no lines are looked for, as the spectrum would fill the memory."""
     line_near: int = 25
     """Frequencies, 1 over the length of the record apart, among whose power a line stands out."""
+    line_around: float = 2.0
+    """Frequencies, 1 over the length of the record apart, on either side of the sum of two lines in
+    which the period of a wave that modulates a signal is looked for: the lines of a free swing are
+    that wide."""
+    modulated_lines: int = 2
+    """Lines of a signal, the highest ones, that a wave which modulates it is looked for beside."""
+    modulated_least: float = 0.01
+    """The least power of such a line, as a part of the highest."""
     teeth: int = 48
     """The most teeth, slots or poles of a turn that are tried one by one."""
 
@@ -381,6 +389,9 @@ class SearchOptions:
     if it is uncommon or has a rival that does as well. Seen on five rigs: 5e-5 of a drift, 1.6e-4
     of a wave, 6e-6 of a drive's gain, 2e-4 of a play, 4e-4 of a bias, where other names were
     right."""
+    slight: float = 0.1
+    """The part of the squared error of the noise below which a wave or a drift beside others is a
+    part of what is left, where that is no noise either. Seen on three rigs: 0.02 to 0.06."""
     related: float = 0.9
     """The likeness from which on an effect is a rival of another one."""
     related_together: float = 0.5

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.residual import Criterion, Measured, Section, cut, opened
-from tracewire.trace.candidates.lines import line_periods
+from tracewire.trace.candidates.lines import line_periods, modulating_periods
 from tracewire.trace.thresholds import CandidateOptions
 
 Vector = NDArray[np.float64]
@@ -65,3 +65,19 @@ def test_a_record_with_a_gap_of_years_is_passed_over() -> None:
     segments = cut(model, Section(measured, 0, 2400), 120, ("x", "v"))
     windows = opened(Criterion(model, segments, [], {}, sigma={"x": 1.0}, weighting="sum"))
     assert line_periods(windows, OPTIONS) == []
+
+
+def test_a_wave_that_modulates_a_swing_is_looked_for_beside_both_lines() -> None:
+    """x*sin(w t) with a swing x: the residual has a line at the sum and one at the difference."""
+    t = np.arange(0, 40, 0.01)
+    swing = np.exp(-t / 30) * np.sin(2 * np.pi * 0.83 * t) + 0.2
+    tried = np.array(modulating_periods([1 / (1.58 - 0.83)], [(t, swing)], OPTIONS))
+    assert np.min(np.abs(1 / tried - 1.58)) * 40 < 0.15
+    assert len(tried) < 100
+
+
+def test_a_signal_that_rests_or_has_a_gap_of_years_modulates_nothing() -> None:
+    t = np.r_[np.arange(0, 30, 0.01), 1e9 + np.arange(0, 30, 0.01)]
+    assert modulating_periods([0.5], [(t, np.sin(20 * t))], OPTIONS) == []
+    still = np.arange(0, 30, 0.01)
+    assert modulating_periods([0.5], [(still, np.ones(len(still)))], OPTIONS) == []

@@ -157,7 +157,11 @@ def test_what_explains_next_to_nothing_and_may_be_another_law_is_a_refinement(
         for name in ("coulomb", second)
     ]
     best = SimpleNamespace(
-        effects=effects, s2=1.0, count=1000, standard_errors={"coulomb": 1.0, second: 1.0}
+        effects=effects,
+        s2=1.0,
+        count=1000,
+        rss=1000.0,
+        standard_errors={"coulomb": 1.0, second: 1.0},
     )
     search = SimpleNamespace(options=OPTIONS, tell=lambda _: None, words=[])
     finish = import_module("tracewire.trace.search.finish")
@@ -173,3 +177,51 @@ def test_what_explains_next_to_nothing_and_may_be_another_law_is_a_refinement(
         f" missing{told}, so it may stand for anything, and is not named"
     )
     assert search.words == ([words] if told is not None else [])
+
+
+@pytest.mark.parametrize(
+    ("second", "errors", "s2", "chance", "stays"),
+    [
+        ("harmonic", 8.0, 1.0, 1e-6, False),
+        ("harmonic", 8.0, 1.0, 0.2, True),  # what is left is noise
+        ("harmonic", 15.0, 1.0, 1e-6, True),  # 22 % of the squared error of the noise
+        ("backlash", 8.0, 1.0, 1e-6, True),  # no effect that others imitate
+        ("harmonic", 8.0, 3.0, 1e-6, True),  # far above the noise
+    ],
+)
+def test_a_slight_wave_beside_what_is_no_noise_is_a_part_of_that(
+    second: str,
+    errors: float,
+    s2: float,
+    chance: float,
+    stays: bool,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    effects = [
+        SimpleNamespace(
+            candidate=SimpleNamespace(effect=name, coefficient=name, neutral=0.0),
+            coefficient=errors,
+        )
+        for name in ("coulomb", second)
+    ]
+    best = SimpleNamespace(
+        effects=effects,
+        s2=s2,
+        count=1000,
+        rss=1000.0 * s2,
+        standard_errors={"coulomb": 1.0, second: 1.0},
+    )
+    search = SimpleNamespace(
+        options=OPTIONS,
+        tell=lambda _: None,
+        words=[],
+        screen=lambda _: SimpleNamespace(chance=lambda: chance),
+    )
+    finish = import_module("tracewire.trace.search.finish")
+    monkeypatch.setattr(
+        finish, "_refitted", lambda search, best, kept: SimpleNamespace(effects=kept)
+    )
+    declared = SimpleNamespace(s2=2.0 + s2)
+    found = _without_trifles(search, best, declared, {})  # type: ignore[arg-type]
+    assert len(found.effects) == 1 + stays
+    assert len(search.words) == 1 - stays

@@ -175,6 +175,7 @@ def _candidate(
         scales={name: shape.of for name, shape in effect.shapes.items()},
         waves=tuple(name for name, shape in effect.shapes.items() if shape.wave),
         lines=tuple(name for name, shape in effect.shapes.items() if shape.line),
+        modulated={n: signals[s.modulates] for n, s in effect.shapes.items() if s.modulates},
         fixed=tuple(name for name, shape in effect.shapes.items() if shape.fixed),
         alias=effect.alias,
         each=effect.each,

@@ -10,16 +10,23 @@ from numpy.typing import NDArray
 
 from tracewire.residual import Windows
 from tracewire.trace.candidates.candidate import Candidate
+from tracewire.trace.candidates.levels import Trajectory
 from tracewire.trace.thresholds import CandidateOptions
 
 Vector = NDArray[np.float64]
 
 
 def with_lines(
-    candidates: Sequence[Candidate], windows: Windows, options: CandidateOptions
+    candidates: Sequence[Candidate],
+    windows: Windows,
+    runs: Sequence[Trajectory],
+    options: CandidateOptions,
 ) -> list[Candidate]:
-    """The candidates, those of a period in time with the lines of the residual before their
-    grid."""
+    """The candidates, those of a period in time with the lines of the residual before their grid.
+
+    A wave that multiplies a signal of the `runs` has the periods to be scanned: those beside the
+    sums and differences of a line of the residual and one of the signal, and those of the grid.
+    """
     if not any(candidate.lines for candidate in candidates):
         return list(candidates)
     periods = line_periods(windows, options)
@@ -27,11 +34,52 @@ def with_lines(
     for candidate in candidates:
         for shape in candidate.lines:
             low, high = candidate.limits[shape]
-            own = tuple(period for period in periods if low <= period <= high)
-            grid = (*own, *candidate.shapes[shape])
-            candidate = replace(candidate, shapes={**candidate.shapes, shape: grid})
+            grid = candidate.shapes[shape]
+            if shape in candidate.modulated:
+                signals = [(run.t, run.signals[candidate.modulated[shape]]) for run in runs]
+                beside = modulating_periods(periods, signals, options)
+                inside = [period for period in beside if low <= period <= high]
+                if inside:  # else the grid stays as a whole, by which chance is judged
+                    own = sorted({*inside, *grid}, reverse=True)
+                    candidate = replace(candidate, scanned={shape: tuple(own)})
+            else:
+                own = [period for period in periods if low <= period <= high]
+                shapes = {**candidate.shapes, shape: (*own, *grid)}
+                candidate = replace(candidate, shapes=shapes)
         found.append(candidate)
     return found
+
+
+def modulating_periods(
+    periods: Sequence[float], signals: Sequence[tuple[Vector, Vector]], options: CandidateOptions
+) -> list[float]:
+    """The periods in s near to those of a wave that shifts the lines of signals to those of
+    `periods`: a product of two sines has their sum and their difference in its spectrum.
+
+    signals: times (N,) in s and values (N,) of each series.
+    """
+    length = max(float(t[-1] - t[0]) for t, _ in signals)
+    near = np.arange(-options.line_around, options.line_around + 1e-9, 1 / options.line_finer)
+    own = {line for t, values in signals for line in _lines_of(t, values, options)}
+    shifted = {f for p in periods for line in own for f in (1 / p + line, abs(1 / p - line))}
+    return [1 / f for s in sorted(shifted) for f in (s + near / length).tolist() if f * length >= 1]
+
+
+def _lines_of(t: Vector, values: Vector, options: CandidateOptions) -> list[float]:
+    """The frequencies in Hz of the highest lines in the spectrum of a signal."""
+    interval = float(np.median(np.diff(t)))
+    if not options.line_near <= (t[-1] - t[0]) / interval <= options.line_sparse * len(t):
+        return []
+    even = np.arange(t[0], t[-1], interval)
+    moving = np.interp(even, t, values - np.mean(values)) * np.hanning(len(even))
+    count = options.line_finer * len(even)
+    power = np.abs(np.fft.rfft(moving, count)) ** 2
+    inner = power[1:-1]
+    peak = (inner >= power[:-2]) & (inner > power[2:])
+    peak &= inner > options.modulated_least * np.max(power)
+    lines = 1 + np.flatnonzero(peak)
+    best = lines[np.argsort(-power[lines], kind="stable")][: options.modulated_lines]
+    return [_top(power, n) / (count * interval) for n in best.tolist()]
 
 
 def line_periods(windows: Windows, options: CandidateOptions) -> list[float]:

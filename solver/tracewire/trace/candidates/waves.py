@@ -1,4 +1,5 @@
-"""Waves along a coordinate: which lengths of a wave a record shows, by a scan of all of them."""
+"""Waves along a coordinate: which lengths of a wave a record shows, by a scan of all of them; and
+waves in time, by a scan of periods that are near."""
 
 from __future__ import annotations
 
@@ -39,7 +40,8 @@ def scanned(
 ) -> list[Candidate]:
     """The candidates, those with a wave with the lengths that promise most in place of their grid.
 
-    `used` are the samples of each run in the windows that are looked at.
+    `used` are the samples of each run in the windows that are looked at. Of a period in time those
+    are scanned that the candidate says.
 
     All lengths between the bounds are scored, some of them for each wave more on the way, and
     where the coordinate is an angle also 2 pi/n; the peaks of the score are kept. A candidate that
@@ -47,7 +49,7 @@ def scanned(
     """
     found = []
     for candidate in candidates:
-        for shape in candidate.waves:
+        for shape in (*candidate.waves, *candidate.scanned):
             try:
                 grid = _peaks(model, candidate, shape, runs, used, residual, answer, options)
             except TracewireError:
@@ -84,7 +86,8 @@ def _peaks(
 ) -> tuple[float, ...]:
     """The lengths at the highest peaks of the score, the best first."""
     angle = model.flat.units.get(candidate.place.q) == "rad"
-    lengths = _lengths(*candidate.limits[shape], angle, options)
+    near = candidate.scanned.get(shape)
+    lengths = np.array(near) if near else _lengths(*candidate.limits[shape], angle, options)
     falls = []
     for first in range(0, len(lengths), TOGETHER):
         some = lengths[first : first + TOGETHER]

@@ -219,7 +219,7 @@ def screened(
     model = windows.criterion.model
     measured = as_measured(windows, tangent.trajectories)
     options = tangent.options
-    candidates = with_lines(candidates, windows, options.candidate)
+    candidates = with_lines(candidates, windows, measured, options.candidate)
     if scan:
         candidates = scanned(
             model, candidates, measured, tangent.used, residual, answer, options.candidate

@@ -285,6 +285,13 @@ def _without_trifles(
             ties = [str(rival.added) for rival in rivals.get(str(effect), ()) if rival.tied]
             unsure = effect.candidate.effect in options.uncommon or ties
             if unsure and taken < options.search.trifle * excess:
+                part = f"{100 * taken / excess:.2g} % of the squared error that was missing"
+                as_well = f", as {' and '.join(ties)} would" if ties else ""
+                words = f"it takes only {part}{as_well}, so it may stand for anything"
+                break
+            if _is_part_of_a_rest(search, best, effect, taken):
+                part = f"{100 * taken / best.rss:.2g} % of the squared error of the noise"
+                words = f"it takes {part}, and more is left that no effect takes"
                 break
         else:
             return best
@@ -293,13 +300,20 @@ def _without_trifles(
         if smaller is None:
             return best
         best = smaller
-        as_well = f", as {' and '.join(ties)} would" if ties else ""
-        search.words.append(
-            f"{effect} would be a refinement: it takes only {100 * taken / excess:.2g} % of the"
-            f" squared error that was missing{as_well}, so it may stand for anything, and is not"
-            " named"
-        )
+        search.words.append(f"{effect} would be a refinement: {words}, and is not named")
     return best
+
+
+def _is_part_of_a_rest(search: Search, best: Trial, effect: Added, taken: float) -> bool:
+    """Whether a wave or a drift takes little beside the noise and leaves what is no noise: it is
+    the part with its shape of a small law that no block has."""
+    options = search.options
+    if effect.candidate.effect not in options.uncommon or best.s2 >= options.trial.gate_noise:
+        return False
+    if taken >= options.search.slight * best.rss:
+        return False
+    search.tell(f"looking for what is left beside {effect}")
+    return search.screen(best).chance() <= options.screen.chance
 
 
 def ordered(best: Trial) -> Trial:
