@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -154,11 +155,15 @@ def test_where_the_text_has_no_room_for_an_effect_none_is_tried() -> None:
 
 
 def test_a_sum_of_a_row_is_told_and_no_end_of_a_search() -> None:
+    """It is no place; where a candidate is there all the same, its change is refused."""
     text = DIAGRAM.replace("of: [spring, damper]}", "of: [spring, damper], replicate: 1}")
     bench = bench_of(record(end=6.0), text=text.replace("of: force", "of: force_1"))
     search = search_of(bench)
     now = search.declared()
-    coulomb = Added(candidates_of(bench)["coulomb @ force_1"], {"level": 0.1})
+    assert "coulomb @ force_1" not in candidates_of(bench)
+    plain = candidates_of(bench_of(record(end=6.0), text=DIAGRAM))["coulomb @ force"]
+    place = replace(plain.place, name="force_1", definition="force_1")
+    coulomb = Added(replace(plain, place=place), {"level": 0.1})
     refit = search.refits.refit(now, [coulomb], now.windows.segments)
     assert search.refits.trials(now, [refit]) == [None]
     assert "coulomb @ force_1 was not tried: block 'force_1' is one of the row" in search.words[0]
