@@ -421,3 +421,26 @@ events:
     assert np.all(result["v1"][after] == 0.0)
     assert result["gap"] == pytest.approx(np.zeros(len(result.t)), abs=1e-12)
     assert result["relay"][after] == pytest.approx(np.cos(result.t[after]) / 6, abs=1e-9)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_play_is_let_go_at_the_turn_of_a_rate_that_a_slide_holds(method: str) -> None:
+    """What put the rate back onto the surface of the slide moved it off the turn that was located
+    there: by 1e-13 of the span it went the old way, and pushed what it had just let go."""
+    text = """
+span: [0, 30]
+blocks:
+  x: {type: integrator, of: v}
+  v: {type: integrator, of: a}
+  off: {type: expression, formula: v - cos(t)}
+  relay: {type: sign, of: off}
+  a: {type: expression, formula: -3*relay - 0.5*follower - 2*x}
+  follower: {type: play_operator, of: x, rate: v, width: 0.2}
+"""
+    for rtol in 1e-5 * 0.5 ** np.arange(16):
+        result = run(text, ("x", "follower"), method=method, rtol=float(rtol))
+        middle = result["x"].max() / 2 + result["x"].min() / 2
+        late = result.t > 2 * math.pi
+        assert np.ptp(result["x"][late] - np.sin(result.t[late])) < 1e-4
+        ends = np.array([result["follower"][late].max(), result["follower"][late].min()])
+        assert ends - middle == pytest.approx([0.9, -0.9], abs=1e-3)

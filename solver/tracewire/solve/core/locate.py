@@ -43,6 +43,7 @@ from tracewire.solve.core.flow import (
 )
 from tracewire.solve.core.modes import held_levels, jump_time, levels, piece
 from tracewire.solve.core.readings import guard_rates, guard_values
+from tracewire.solve.core.surface import pin
 from tracewire.solve.core.units import helper, unit
 
 SAMPLES = 5  # of the margins over a step, both ends included
@@ -394,7 +395,8 @@ def polish(core: int, theta: float, row: int) -> None:
 
     At a guard it ends on the far side, where the formula of the mode to come is defined. The end
     of a slide or of a contact is where its fraction or force is zero, but for rounding: how far a
-    rate is from zero there decides other modes.
+    rate is from zero there decides other modes. All is read where the end lies on the surfaces of
+    slides and contacts: there the run goes on.
     """
     flow = flow_of(core)
     progress = progress_of(core)
@@ -410,9 +412,11 @@ def polish(core: int, theta: float, row: int) -> None:
         _polish_end(core, h, whole, row)
         return
     guards, along = np.empty(len(flow.bound)), np.empty(len(flow.bound))
+    pinned = np.empty(len(x))
     for _ in range(POLISH):
-        guard_values(core, t + h, trial.x_end, guards)
-        guard_rates(core, t + h, trial.x_end, along)
+        _end(core, t + h, pinned)
+        guard_values(core, t + h, pinned, guards)
+        guard_rates(core, t + h, pinned, along)
         change = -(guards[i] - watched.level[row]) / along[i] if along[i] != 0.0 else 0.0
         if not 0 < h + change <= whole:
             return
@@ -431,11 +435,13 @@ def _polish_end(core: int, h: float, whole: float, row: int) -> None:
     """Make the trial end where the margin of a slide or a contact is zero: secants over steps."""
     progress, trial = progress_of(core), trial_of(core)
     t, x, method = trial.ends[0], progress.x, progress.ints[CURRENT]
-    values = np.empty(len(watch_of(core).mode))
-    margins(core, t + h, trial.x_end, values)
+    values, pinned = np.empty(len(watch_of(core).mode)), np.empty(len(x))
+    _end(core, t + h, pinned)
+    margins(core, t + h, pinned, values)
     here, at, other = values[row], h, h * (1.0 - BACK)
     methods.step(core, method, t, x, trial.rate, other)
-    margins(core, t + other, trial.x_end, values)
+    _end(core, t + other, pinned)
+    margins(core, t + other, pinned, values)
     there = values[row]
     for _ in range(POLISH):
         change = -here * (at - other) / (here - there) if here != there else 0.0
@@ -446,6 +452,15 @@ def _polish_end(core: int, h: float, whole: float, row: int) -> None:
         methods.step(core, method, t, x, trial.rate, at)
         if abs(change) <= ROOT * progress.now[LENGTH]:
             return
-        margins(core, t + at, trial.x_end, values)
+        _end(core, t + at, pinned)
+        margins(core, t + at, pinned, values)
         here = values[row]
     methods.step(core, method, t, x, trial.rate, at)
+
+
+@helper
+def _end(core: int, t: float, out: Vector) -> None:
+    """Where the trial ends, back on the surfaces that hold the run."""
+    copy(trial_of(core).x_end, out)
+    if flow_of(core).counts[SLIDING] + flow_of(core).counts[RESTING]:
+        pin(core, t, out)
