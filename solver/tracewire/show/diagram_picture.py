@@ -37,10 +37,10 @@ def traced_figure(found: Found) -> Figure:
     def plot(path: Path) -> Path:
         return draw_trace(found).write(path)
 
-    return Figure("diagram.svg", _caption(found), plot)
+    return Figure("diagram.svg", caption_of(found), plot)
 
 
-def _caption(found: Found) -> str:
+def caption_of(found: Found) -> str:
     """What the marks in the picture of a trace mean, those alone that it has."""
     plots = has_law(found) or (found.missing is not None and len(found.missing.grid) in (1, 2))
     marks = ((bool(found.effects), ADDED), (found.missing is not None, LACKING), (plots, NEEDED))
