@@ -27,6 +27,7 @@ ROOMS = [
     "library",
     "data",
     "diagram",
+    "elk",
     "draw",
     "compile",
 ]

@@ -12,7 +12,7 @@ from typing import Any
 class Result:
     """A result that shows itself; `tracewire.show` says how each kind of them looks.
 
-    In a notebook it is shown as its table.
+    A notebook shows its tables; of a run, a fit and a trace also the curves, above them.
     """
 
     def table(self) -> Any:
@@ -43,7 +43,7 @@ class Result:
         return f"<{type(self).__name__}: {self._presented().headline}>"
 
     def _repr_html_(self) -> str:
-        """Its tables and sentences, as a notebook shows them."""
+        """Its pictures, sentences and tables, as a notebook shows them."""
         return str(self._presented().html)
 
     def _presented(self) -> Any:

@@ -17,10 +17,10 @@ from draw.random_diagrams import LIBRARY, text_of
 from tracewire.diagram import BlockUse, read, read_readable, read_text
 from tracewire.draw import Drawing, draw
 from tracewire.draw.curves import curve_of
-from tracewire.draw.elk import engine
 from tracewire.draw.graph import Node
 from tracewire.draw.layout import all_nodes, all_wires
 from tracewire.draw.shapes import Drawn, shape_of, subsystem_look
+from tracewire.elk import engine
 from tracewire.errors import InstallationError, OptionError
 from tracewire.npm import integrity
 
@@ -331,6 +331,42 @@ def test_the_layout_engine_is_the_one_of_the_lock_file() -> None:
     assert integrity(engine.SCRIPT.read_bytes()) == lock["script"]
     digest = b64encode(hashlib.sha512(b"").digest()).decode()
     assert integrity(b"") == f"sha512-{digest}"
+
+
+def test_each_function_that_is_made_quicker_is_in_the_layout_engine() -> None:
+    """A new version has other names; without these functions pictures take longer."""
+    script = engine.SCRIPT.read_text(encoding="utf-8")
+    assert [script.count(slow) for slow in engine.QUICKER] == [1] * len(engine.QUICKER)
+
+
+def test_quicker_functions_change_no_picture(monkeypatch: pytest.MonkeyPatch) -> None:
+    quick = draw(read(PENDULUM)).layout
+    monkeypatch.setattr(engine, "QUICKER", {})
+    engine._context.cache_clear()
+    try:
+        assert draw(read(PENDULUM)).layout == quick
+    finally:
+        engine._context.cache_clear()
+
+
+def test_the_engine_starts_while_other_work_goes_on() -> None:
+    engine._context.cache_clear()
+    engine.start()
+    assert draw(read(PENDULUM)).svg
+    assert engine._context.cache_info().misses == 1
+
+
+def test_a_start_that_fails_is_told_by_the_picture(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(engine, "SCRIPT", tmp_path / "elk.bundled.js")
+    engine._context.cache_clear()
+    try:
+        engine.start()
+        with pytest.raises(InstallationError, match="the layout engine cannot be read"):
+            draw(read(PENDULUM))
+    finally:
+        engine._context.cache_clear()
 
 
 def test_an_interrupted_picture_leaves_its_engine_alone(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -23,6 +23,24 @@ STEP = Needed(
     words="needed: up to 0.25 over omega",
 )
 
+INSIDE = """
+blocks:
+  rig: {type: body}
+  twice: {type: gain, of: rig.v, k: 2}
+subsystems:
+  body:
+    outputs: {v: omega}
+    blocks:
+      theta: {type: integrator, of: omega, start: 1, unit: rad}
+      omega: {type: integrator, of: pull, unit: rad/s}
+      pull: {type: gain, of: theta, k: {value: -4, unit: 1/s^2}}
+measured:
+  run:
+    file: run.csv
+    time: t
+    signals: {rig.theta: {column: a, offset: 0.2}, rig.v: {column: v, offset: 0.1}}
+"""
+
 
 def nodes(drawing: Drawing) -> dict[str, Node]:
     return {node.id: node for node in drawing.graph.nodes}
@@ -63,6 +81,23 @@ def test_a_term_that_a_trace_added_is_green_at_its_sensor() -> None:
     assert nodes(drawing)[SENSOR].mark == "effect"
     assert f'class="block effect" data-block="{SENSOR}" data-type="sensor"' in drawing.svg
     assert drawing.svg.count('class="wire effect"') == 1
+
+
+def test_a_term_at_a_sensor_inside_of_a_subsystem_is_green_where_one_sees_it() -> None:
+    """Closed, the subsystem is green; open, the sensor stands behind its signal inside."""
+    closed = nodes(draw(read_text(INSIDE), measured=True, sensors=["rig.theta"]))
+    assert closed["rig"].mark == "effect" and closed["twice"].mark == ""
+    assert "sensor of rig.theta" not in closed
+    drawing = draw(read_text(INSIDE), 1, measured=True, sensors=["rig.theta"])
+    frame = nodes(drawing)["rig"]
+    inside = {node.id: node for node in frame.nodes}
+    assert frame.mark == ""
+    assert inside["sensor of rig.theta"].mark == "effect"
+    assert inside["rig.theta"].measured and not inside["rig.omega"].measured
+    assert nodes(drawing)["sensor of rig.v"].mark == ""
+    wire = next(w for w in frame.wires if w.target == "sensor of rig.theta<")
+    assert wire.source == "rig.theta>"
+    assert faults(drawing) == []
 
 
 def test_what_is_needed_is_drawn_below_its_sum() -> None:

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import sys
+import xml.etree.ElementTree as ET
+from base64 import b64decode
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -20,7 +24,10 @@ from show.fits import made_fit
 from show.traces import FOUND, NULL
 from tracewire.errors import InstallationError, OptionError
 from tracewire.result import Result, plain
+from tracewire.show.fit_figures import plot_fit
+from tracewire.show.notebook import figure_image, svg_image
 from tracewire.show.presentation import FILES
+from tracewire.show.style import drawn
 from tracewire.show.table import Table
 
 
@@ -105,6 +112,42 @@ def test_a_result_is_a_figure_that_is_not_saved(
     figure = result(name).plot()
     assert isinstance(figure, Figure) and figure.axes
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_a_notebook_shows_curves_above_the_tables_of_runs_fits_and_traces(name: str) -> None:
+    shown = result(name)._repr_html_()
+    if name not in ("Run", "Fit", "Found"):
+        assert "<img" not in shown
+        return
+    assert shown.index("<img") < shown.index("<table")
+    for kind, data in re.findall(r'src="data:image/([^;]+);base64,([^"]+)"', shown):
+        content = b64decode(data)
+        assert kind in ("svg+xml", "png") and b"<script" not in content
+        if kind == "svg+xml":
+            assert ET.fromstring(content).tag.endswith("svg")
+
+
+def test_a_notebook_shows_the_picture_of_a_trace_with_its_effect_in_colour() -> None:
+    shown = result("Found")._repr_html_()
+    picture, *curves = [b64decode(data) for data in re.findall(r'base64,([^"]+)"', shown)]
+    assert b'class="block effect"' in picture
+    assert len(curves) == 1
+    assert NULL._repr_html_().count("<img") == 2
+
+
+def test_a_notebook_shows_a_run_of_very_many_samples_as_pixels() -> None:
+    noise = np.random.default_rng(1).normal(size=200_000)
+    figure = drawn(lambda path: plot_fit(path, [("x", np.arange(200_000), *[noise] * 3)]))
+    assert 'src="data:image/png;base64,' in figure_image(figure)
+
+
+def test_a_notebook_shows_a_run_that_records_nothing_without_curves() -> None:
+    assert "<img" not in replace(free(), signals={})._repr_html_()
+
+
+def test_a_title_is_text_in_the_html_of_a_notebook() -> None:
+    assert 'alt="&lt;b&gt; &quot;c&quot;"' in svg_image("<svg/>", '<b> "c"')
 
 
 def test_a_notebook_shows_a_figure_and_a_file_takes_it(tmp_path: Path) -> None:

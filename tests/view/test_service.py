@@ -94,6 +94,7 @@ def test_a_run_follows_its_parameters(service: Service, key_of: KeyOf) -> None:
     assert head["followed"]["twice"] == 18
     (box,) = head["scene"]["parts"]
     assert arrays[box["points"]["at"][0]] == pytest.approx(x)
+    assert len(arrays[box["sizes"]["width"]]) == 1  # what does not move is sent once
     assert head["scene"]["extent"][1] > 0.15
 
 

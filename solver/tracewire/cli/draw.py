@@ -53,6 +53,9 @@ def draw(
     target = output or f"{Path(diagram).stem}.svg"
     check_target(target, ENDINGS, "picture")
     with working(f"drawing {diagram}"):
+        from tracewire.elk import start
+
+        start()
         from tracewire.compile import compile, unit_problems
         from tracewire.diagram import read_readable
         from tracewire.draw import draw as picture_of

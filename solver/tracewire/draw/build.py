@@ -88,13 +88,12 @@ class _Level:
 
 class _Builder:
     def __init__(self, diagram: Diagram, options: DrawOptions, problems: Sequence[Problem]) -> None:
+        self.diagram = diagram
         self.options = options
+        self.closed_on_sensors = set(_closed_on(diagram, options))
         self.wrong = {problem.place.block for problem in problems if problem.place.block}
-        self.measured = {
-            head
-            for series in diagram.measured.values()
-            for head in (split_index(name)[0] for name in series.channels)
-        }
+        names = [name for series in diagram.measured.values() for name in series.channels]
+        self.measured = {split_index(name)[0] for name in names}
 
     def tag(self, diagram: Diagram, name: str) -> Node:
         """The node of an input of the top diagram."""
@@ -131,8 +130,8 @@ class _Builder:
                 events = tuple(event_text(e) for e in _resets(diagram, use.name))
                 node = replace(node, has_event=True, details=(*node.details, *events))
             nodes.append(node)
-        if not path and self.options.measured:
-            for sensor, wire in sensor_nodes(diagram, self.options.sensors):
+        if self.options.measured:
+            for sensor, wire in sensor_nodes(self.diagram, diagram, path, self.options.sensors):
                 nodes.append(sensor)
                 level.wires += self.wire(level, wire, sensor.ports[0].id, sensor.ports[0].id)
         return (*nodes, *level.strangers.values()), tuple(level.wires)
@@ -174,7 +173,7 @@ class _Builder:
             is_subsystem=use.subsystem is not None,
             labels=labels,
             mark=self.mark(full, where, use.type if use.subsystem else ""),
-            measured=self.options.measured and not level.path and self.is_measured(use.name),
+            measured=self.options.measured and self.is_measured(full),
             plot=self.plot(full),
         )
         if use.subsystem is None:
@@ -200,7 +199,7 @@ class _Builder:
         return replace(node, look=replace(look, outline="frame"), nodes=nodes, wires=wires)
 
     def mark(self, full: str, where: str, type_name: str) -> Mark:
-        if full in self.options.effects:
+        if full in self.options.effects or full in self.closed_on_sensors:
             return "effect"
         inside = type_name and any(name.startswith(f"{type_name}.") for name in self.wrong)
         if where in self.wrong or full in self.wrong or inside:
@@ -213,8 +212,8 @@ class _Builder:
         needed = self.options.needed.get(full)
         return None if needed is None else needed.plot()
 
-    def is_measured(self, name: str) -> bool:
-        return any(signal.partition(".")[0] == name for signal in self.measured)
+    def is_measured(self, full: str) -> bool:
+        return any(signal == full or signal.startswith(f"{full}.") for signal in self.measured)
 
     def connect(self, level: _Level, use: BlockUse, full: str) -> list[Port]:
         """The input ports of a block, a wire to each; signals of its formulas have a port, too."""
@@ -288,6 +287,14 @@ class _Builder:
         if self.options.units and unit:
             parts.append(f"[{unit}]")
         return shortened(" ".join(parts), MOST_NAME, SMALL)
+
+
+def _closed_on(diagram: Diagram, options: DrawOptions) -> Iterator[str]:
+    """The closed subsystems in which a sensor that is drawn in colour would be seen if opened."""
+    for signal in options.sensors:
+        parts = signal.split(".")
+        if find_signal(diagram, signal) is None and len(parts) > options.depth + 1:
+            yield ".".join(parts[: options.depth + 1])
 
 
 def _in_short(problem: Problem) -> str:

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Any
 
-from tracewire.draw.elk import lay_out
 from tracewire.draw.font import SIZE, SMALL, text_width
 from tracewire.draw.graph import Connection, Graph, Node, Port
 from tracewire.draw.needed import SIZE as PLOT
+from tracewire.elk import lay_out
 
 Point = tuple[float, float]
 

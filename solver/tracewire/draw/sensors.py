@@ -11,18 +11,20 @@ from tracewire.draw.shapes import Drawn, lines_box
 from tracewire.library import SENSOR_TERMS
 
 
-def sensor_nodes(diagram: Diagram, effects: Collection[str]) -> Iterator[tuple[Node, Wire]]:
-    """The sensors of a diagram that have terms, and the wire to each.
+def sensor_nodes(
+    diagram: Diagram, level: Diagram, path: str, effects: Collection[str]
+) -> Iterator[tuple[Node, Wire]]:
+    """The sensors that have terms of the signals of a level, and the wire to each.
 
-    effects: signals whose sensors are drawn in colour. A signal of the inside of a subsystem has no
-    wire in this picture, and so no sensor.
+    level, path: what is inside of a subsystem, and the full name before its blocks; of `diagram`
+    itself that and "". effects: full names of signals whose sensors are drawn in colour.
     """
     for signal in dict.fromkeys(name for one in diagram.measured.values() for name in one.channels):
         having = [one for one in diagram.measured.values() if signal in one.channels]
         terms = [
             term for term in SENSOR_TERMS if any(getattr(s.channels[signal], term) for s in having)
         ]
-        found = find_signal(diagram, signal)
+        found = _own(diagram, level, path, signal)
         if not terms or found is None:
             continue
         name, index = split_index(found)
@@ -38,6 +40,15 @@ def sensor_nodes(diagram: Diagram, effects: Collection[str]) -> Iterator[tuple[N
             mark=mark,
         )
         yield node, Wire(name, index=index)
+
+
+def _own(diagram: Diagram, level: Diagram, path: str, signal: str) -> str | None:
+    """The name of a signal in a level; None where another level has it."""
+    if level is diagram:
+        return find_signal(diagram, signal)
+    if not signal.startswith(path) or find_signal(diagram, signal) is not None:
+        return None
+    return find_signal(level, signal.removeprefix(path))
 
 
 def _details(signal: str, series: list[Series], terms: list[str]) -> Iterator[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from xml.sax.saxutils import escape, quoteattr
+from html import escape
 
 from tracewire.draw.font import FAMILY, SIZE, SMALL, shortened, text_width
 from tracewire.draw.graph import Connection, Graph, Node, Plot
@@ -89,11 +89,11 @@ def _note_width(text: str) -> float:
 
 def _text(text: str) -> str:
     """Text for XML, which has no control characters."""
-    return escape("".join(c if c.isprintable() or c in "\n\t" else "�" for c in text))
+    return escape("".join(c if c.isprintable() or c in "\n\t" else "�" for c in text), quote=False)
 
 
 def _attribute(text: str) -> str:
-    return quoteattr("".join(c if c.isprintable() else "�" for c in text))
+    return f'"{escape("".join(c if c.isprintable() else "�" for c in text))}"'
 
 
 def _write(text: str, x: float, y: float, kind: str = "", anchor: str = "") -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.diagram import Diagram, split_index
+from tracewire.diagram import Diagram, find_signal, split_index
 from tracewire.draw import Drawing, Needed, draw
 from tracewire.show.document import Figure
 from tracewire.show.trace_law import along, depends_on, has_law, is_function, is_sure, means_over
@@ -37,10 +37,10 @@ def traced_figure(found: Found) -> Figure:
     def plot(path: Path) -> Path:
         return draw_trace(found).write(path)
 
-    return Figure("diagram.svg", _caption(found), plot)
+    return Figure("diagram.svg", caption_of(found), plot)
 
 
-def _caption(found: Found) -> str:
+def caption_of(found: Found) -> str:
     """What the marks in the picture of a trace mean, those alone that it has."""
     plots = has_law(found) or (found.missing is not None and len(found.missing.grid) in (1, 2))
     marks = ((bool(found.effects), ADDED), (found.missing is not None, LACKING), (plots, NEEDED))
@@ -60,7 +60,8 @@ def draw_trace(found: Found, effects: Collection[str] | None = None) -> Drawing:
     blocks = [effect.block for effect in chosen if effect.block]
     sensors = [effect.sensor for effect in chosen if effect.sensor]
     needed = dict(_needed(found, {effect.place for effect in chosen}))
-    depth = max((name.count(".") for name in (*blocks, *needed)), default=0)
+    inside = [name for name in sensors if find_signal(diagram, name) is None]
+    depth = max((name.count(".") for name in (*blocks, *needed, *inside)), default=0)
     before = draw(found.original, depth, measured=True)
     return draw(
         diagram, depth, measured=True, effects=blocks, sensors=sensors, needed=needed, like=before

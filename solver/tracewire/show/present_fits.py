@@ -8,6 +8,7 @@ from tracewire.fit import Fit, Profile
 from tracewire.show.diagnostic_figures import plot_profiles
 from tracewire.show.fit_report import plot_fitted
 from tracewire.show.fit_tables import fit_tables, fit_text, fit_words
+from tracewire.show.notebook import pictures_by
 from tracewire.show.presentation import Part, Presentation
 from tracewire.show.table import Table, shown
 
@@ -81,6 +82,6 @@ def _plot_profile(found: Profile, path: Path) -> Path:
 
 
 PRESENTATIONS = {
-    Fit: Presentation(_in_a_line, _parts, _data, plot_fitted),
+    Fit: Presentation(_in_a_line, _parts, _data, plot_fitted, pictures_by(plot_fitted)),
     Profile: Presentation(_profile_in_a_line, _profile_parts, _profile_data, _plot_profile),
 }

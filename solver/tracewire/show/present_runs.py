@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tracewire.show.figures import plot_run
+from tracewire.show.notebook import pictures_by
 from tracewire.show.presentation import Part, Presentation
 from tracewire.show.summary import run_data, run_table, run_text
 from tracewire.show.table import Table, shown
@@ -52,7 +53,7 @@ def _runs_data(runs: Runs) -> dict[str, object]:
 
 
 PRESENTATIONS = {
-    Run: Presentation(_run_in_a_line, _run_parts, run_data, plot_run),
+    Run: Presentation(_run_in_a_line, _run_parts, run_data, plot_run, pictures_by(plot_run)),
     Runs: Presentation(
         _runs_in_a_line, lambda runs: (_runs_table(runs), *runs.errors.values()), _runs_data
     ),

@@ -35,12 +35,16 @@ FILES = {
 @dataclass(frozen=True)
 class Presentation:
     """How a kind of result looks: in a line, in sentences and tables in their order, as data, and
-    the function `plot(result, path, ...)` that draws it, where there is a figure."""
+    the function `plot(result, path, ...)` that draws it, where there is a figure.
+
+    pictures: the HTML of what a notebook shows above the tables.
+    """
 
     headline: Callable[[Any], str]
     parts: Callable[[Any], Sequence[Part]]
     data: Callable[[Any], Mapping[str, Any]]
     plot: Callable[..., Any] | None = None
+    pictures: Callable[[Any], str] | None = None
 
 
 @dataclass(frozen=True)
@@ -81,11 +85,13 @@ class Presented:
 
     @property
     def html(self) -> str:
-        """Sentences and tables as HTML."""
-        return "\n".join(
+        """Its pictures, sentences and tables as HTML."""
+        pictures = self.how.pictures(self.result) if self.how.pictures is not None else ""
+        parts = (
             part.html() if isinstance(part, Table) else f"<p>{html.escape(part)}</p>"
             for part in self.parts
         )
+        return "\n".join([pictures, *parts]).strip("\n")
 
     def draw(self, path: object, options: Mapping[str, Any]) -> None:
         """Draw its figure to a file. Raises OptionError: no figure, an option that is none."""

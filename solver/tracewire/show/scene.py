@@ -96,7 +96,8 @@ def moved_parts(run: Run) -> list[Moved]:
 def _moved(part: ScenePart, values: Mapping[str, float | Vector], count: int) -> Moved:
     try:
         points = {
-            key: np.column_stack([evaluate_along(formula, values, count) for formula in point])
+            # each coordinate in a row of the memory: what takes the least of many does so at once
+            key: np.array([evaluate_along(formula, values, count) for formula in point]).T
             for key, point in part.points.items()
         }
         sizes = {key: evaluate_along(f, values, count) for key, f in part.sizes.items()}

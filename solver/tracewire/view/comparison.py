@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from tracewire.residual import Measured, Segment
 
 Vector = NDArray[np.float64]
+QUICK = 0.5
+"""Seconds that a run may take whose start is fitted: a page waits for some ten of them."""
 MOST_DOTS = 3000
 """Samples of a series that are drawn; of more, evenly chosen ones."""
 
@@ -36,21 +38,26 @@ class SeriesConditions:
         """From the begin of the run to the last sample, in s."""
         return self.segment.begin, float(self.measured.t[-1])
 
-    def begun_at(self, start: Mapping[str, float]) -> SeriesConditions:
-        """The same with other values of the states at its begin."""
-        segment = replace(self.segment, start={**self.segment.start, **start})
-        return replace(self, segment=segment)
 
+def conditions_of(model: Model, series: str, limits: Limits) -> SeriesConditions:
+    """The conditions of a series of the diagram, with a free start fitted to its data.
 
-def conditions_of(model: Model, series: str) -> SeriesConditions:
-    """The first window of a series of the diagram; a free start is read off its data.
-
+    It is fitted with the values of the diagram, so that the criterion of a fitted diagram is that
+    of its fit. Where a run fails or takes long, the start is read off the data.
     Raises OptionError: no such series; DataError: a file that cannot be used.
     """
-    from tracewire.residual import measured_series, whole_segment
+    from tracewire.residual import Criterion, descend, measured_series, whole_segment
 
     measured = measured_series(model, series)
-    return SeriesConditions(measured, whole_segment(model, measured))
+    segment = whole_segment(model, measured)
+    quick = replace(limits, seconds=min(limits.seconds, QUICK))
+    alone = Criterion(model, [segment], (), measured.parameters, limits=quick)
+    begin = alone.begin()
+    alone.residuals(begin)
+    if segment.free and alone.failure is None:
+        _, (start,) = alone.split(descend(alone, begin).z)
+        segment = replace(segment, start={**segment.start, **start})
+    return SeriesConditions(measured, segment)
 
 
 def comparison_of(

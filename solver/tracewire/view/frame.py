@@ -30,6 +30,11 @@ class Arrays:
         self.all.append(np.ascontiguousarray(values, dtype="<f8" if exact else "<f4"))
         return len(self.all) - 1
 
+    def keep_moved(self, values: Vector) -> int:
+        """Put what a scene reads at the end of the row: one value where it does not move."""
+        still = len(values) and (values == values[0]).all()
+        return self.keep(values[:1] if still else values)
+
 
 def packed(head: Mapping[str, Any], arrays: Arrays) -> bytes:
     """The length of the head in 4 bytes, the head, the arrays; each part fills a multiple of 8.
@@ -98,8 +103,8 @@ def _part(part: Moved, arrays: Arrays) -> dict[str, Any]:
         "kind": part.kind,
         "color": part.color,
         "points": {
-            key: [arrays.keep(points[:, 0]), arrays.keep(points[:, 1])]
+            key: [arrays.keep_moved(points[:, 0]), arrays.keep_moved(points[:, 1])]
             for key, points in part.points.items()
         },
-        "sizes": {key: arrays.keep(values) for key, values in part.sizes.items()},
+        "sizes": {key: arrays.keep_moved(values) for key, values in part.sizes.items()},
     }

@@ -79,12 +79,6 @@ class Job:
             picture = draw_trace(self.result, effects)
         return {"words": self.words, "text": diagram.text, "effects": told, "svg": picture.svg}
 
-    def starts(self, series: str) -> Mapping[str, float]:
-        """The start values that a fit has found for a series; none where this is no fit."""
-        from tracewire.fit import Fit
-
-        return self.result.starts.get(series, {}) if isinstance(self.result, Fit) else {}
-
     @cached_property
     def report(self) -> str:
         """The report of the result as an HTML page. Raises OptionError where there is none."""

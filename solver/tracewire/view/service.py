@@ -189,7 +189,7 @@ class Service:
 
         `tab` names the page, `number` ascends with its requests; `parameters` are in SI. With a
         measured `series` it is a run under the conditions and the preset of that, and compared
-        with it; it begins as the fit whose id is `proposal` has found.
+        with it.
         """
         version = self._version(request)
         tab, number = str(request.get("tab", ""))[:64], int(request.get("number", 0))
@@ -252,10 +252,8 @@ class Service:
         assert version.model is not None
         series = str(request.get("series") or "")
         if series and series not in version.series:
-            version.series[series] = conditions_of(version.model, series)
-        conditions, job = version.series.get(series), self._job
-        if conditions is not None and job is not None and request.get("proposal") == job.id:
-            conditions = conditions.begun_at(job.starts(series))
+            version.series[series] = conditions_of(version.model, series, self.limits)
+        conditions = version.series.get(series)
         values, preset = in_si(request.get("parameters") or {}), str(request.get("preset") or "")
         return setting_of(version.model, values, preset, conditions)
 

@@ -36,7 +36,7 @@ function own() {
 
 // the run that is shown: that of a proposal while it is looked at
 function wanted() {
-  return work.key ? {key: work.key, parameters: {}, proposal: work.id, ...conditions()} : own();
+  return work.key ? {key: work.key, parameters: {}, ...conditions()} : own();
 }
 
 function conditions() { return {preset: part("preset").value, series: part("series").value}; }

@@ -111,7 +111,7 @@ export class Scene {
       y: (y) => high / 2 - (y - (bottom + top) / 2) * scale,
       scale, size: right - left, t: this.t,
     };
-    const value = (number) => this.arrays[number];
+    const value = (number, n) => this.arrays[number][this.arrays[number].length > 1 ? n : 0];  // one: it stays
     const order = {ground: 1, trace: 2, spring: 2.5, rod: 3, box: 3, disc: 4};
     const parts = [...this.data.parts].sort((a, b) => order[a.kind] - order[b.kind]);
     for (const one of parts) DRAW[one.kind](c, one, k, value, look);

@@ -1,14 +1,14 @@
-// The parts of a scene on a canvas, one function for each kind.
+// The parts of a scene on a canvas, one function for each kind: c is the canvas, k the number of the sample.
 
 const EDGE = "#333333";
 
 function at(one, key, k, value, look) {
   const [x, y] = one.points[key];
-  return [look.x(value(x)[k]), look.y(value(y)[k])];
+  return [look.x(value(x, k)), look.y(value(y, k))];
 }
 
 function size(one, key, k, value) {
-  return key in one.sizes ? value(one.sizes[key])[k] : undefined;
+  return key in one.sizes ? value(one.sizes[key], k) : undefined;
 }
 
 function line(c, points, color, width) {
@@ -45,7 +45,7 @@ function spring(c, one, k, value, look) {
   const length = Math.hypot(...way);
   const normal = length ? [-way[1] / length, way[0] / length] : [0, 0];
   const wide = (size(one, "width", k, value) ?? 0.05 * look.size) * look.scale;
-  const quarters = 4 * Math.round(value(one.sizes.coils)[0]);
+  const quarters = 4 * Math.round(value(one.sizes.coils, 0));
   const points = [from];
   for (let n = 0; n <= quarters; n++) {
     const along = 0.1 + 0.8 * n / quarters;
@@ -100,10 +100,9 @@ function ground(c, one, k, value, look) {
 }
 
 function trace(c, one, k, value, look) {
-  const [xs, ys] = one.points.at.map(value);
   const seconds = size(one, "seconds", 0, value) ?? Infinity;
   const points = [];
-  for (let n = k; n >= 0 && look.t[n] >= look.t[k] - seconds; n--) points.push([look.x(xs[n]), look.y(ys[n])]);
+  for (let n = k; n >= 0 && look.t[n] >= look.t[k] - seconds; n--) points.push(at(one, "at", n, value, look));
   c.lineJoin = "round";
   c.globalAlpha = 0.8;
   line(c, points, one.color, 1);

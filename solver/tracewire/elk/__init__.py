@@ -1,5 +1,5 @@
 """The Eclipse Layout Kernel (elkjs), run by QuickJS: a graph in JSON gets its coordinates."""
 
-from tracewire.draw.elk.engine import lay_out
+from tracewire.elk.engine import lay_out, start
 
-__all__ = ["lay_out"]
+__all__ = ["lay_out", "start"]

@@ -1,4 +1,4 @@
-"""`python -m tracewire.draw.elk`: fetch the layout engine as `elk.lock.json` names it."""
+"""`python -m tracewire.elk`: fetch the layout engine as `elk.lock.json` names it."""
 
 from __future__ import annotations
 
