@@ -13,7 +13,10 @@ from tracewire.formula import Expression
 
 @dataclass(frozen=True)
 class FlatParameter:
-    """A parameter by its full name: formula of other parameters in SI, unit, bounds of a fit."""
+    """A parameter by its full name: formula of other parameters in SI, unit, bounds of a fit.
+
+    `written` is the user's unit where that is not of SI, and `factor` brings its numbers to SI.
+    """
 
     name: str
     formula: Expression
@@ -21,6 +24,14 @@ class FlatParameter:
     fit: tuple[float, float] | None = None
     factor: float = 1.0
     place: Place = Place()
+    written: str = ""
+
+    @property
+    def users_unit(self) -> tuple[str, float]:
+        """The unit of its numbers in the file, and the factor of that to SI."""
+        return (
+            (self.written, self.factor) if self.written and self.factor != 1 else (self.unit, 1.0)
+        )
 
 
 @dataclass(frozen=True)

@@ -186,6 +186,7 @@ class _Flattener:
                 fit=value.fit,
                 factor=value.factor,
                 place=value.place,
+                written=value.written,
             )
 
     def add_diagram(
@@ -351,8 +352,9 @@ class _Flattener:
             self.asked.append(FlatAsked(name, meant, parameter.unit, value.place))
         if not value.named:
             return formula
+        unit = value.unit or parameter.unit
         self.parameters[name] = FlatParameter(
-            name, formula, value.unit or parameter.unit, value.fit, value.factor, value.place
+            name, formula, unit, value.fit, value.factor, value.place, value.written
         )
         return Name(name)
 

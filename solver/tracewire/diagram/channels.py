@@ -131,7 +131,7 @@ def unit_of_term(name: str, unit: Unit) -> Unit:
     """The unit of a number of a sensor, from that of the column; none where the column has none."""
     text, factor = SENSOR_TERMS[name].unit, SENSOR_TERMS[name].factor(unit.factor)
     if text == "{}":
-        return unit
+        return Unit(unit.text, unit.factor)
     if "{}" not in text:
         return SECOND if text == "s" else NO_UNIT
     plain = unit.text if re.fullmatch(r"\w*", unit.text) else f"({unit.text})"

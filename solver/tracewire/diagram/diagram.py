@@ -21,7 +21,8 @@ Hold = Literal["previous", "linear", "smooth"]
 class Value:
     """A number or a formula over parameters; `factor` times it is the value in SI.
 
-    `unit` is the SI unit to show. `fit` holds the bounds in SI of a value that a fit may change.
+    `unit` is the SI unit to show, and `written` the user's where that is another one. `fit` holds
+    the bounds in SI of a value that a fit may change.
     `named`: the user wrote a mapping ({value: ..., unit: ..., fit: ...}), so the value is a
     parameter of its own that can be set and fitted.
     """
@@ -32,6 +33,7 @@ class Value:
     fit: tuple[float, float] | None = None
     named: bool = False
     place: Place = Place()
+    written: str = ""
 
 
 @dataclass(frozen=True)

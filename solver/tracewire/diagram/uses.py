@@ -198,7 +198,7 @@ def in_unit_of(given: Value, declared: Value) -> Value:
     bounds = given.fit and (given.fit[0] * factor, given.fit[1] * factor)
     # the unit is never empty where there is a factor, so that nobody takes the value for a bare one
     unit = declared.unit or ("" if declared.factor == 1.0 else "1")
-    return replace(given, unit=unit, factor=factor, fit=bounds)
+    return replace(given, unit=unit, factor=factor, fit=bounds, written=declared.written)
 
 
 def check_bounds(value: Value, parameter: Parameter, body: Body) -> None:

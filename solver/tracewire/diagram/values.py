@@ -81,7 +81,8 @@ def read_value(
         formula = read_formula(node, body, "parameter", block)
         if formula is None:
             return None
-        return Value(formula, unit.text, _factor(formula, unit), place=body.place(node, block))
+        factor, place = _factor(formula, unit), body.place(node, block)
+        return Value(formula, unit.text, factor, place=place, written=unit.written)
     if isinstance(node, Items):
         what = "a value is a number, a formula, or a mapping, and not a list"
         hint = "Write it like 2.5, 2*k, or {value: 2.5, unit: N m, fit: [0, 5]}."
@@ -103,8 +104,15 @@ def read_value(
         )
         body.problems.add(what, body.place(node, block), (), "Widen 'fit', or change the value.")
     scaled = (bounds[0] * unit.factor, bounds[1] * unit.factor) if bounds else None
-    place = body.place(node, block)
-    return Value(formula, unit.text, _factor(formula, unit), scaled, named=True, place=place)
+    return Value(
+        formula,
+        unit.text,
+        _factor(formula, unit),
+        scaled,
+        named=True,
+        place=body.place(node, block),
+        written=unit.written,
+    )
 
 
 def _factor(formula: Expression, unit: Unit) -> float:

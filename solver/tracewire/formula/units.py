@@ -38,11 +38,13 @@ class Unit:
     """A unit: the text that is shown for SI values, and the factor from the user's unit to SI.
 
     `deg` has the factor pi/180 and is shown as `rad`; a unit that is SI already has the factor 1
-    and keeps the user's text. Hz is 1/s, never 2 pi/s.
+    and keeps the user's text. Hz is 1/s, never 2 pi/s. `written` is the user's text where that is
+    not SI.
     """
 
     text: str
     factor: float
+    written: str = ""
 
 
 @lru_cache(maxsize=1)
@@ -66,7 +68,7 @@ def _convert(text: str) -> Unit:
     # pint's base of mass is the kilogram and its base of angle is the radian, as ours
     if not math.isfinite(factor) or factor <= 0:
         raise ValueError("factor")
-    return Unit(text, 1.0) if factor == 1.0 else Unit(f"{quantity.units:~C}", factor)
+    return Unit(text, 1.0) if factor == 1.0 else Unit(f"{quantity.units:~C}", factor, text)
 
 
 def read_unit(text: str, place: Place = Place()) -> Unit:
@@ -83,7 +85,8 @@ def read_unit(text: str, place: Place = Place()) -> Unit:
         if COHERENT.fullmatch(text.strip()):
             return Unit(text.strip(), 1.0)
         if text.strip() in COMMON:
-            return Unit(*COMMON[text.strip()])
+            quantity, factor = COMMON[text.strip()]
+            return Unit(quantity, factor, text.strip() if factor != 1.0 else "")
         if not WELL_FORMED.fullmatch(text):
             raise ValueError("grammar")
         return _convert(text.strip())

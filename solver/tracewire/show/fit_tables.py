@@ -20,22 +20,24 @@ def fit_tables(fit: Fit) -> tuple[Table, ...]:
 
 
 def fit_table(fit: Fit) -> Table:
-    """Fitted parameters, and numbers of sensors, with standard errors and 95 % intervals."""
+    """Fitted parameters in the units of the file, and numbers of sensors in SI, with standard
+    errors and 95 % intervals."""
     rows = []
-    for name, value in fit.values.items():
-        error = fit.errors.get(name, math.nan)
-        low, high = fit.intervals.get(name, (math.nan, math.nan))
+    for name in fit.values:
+        unit, factor = unit_of(fit, name)
+        value, error = fit.values[name] / factor, fit.errors.get(name, math.nan) / factor
+        low, high = (end / factor for end in fit.intervals.get(name, (math.nan, math.nan)))
         interval = UNKNOWN
         if math.isfinite(low) and math.isfinite(high):
             interval = f"{rounded(low, error, 3)} to {rounded(high, error, 3)}"
         rows.append(
             (
                 name,
-                shown(fit.began[name]),
+                shown(fit.began[name] / factor),
                 rounded(value, error),
                 f"{error:.3g}" if math.isfinite(error) else "–",
                 interval,
-                unit_of(fit, name),
+                unit,
                 _remark(fit, name),
             )
         )
@@ -52,11 +54,12 @@ def rounded(value: float, error: float, least: int = 6) -> str:
     return f"{value:.{digits}g}"
 
 
-def unit_of(fit: Fit, name: str) -> str:
-    """The unit of a fitted value: of a parameter, or of what a sensor does to its signal."""
+def unit_of(fit: Fit, name: str) -> tuple[str, float]:
+    """The unit of a fitted value with its factor to SI: of a parameter that of the file, of what a
+    sensor does to its signal that of SI."""
     flat = fit.model.flat
     if name in flat.parameters:
-        return flat.parameters[name].unit
+        return flat.parameters[name].users_unit
     kind, _, signal = name.partition(".")
     unit = flat.units.get(signal, "")
     known = {
@@ -65,7 +68,7 @@ def unit_of(fit: Fit, name: str) -> str:
         "drift": f"{unit or 1}/s",
         "quad": unit and f"1/({unit})",
     }
-    return known.get(kind, "")
+    return known.get(kind, ""), 1.0
 
 
 def _remark(fit: Fit, name: str) -> str:
@@ -105,9 +108,10 @@ def tied_table(fit: Fit) -> Table:
     before = parameter_values(fit.model, {name: fit.began[name] for name in own})
     after = parameter_values(fit.model, {name: fit.values[name] for name in own})
     rows = tuple(
-        (name, to_text(flat.parameters[name].formula), shown(before[name]), shown(value),
-         flat.parameters[name].unit)
+        (name, to_text(flat.parameters[name].formula), shown(before[name] / factor),
+         shown(value / factor), unit)
         for name, value in after.items()
+        for unit, factor in [flat.parameters[name].users_unit]
         if name not in own
         and value != before[name]
         and not ("." in name and isinstance(flat.parameters[name].formula, Name))

@@ -112,10 +112,11 @@ def errors_table(found: Found) -> Table:
 
 
 def moved_table(found: Found) -> Table:
-    """The declared parameters without and with the effects, in SI; what moved far is marked."""
+    """The declared parameters without and with the effects, in the units of the file; what moved
+    far is marked."""
     rows = tuple(
-        (m.name, shown(m.before), shown(m.after), _change(m.before, m.after),
-         _number(m.error, ".2g"), m.unit,
+        (m.name, shown(m.before / m.factor), shown(m.after / m.factor),
+         _change(m.before, m.after), _number(m.error / m.factor, ".2g"), m.users_unit,
          "had absorbed part of the effect" if stood_in(m) else "")
         for m in found.moved
     )  # fmt: skip

@@ -164,8 +164,9 @@ def stood_in(moved: Moved) -> bool:
 def moved_words(moved: Moved) -> str:
     """How a declared parameter moved: `'c' moves from 0.3 to 0.051 N m s/rad`, and by
     how many standard errors where these are few."""
-    unit = f" {moved.unit}" if moved.unit else ""
-    text = f"'{moved.name}' moves from {moved.before:.4g} to {moved.after:.4g}{unit}"
+    unit = f" {moved.users_unit}" if moved.users_unit else ""
+    before, after = (value / moved.factor for value in (moved.before, moved.after))
+    text = f"'{moved.name}' moves from {before:.4g} to {after:.4g}{unit}"
     if moved.error > 0:
         errors = abs(moved.after - moved.before) / moved.error
         text += f" ({errors:.2g} standard errors)" if errors < 100 else ""

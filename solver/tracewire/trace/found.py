@@ -112,13 +112,23 @@ class StepTold:
 
 @dataclass(frozen=True)
 class Moved:
-    """A declared parameter without and with the effects, in SI, and its standard error with."""
+    """A declared parameter without and with the effects, in SI, and its standard error with.
+
+    `written` is the unit in the file where that is not of SI; `factor` brings its numbers to SI.
+    """
 
     name: str
     unit: str
     before: float
     after: float
     error: float
+    written: str = ""
+    factor: float = 1.0
+
+    @property
+    def users_unit(self) -> str:
+        """The unit in the file."""
+        return self.written or self.unit
 
     @property
     def significant(self) -> bool:

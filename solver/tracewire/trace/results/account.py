@@ -137,8 +137,15 @@ def intervals(trial: Trial, confidence: float) -> dict[str, tuple[float, float]]
 def moved(bench: Bench, declared: Trial, best: Trial, values: dict[str, float]) -> list[Moved]:
     """The declared parameters without and with the effects."""
     errors, flat = best.standard_errors, bench.declared.flat
-    units = {name: parameter.unit for name, parameter in flat.parameters.items()}
+    known = flat.parameters
     return [
-        Moved(name, units.get(name, ""), value, values.get(name, 0.0), errors.get(name, 0.0))
+        Moved(
+            name,
+            known[name].unit if name in known else "",
+            value,
+            values.get(name, 0.0),
+            errors.get(name, 0.0),
+            *(known[name].users_unit if name in known else ("", 1.0)),
+        )
         for name, value in declared.values.items()
     ]
