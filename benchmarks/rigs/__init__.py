@@ -1,4 +1,4 @@
-"""Records of eighty labs and machines, with effects hidden that their diagrams do not declare.
+"""Records of eighty-eight labs and machines, with effects that their diagrams lack.
 
 An integrator that shares nothing with the product makes them. `python -m benchmarks rigs`.
 """

@@ -13,6 +13,7 @@ from benchmarks.rigs import (
     circuits,
     decays,
     drives,
+    feeds,
     flights,
     hinges,
     households,
@@ -25,10 +26,12 @@ from benchmarks.rigs import (
     plants,
     pointing,
     processes,
+    pushed,
     servos,
     shaken,
     structures,
     swings,
+    swung,
     vibrations,
 )
 from benchmarks.rigs.record import Record
@@ -115,6 +118,14 @@ RECORDS: Mapping[str, Callable[[], Record]] = {
     "r78_bicycle": hinges.bicycle,
     "r79_telescope": pointing.telescope,
     "r80_tower": shaken.tower,
+    "r81_paste": swung.paste,
+    "r82_slider": feeds.slider,
+    "r83_wire": swung.wire,
+    "r84_bowl": pushed.bowl,
+    "r85_rotor": swung.rotor,
+    "r86_relay": pushed.relay,
+    "r87_worm": feeds.worm,
+    "r88_train": feeds.train,
 }
 
 

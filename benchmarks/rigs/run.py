@@ -31,8 +31,9 @@ def main(arguments: Sequence[str]) -> int:
     """Parse the options, generate what matches, trace each in a process, print a line each."""
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks rigs",
-        description="Does a trace find what is hidden in records of eighty labs and machines? "
-        "One core a rig. right: what is hidden and nothing else; with more: others besides.",
+        description="Does a trace find what is hidden in records of eighty-eight labs and "
+        "machines? One core a rig. right: what is hidden and nothing else; with more: "
+        "others besides.",
     )
     parser.add_argument("--only", default="*", help="a pattern of rigs: 'r08', 'motor'")
     parser.add_argument("--json", type=Path, help="a file for one JSON line a rig")

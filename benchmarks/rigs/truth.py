@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from benchmarks.rigs.eighties import EIGHTIES
 from benchmarks.rigs.further import FURTHER
 from benchmarks.rigs.hidden import Truth
 from benchmarks.rigs.later import LATER
@@ -374,5 +375,5 @@ EARLIER: Mapping[str, Truth] = {
     ),
 }
 
-TRUTHS: Mapping[str, Truth] = {**EARLIER, **LATER, **FURTHER}
+TRUTHS: Mapping[str, Truth] = {**EARLIER, **LATER, **FURTHER, **EIGHTIES}
 """By rig, in the order of their records."""
