@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +35,19 @@ def test_check_counts_what_is_there(call: Any, swing: Path) -> None:
     assert lines[-1] == "no problems"
     assert any("free in a fit: k, slip" in line for line in lines)
     assert any("run_1 (train): 3 samples from 1 to 2 s of theta" in line for line in lines)
+
+
+def test_check_does_not_end_with_no_problems_where_a_measured_file_is_not_there(
+    call: Any, swing: Path
+) -> None:
+    text = re.sub(r"file: \S+csv", "file: nothing.csv", swing.read_text(encoding="utf-8"))
+    swing.write_text(text, encoding="utf-8")
+    told = call("check", swing)
+    assert told.code == 0
+    assert told.out.splitlines()[-1] == (
+        "no problems in the diagram, but 1 measured series has no file, which a fit or a trace"
+        " needs: see above"
+    )
 
 
 def test_check_as_json(call: Any, swing: Path) -> None:

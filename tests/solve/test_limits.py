@@ -28,6 +28,21 @@ def test_a_run_that_cannot_go_on_names_block_and_time(text: str, message: str) -
     assert "; x = " in str(caught.value)
 
 
+@pytest.mark.parametrize("method", ["dormand_prince", "rosenbrock"])
+def test_another_method_is_proposed_unless_it_is_in_use(method: str) -> None:
+    magnet = """
+span: [0, 5]
+blocks:
+  x: {type: integrator, of: v}
+  v: {type: integrator, of: pull}
+  pull: {type: expression, formula: -1e-3/(0.05 + x)**2}
+"""
+    with pytest.raises(SimulationError, match="the step became smaller") as caught:
+        run(magnet, method=method)
+    proposed = "; try the method 'rosenbrock'." in str(caught.value)
+    assert proposed == (method != "rosenbrock")
+
+
 def test_a_recorded_signal_that_is_not_finite_is_refused() -> None:
     text = one("1", 0.0, "  y: {type: expression, formula: 1/(t - 0.5)}")
     with pytest.raises(

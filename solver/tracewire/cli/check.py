@@ -72,7 +72,8 @@ def check(
         told = found[0] if one else {"diagrams": found}
         print_json({"problems": [], **told})
     else:
-        print_text("no problems")
+        absent = sum(len(one["absent"]) for one in found)
+        print_text(f"no problems{_absent_words(absent)}")
 
 
 def _contents(file: str, library: Sequence[str] | None, quiet: bool) -> dict[str, Any]:
@@ -104,7 +105,14 @@ def _contents(file: str, library: Sequence[str] | None, quiet: bool) -> dict[str
             found["free"] = free_names(model, series)
     if not quiet:
         print_text(contents_text(found, measured))
-    return {**found, "measured": measured}
+    return {**found, "measured": measured, "absent": list(absent)}
+
+
+def _absent_words(count: int) -> str:
+    if not count:
+        return ""
+    series = "1 measured series has" if count == 1 else f"{count} measured series have"
+    return f" in the diagram, but {series} no file, which a fit or a trace needs: see above"
 
 
 def diagram_files(paths: Sequence[str]) -> list[str]:

@@ -16,6 +16,7 @@ from tracewire.solve.core.codes import (
     CARRIED,
     CHATTER,
     CHATTER_EVENTS,
+    CURRENT,
     ENDLESS,
     LENGTH,
     LOG_HEAD,
@@ -27,6 +28,7 @@ from tracewire.solve.core.codes import (
     UNDERFLOW,
     T,
 )
+from tracewire.solve.core.methods import ROSENBROCK
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -181,7 +183,9 @@ def _no_step(model: Model, arrays: Arrays, status: int) -> SimulationError:
     name = strictest(model, arrays)
     smallest = max(1e-15 * progress.now[LENGTH], 16 * float(np.spacing(abs(t))))
     what = f"the step became smaller than {smallest:.3g} s because of '{name}'"
-    hint = "The state may run away, or jump without a guard; try method='rosenbrock'."
+    hint = "The state may run away, or jump without a guard"
+    other = "" if progress.ints[CURRENT] == ROSENBROCK else "; try the method 'rosenbrock'"
+    hint = f"{hint}{other}."
     return stopped(model, t, x, what, hint, name)
 
 
