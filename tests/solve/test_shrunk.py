@@ -424,6 +424,37 @@ events:
 
 
 @pytest.mark.parametrize("method", METHODS)
+def test_a_relay_slides_that_moves_what_it_reads_through_two_contacts(method: str) -> None:
+    """The body in the middle hands the force on."""
+    bodies = "".join(
+        f"""
+  x{n}: {{type: integrator, of: v{n}}}
+  v{n}: {{type: integrator, of: force{n}, start: 0.2}}"""
+        for n in (1, 2, 3)
+    )
+    hits = "".join(
+        f"""
+  - {{when: x{n + 1} - x{n}, crosses: down,
+      set: {{v{n}: 0.25*v{n} + 0.75*v{n + 1}, v{n + 1}: 0.75*v{n} + 0.25*v{n + 1}}}}}"""
+        for n in (1, 2)
+    )
+    text = f"""
+span: [0, 10]
+blocks:{bodies}
+  force1: {{type: constant, value: 1}}
+  force2: {{type: constant, value: 0}}
+  force3: {{type: expression, formula: 0.5*cos(t) - 1 - 3*relay}}
+  relay: {{type: sign, of: v1}}
+events:{hits}
+"""
+    result = run(text, ("v1", "relay"), method=method, **TIGHT)
+    assert [event.kind for event in result.events] == ["stick"]
+    after = result.t > when(result)[0]
+    assert np.all(result["v1"][after] == 0.0)
+    assert result["relay"][after] == pytest.approx(np.cos(result.t[after]) / 6, abs=1e-9)
+
+
+@pytest.mark.parametrize("method", METHODS)
 def test_a_play_is_let_go_at_the_turn_of_a_rate_that_a_slide_holds(method: str) -> None:
     """What put the rate back onto the surface of the slide moved it off the turn that was located
     there: by 1e-13 of the span it went the old way, and pushed what it had just let go."""

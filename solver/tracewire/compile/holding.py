@@ -15,36 +15,62 @@ from tracewire.compile.lowered import Lowered, Reset
 from tracewire.compile.tape import Tape
 
 
-def holding(low: Lowered, rates: Sequence[int], flow: Mapping[int, int]) -> frozenset[int]:
-    """The numbers of these modes; `rates` are the derivatives of the guards along the flow."""
-    return _holding(low, moving(low, rates, flow))
-
-
 def moving(low: Lowered, rates: Sequence[int], flow: Mapping[int, int]) -> list[frozenset[int]]:
     """The modes that move the guard of each mode: those that its rate reads, those that move what
-    is held by one of these, and those that move the force of a contact on what the guard reads."""
-    pushed: dict[int, set[int]] = {}
-    for reset in low.resets:
-        if may_rest(low, reset, rates):
-            balanced = modes_read(low.tape, differentiate(low.tape, [rates[reset.trigger]], flow))
-            for state in reset.values:
-                pushed.setdefault(low.states[state], set()).update(balanced)
+    is held by one of these, and those that move the force of a contact on what the guard reads.
+
+    `rates` are the derivatives of the guards along the flow.
+    """
     found = [frozenset(modes_read(low.tape, [rate])) for rate in rates]
-    if pushed:
-        read = [pushed.keys() & low.tape.needed([mode.guard]) for mode in low.modes]
-        found = [
-            own.union(*(pushed[state] for state in states))
-            for own, states in zip(found, read, strict=True)
-        ]
+    contacts = [reset for reset in low.resets if may_rest(low, reset, rates)]
+    if contacts:
+        forces = _movers_of_forces(low, contacts, rates, flow)
+        for number, mode in enumerate(low.modes):
+            read = low.tape.needed([mode.guard])
+            found[number] = found[number].union(
+                *(
+                    force
+                    for reset, force in zip(contacts, forces, strict=True)
+                    if not _pushed(low, reset).isdisjoint(read)
+                )
+            )
     while True:
-        held = _holding(low, found)
+        held = holding(low, found)
         more = [own.union(*(found[i] for i in own & held)) for own in found]
         if more == found:
             return found
         found = more
 
 
-def _holding(low: Lowered, moved: Sequence[Collection[int]]) -> frozenset[int]:
+def _movers_of_forces(
+    low: Lowered, contacts: Sequence[Reset], rates: Sequence[int], flow: Mapping[int, int]
+) -> list[frozenset[int]]:
+    """The modes that move the force of each contact, also by those of others that press it."""
+    read = [low.tape.needed([rates[reset.trigger]]) for reset in contacts]
+    pressing = [
+        [n for n, other in enumerate(contacts) if not _pushed(low, other).isdisjoint(own)]
+        for own in read
+    ]
+    bends = differentiate(low.tape, [rates[reset.trigger] for reset in contacts], flow)
+    found = [frozenset(modes_read(low.tape, [bend])) for bend in bends]
+    while True:
+        more = [
+            own.union(*(found[n] for n in numbers))
+            for own, numbers in zip(found, pressing, strict=True)
+        ]
+        if more == found:
+            return found
+        found = more
+
+
+def _pushed(low: Lowered, contact: Reset) -> frozenset[int]:
+    """The entries of the states that the force of a contact acts on."""
+    return frozenset(low.states[state] for state in contact.values)
+
+
+def holding(low: Lowered, moved: Sequence[Collection[int]]) -> frozenset[int]:
+    """The numbers of the modes that may hold their guards: those that are among their own movers,
+    which `moving` tells."""
     return frozenset(
         number
         for number, mode in enumerate(low.modes)

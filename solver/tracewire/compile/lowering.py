@@ -107,7 +107,7 @@ class Lowering:
         """The modes that a slide may hold; all rates are known."""
         flow = self.flow()
         rates = differentiate(self.tape, [mode.guard for mode in self.out.modes], flow)
-        return holding(self.out, rates, flow)
+        return holding(self.out, moving(self.out, rates, flow))
 
     def moving_laws(self) -> frozenset[tuple[str, str]]:
         """The comparisons that move the rate of what they compare, as `laws`; all rates are known.
@@ -118,7 +118,8 @@ class Lowering:
         tape, modes = self.tape, self.out.modes
         flow = self.flow()
         rates = differentiate(tape, [mode.guard for mode in modes], flow)
-        movers, held = moving(self.out, rates, flow), holding(self.out, rates, flow)
+        movers = moving(self.out, rates, flow)
+        held = holding(self.out, movers)
         moved = {
             i: tape.needed([rates[i], *(rates[other] for other in movers[i] & held)])
             for i in {mode for mode, _, _ in self.compared}

@@ -11,7 +11,7 @@ from typing import Any, Literal
 from tracewire.compile.constants import Constants
 from tracewire.compile.delays import jump_orders
 from tracewire.compile.differentiate import differentiate, gradients
-from tracewire.compile.holding import holding, may_rest, reads
+from tracewire.compile.holding import holding, may_rest, moving, reads
 from tracewire.compile.lowered import Lowered
 from tracewire.compile.machine import MachineWriter, machine_text
 from tracewire.compile.pace import pace
@@ -84,7 +84,7 @@ class Routines:
         self.flow[low.entries["t"]] = low.tape.constant(1.0)
         guards = [mode.guard for mode in low.modes]
         self.guard_rates = self.along_the_flow(guards, 1)
-        self.holding = holding(low, self.guard_rates, self.flow)
+        self.holding = holding(low, moving(low, self.guard_rates, self.flow))
         self.eager: dict[str, Routine] = {
             "rhs": _dense("Rates of the states.", low.rates),
             "outputs": _dense("Recorded signals.", outputs),
