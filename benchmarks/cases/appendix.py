@@ -49,7 +49,7 @@ def measure(options: Options) -> Iterator[Result]:
     """One evaluation; fminsearch beside Scilab's; least squares beside fminsearch."""
     model = tw.compile(tw.read(DIAGRAM))
     criterion = criterion_of(model, options.rtol)
-    own, begin = in_parameters(criterion), criterion.begin() * criterion.scales
+    own, begin = in_parameters(criterion), criterion.initial_unknowns() * criterion.scales
     (series,) = criterion.segments
     data = np.column_stack([series.t, series.measured.values["phi2"]])
     library, _ = build("../scilab/appendix.c", Torsion.file) if compiler() else (None, "")
@@ -108,7 +108,7 @@ def _evaluations(
     options: Options,
 ) -> Result:
     """Every row with its largest error of phi2 at the start, in rad."""
-    begin = criterion.begin() * criterion.scales
+    begin = criterion.initial_unknowns() * criterion.scales
     title = f"{TITLE}: one evaluation of the criterion"
     exact = phi2_of(model, EXACT)
     rows, took = [], {}

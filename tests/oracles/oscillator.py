@@ -16,7 +16,7 @@ from scipy.linalg import expm
 from tracewire.compile import Model, compile
 from tracewire.diagram import read_text
 from tracewire.residual import Measured
-from tracewire.residual.windows import Section, cut
+from tracewire.residual.windows import Section, cut_windows
 from tracewire.trace.candidates.candidates import Candidate, find_candidates
 from tracewire.trace.candidates.levels import Level, Levels
 from tracewire.trace.candidates.places import find_places
@@ -106,7 +106,7 @@ def candidates_of(bench: Bench) -> dict[str, Candidate]:
 def trial_of(bench: Bench, effects: Sequence[Added] = (), length: int = 60) -> Trial:
     """The diagram with effects, fitted to windows of all train series."""
     sections = [Section(m, 0, len(m.t)) for m in bench.measured if m.use == "train"]
-    windows = [w for s in sections for w in cut(bench.declared, s, length, bench.states)]
+    windows = [w for s in sections for w in cut_windows(bench.declared, s, length, bench.states)]
     return bench.fitted(effects, windows, length, {})
 
 

@@ -12,14 +12,14 @@ from hypothesis import strategies as st
 from residual.models import LINE, OSCILLATOR, C, K, T, criterion_of, made, oscillation, series
 from tracewire.errors import DataError, OptionError, SimulationError
 from tracewire.residual import Criterion, Measured, Segment, Sensor, Unknown
-from tracewire.residual import linearised as linearised_module
+from tracewire.residual import linearisation as linearisation_module
 
 LINE_MODEL = made(LINE)
 
 
 def at(criterion: Criterion, **values: float) -> np.ndarray:
     """The scaled unknowns with some values by name."""
-    z = criterion.begin()
+    z = criterion.initial_unknowns()
     for n, unknown in enumerate(criterion.unknowns):
         z[n] = values.get(unknown.name, unknown.value) / criterion.scales[n]
     return z
@@ -94,7 +94,7 @@ def test_a_free_offset_is_an_unknown_of_all_series() -> None:
     assert [u.name for u in criterion.unknowns] == ["a", "b", "offset.x"]
     z = at(criterion, a=1, b=0, **{"offset.x": 0.5})
     assert criterion.value(z) == pytest.approx(2 * 0.5**2 / 2)
-    named, _ = criterion.split(z)
+    named, _ = criterion.unpack(z)
     assert named == pytest.approx({"a": 1, "b": 0, "offset.x": 0.5})
 
 
@@ -116,7 +116,7 @@ presets: {rising: {c: 2}}
     driven = series(T + T**2 / 2, "driven", inputs={"drive": (T, 1 + T)})
     preset = series(2 * T, "preset", preset="rising")
     criterion = criterion_of(made(text), driven, preset)
-    assert criterion.value(criterion.begin()) == pytest.approx(0, abs=1e-12)
+    assert criterion.value(criterion.initial_unknowns()) == pytest.approx(0, abs=1e-12)
 
 
 def test_derivatives_are_those_of_the_exact_solution() -> None:
@@ -131,7 +131,7 @@ def test_derivatives_are_those_of_the_exact_solution() -> None:
         ],
         axis=1,
     )
-    (matrix,) = criterion.residuals_and_derivatives(z)[1]
+    (matrix,) = criterion.residuals_and_jacobians(z)[1]
     assert matrix / criterion.scales == pytest.approx(exact, abs=1e-7)
 
 
@@ -140,7 +140,7 @@ def test_differences_stand_in_where_sensitivities_fail(
     value: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tried: list[float] = []
-    plain = linearised_module.simulate_spans
+    plain = linearisation_module.simulate_spans
 
     def failing(*arguments: Any, **options: Any) -> Any:
         runs = plain(*arguments, **options)
@@ -149,10 +149,10 @@ def test_differences_stand_in_where_sensitivities_fail(
         tried.append(options["parameters"]["a"])
         return runs
 
-    monkeypatch.setattr(linearised_module, "simulate_spans", failing)
+    monkeypatch.setattr(linearisation_module, "simulate_spans", failing)
     whole = criterion_of(LINE_MODEL, series(T))
     criterion = Criterion(LINE_MODEL, whole.segments, [Unknown("a", value, 0.0, 1.0)], {"b": 0.0})
-    (matrix,) = criterion.residuals_and_derivatives(criterion.begin())[1]
+    (matrix,) = criterion.residuals_and_jacobians(criterion.initial_unknowns())[1]
     assert matrix[:, 0] == pytest.approx(T, abs=1e-6)
     assert all(0 <= a <= 1 for a in tried)  # they stay inside the bounds
 
@@ -166,7 +166,7 @@ blocks:
 """)
     measured = series(np.zeros(3), t=np.array([0.0, 0.5, 1.0]), sigma={"x": 1e-3})
     whole = Segment(measured, 0.0, np.arange(3), {"x": 0.0}, ("x",))
-    near = Criterion(model, [whole], [], {}).linearised({}, {0: {"x": 0.0}})[0]
+    near = Criterion(model, [whole], [], {}).linearise({}, {0: {"x": 0.0}})[0]
     assert np.isfinite(near.slopes**2).all(), "exp(600) = 4e260"
 
 
@@ -180,12 +180,12 @@ def test_segments_of_a_series_run_together_as_each_alone() -> None:
         for a, free in ((0, ("v", "x")), (30, ("x", "v")), (60, ("x",)))
     ]
     together = Criterion(model, segments, [Unknown("k", 1.2)], {})
-    near = together.linearised(
+    near = together.linearise(
         {"k": 1.2}, {n: {x: start[x] for x in s.free} for n, s in enumerate(segments)}
     )
     for n, segment in enumerate(segments):
         alone = Criterion(model, [segment], together.unknowns, {})
-        other = alone.linearised({"k": 1.2}, {0: {x: start[x] for x in segment.free}})[0]
+        other = alone.linearise({"k": 1.2}, {0: {x: start[x] for x in segment.free}})[0]
         np.testing.assert_array_equal(near[n].residual, other.residual)
         np.testing.assert_array_equal(near[n].slopes, other.slopes)
         assert near[n].final == other.final
@@ -194,7 +194,7 @@ def test_segments_of_a_series_run_together_as_each_alone() -> None:
 def test_without_unknowns_there_are_residuals_and_no_slopes() -> None:
     criterion = criterion_of(LINE_MODEL, series(0 * T))
     alone = Criterion(LINE_MODEL, criterion.segments, [], {"a": 1.0, "b": 0.0})
-    near = alone.linearised({}, {0: {}})[0]
+    near = alone.linearise({}, {0: {}})[0]
     assert near.slopes.shape == (len(T), 0)
     assert near.residual[:, 0] == pytest.approx(T)
 
@@ -220,10 +220,10 @@ blocks:
     starts = {n: dict(s.start) for n, s in enumerate(segments)}
     chained = Criterion(model, segments, [], {}, chained=True)
     assert chained.remembers and [chained.follows(n) for n in range(3)] == [False, True, True]
-    found = chained.linearised({}, starts)
+    found = chained.linearise({}, starts)
     # a segment begins at its first sample, the one before ends at the sample before that
     assert max(float(np.abs(near.residual).max()) for near in found.values()) < 0.06
-    alone = Criterion(model, segments, [], {}).linearised({}, starts)
+    alone = Criterion(model, segments, [], {}).linearise({}, starts)
     assert float(np.abs(alone[2].residual).max()) > 1
 
 
@@ -235,7 +235,7 @@ def test_gain_delay_and_offset_of_a_sensor_and_their_derivatives() -> None:
     criterion = criterion_of(LINE_MODEL, series(shown, sensors={"x": sensor}))
     z = at(criterion, a=1, b=0)
     assert criterion.residuals(z)[0] == pytest.approx(np.zeros((121, 1)), abs=1e-9)
-    (matrix,) = criterion.residuals_and_derivatives(z)[1]
+    (matrix,) = criterion.residuals_and_jacobians(z)[1]
     names = [u.name for u in criterion.unknowns]
     columns = dict(zip(names, (matrix / criterion.scales).T, strict=True))
     late = T > 0.25
@@ -257,7 +257,7 @@ def test_a_square_and_a_drift_of_a_sensor_and_their_derivatives() -> None:
     criterion = criterion_of(LINE_MODEL, series(shown, t=t, sensors={"x": sensor}))
     at_truth = at(criterion, a=1, b=0)
     assert criterion.residuals(at_truth)[0] == pytest.approx(np.zeros((121, 1)), abs=1e-9)
-    (matrix,) = criterion.residuals_and_derivatives(at_truth)[1]
+    (matrix,) = criterion.residuals_and_jacobians(at_truth)[1]
     columns = dict(
         zip((u.name for u in criterion.unknowns), (matrix / criterion.scales).T, strict=True)
     )
@@ -289,7 +289,7 @@ def test_the_signal_of_a_sensor_is_found_from_what_it_shows(
     sensor = Sensor(offset=offset, gain=gain, quad=quad, drift=drift)
     signal = np.linspace(-2, 2, 50)
     since = np.linspace(0, 3, 50)
-    assert sensor.signal(sensor.shown(signal, since), since) == pytest.approx(signal, abs=1e-9)
+    assert sensor.signal(sensor.observe(signal, since), since) == pytest.approx(signal, abs=1e-9)
 
 
 def test_what_no_signal_can_show_is_the_nearest_that_one_can() -> None:
@@ -337,7 +337,7 @@ def test_the_derivatives_of_the_vector_are_its_own(loss: str) -> None:
     whole = criterion_of(LINE_MODEL, measured)
     criterion = Criterion(LINE_MODEL, whole.segments, whole.unknowns, {}, 1e-10, loss=loss)
     z = at(criterion, a=1.1, b=0.2)
-    vector, matrix = criterion.both(z)
+    vector, matrix = criterion.vector_and_jacobian(z)
     assert vector == pytest.approx(criterion.vector(z), abs=1e-9)
     for j in range(2):
         h = np.zeros(2)
@@ -359,34 +359,34 @@ def test_a_free_start_touches_its_own_segment_only() -> None:
     free = {"x": None, "v": 0.0}
     measured = [series(oscillation(T), f"run_{n}", start=free) for n in (1, 2)]
     criterion = criterion_of(model, *measured)
-    z = criterion.begin()
+    z = criterion.initial_unknowns()
     assert len(z) == 2 + 2
-    matrices = criterion.residuals_and_derivatives(z)[1]
+    matrices = criterion.residuals_and_jacobians(z)[1]
     # the solution is linear in its start: d x / d x0 is the free oscillation itself
-    named, _ = criterion.split(z)
+    named, _ = criterion.unpack(z)
     own = oscillation(T, k=named["k"], c=named["c"])
     for n, matrix in enumerate(matrices):
         assert matrix[:, 2 + n] / criterion.scales[2 + n] == pytest.approx(own, abs=1e-5)
         assert np.all(matrix[:, 3 - n] == 0)
-    _, starts = criterion.split(z)
+    _, starts = criterion.unpack(z)
     assert starts == [{"x": pytest.approx(1, abs=1e-3)}] * 2
 
 
 def test_moved_puts_the_values_back() -> None:
     criterion = criterion_of(made(OSCILLATOR), series(oscillation(T), start={"x": None, "v": 0.0}))
-    z = criterion.begin() * 1.5
-    unknowns, segments = criterion.moved(z)
+    z = criterion.initial_unknowns() * 1.5
+    unknowns, segments = criterion.with_values(z)
     again = Criterion(criterion.model, segments, unknowns, {})
-    assert again.begin() * again.scales == pytest.approx(z * criterion.scales)
+    assert again.initial_unknowns() * again.scales == pytest.approx(z * criterion.scales)
 
 
 def test_the_criterion_on_other_segments_keeps_everything_else() -> None:
     criterion = criterion_of(LINE_MODEL, series(T, sigma={"x": 0.5}))
     (whole,) = criterion.segments
     half = Segment(whole.measured, whole.begin, whole.rows[:60])
-    short = criterion.on([half])
-    assert short.begin() == pytest.approx(criterion.begin())
-    assert short.residuals(short.begin())[0].shape == (60, 1)
+    short = criterion.on_segments([half])
+    assert short.initial_unknowns() == pytest.approx(criterion.initial_unknowns())
+    assert short.residuals(short.initial_unknowns())[0].shape == (60, 1)
     assert short.value(at(short, a=1, b=1)) == pytest.approx((1 / 0.5) ** 2 / 2)
 
 
@@ -403,14 +403,14 @@ blocks: {x: {type: integrator, of: r, start: 1}, r: {type: expression, formula: 
     assert "x" in str(criterion.failure)
     assert failed > criterion.value(at(criterion, a=0.1)) > 0
     z = at(criterion, a=1)
-    assert np.isfinite(criterion.residuals_and_derivatives(z)[1][0]).all()
+    assert np.isfinite(criterion.residuals_and_jacobians(z)[1][0]).all()
 
 
 def test_beyond_its_budget_nothing_is_run_and_nothing_counted() -> None:
     """A run that was not begun costs nothing: what others may still take is not used up."""
     criterion = criterion_of(LINE_MODEL, series(0 * T + 1))
     criterion.budget, criterion.steps = 100, 101
-    residuals, slopes = criterion.residuals_and_derivatives(at(criterion, a=0, b=0))
+    residuals, slopes = criterion.residuals_and_jacobians(at(criterion, a=0, b=0))
     assert criterion.steps == 101
     assert np.abs(residuals[0]).min() > 1 and not slopes[0].any()
     assert criterion.failure is not None

@@ -60,7 +60,7 @@ def series(signals: Sequence[str], driving: Driving, sigma: float = SIGMA) -> Me
 
 def window_noise(response: InputResponse, sigma: Mapping[str, float], length: int) -> float:
     """What white noise of inputs makes of x in windows of so many samples with free starts."""
-    count = len(response.forward)
+    count = len(response.transition)
     rows = [np.arange(first, min(first + length, count)) for first in range(0, count, length)]
     return response.noise(sigma, rows, response.states)["x"].size
 
@@ -217,8 +217,8 @@ def test_derivatives_are_whitened_as_residuals_are() -> None:
     criterion = Criterion(
         model, [segment], unknowns, {}, 1e-10, {"x": SENSOR_NOISE}, whitening=whitening
     )
-    z = criterion.begin()
-    _, (slopes,) = criterion.residuals_and_derivatives(z)
+    z = criterion.initial_unknowns()
+    _, (slopes,) = criterion.residuals_and_jacobians(z)
     for column in range(len(z)):
         step = 1e-5 * np.eye(len(z))[column]
         (after,), (before,) = criterion.residuals(z + step), criterion.residuals(z - step)
@@ -306,7 +306,7 @@ def test_the_likely_noise_of_an_input_is_its_own_and_leaves_nothing() -> None:
             for a, state in _true_states(model, seed, length)
         ]  # fmt: skip
         criterion = Criterion(model, segments, [], TRUE, 1e-9, sigma, weighting="sum")
-        near = criterion.linearised({}, {n: s.start for n, s in enumerate(segments)})
+        near = criterion.linearise({}, {n: s.start for n, s in enumerate(segments)})
         windows = [(s, near[n].residual, near[n].slopes) for n, s in enumerate(segments)]
         response = response_in_windows(model, measured, TRUE, 50)
         found.append(likely_input_noise(response, "F", sigma, windows))

@@ -13,7 +13,7 @@ from scipy.signal import chirp, sawtooth, square
 from tracewire.compile import compile
 from tracewire.diagram import read
 from tracewire.residual import Measured, load_measured
-from tracewire.residual.inputs import looks_held, lost_by_lines, smoothed
+from tracewire.residual.inputs import line_error, looks_held, spline_if_smooth
 from tracewire.solve import Held, simulate, values_at, with_points
 
 Vector = NDArray[np.float64]
@@ -33,7 +33,7 @@ def moments(t: Vector, u: Vector, omega: float) -> complex:
 
 
 def test_straight_lines_between_the_points_have_the_amplitude_of_the_sine() -> None:
-    found = smoothed(T, wave(T))
+    found = spline_if_smooth(T, wave(T))
     assert found is not None
     assert abs(moments(T, wave(T), 9.0)) == pytest.approx(1.5 * (1 - 0.18**2 / 12), rel=1e-4)
     assert abs(moments(*found, 9.0)) == pytest.approx(1.5, rel=1e-5)
@@ -42,7 +42,7 @@ def test_straight_lines_between_the_points_have_the_amplitude_of_the_sine() -> N
 
 def test_the_points_are_few_where_samples_are_dense() -> None:
     dense = np.arange(5000) / 500.0
-    found, coarse = smoothed(dense, wave(dense)), smoothed(T[::3], wave(T[::3]))
+    found, coarse = spline_if_smooth(dense, wave(dense)), spline_if_smooth(T[::3], wave(T[::3]))
     assert found is not None and coarse is not None
     assert len(found[0]) == len(dense)
     assert 4 <= (len(coarse[0]) - 1) / (len(T[::3]) - 1) <= 8
@@ -60,7 +60,7 @@ SMOOTH: dict[str, Callable[[Vector], Vector]] = {
 @pytest.mark.parametrize("name", SMOOTH)
 def test_a_smooth_input_is_followed_between_its_samples(name: str, irregular: float) -> None:
     t = np.sort(T + RNG.uniform(-irregular, irregular, len(T)))
-    found = smoothed(t, SMOOTH[name](t))
+    found = spline_if_smooth(t, SMOOTH[name](t))
     assert found is not None and np.all(np.diff(found[0]) > 0)
     fine = np.linspace(t[5], t[-6], 20_000)
     off = np.interp(fine, *found) - SMOOTH[name](fine)
@@ -71,7 +71,7 @@ def test_a_smooth_input_is_followed_between_its_samples(name: str, irregular: fl
 
 
 def test_a_sine_with_little_noise_is_smooth() -> None:
-    assert smoothed(T, wave(T) + 1e-4 * RNG.standard_normal(len(T))) is not None
+    assert spline_if_smooth(T, wave(T) + 1e-4 * RNG.standard_normal(len(T))) is not None
 
 
 @pytest.mark.parametrize(
@@ -90,11 +90,11 @@ def test_a_sine_with_little_noise_is_smooth() -> None:
     ids=["square", "triangle", "step", "switched", "ramp", "constant", "noise", "noisy", "coarse"],
 )
 def test_jumps_corners_and_noise_stay_as_they_are(u: Vector) -> None:
-    assert smoothed(T, np.asarray(u)) is None
+    assert spline_if_smooth(T, np.asarray(u)) is None
 
 
 def test_a_few_samples_stay_as_they_are() -> None:
-    assert smoothed(T[:8], wave(T[:8])) is None
+    assert spline_if_smooth(T[:8], wave(T[:8])) is None
 
 
 TEXT = """\
@@ -250,8 +250,8 @@ def test_few_samples_a_period_get_a_remark_unless_declared(tmp_path: Path, hold:
 def test_lines_lose_what_a_sine_says_and_nothing_of_a_slow_or_a_rough_one() -> None:
     dt = T[1]
     for omega in (5.0, 20.0, 60.0):
-        lost = lost_by_lines(T, np.sin(omega * T))
+        lost = line_error(T, np.sin(omega * T))
         assert lost == pytest.approx((omega * dt) ** 2 / 12, rel=0.02)
     noisy = np.sin(5.0 * T) + 0.03 * RNG.standard_normal(len(T))
-    assert lost_by_lines(T, noisy) < 2e-3
-    assert lost_by_lines(T**1.5, wave(T)) == 0.0
+    assert line_error(T, noisy) < 2e-3
+    assert line_error(T**1.5, wave(T)) == 0.0

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import tracewire as tw
 from tracewire.errors import OptionError
-from tracewire.residual import Measured, Section, Sensor, cut, longest_delay, with_past
+from tracewire.residual import Measured, Section, Sensor, cut_windows, longest_delay, with_past
 from tracewire.solve import values_at
 
 T = np.linspace(0, 10, 501)
@@ -79,7 +79,7 @@ def test_a_past_that_is_given_stays() -> None:
 def test_the_first_window_is_as_long_as_the_longest_delay() -> None:
     model = tw.compile(tw.read_text(TEXT.replace("SEEN", "x").replace("0.5}", "2.5}")))
     assert longest_delay(model, record()) == 2.5
-    windows = cut(model, Section(record(), 0, len(T)), 50, ["x", "v"])
+    windows = cut_windows(model, Section(record(), 0, len(T)), 50, ["x", "v"])
     assert windows[0].begin == 0.0
     assert windows[1].begin >= 2.5
     rows = np.concatenate([window.rows for window in windows])

@@ -9,9 +9,14 @@ from scipy.optimize import least_squares
 from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.residual import Criterion, Measured, Segment
-from tracewire.residual.levenberg_marquardt import descended
-from tracewire.residual.settling import settled
-from tracewire.residual.windows import Section, cut, eliminated, opened
+from tracewire.residual.initial_states import fit_initial_states
+from tracewire.residual.levenberg_marquardt import fit_windows
+from tracewire.residual.windows import (
+    Section,
+    cut_windows,
+    evaluate_windows,
+    project_out_initial_states,
+)
 
 BALL = """\
 span: [0, 2]
@@ -27,7 +32,7 @@ blocks:
 
 def test_windows_tile_a_section_and_begin_at_the_last_sample_before() -> None:
     m = record()
-    windows = cut(model_of(), Section(m, 100, 300), 45, ("x", "v"))
+    windows = cut_windows(model_of(), Section(m, 100, 300), 45, ("x", "v"))
     rows = np.concatenate([window.rows for window in windows])
     np.testing.assert_array_equal(rows, np.arange(100, 300))
     assert [window.begin for window in windows] == [m.t[w.rows[0] - 1] for w in windows]
@@ -37,7 +42,7 @@ def test_windows_tile_a_section_and_begin_at_the_last_sample_before() -> None:
 
 def test_the_first_window_begins_as_the_series_says() -> None:
     m = Measured("drop", "train", *_drop(), start={"x": 1.0, "v": None})
-    first, second = cut(model_of(), Section(m, 0, 100), 50, ("x", "v"))
+    first, second = cut_windows(model_of(), Section(m, 0, 100), 50, ("x", "v"))
     assert first.begin == m.t[0] and first.free == ("v",) and first.start["x"] == 1.0
     assert second.free == ("x", "v")
 
@@ -77,8 +82,8 @@ def test_the_starts_eliminated_the_fit_is_that_of_all_numbers_at_once() -> None:
 
 def test_what_is_left_without_the_starts_is_the_dense_least_squares() -> None:
     windows = trial_of(bench_of(record()), length=80).windows
-    reduced, residual = eliminated(windows)
-    blocks = [near.slopes for near in windows.near]
+    reduced, residual = project_out_initial_states(windows)
+    blocks = [near.slopes for near in windows.linearisations]
     starts = np.zeros((len(residual), sum(b.shape[1] - 2 for b in blocks)))
     row = column = 0
     for block in blocks:
@@ -87,7 +92,7 @@ def test_what_is_left_without_the_starts_is_the_dense_least_squares() -> None:
         row, column = row + height, column + width
     moved = np.concatenate([block[:, :2] for block in blocks])
     full = np.column_stack((moved, starts))
-    flat = np.concatenate([near.residual.ravel() for near in windows.near])
+    flat = np.concatenate([near.residual.ravel() for near in windows.linearisations])
     expected = np.linalg.lstsq(full / np.linalg.norm(full, axis=0), -flat)[0]
     expected = (expected / np.linalg.norm(full, axis=0))[:2]
     found = np.linalg.lstsq(reduced, -residual)[0]
@@ -96,10 +101,12 @@ def test_what_is_left_without_the_starts_is_the_dense_least_squares() -> None:
 
 def test_the_answer_of_a_start_takes_away_what_a_start_can_explain() -> None:
     windows = trial_of(bench_of(record()), length=80).windows
-    view = windows.near[1].projection
-    slopes = windows.near[1].slopes[:, 2:]
-    np.testing.assert_allclose(view.answer @ slopes, np.eye(2), atol=1e-8)
-    np.testing.assert_allclose(view.off(slopes) / np.linalg.norm(slopes, axis=0), 0, atol=1e-9)
+    view = windows.linearisations[1].projection
+    slopes = windows.linearisations[1].slopes[:, 2:]
+    np.testing.assert_allclose(view.pseudoinverse @ slopes, np.eye(2), atol=1e-8)
+    np.testing.assert_allclose(
+        view.project_out(slopes) / np.linalg.norm(slopes, axis=0), 0, atol=1e-9
+    )
 
 
 def test_an_unknown_ends_at_its_bound_where_it_wants_to_pass_it() -> None:
@@ -115,9 +122,11 @@ def test_settling_moves_starts_and_no_unknown() -> None:
     m = record()
     bench = bench_of(m)
     trial = trial_of(bench, length=60)
-    criterion = bench.criterion(trial, cut(bench.declared, Section(m, 90, 270), 90, bench.states))
-    begun = opened(criterion)
-    done = settled(begun)
+    criterion = bench.criterion(
+        trial, cut_windows(bench.declared, Section(m, 90, 270), 90, bench.states)
+    )
+    begun = evaluate_windows(criterion)
+    done = fit_initial_states(begun)
     assert done.values == begun.values
     assert done.rss < begun.rss
     assert done.rss == pytest.approx(180, rel=0.3), "at the noise"
@@ -132,12 +141,12 @@ def test_a_start_inside_a_stiff_barrier_is_rescued_by_the_window_before() -> Non
     since = np.mod(t + fall, 2 * fall + np.pi / 1e3) - fall
     x = np.maximum(0.2 - 9.81 / 2 * np.clip(since, -fall, fall) ** 2, 0.0)
     m = Measured("ball", "train", t, {"x": x}, start={"x": None, "v": None})
-    before, there = cut(model, Section(m, 1, 161), 80, ("x", "v"))
+    before, there = cut_windows(model, Section(m, 1, 161), 80, ("x", "v"))
     inside = Segment(m, there.begin, there.rows, {"x": -0.01, "v": 0.0}, ("x", "v"))
 
     def fitted(*segments: Segment) -> np.ndarray:
         criterion = Criterion(model, segments, [], {}, 1e-8, {"x": 2e-3}, chained=True)
-        return settled(opened(criterion)).squares
+        return fit_initial_states(evaluate_windows(criterion)).squares
 
     assert fitted(inside)[0] > 1e6, "by itself it stays astray"
     assert fitted(before, inside)[1] < 80
@@ -146,8 +155,8 @@ def test_a_start_inside_a_stiff_barrier_is_rescued_by_the_window_before() -> Non
 def test_without_unknowns_a_fit_settles_the_starts() -> None:
     m = record()
     model = model_of(DIAGRAM.replace("value: 22", "value: 25").replace("value: 0.3", "value: 0.2"))
-    segments = cut(model, Section(m, 0, len(m.t)), 60, ("x", "v"))
+    segments = cut_windows(model, Section(m, 0, len(m.t)), 60, ("x", "v"))
     criterion = Criterion(model, segments, [], {}, 1e-8, {"x": NOISE}, weighting="sum")
-    windows, converged = descended(opened(criterion))
+    windows, converged = fit_windows(evaluate_windows(criterion))
     assert converged
     assert windows.rss == pytest.approx(len(m.t), rel=0.2)

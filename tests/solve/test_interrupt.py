@@ -259,6 +259,6 @@ def test_a_fit_is_interrupted_not_penalised(monkeypatch: pytest.MonkeyPatch) -> 
     def stop(*_: object, **__: object) -> None:
         raise Interrupted([])
 
-    monkeypatch.setattr(import_module("tracewire.residual.linearised"), "simulate_spans", stop)
+    monkeypatch.setattr(import_module("tracewire.residual.linearisation"), "simulate_spans", stop)
     with pytest.raises(KeyboardInterrupt):
         fit(compile(read(PENDULUM)))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.fit.result import Comparison
-from tracewire.residual import Criterion, Measured, Segment, descend, own_unknowns
+from tracewire.residual import Criterion, Measured, Segment, own_unknowns, solve_least_squares
 
 Vector = NDArray[np.float64]
 
@@ -23,7 +23,7 @@ def shown_by_series(
 
     Raises SimulationError where a run fails.
     """
-    named, starts = criterion.split(z)
+    named, starts = criterion.unpack(z)
     found: dict[str, Vector] = {}
     for segment, start in zip(criterion.segments, starts, strict=True):
         _fill(found, criterion, segment, named, start)
@@ -33,7 +33,7 @@ def shown_by_series(
         free = [u for u in own_unknowns([segment.measured]) if u.name not in fixed]
         if segment.free or free:
             alone = Criterion(criterion.model, [segment], free, fixed, criterion.rtol)
-            numbers, (own,) = alone.split(descend(alone, alone.begin()).z)
+            numbers, (own,) = alone.unpack(solve_least_squares(alone, alone.initial_unknowns()).z)
             fixed |= numbers
         _fill(found, criterion, segment, fixed, own)
     return found

@@ -118,7 +118,7 @@ def fit(
     criterion = Criterion(model, segments, unknowns, parameters or {}, rtol, loss=loss)
     refuse_few_samples(criterion)
 
-    first = criterion.begin()
+    first = criterion.initial_unknowns()
     units = np.ones(len(first))
     units[: len(unknowns)] = [_size(scale or {}, u.name, 1.0) for u in unknowns]
     criterion_before = criterion.value(first)
@@ -155,14 +155,14 @@ def fit(
     evaluations = criterion.evaluations
     last, z = ended.criterion or criterion, ended.z
     failures = criterion.failures if last is criterion else criterion.failures + last.failures
-    residuals, derivatives = last.residuals_and_derivatives(z)
-    named, starts = last.split(z)
+    residuals, derivatives = last.residuals_and_jacobians(z)
+    named, starts = last.unpack(z)
     found_starts: dict[str, Mapping[str, float]] = {}
     for segment, start in zip(last.segments, starts, strict=True):
         found_starts.setdefault(segment.measured.name, start)
     follows = bool(model.states) if correlated is None else correlated
     uncertainty = uncertainty_of(last, z, residuals, derivatives, follows)
-    matrix = last.weigh_derivatives(residuals, derivatives)
+    matrix = last.weigh_jacobians(residuals, derivatives)
     short = unfinished(uncertainty, last, matrix, last.weigh(residuals))
     shown = compared(model, series, before, shown_by_series(last, z, others))
     return Fit(

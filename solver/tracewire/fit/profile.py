@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tracewire.errors import FitError, OptionError, Problem, unknown
 from tracewire.fit.result import Fit
 from tracewire.fit.uncertainty import criterion_unit
-from tracewire.residual import Criterion, Unknown, descend, whole_segment
+from tracewire.residual import Criterion, Unknown, solve_least_squares, whole_segment
 from tracewire.result import Result
 
 Vector = NDArray[np.float64]
@@ -120,7 +120,7 @@ class _Held:
             for state in segment.free
         ]
         z = np.array([*fit.values.values(), *starts]) / free.scales
-        residuals, derivatives = free.residuals_and_derivatives(z)
+        residuals, derivatives = free.residuals_and_jacobians(z)
         index = list(fit.values).index(name)
         correlated = any(fit.uncertainty.orders.values())
         self.unit, error = criterion_unit(free, residuals, derivatives, index, correlated)
@@ -150,7 +150,7 @@ class _Held:
             loss=self.fit.loss,
         )
         if len(z):
-            z = descend(criterion, z, steps=self.steps).z
+            z = solve_least_squares(criterion, z, steps=self.steps).z
         return value, (criterion.value(z) - self.best) / self.unit, z
 
     def follow(self, best: float, step: float, end: float, points: int, level: float) -> list[Step]:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.fit.uncertainty import Uncertainty
-from tracewire.residual import Measured, around
+from tracewire.residual import Measured, wrap_to_period
 from tracewire.result import Result
 
 Vector = NDArray[np.float64]
@@ -38,7 +38,7 @@ class Comparison:
 
     def residual(self, simulated: Vector) -> Vector:
         """Measured - simulated (N,) in SI, of a periodic signal between - and + half a period."""
-        return around(self.measured - simulated, self.period)
+        return wrap_to_period(self.measured - simulated, self.period)
 
     @property
     def residual_before(self) -> Vector:

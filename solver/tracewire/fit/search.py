@@ -82,7 +82,7 @@ class Search:
         comparisons: Callable[[Vector], tuple[Comparison, ...]] | None = None,
     ) -> None:
         self.criterion, self.options, self.seed = criterion, options, seed
-        self.begin = criterion.begin()
+        self.begin = criterion.initial_unknowns()
         self.units = np.ones(len(self.begin)) if units is None else units
         self.low, self.high = criterion.bounds()
         self.resumed: Mapping[str, Any] = {}
@@ -129,10 +129,12 @@ class Search:
         self._evaluated(z, found, part)
         return found
 
-    def both(self, z: Vector, part: Criterion | None = None) -> tuple[Vector, Matrix]:
+    def vector_and_jacobian(
+        self, z: Vector, part: Criterion | None = None
+    ) -> tuple[Vector, Matrix]:
         """`vector` (M,) and its derivatives (M, n), by forward sensitivities."""
         self.refuse_more()
-        found, matrix = (part or self.criterion).both(z)
+        found, matrix = (part or self.criterion).vector_and_jacobian(z)
         self._evaluated(z, found, part)
         return found, matrix
 
@@ -145,7 +147,7 @@ class Search:
         """Remember a point where it is the best so far, and tell progress."""
         if value < self.best_value:
             self.best, self.best_value = z.copy(), value
-            named, _ = self.criterion.split(z)
+            named, _ = self.criterion.unpack(z)
             self.history.append(Improvement(self.criterion.evaluations, value, named))
         now = time.perf_counter()
         if now - self._told > TOLD_EVERY:
@@ -208,7 +210,7 @@ class Search:
         used = self.criterion.evaluations / self.options.evaluations(self.size)
         share = min(max(self._share, used), 1.0)
         remaining = spent * (1 / share - 1) if share > 0 else np.inf
-        named, _ = self.criterion.split(self.best)
+        named, _ = self.criterion.unpack(self.best)
         return Progress(
             self.criterion.evaluations, self.best_value, spent, remaining, named, self.stage
         )

@@ -1,8 +1,8 @@
 """Measured data beside a model: residuals, their derivatives, and the noise they are judged by."""
 
 from tracewire.residual.criterion import LIMITS, Criterion, half_square
-from tracewire.residual.descent import descend
 from tracewire.residual.files import series_from_files
+from tracewire.residual.initial_states import INITIAL_STATE_STEPS, fit_initial_states
 from tracewire.residual.input_noise import (
     InputCovariance,
     likely_input_noise,
@@ -10,8 +10,8 @@ from tracewire.residual.input_noise import (
     run_noise,
 )
 from tracewire.residual.input_response import InputNoise
-from tracewire.residual.levenberg_marquardt import CREEPS, LEAST_DAMPING, bounded_step, descended
-from tracewire.residual.linearised import Linearised, Projection, around
+from tracewire.residual.levenberg_marquardt import FTOL, LEAST_DAMPING, bounded_step, fit_windows
+from tracewire.residual.linearisation import Linearisation, Projection, wrap_to_period
 from tracewire.residual.loss import LOSSES
 from tracewire.residual.measured import (
     Measured,
@@ -38,8 +38,8 @@ from tracewire.residual.segment import (
     parameter_in,
 )
 from tracewire.residual.sensor import Sensor
-from tracewire.residual.settling import SETTLING, settled
 from tracewire.residual.starts import start_from_data, whole_segment
+from tracewire.residual.trust_region import solve_least_squares
 from tracewire.residual.unknowns import (
     chosen_unknowns,
     free_names,
@@ -51,24 +51,24 @@ from tracewire.residual.unknowns import (
 from tracewire.residual.windows import (
     Section,
     Windows,
-    begun_before,
-    cut,
-    eliminated,
-    opened,
+    cut_windows,
+    evaluate_windows,
+    project_out_initial_states,
+    with_lead_in,
 )
 
 __all__ = [
-    "CREEPS",
+    "FTOL",
+    "INITIAL_STATE_STEPS",
     "LEAST_DAMPING",
     "LIMITS",
     "LOSSES",
     "OWN",
     "SENSED",
-    "SETTLING",
     "Criterion",
     "InputCovariance",
     "InputNoise",
-    "Linearised",
+    "Linearisation",
     "Measured",
     "NoiseEstimate",
     "Projection",
@@ -78,17 +78,15 @@ __all__ = [
     "Unknown",
     "Windows",
     "absolute_tolerances",
-    "around",
-    "begun_before",
     "bounded_step",
     "channel_noise",
     "chosen_unknowns",
-    "cut",
+    "cut_windows",
     "degrees_of",
-    "descend",
-    "descended",
-    "eliminated",
     "estimate_noise",
+    "evaluate_windows",
+    "fit_initial_states",
+    "fit_windows",
     "free_names",
     "free_unknowns",
     "half_square",
@@ -101,18 +99,20 @@ __all__ = [
     "noise_of",
     "noises_beside",
     "of_diagram",
-    "opened",
     "own_unknowns",
     "parameter_in",
+    "project_out_initial_states",
     "refuse_readers_of_free",
     "response_in_windows",
     "run_noise",
     "sensor_unknowns",
     "series_from_files",
     "series_parameters",
-    "settled",
+    "solve_least_squares",
     "start_from_data",
     "whole_segment",
+    "with_lead_in",
     "with_measured_signals",
     "with_past",
+    "wrap_to_period",
 ]

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import DataError, OptionError, Problem, SimulationError, unknown
-from tracewire.residual.linearised import Linearised, Shooting, Shots
+from tracewire.residual.linearisation import BatchLinearisation, Linearisation, SegmentBatch
 from tracewire.residual.loss import LOSSES
 from tracewire.residual.segment import Segment, Unknown
 from tracewire.solve import Halt, Interrupted, Limits, beyond_budget, cores, until_interrupted
@@ -107,7 +107,9 @@ class Criterion:
         """Whether states go on from one segment to the next, so that these run together."""
         return any(set(self.model.states) - set(self.segments[n].free) for n in self._following)
 
-    def on(self, segments: Sequence[Segment], weighting: Weighting | None = None) -> Criterion:
+    def on_segments(
+        self, segments: Sequence[Segment], weighting: Weighting | None = None
+    ) -> Criterion:
         """The same criterion on other segments, of the same series."""
         fresh = Criterion(
             self.model, segments, self.unknowns, self.parameters, self.rtol,
@@ -129,7 +131,7 @@ class Criterion:
             for state in segment.free
         ]
 
-    def begin(self) -> Vector:
+    def initial_unknowns(self) -> Vector:
         """The scaled unknowns to begin with."""
         values = [u.value for u in self.unknowns]
         values += [s.start[name] for s in self.segments for name in s.free]
@@ -142,7 +144,7 @@ class Criterion:
         high = np.array([u.high for u in self.unknowns] + [np.inf] * extra) / self.scales
         return low, high
 
-    def split(self, z: Vector) -> tuple[dict[str, float], list[dict[str, float]]]:
+    def unpack(self, z: Vector) -> tuple[dict[str, float], list[dict[str, float]]]:
         """Scaled unknowns as values by name, and the free starts of each segment."""
         values = (z * self.scales).tolist()
         count = len(self.unknowns)
@@ -153,9 +155,9 @@ class Criterion:
             at += len(segment.free)
         return named, starts
 
-    def moved(self, z: Vector) -> tuple[list[Unknown], list[Segment]]:
+    def with_values(self, z: Vector) -> tuple[list[Unknown], list[Segment]]:
         """The unknowns and segments with the values of z."""
-        named, starts = self.split(z)
+        named, starts = self.unpack(z)
         unknowns = [replace(u, value=named[u.name]) for u in self.unknowns]
         segments = [
             replace(s, start={**s.start, **start})
@@ -173,10 +175,10 @@ class Criterion:
         """What the criterion squares, shape (M,): value = 1/2 sum of squares."""
         return self.weigh(self.residuals(z))
 
-    def both(self, z: Vector) -> tuple[Vector, Matrix]:
-        """`vector` (M,) and its derivatives (M, n), from one run with sensitivities."""
-        residuals, derivatives = self.residuals_and_derivatives(z)
-        return self.weigh(residuals), self.weigh_derivatives(residuals, derivatives)
+    def vector_and_jacobian(self, z: Vector) -> tuple[Vector, Matrix]:
+        """`vector` (M,) and its Jacobian (M, n), from one run with sensitivities."""
+        residuals, derivatives = self.residuals_and_jacobians(z)
+        return self.weigh(residuals), self.weigh_jacobians(residuals, derivatives)
 
     def weigh(self, residuals: Sequence[Vector]) -> Vector:
         """The residuals of all segments as `vector` has them."""
@@ -185,14 +187,12 @@ class Criterion:
             [(loss(r).residual * self.weights(n)).ravel() for n, r in enumerate(residuals)]
         )
 
-    def weigh_derivatives(
-        self, residuals: Sequence[Vector], derivatives: Sequence[Matrix]
-    ) -> Matrix:
+    def weigh_jacobians(self, residuals: Sequence[Vector], derivatives: Sequence[Matrix]) -> Matrix:
         """The derivatives (M, n) of what `weigh` makes of the residuals."""
         both = enumerate(zip(residuals, derivatives, strict=True))
-        return np.concatenate([self.weighed(n, r, matrix)[1] for n, (r, matrix) in both])
+        return np.concatenate([self.weigh_segment(n, r, matrix)[1] for n, (r, matrix) in both])
 
-    def weighed(self, n: int, residual: Vector, derivatives: Matrix) -> tuple[Vector, Matrix]:
+    def weigh_segment(self, n: int, residual: Vector, derivatives: Matrix) -> tuple[Vector, Matrix]:
         """The part of `vector` that segment n makes, and its derivatives."""
         lossy, weights = LOSSES[self.loss](residual), self.weights(n)
         slope = (lossy.slope * weights).reshape(-1, 1)
@@ -212,21 +212,21 @@ class Criterion:
     def residuals(self, z: Vector) -> list[Vector]:
         """The residuals of each segment, shape (N, signals); a failed run counts as far away."""
         self.evaluations += 1
-        named, starts = self.split(z)
-        found = self.linearised(named, dict(enumerate(starts)), slopes=False)
+        named, starts = self.unpack(z)
+        found = self.linearise(named, dict(enumerate(starts)), slopes=False)
         return [found[n].residual for n in range(len(starts))]
 
-    def residuals_and_derivatives(self, z: Vector) -> tuple[list[Vector], list[Matrix]]:
+    def residuals_and_jacobians(self, z: Vector) -> tuple[list[Vector], list[Matrix]]:
         """`residuals`, and d residuals/d scaled unknowns, for each segment (N*signals, n).
 
         By forward sensitivities of one run for each segment, which counts as one evaluation and
         one more for each unknown; by differences where such a run fails.
         """
-        named, starts = self.split(z)
+        named, starts = self.unpack(z)
         self.evaluations += 1 + len(self.unknowns) + max((len(s) for s in starts), default=0)
         residuals, matrices = [], []
         self.warnings = set()
-        linearised = self.linearised(named, dict(enumerate(starts)))
+        linearised = self.linearise(named, dict(enumerate(starts)))
         at = len(self.unknowns)
         for n, start in enumerate(starts):
             columns = [*range(len(self.unknowns)), *range(at, at + len(start))]
@@ -238,12 +238,12 @@ class Criterion:
             matrices.append(matrix)
         return residuals, matrices
 
-    def linearised(
+    def linearise(
         self,
         named: Mapping[str, float],
         starts: Mapping[int, Mapping[str, float]],
         slopes: bool = True,
-    ) -> dict[int, Linearised]:
+    ) -> dict[int, Linearisation]:
         """The segments near these unknowns and starts, by number, each by the sensitivities of one
         run, and by differences where such a run fails. Many steps run in parallel.
 
@@ -252,32 +252,35 @@ class Criterion:
         rows = sum(len(self.segments[n].rows) for n in starts)  # about as many steps, at first
         many = (len(starts) * self.steps / self.runs if self.runs else rows) > MANY
         groups = self._groups(sorted(starts), halves=many and not self.remembers)
-        with _heard() as halt:
+        with _interruptible() as halt:
 
-            def shots(numbers: Sequence[int]) -> Shots:
+            def linearise_group(numbers: Sequence[int]) -> BatchLinearisation:
                 if self.steps > self.budget:  # nothing more is run, and nothing counted
                     beyond = dict.fromkeys(range(len(numbers)), beyond_budget(self.budget))
-                    return Shots({}, beyond, 0, frozenset())
+                    return BatchLinearisation({}, beyond, 0, frozenset())
                 segments = [self.segments[n] for n in numbers]
                 follows = [self.follows(n) and n - 1 in starts for n in numbers]
-                shooting = self._shooting(segments, named, [starts[n] for n in numbers], follows)
+                batch = self._batch(segments, named, [starts[n] for n in numbers], follows)
                 samples = np.concatenate([self._samples[n] for n in numbers])
                 sigma = self.sigma[segments[0].measured.name]
-                return shooting.near(samples, sigma, [*named] if slopes else None, halt)
+                return batch.linearise(samples, sigma, [*named] if slopes else None, halt)
 
             apart = _threads().map if many and cores() > 1 else map
-            done = list(apart(shots, groups))
-        found: dict[int, Linearised] = {}
+            done = list(apart(linearise_group, groups))
+        found: dict[int, Linearisation] = {}
         for numbers, group in zip(groups, done, strict=True):
             self.runs += len(numbers)
             self.steps += group.steps
-            found |= {numbers[n]: self._whitened(numbers[n], x) for n, x in group.near.items()}
+            found |= {
+                numbers[n]: self._whiten_linearisation(numbers[n], x)
+                for n, x in group.linearisations.items()
+            }
             if slopes:
                 series = self.segments[numbers[0]].measured.name
                 self.warnings |= {(series, warning) for warning in group.warnings}
                 continue
             for n, error in group.errors.items():
-                found[numbers[n]] = self._failed(numbers[n], starts[numbers[n]], error)
+                found[numbers[n]] = self._failed_segment(numbers[n], starts[numbers[n]], error)
         for n in starts.keys() - found.keys():
             found[n] = self._differences(n, named, starts[n])
         return found
@@ -293,15 +296,17 @@ class Criterion:
         parts = [part for group, at in middles for part in (group[:at], group[at:])]
         return [part for part in parts if part]
 
-    def _shooting(
+    def _batch(
         self,
         segments: Sequence[Segment],
         named: Mapping[str, float],
         starts: Sequence[Mapping[str, float]],
         follows: Sequence[bool],
-    ) -> Shooting:
+    ) -> SegmentBatch:
         values, left = {**self.parameters, **named}, self.budget - self.steps
-        return Shooting(self.model, segments, values, starts, follows, self.rtol, self.limits, left)
+        return SegmentBatch(
+            self.model, segments, values, starts, follows, self.rtol, self.limits, left
+        )
 
     def outputs(
         self, segment: Segment, named: Mapping[str, float], start: Mapping[str, float]
@@ -311,11 +316,11 @@ class Criterion:
         Raises SimulationError where it fails, KeyboardInterrupt for Ctrl-C: the whole search shall
         stop.
         """
-        with _heard() as halt:
-            runs, sensing = self._shooting([segment], named, [start], [False]).shown(halt)
+        with _interruptible() as halt:
+            runs, observation = self._batch([segment], named, [start], [False]).simulate(halt)
         for error in runs.errors.values():
             raise error
-        return sensing.shown(runs)
+        return observation.observe(runs)
 
     def whiten(self, n: int, rows: Vector) -> Vector:
         """Rows (N, signals) or (N*signals, ...) of segment n, in sigma, as its residuals are."""
@@ -326,13 +331,15 @@ class Criterion:
         white = whitening @ flat if whitening.ndim == 2 else whitening[:, None] * flat
         return np.asarray(white.reshape(rows.shape))
 
-    def _whitened(self, n: int, near: Linearised) -> Linearised:
+    def _whiten_linearisation(self, n: int, near: Linearisation) -> Linearisation:
         if self.whitening is None:
             return near
         residual, slopes = self.whiten(n, near.residual), self.whiten(n, near.slopes)
         return replace(near, residual=residual, slopes=slopes)
 
-    def _failed(self, n: int, start: Mapping[str, float], error: SimulationError) -> Linearised:
+    def _failed_segment(
+        self, n: int, start: Mapping[str, float], error: SimulationError
+    ) -> Linearisation:
         """A segment whose run failed: far from the data, whatever the unknowns."""
         self.failure = error
         self.failures[self.segments[n].measured.name] += 1
@@ -341,15 +348,15 @@ class Criterion:
         residual = np.asarray(np.broadcast_to(spread / sigma, self._samples[n].shape))
         scales = self.segments[n].start_scales(start)
         none, ends = np.zeros((residual.size, 0)), np.zeros((len(self.model.states), 0))
-        return Linearised(residual, none, scales, {}, ends, ran=False)
+        return Linearisation(residual, none, scales, {}, ends, ran=False)
 
     def _differences(
         self, n: int, named: Mapping[str, float], start: Mapping[str, float]
-    ) -> Linearised:
+    ) -> Linearisation:
         """A segment by differences to one side, away from a bound; without where the run fails."""
 
-        def there(named: Mapping[str, float], start: Mapping[str, float]) -> Linearised:
-            return self.linearised(named, {n: start}, slopes=False)[n]
+        def there(named: Mapping[str, float], start: Mapping[str, float]) -> Linearisation:
+            return self.linearise(named, {n: start}, slopes=False)[n]
 
         at = there(named, start)
         if not at.ran:
@@ -372,7 +379,7 @@ class Criterion:
 
 
 @contextmanager
-def _heard() -> Iterator[Halt]:
+def _interruptible() -> Iterator[Halt]:
     """Ctrl-C during runs is no failed run: the whole search shall stop."""
     try:
         with until_interrupted() as halt:

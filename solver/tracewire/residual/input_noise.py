@@ -74,10 +74,10 @@ class InputCovariance:
         if key not in self._known:
             if sum(known.size for known in self._known.values()) > KEPT:
                 self._known.clear()
-            self._known[key] = self._made(measured, key[1], segment.rows)
+            self._known[key] = self._compute(measured, key[1], segment.rows)
         return self._known[key]
 
-    def _made(self, measured: Measured, first: int, rows: NDArray[np.intp]) -> Matrix | Vector:
+    def _compute(self, measured: Measured, first: int, rows: NDArray[np.intp]) -> Matrix | Vector:
         from scipy.linalg import solve_triangular
 
         name = measured.name
@@ -107,7 +107,7 @@ def likely_input_noise(
     """The white noise of one input that makes the residuals of windows of a series most likely.
 
     `windows` are segments, their residuals (W, m) in sigma, not whitened, and the derivatives
-    (W*m, f) of these by the free starts, which are eliminated (restricted likelihood: H. D.
+    (W*m, f) of these by the free starts, which are projected out (restricted likelihood: H. D.
     Patterson and R. Thompson, Biometrika 58, 1971, 545). Windows that are too long are left out.
     """
     level = np.array([sigma[signal] for signal in response.signals])

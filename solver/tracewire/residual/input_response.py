@@ -41,19 +41,20 @@ class InputNoise:
 class InputResponse:
     """A series linearised from each of its N samples to the next, in n states.
 
-    `forward` (N, n, n) takes a change of the states to the next sample, `here` and `there`
-    (N, n, k) that of each of the k inputs at a sample and at the next. `shown` (N, m, n) and
-    `direct` (N, m, k) are what changes of states and of inputs do to the m signals at a sample.
+    `transition` (N, n, n) takes a change of the states to the next sample, `here` and `there`
+    (N, n, k) that of each of the k inputs at a sample and at the next. `output` (N, m, n) and
+    `feedthrough` (N, m, k) are what changes of states and of inputs do to the m signals at a
+    sample.
     """
 
     states: tuple[str, ...]
     signals: tuple[str, ...]
     inputs: tuple[str, ...]
-    forward: Matrix
+    transition: Matrix
     here: Matrix
     there: Matrix
-    shown: Matrix
-    direct: Matrix
+    output: Matrix
+    feedthrough: Matrix
 
     def noise(
         self,
@@ -102,10 +103,10 @@ class InputResponse:
         taken = np.empty((len(rows), len(self.signals), len(columns)))
         for number, row in enumerate(rows.tolist()):
             now, after = errors[number], errors[number + 1]
-            out[number] = self.shown[row] @ moved + self.direct[row] @ now
-            taken[number] = self.shown[row] @ start
-            moved = self.forward[row] @ moved + self.here[row] @ now + self.there[row] @ after
-            start = self.forward[row] @ start
+            out[number] = self.output[row] @ moved + self.feedthrough[row] @ now
+            taken[number] = self.output[row] @ start
+            moved = self.transition[row] @ moved + self.here[row] @ now + self.there[row] @ after
+            start = self.transition[row] @ start
         if slopes is not None:
             taken = np.concatenate((taken, slopes[rows]), axis=2)
         if taken.shape[2]:
@@ -164,7 +165,7 @@ def input_response(
         known = measured.inputs[name]
         change = measured.input_sigma.get(name) or SMALL * float(np.std(known[1])) or 1.0
         for parity in (0, 1):
-            pushed = _pushed(known, measured.t, change, parity)
+            pushed = _perturb_input(known, measured.t, change, parity)
             found = runs({**measured.inputs, name: pushed})
             failed |= set(found.errors)
             begins, states_then = ends_of(found)
@@ -181,7 +182,7 @@ def input_response(
     )
 
 
-def _pushed(known: Driving, t: Vector, change: float, parity: int) -> Driving:
+def _perturb_input(known: Driving, t: Vector, change: float, parity: int) -> Driving:
     """An input with a change at every second sample of a series."""
     push = change * (np.arange(len(t)) % 2 == parity)
     push = np.append(push, change * (len(t) % 2 == parity))

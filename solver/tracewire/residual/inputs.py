@@ -34,15 +34,15 @@ def between_samples(name: str, t: Vector, u: Vector, hold: Hold | None) -> tuple
     """An input with samples u (N,) at times t (N,) as a run takes it, and how in words.
 
     As `hold` says: each value acts until the next (`previous`), straight lines join the samples
-    (`linear`), or a cubic spline does (`smooth`). With None it is the spline where `smoothed`
-    finds the input smooth, else straight lines.
+    (`linear`), or a cubic spline does (`smooth`). With None it is the spline where
+    `spline_if_smooth` finds the input smooth, else straight lines.
     """
     said = "" if hold is None else ", as declared"
     if hold == "previous":
         return Held(t, u), f"input '{name}' is held from sample to sample{said}"
-    points = smoothed(t, u) if hold is None else None
+    points = spline_if_smooth(t, u) if hold is None else None
     if hold == "smooth":
-        points = splined(t, u)
+        points = fit_spline(t, u)
     if points is None:
         return (t, u), f"input '{name}' is joined by straight lines{said}"
     return points, f"input '{name}' is smooth{said}: a cubic spline, in {len(points[0])} points"
@@ -57,7 +57,7 @@ def looks_held(u: Vector) -> bool:
     return bool(np.median(jumps) > JUMP * np.ptp(u))
 
 
-def lost_by_lines(t: Vector, u: Vector) -> float:
+def line_error(t: Vector, u: Vector) -> float:
     """The part of the amplitude of an input that straight lines between its samples lose.
 
     A sine of angular frequency omega, sampled each dt, loses (omega*dt)^2/12; that is averaged over
@@ -70,7 +70,7 @@ def lost_by_lines(t: Vector, u: Vector) -> float:
     return float(np.sum(power * angle**2 / 12) / max(float(np.sum(power)), 1e-300))
 
 
-def smoothed(t: Vector, u: Vector) -> tuple[Vector, Vector] | None:
+def spline_if_smooth(t: Vector, u: Vector) -> tuple[Vector, Vector] | None:
     """The points of a smooth input with samples u (N,) at times t (N,); None for others.
 
     A run joins points by straight lines. Joined so, samples of a sine lose (omega*dt)^2/12 of its
@@ -90,10 +90,10 @@ def smoothed(t: Vector, u: Vector) -> tuple[Vector, Vector] | None:
     lines, spline = _errors(t, u)
     if not lines > VISIBLE * float(np.ptp(u)) or not spline < BETTER * lines:
         return None
-    return splined(t, u)
+    return fit_spline(t, u)
 
 
-def splined(t: Vector, u: Vector) -> tuple[Vector, Vector]:
+def fit_spline(t: Vector, u: Vector) -> tuple[Vector, Vector]:
     """The points whose straight lines come closest to the cubic spline through an input."""
     lines, _ = _errors(t, u)
     # lines err by the square of the interval: a quarter of `lines` on all samples
@@ -103,7 +103,7 @@ def splined(t: Vector, u: Vector) -> tuple[Vector, Vector]:
     times = np.interp(np.arange(count) / factor, np.arange(len(t)), t)
     from scipy.interpolate import CubicSpline
 
-    return times, projected(CubicSpline(t, u), times)
+    return times, project_on_lines(CubicSpline(t, u), times)
 
 
 def _errors(t: Vector, u: Vector) -> tuple[float, float]:
@@ -118,7 +118,7 @@ def _errors(t: Vector, u: Vector) -> tuple[float, float]:
     return float(np.max(np.abs(lines))), float(np.max(np.abs(spline)))
 
 
-def projected(spline: CubicSpline, times: Vector) -> Vector:
+def project_on_lines(spline: CubicSpline, times: Vector) -> Vector:
     """The values at `times` (N,) whose straight lines are closest to a cubic spline, which is a
     cubic between any two of them."""
     from scipy.linalg import solveh_banded

@@ -8,25 +8,30 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.residual.linearised import Projection
-from tracewire.residual.settling import (
-    SETTLED,
-    SETTLING,
-    consistent,
-    ends_before,
-    far_off,
-    from_data,
-    from_ends,
-    settled,
-    settled_some,
+from tracewire.residual.initial_states import (
+    INITIAL_STATE_STEPS,
+    NEGLIGIBLE_GAIN,
+    fit_initial_states,
+    is_far_off,
+    previous_ends,
+    refine_initial_states,
+    restart_from_data,
+    restart_from_ends,
+    update_memories,
 )
-from tracewire.residual.windows import Windows, begun_at, better, eliminated
+from tracewire.residual.linearisation import Projection
+from tracewire.residual.windows import (
+    Windows,
+    keep_better,
+    project_out_initial_states,
+    with_initial_states,
+)
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-RESCUING = 2
+RESCUE_STEPS = 2
 """Steps of the start of a window that was led astray."""
-CREEPS = 5e-4
+FTOL = 5e-4
 """A step that gains less than this part of the sum of squares is the last one."""
 FIRST_DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-9, 1e6
 MOST_FAILURES = 8
@@ -35,37 +40,37 @@ PATIENCE, HOPE = 4, 2.0
 pace promises may still come."""
 
 
-def descended(
+def fit_windows(
     windows: Windows,
     steps: int = 20,
     target: float = np.inf,
-    creeps: float = CREEPS,
-    settling: int = SETTLING,
+    ftol: float = FTOL,
+    initial_state_steps: int = INITIAL_STATE_STEPS,
 ) -> tuple[Windows, bool]:
     """The unknowns and all starts fitted by Levenberg and Marquardt; whether it converged.
 
     Each step comes from the problem without the starts, within the bounds of the unknowns. Windows
-    that do worse than the step promised are settled for themselves before it is judged. It ends
+    that do worse than the step promised are fitted for themselves before it is judged. It ends
     early where the sum of squares would not fall to `target` at its pace in the steps that are
-    left: it has lost against what reached that. A step that gains less than the part `creeps` of
-    the sum is the last one; before the first the starts are fitted alone in `settling` steps, and
-    after the last those that went astray, from the data; if that does better it goes on.
+    left: it has lost against what reached that. A step that gains less than the part `ftol` of
+    the sum is the last one; before the first the starts are fitted alone in `initial_state_steps`
+    steps, and after the last those that went astray, from the data; if that does better it goes on.
     """
-    windows = settled(windows, settling)
+    windows = fit_initial_states(windows, initial_state_steps)
     if not len(windows.criterion.unknowns):
         return windows, True
     while True:
-        windows, converged, steps = _descended(windows, steps, target, creeps)
-        found = from_data(windows, settling)
+        windows, converged, steps = _take_steps(windows, steps, target, ftol)
+        found = restart_from_data(windows, initial_state_steps)
         if found is windows or not steps:
             return found, converged
         windows = found
 
 
-def _descended(
-    windows: Windows, steps: int, target: float, creeps: float
+def _take_steps(
+    windows: Windows, steps: int, target: float, ftol: float
 ) -> tuple[Windows, bool, int]:
-    """The steps from where the starts are settled; whether they converged, and how many are
+    """The steps from where the starts are fitted; whether they converged, and how many are
     left."""
     unknowns = windows.criterion.unknowns
     low, high = np.array([u.low for u in unknowns]), np.array([u.high for u in unknowns])
@@ -73,8 +78,8 @@ def _descended(
     damping, failures = FIRST_DAMPING, 0
     gained, too_slow = np.inf, 0
     for left_over in reversed(range(steps)):
-        views = windows.views
-        reduced, residual = eliminated(windows)
+        views = windows.projections
+        reduced, residual = project_out_initial_states(windows)
         reduced = reduced * scales
         values = np.array([windows.values[u.name] for u in unknowns])
         room = (low - values) / scales, (high - values) / scales
@@ -84,9 +89,9 @@ def _descended(
             left = residual + reduced @ step
             promised = float(residual @ residual - left @ left)
             start_gain = windows.rss - float(residual @ residual)
-            if promised + start_gain < max(SETTLED, 0.2 * creeps * windows.rss):
+            if promised + start_gain < max(NEGLIGIBLE_GAIN, 0.2 * ftol * windows.rss):
                 return windows, True, left_over
-            there = _moved(windows, views, step * scales)
+            there = _step_windows(windows, views, step * scales)
             failures += there is None
             if there is not None and there.rss < windows.rss:
                 before, gained = gained, windows.rss - there.rss
@@ -94,13 +99,13 @@ def _descended(
                 # what was refused a moment ago would be refused again
                 damping = damping if refused else max(damping / 10, LEAST_DAMPING)
                 break
-            if there is not None and there.rss < (1 + creeps) * windows.rss:
+            if there is not None and there.rss < (1 + ftol) * windows.rss:
                 return windows, True, left_over  # as flat as the solver is exact
             damping = max(damping * (100 if refused else 10), FIRST_DAMPING)
             refused = True
             if damping > MOST_DAMPING or failures > MOST_FAILURES:
                 return windows, False, left_over
-        if gained < max(SETTLED, creeps * windows.rss):
+        if gained < max(NEGLIGIBLE_GAIN, ftol * windows.rss):
             return windows, True, left_over
         pace = min(gained / before, 1 - 1e-9)
         coming = HOPE * gained * min(left_over, pace / (1 - pace))
@@ -129,7 +134,7 @@ def bounded_step(
     return np.asarray(found.x / sizes)
 
 
-def _moved(windows: Windows, views: Sequence[Projection], step: Vector) -> Windows | None:
+def _step_windows(windows: Windows, views: Sequence[Projection], step: Vector) -> Windows | None:
     """The windows after a step of the unknowns, their starts following by the linear answer; None
     where one does not run."""
     count = len(windows.values)
@@ -139,29 +144,35 @@ def _moved(windows: Windows, views: Sequence[Projection], step: Vector) -> Windo
         values[u.name] = min(max(values[u.name], u.low), u.high)
     starts: dict[int, Mapping[str, float]] = {}
     promised = []
-    for n, (view, old) in enumerate(zip(views, windows.near, strict=True)):
+    for n, (view, old) in enumerate(zip(views, windows.linearisations, strict=True)):
         expected = old.residual.ravel() + old.slopes[:, :count] @ step
-        moved = np.array(list(windows.starts[n].values())) - view.answer @ expected
+        moved = np.array(list(windows.starts[n].values())) - view.pseudoinverse @ expected
         start: Mapping[str, float] = dict(zip(windows.starts[n], moved.tolist(), strict=True))
-        starts[n] = windows.starts[n] if far_off(windows, n, start) else start
-        promised.append(float(np.sum(view.off(expected) ** 2)))
-    there = begun_at(replace(windows, values=values), starts)
+        starts[n] = windows.starts[n] if is_far_off(windows, n, start) else start
+        promised.append(float(np.sum(view.project_out(expected) ** 2)))
+    there = with_initial_states(replace(windows, values=values), starts)
     # a start that is led into a barrier is kicked away
-    lost = [n for n, old in enumerate(windows.near) if old.ran and not there.near[n].ran]
-    there = begun_at(there, {n: windows.starts[n] for n in lost})
-    if not all(there.near[n].ran for n in lost):
+    lost = [
+        n
+        for n, old in enumerate(windows.linearisations)
+        if old.ran and not there.linearisations[n].ran
+    ]
+    there = with_initial_states(there, {n: windows.starts[n] for n in lost})
+    if not all(there.linearisations[n].ran for n in lost):
         return None
-    sizes = np.array([x.residual.size for x in there.near])
-    limits = 2 * np.array(promised) + windows.good * sizes
+    sizes = np.array([x.residual.size for x in there.linearisations])
+    limits = 2 * np.array(promised) + windows.inlier_limit * sizes
     far = np.flatnonzero(there.squares > np.maximum(limits, windows.squares)).tolist()
-    return _rescued(there, {n: windows.starts[n] for n in far}) if far else there
+    return _rescue(there, {n: windows.starts[n] for n in far}) if far else there
 
 
-def _rescued(windows: Windows, before: Mapping[int, Mapping[str, float]]) -> Windows:
+def _rescue(windows: Windows, before: Mapping[int, Mapping[str, float]]) -> Windows:
     """Some windows from where they were `before`, or from the ends of those before them, where that
     does better."""
     rows = list(before)
-    tried = better(windows, begun_at(windows, before), rows)
-    ends = ends_before(tried, rows)
-    tried = better(tried, begun_at(tried, ends), list(ends))
-    return consistent(from_ends(settled_some(tried, rows, RESCUING), rows, RESCUING))
+    tried = keep_better(windows, with_initial_states(windows, before), rows)
+    ends = previous_ends(tried, rows)
+    tried = keep_better(tried, with_initial_states(tried, ends), list(ends))
+    return update_memories(
+        restart_from_ends(refine_initial_states(tried, rows, RESCUE_STEPS), rows, RESCUE_STEPS)
+    )

@@ -19,7 +19,7 @@ from tracewire.formula import evaluate
 from tracewire.library import SENSOR_TERMS
 from tracewire.residual.arrays import ArrayCheck, fields_of_frame
 from tracewire.residual.inputs import between_samples
-from tracewire.residual.remarks import check_quantities, remarks_on
+from tracewire.residual.remarks import check_quantities, remarks_of
 from tracewire.residual.sensor import PLAIN, Sensor, read_sensor
 from tracewire.solve import Driving, Options, parameter_values
 
@@ -304,7 +304,7 @@ def _measured(
         preset=series.preset,
         file=str(series.file),
         steps=(*steps, *told),
-        remarks=remarks_on(model, series, replace(seen, remarks=read.remarks), values, zero),
+        remarks=remarks_of(model, series, replace(seen, remarks=read.remarks), values, zero),
     )
 
 

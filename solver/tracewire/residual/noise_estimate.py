@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.residual.measured import Measured
-from tracewire.residual.readings import MAD, interpolation, rounding_step, without_spikes
+from tracewire.residual.readings import MAD, interpolation, replace_outliers, rounding_step
 from tracewire.residual.spectrum import Spectrum, spectrum_of
 
 Vector = NDArray[np.float64]
@@ -131,7 +131,7 @@ def noise_of_signal(values: Vector, t: Vector | None = None) -> NoiseEstimate:
     if len(values) < FEWEST_FOR_SPECTRUM:
         found = _of_differences(values, t)
     else:
-        clean = without_spikes(values)
+        clean = replace_outliers(values)
         spectrum = spectrum_of(clean)
         local = _of_differences(values, None if even else t)
         found = _of_spectrum(spectrum, clean, step, local)

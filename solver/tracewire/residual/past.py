@@ -46,25 +46,25 @@ def with_past(
     for text in texts.keys() & measured.values.keys() - given.keys():
         sensor = measured.sensor(text)
         seen = sensor.signal(measured.values[text], measured.t - measured.zero)
-        given[text] = _joined(text, measured.t - sensor.delay, seen)
+        given[text] = _join(text, measured.t - sensor.delay, seen)
     open_ = [text for text in texts if text not in given]
     if not open_:
         return replace(measured, past=given) if given else measured
     told = states_from_data(model, measured, np.arange(len(measured.t)))
     moving = moved_by_fit(model, free)
-    problems = [_untold(model, text, told, moving, given, what) for text in open_]
+    problems = [_why_undetermined(model, text, told, moving, given, what) for text in open_]
     if refused := [problem for problem in problems if problem is not None]:
         raise OptionError(refused)
-    computed = _computed(model, measured, open_, told, given)
-    past = {text: _joined(text, measured.t, values) for text, values in computed.items()}
+    computed = _simulate_past(model, measured, open_, told, given)
+    past = {text: _join(text, measured.t, values) for text, values in computed.items()}
     return replace(measured, past={**given, **past})
 
 
-def _joined(name: str, t: Vector, values: Vector) -> Driving:
+def _join(name: str, t: Vector, values: Vector) -> Driving:
     return between_samples(name, t, values, "previous" if looks_held(values) else None)[0]
 
 
-def _untold(
+def _why_undetermined(
     model: Model,
     text: str,
     told: Collection[str],
@@ -99,7 +99,7 @@ def _untold(
     return None
 
 
-def _computed(
+def _simulate_past(
     model: Model,
     measured: Measured,
     names: Collection[str],

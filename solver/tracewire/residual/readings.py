@@ -13,25 +13,25 @@ INTERPOLATED = {1: 1, 2: 1, 4: 3}
 straight lines, cubic pieces): how many of them see an own sample."""
 LARGEST_FACTOR, FEWEST_OWN, QUIET = 64, 20, 0.03
 """Of an interpolation that is looked for; own samples; how small differences between them are."""
-SPIKE = 8.0
+OUTLIER = 8.0
 """Standard deviations from the mean of both neighbours: such a sample is an outlier."""
 FEWEST_STEPS, MOST_PARTS, COARSE = 8, 8, 1e3
 """Gaps between readings that show a step, steps of the least gap, and of the median gap."""
 
 
-def without_spikes(values: Vector) -> Vector:
+def replace_outliers(values: Vector) -> Vector:
     """A signal whose single samples far from both neighbours are between these."""
     off = values[1:-1] - (values[2:] + values[:-2]) / 2
     size = np.abs(off)
     spread = MAD * float(np.median(size))
     around = np.maximum(np.append(size[1:], 0.0), np.append(0.0, size[:-1]))
-    spikes = (
-        (size > SPIKE * spread) & (size > around) & (size > 2 * np.abs(values[2:] - values[:-2]))
+    outliers = (
+        (size > OUTLIER * spread) & (size > around) & (size > 2 * np.abs(values[2:] - values[:-2]))
     )
-    if spread == 0 or not spikes.any():
+    if spread == 0 or not outliers.any():
         return values
     repaired = values.copy()
-    repaired[1:-1][spikes] -= off[spikes]
+    repaired[1:-1][outliers] -= off[outliers]
     return repaired
 
 

@@ -15,7 +15,7 @@ from tracewire.diagram import Channel, Series
 from tracewire.errors import DataError, Problem
 from tracewire.formula import evaluate, quantity_hint, read_unit
 from tracewire.residual.endings import alike
-from tracewire.residual.inputs import looks_held, lost_by_lines, smoothed
+from tracewire.residual.inputs import line_error, looks_held, spline_if_smooth
 
 LARGEST_ANGLE = 20.0
 MUCH_LONGER = 100.0
@@ -45,7 +45,7 @@ def check_quantities(model: Model, series: Series, record: Record) -> None:
         raise DataError(problems)
 
 
-def remarks_on(
+def remarks_of(
     model: Model, series: Series, read: Record, values: Mapping[str, float], zero: float
 ) -> tuple[str, ...]:
     """What is odd about a record as it was read, in SI and in the file's own time, and its units.
@@ -108,13 +108,13 @@ def _on_hold(series: Series, read: Record) -> list[str]:
         column = read.columns.get(f"input {name}")
         if channel.hold is not None or column is None:
             continue
-        lost = lost_by_lines(read.t, column)
+        lost = line_error(read.t, column)
         if looks_held(column):
             found.append(
                 f"the input {name} looks held: most of its samples repeat the one before; if it "
                 "acts so, say hold: previous, if not, hold: linear"
             )
-        elif lost > LOST and smoothed(read.t, column) is None:
+        elif lost > LOST and spline_if_smooth(read.t, column) is None:
             found.append(
                 f"the input {name} has few samples a period: straight lines between them lose "
                 f"{100 * lost:.2g} % of its amplitude; say hold: smooth where it is smooth between "

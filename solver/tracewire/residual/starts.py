@@ -21,8 +21,8 @@ DEGREE = 4
 
 def start_from_data(model: Model, measured: Measured, row: int) -> dict[str, float]:
     """The states at a row of a series that the data tell."""
-    told = states_from_data(model, measured, np.array([row]))
-    return {name: float(values[0]) for name, values in told.items()}
+    states = states_from_data(model, measured, np.array([row]))
+    return {name: float(values[0]) for name, values in states.items()}
 
 
 def states_from_data(model: Model, measured: Measured, rows: Rows) -> dict[str, Vector]:
@@ -78,10 +78,10 @@ def whole_segment(model: Model, measured: Measured) -> Segment:
         return Segment(measured, min(begin, float(measured.t[0])), rows)
     start = measured.known_start
     free = tuple(name for name, value in measured.start.items() if value is None)
-    told = start_from_data(model, measured, 0)
+    states = start_from_data(model, measured, 0)
     for state in model.flat.states:
-        if state.name in free and state.name in told:
-            start[state.name] = told[state.name]
+        if state.name in free and state.name in states:
+            start[state.name] = states[state.name]
         elif state.name in free:
             start[state.name] = evaluate(state.start, values, state.place)
     return Segment(measured, float(measured.t[0]), rows, start, free)

@@ -1,7 +1,7 @@
 """Windows: a series cut into short runs whose start states are free.
 
 A window begins at the last sample of the one before it, so that the end of one is a start for the
-next. Its start states are eliminated where it stands: what is left of the residual and of the
+next. Its start states are projected out where it stands: what is left of the residual and of the
 derivatives when all that a start could explain is taken away (variable projection).
 """
 
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.residual.criterion import Criterion
-from tracewire.residual.linearised import Linearised, Projection
+from tracewire.residual.linearisation import Linearisation, Projection
 from tracewire.residual.measured import Measured
 from tracewire.residual.past import longest_delay
 from tracewire.residual.segment import Segment
@@ -38,7 +38,7 @@ class Section:
     end: int
 
 
-def cut(model: Model, section: Section, length: int, free: Sequence[str]) -> list[Segment]:
+def cut_windows(model: Model, section: Section, length: int, free: Sequence[str]) -> list[Segment]:
     """A section as windows of about `length` samples, each with free starts of the states `free`.
 
     A window that begins where the series does begins as the series says; where that start is
@@ -62,8 +62,8 @@ def cut(model: Model, section: Section, length: int, free: Sequence[str]) -> lis
             start |= {name: whole.start.get(name, 0.0) for name in whole.free}
             windows.append(Segment(measured, whole.begin, np.arange(a, b), start, whole.free))
             continue
-        told = start_from_data(model, measured, a - 1)
-        start = {**whole.start, **{name: told[name] for name in free if name in told}}
+        states = start_from_data(model, measured, a - 1)
+        start = {**whole.start, **{name: states[name] for name in free if name in states}}
         for name in free:
             start.setdefault(name, 0.0)
         begin = float(measured.t[a - 1])
@@ -71,7 +71,7 @@ def cut(model: Model, section: Section, length: int, free: Sequence[str]) -> lis
     return windows
 
 
-def begun_before(model: Model, segment: Segment, delays: Mapping[str, float]) -> Segment:
+def with_lead_in(model: Model, segment: Segment, delays: Mapping[str, float]) -> Segment:
     """A window whose run begins so early that its first samples are seen through delays in s, by
     the name of the sensor's unknown; where its start is not free, as it is."""
     measured, first = segment.measured, float(segment.t[0])
@@ -83,8 +83,8 @@ def begun_before(model: Model, segment: Segment, delays: Mapping[str, float]) ->
     row = int(np.searchsorted(measured.t, begin, side="right")) - 1
     if row < 0:
         return replace(segment, begin=begin)
-    told = start_from_data(model, measured, row)
-    start = {name: told[name] for name in segment.free if name in told}
+    states = start_from_data(model, measured, row)
+    start = {name: states[name] for name in segment.free if name in states}
     return replace(segment, begin=float(measured.t[row]), start={**segment.start, **start})
 
 
@@ -92,19 +92,20 @@ def begun_before(model: Model, segment: Segment, delays: Mapping[str, float]) ->
 class Windows:
     """Windows at some values of the unknowns: their starts, and each of them linearised there.
 
-    A window whose mean squared residual is at most `good`, in the noise's variance, is not astray.
+    A window whose mean squared residual is at most `inlier_limit`, in the noise's variance, is not
+    astray.
     """
 
     criterion: Criterion
     values: Mapping[str, float]
     starts: tuple[Mapping[str, float], ...]
-    near: tuple[Linearised, ...]
-    good: float = 2.0
+    linearisations: tuple[Linearisation, ...]
+    inlier_limit: float = 2.0
 
     @property
     def squares(self) -> Vector:
         """The sum of squared residuals of each window, in sigma."""
-        return np.array([near.square for near in self.near])
+        return np.array([near.square for near in self.linearisations])
 
     @property
     def rss(self) -> float:
@@ -112,44 +113,48 @@ class Windows:
         return float(np.sum(self.squares))
 
     @property
-    def views(self) -> list[Projection]:
+    def projections(self) -> list[Projection]:
         """What the start of each window can explain."""
-        return [near.projection for near in self.near]
+        return [near.projection for near in self.linearisations]
 
     @property
     def residuals(self) -> list[Vector]:
         """The residuals in sigma by window, shape (N, signals)."""
-        return [near.residual for near in self.near]
+        return [near.residual for near in self.linearisations]
 
     @property
     def segments(self) -> list[Segment]:
         """The windows with their fitted starts, and memories as the window before has left them."""
         found = []
         for n, segment in enumerate(self.criterion.segments):
-            left = self.near[n - 1].final if self.criterion.follows(n) else {}
+            left = self.linearisations[n - 1].final if self.criterion.follows(n) else {}
             start = {**segment.start, **left, **self.starts[n]}
             found.append(replace(segment, start=start))
         return found
 
 
-def eliminated(windows: Windows) -> tuple[Matrix, Vector]:
+def project_out_initial_states(windows: Windows) -> tuple[Matrix, Vector]:
     """Derivatives (M, unknowns) in SI and residuals (M,) without what the starts can explain."""
     count = len(windows.values)
-    reduced = np.concatenate([n.projection.off(n.slopes[:, :count]) for n in windows.near])
-    residual = np.concatenate([n.projection.off(n.residual.ravel()) for n in windows.near])
+    reduced = np.concatenate(
+        [n.projection.project_out(n.slopes[:, :count]) for n in windows.linearisations]
+    )
+    residual = np.concatenate(
+        [n.projection.project_out(n.residual.ravel()) for n in windows.linearisations]
+    )
     return reduced, residual
 
 
-def opened(criterion: Criterion, good: float = 2.0) -> Windows:
-    """The windows where their segments begin; `good` as in Windows."""
+def evaluate_windows(criterion: Criterion, inlier_limit: float = 2.0) -> Windows:
+    """The windows where their segments begin; `inlier_limit` as in Windows."""
     values = {u.name: u.value for u in criterion.unknowns}
     starts = [{name: s.start[name] for name in s.free} for s in criterion.segments]
-    near = criterion.linearised(values, dict(enumerate(starts)))
-    linearised = tuple(near[n] for n in range(len(starts)))
-    return Windows(criterion, values, tuple(starts), linearised, good)
+    near = criterion.linearise(values, dict(enumerate(starts)))
+    linearisations = tuple(near[n] for n in range(len(starts)))
+    return Windows(criterion, values, tuple(starts), linearisations, inlier_limit)
 
 
-def begun_at(windows: Windows, starts: Mapping[int, Mapping[str, float]]) -> Windows:
+def with_initial_states(windows: Windows, starts: Mapping[int, Mapping[str, float]]) -> Windows:
     """The windows with other starts of some, by number; the unknowns stay.
 
     Where memories go on from one to the next all of them run, else those.
@@ -158,15 +163,15 @@ def begun_at(windows: Windows, starts: Mapping[int, Mapping[str, float]]) -> Win
         return windows
     there = {**dict(enumerate(windows.starts)), **starts}
     run = there if windows.criterion.remembers else starts
-    found = windows.criterion.linearised(windows.values, run)
-    near = tuple(found.get(n, old) for n, old in enumerate(windows.near))
-    return replace(windows, starts=tuple(there[n] for n in range(len(near))), near=near)
+    found = windows.criterion.linearise(windows.values, run)
+    near = tuple(found.get(n, old) for n, old in enumerate(windows.linearisations))
+    return replace(windows, starts=tuple(there[n] for n in range(len(near))), linearisations=near)
 
 
-def better(windows: Windows, other: Windows, rows: Sequence[int]) -> Windows:
+def keep_better(windows: Windows, other: Windows, rows: Sequence[int]) -> Windows:
     """The windows with those of some others where these do better."""
-    starts, near = list(windows.starts), list(windows.near)
+    starts, near = list(windows.starts), list(windows.linearisations)
     for n in rows:
-        if other.near[n].square < near[n].square:
-            starts[n], near[n] = other.starts[n], other.near[n]
-    return replace(windows, starts=tuple(starts), near=tuple(near))
+        if other.linearisations[n].square < near[n].square:
+            starts[n], near[n] = other.starts[n], other.linearisations[n]
+    return replace(windows, starts=tuple(starts), linearisations=tuple(near))

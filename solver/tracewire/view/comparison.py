@@ -46,16 +46,16 @@ def conditions_of(model: Model, series: str, limits: Limits) -> SeriesConditions
     of its fit. Where a run fails or takes long, the start is read off the data.
     Raises OptionError: no such series; DataError: a file that cannot be used.
     """
-    from tracewire.residual import Criterion, descend, measured_series, whole_segment
+    from tracewire.residual import Criterion, measured_series, solve_least_squares, whole_segment
 
     measured = measured_series(model, series)
     segment = whole_segment(model, measured)
     quick = replace(limits, seconds=min(limits.seconds, QUICK))
     alone = Criterion(model, [segment], (), measured.parameters, limits=quick)
-    begin = alone.begin()
+    begin = alone.initial_unknowns()
     alone.residuals(begin)
     if segment.free and alone.failure is None:
-        _, (start,) = alone.split(descend(alone, begin).z)
+        _, (start,) = alone.unpack(solve_least_squares(alone, begin).z)
         segment = replace(segment, start={**segment.start, **start})
     return SeriesConditions(measured, segment)
 
@@ -72,7 +72,7 @@ def comparison_of(
     values: those of parameters in SI that are not the file's. The criterion is that of a fit with
     this series alone. Raises SimulationError, DataError.
     """
-    from tracewire.residual import Criterion, around, half_square
+    from tracewire.residual import Criterion, half_square, wrap_to_period
 
     measured = known.measured
     signals = list(measured.values)
@@ -80,10 +80,10 @@ def comparison_of(
     if not signals:  # a series of inputs alone
         return head
     criterion = Criterion(model, [known.segment], (), values, limits=limits)
-    (start,) = criterion.split(criterion.begin())[1]
+    (start,) = criterion.unpack(criterion.initial_unknowns())[1]
     rows = known.segment.rows
     shown = criterion.outputs(known.segment, {}, start)
-    weighed = criterion.residuals(criterion.begin())
+    weighed = criterion.residuals(criterion.initial_unknowns())
     if criterion.failure is not None:
         raise criterion.failure
     head["criterion"] = half_square(criterion.weigh(weighed))
@@ -93,7 +93,7 @@ def comparison_of(
         look = model.flat.shown.get(name)
         factor = look.factor if look is not None else 1.0
         samples = measured.values[name][rows]
-        residual = around(samples - shown[:, n], measured.periods.get(name, 0.0))
+        residual = wrap_to_period(samples - shown[:, n], measured.periods.get(name, 0.0))
         head["signals"][name] = {
             "t": t,
             "values": arrays.keep(samples[chosen] / factor),

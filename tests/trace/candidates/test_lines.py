@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 from tracewire.compile import compile
 from tracewire.diagram import read_text
-from tracewire.residual import Criterion, Measured, Section, cut, opened
+from tracewire.residual import Criterion, Measured, Section, cut_windows, evaluate_windows
 from tracewire.trace.candidates.lines import line_periods, modulating_periods
 from tracewire.trace.thresholds import CandidateOptions
 
@@ -34,8 +34,10 @@ def found(*series: tuple[float, float, int], level: float = 1.0, coloured: float
             noise[n] += coloured * noise[n - 1]
         values = level * np.sin(2 * np.pi * t / period + seed) + noise
         measured = Measured(f"run {number}", "train", t, {"x": values}, start={"x": None, "v": 0.0})
-        segments += cut(model, Section(measured, 0, len(t)), 120, ("x", "v"))
-    windows = opened(Criterion(model, segments, [], {}, sigma={"x": 1.0}, weighting="sum"))
+        segments += cut_windows(model, Section(measured, 0, len(t)), 120, ("x", "v"))
+    windows = evaluate_windows(
+        Criterion(model, segments, [], {}, sigma={"x": 1.0}, weighting="sum")
+    )
     return np.array(line_periods(windows, OPTIONS))
 
 
@@ -62,8 +64,10 @@ def test_a_record_with_a_gap_of_years_is_passed_over() -> None:
     model = compile(read_text(OSCILLATOR), record=["x"])
     t = np.r_[np.arange(0, 30, 0.01), 1e9 + np.arange(0, 30, 0.01)]
     measured = Measured("run", "train", t, {"x": np.sin(20 * t)}, start={"x": None, "v": 0.0})
-    segments = cut(model, Section(measured, 0, 2400), 120, ("x", "v"))
-    windows = opened(Criterion(model, segments, [], {}, sigma={"x": 1.0}, weighting="sum"))
+    segments = cut_windows(model, Section(measured, 0, 2400), 120, ("x", "v"))
+    windows = evaluate_windows(
+        Criterion(model, segments, [], {}, sigma={"x": 1.0}, weighting="sum")
+    )
     assert line_periods(windows, OPTIONS) == []
 
 

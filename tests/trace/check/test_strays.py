@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from oracles.oscillator import STIFFNESS, bench_of, record
 from tracewire.residual import Measured, Segment
-from tracewire.residual.windows import Section, cut
+from tracewire.residual.windows import Section, cut_windows
 from tracewire.trace.check.strays import without_strays
 from tracewire.trace.trials.trial import Bench, Trial
 
@@ -28,7 +28,9 @@ def kicked(law: Callable[[float, float], float] | None = None) -> Measured:
 
 
 def begun(bench: Bench, measured: Measured) -> tuple[list[Segment], Trial]:
-    segments = cut(bench.declared, Section(measured, 0, len(measured.t)), LENGTH, bench.states)
+    segments = cut_windows(
+        bench.declared, Section(measured, 0, len(measured.t)), LENGTH, bench.states
+    )
     return segments, bench.fitted((), segments, LENGTH, {"k": 60.0}, steps=1)
 
 
@@ -66,7 +68,7 @@ def test_a_fit_that_cannot_reach_its_target_ends_early() -> None:
     m = record(lambda x, v: -30.0 * np.sign(x) * (abs(x) > 0.5))
     bench = bench_of(m)
     length, start = 60, {"k": 6.0, "c": 1.9}
-    segments = cut(bench.declared, Section(m, 0, len(m.t)), length, bench.states)
+    segments = cut_windows(bench.declared, Section(m, 0, len(m.t)), length, bench.states)
     free = bench.fitted((), segments, length, start)
     ended = bench.fitted((), segments, length, start, target=free.rss / 100)
     reached = bench.fitted((), segments, length, start, target=2 * free.rss)

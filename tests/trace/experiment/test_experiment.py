@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 from tracewire.compile import compile
 from tracewire.diagram import read
 from tracewire.residual import Measured
-from tracewire.residual.windows import Section, cut
+from tracewire.residual.windows import Section, cut_windows
 from tracewire.trace.candidates.candidates import find_candidates
 from tracewire.trace.candidates.levels import Trajectory, levels_of
 from tracewire.trace.candidates.places import find_places
@@ -64,7 +64,7 @@ def between(folder: Path, one: str, values: dict[str, float], other: str) -> Exp
     signals = {"q": run[0], "v": run[1], "u": drive(T), "torque": np.gradient(run[1], T)}
     levels = levels_of([Trajectory(T, signals)], OPTIONS.candidate)
     known = {c.effect: c for c in find_candidates(model, places, levels, OPTIONS.candidate)}
-    windows = cut(model, Section(series, 0, len(T)), 150, ("q", "v"))
+    windows = cut_windows(model, Section(series, 0, len(T)), 150, ("q", "v"))
     trials = []
     for name in (one, other):
         begun = values if name == one else {known[name].parameter: known[name].scale / 10}

@@ -9,7 +9,7 @@ import pytest
 from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.residual import Measured
-from tracewire.residual.windows import Section, cut
+from tracewire.residual.windows import Section, cut_windows
 from tracewire.trace.experiment.rig import Rig, Setting, rig_of
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.trials.trial import Bench
@@ -38,7 +38,7 @@ def rig() -> Rig:
     series = Measured("run", "train", T, {"q": q}, inputs={"u": (T, u)}, start=start)
     model = compile(read_text(DRIVEN), record=("q",))
     bench = Bench(model, (series,), {"q": 1e-3}, 1e-6)
-    windows = cut(model, Section(series, 0, len(T)), 50, ("q", "v"))
+    windows = cut_windows(model, Section(series, 0, len(T)), 50, ("q", "v"))
     return rig_of(bench, bench.fitted((), windows, 50, {}))
 
 

@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.residual import Measured
-from tracewire.residual.windows import Section, cut
+from tracewire.residual.windows import Section, cut_windows
 from tracewire.trace.candidates.places import Place, find_places
 from tracewire.trace.found import Dependence, Missing
 from tracewire.trace.missing.bases import Basis, bases_of
@@ -75,7 +75,7 @@ def tangent_of(law: Law, memory: Law = lambda q, v, z: 0.0) -> tuple[Tangent, Tr
     model = compile(read_text(OSCILLATOR), record=("q",))
     series = tuple(record(number, law, memory) for number in range(len(DRIVES)))
     bench = Bench(model, series, {"q": NOISE}, 1e-6)
-    windows = [w for m in series for w in cut(model, Section(m, 0, len(T)), 40, ("q", "v"))]
+    windows = [w for m in series for w in cut_windows(model, Section(m, 0, len(T)), 40, ("q", "v"))]
     trial = bench.fitted((), windows, 40, {})
     places = [*find_places(model), Place("sensor.q", "sensor", "q")]
     return Tangent(trial.diagram, trial.windows, places, 1e-6, OPTIONS), trial, places

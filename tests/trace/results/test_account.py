@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from oracles.oscillator import NOISE, bench_of, later, record, search_of, trial_of
 from tracewire.residual import Measured, Segment
-from tracewire.residual.windows import Section, cut
+from tracewire.residual.windows import Section, cut_windows
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.results.account import compared, free_run, intervals, moved, rmse
 from tracewire.trace.trials.trial import Bench
@@ -17,7 +17,7 @@ OPTIONS = TraceOptions()
 
 
 def whole(bench: Bench, measured: Measured) -> Segment:
-    (segment,) = cut(
+    (segment,) = cut_windows(
         bench.declared, Section(measured, 0, len(measured.t)), len(measured.t), bench.states
     )
     return segment

@@ -11,7 +11,7 @@ from oracles.oscillator import bench_of, record, trial_of
 from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.residual import Criterion, Measured
-from tracewire.residual.windows import Section, Windows, cut, opened
+from tracewire.residual.windows import Section, Windows, cut_windows, evaluate_windows
 from tracewire.trace.candidates.places import find_places
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.observed import nodes_of
@@ -66,11 +66,11 @@ def opened_at(text: str, size: float, hat: np.ndarray, starts: list[dict[str, fl
         "run", "train", T, {"theta": np.zeros(len(T))},
         inputs={"hat": (T, hat)}, start={"theta": None, "omega": None},
     )  # fmt: skip
-    windows = cut(model, Section(m, 0, len(T)), 50, ("theta", "omega"))
+    windows = cut_windows(model, Section(m, 0, len(T)), 50, ("theta", "omega"))
     windows = [
         replace(segment, start=start) for segment, start in zip(windows, starts, strict=True)
     ]
-    return opened(
+    return evaluate_windows(
         Criterion(model, windows, [], {"size": size}, 1e-9, {"theta": SIGMA}, weighting="sum")
     )
 
@@ -100,7 +100,7 @@ def test_the_answer_is_the_derivative_by_the_coefficient_of_the_same_torque(
     for column, push in zip(found.T, PUSHES.values(), strict=True):
         up, down = (
             np.concatenate(
-                [near.residual.ravel() for near in opened_at(text, d, push, STARTS).near]
+                [near.residual.ravel() for near in opened_at(text, d, push, STARTS).linearisations]
             )
             for d in (step, -step)
         )
@@ -158,7 +158,7 @@ def test_a_sensor_is_told_by_what_it_shows() -> None:
 
 def test_the_nodes_of_a_window_are_its_samples_and_where_it_begins() -> None:
     m = record()
-    first, second = cut(bench_of(m).declared, Section(m, 0, 100), 50, ("x", "v"))
+    first, second = cut_windows(bench_of(m).declared, Section(m, 0, 100), 50, ("x", "v"))
     times, samples, counts = nodes_of(second)
     assert times[0] == second.begin and not counts[0] and counts[1:].all()
     np.testing.assert_array_equal(times, m.t[samples])

@@ -20,7 +20,7 @@ from oracles.oscillator import (
 from scipy.integrate import solve_ivp
 from tracewire.errors import DiagramError, FitError
 from tracewire.residual import Measured
-from tracewire.residual.windows import Section, cut
+from tracewire.residual.windows import Section, cut_windows
 from tracewire.trace.trials.trial import Added
 
 COULOMB = "coulomb @ force"
@@ -92,12 +92,16 @@ def test_on_other_windows_only_the_starts_are_fitted() -> None:
     m = record()
     bench = bench_of(m)
     trial = trial_of(bench)
-    other = bench.criterion(trial, cut(bench.declared, Section(m, 90, 270), 90, bench.states))
+    other = bench.criterion(
+        trial, cut_windows(bench.declared, Section(m, 90, 270), 90, bench.states)
+    )
     assert other.unknowns == () and other.parameters == trial.values
-    residuals = bench.on(trial, cut(bench.declared, Section(m, 90, 270), 90, bench.states))
+    residuals = bench.on(trial, cut_windows(bench.declared, Section(m, 90, 270), 90, bench.states))
     assert np.mean(np.concatenate(residuals) ** 2) == pytest.approx(1.0, abs=0.3)
     shifted = later(m, slice(90, 270), 0.05)
-    worse = bench.on(trial, cut(bench.declared, Section(shifted, 90, 270), 90, bench.states))
+    worse = bench.on(
+        trial, cut_windows(bench.declared, Section(shifted, 90, 270), 90, bench.states)
+    )
     assert np.mean(np.concatenate(worse) ** 2) > 10, "an offset is no start"
 
 

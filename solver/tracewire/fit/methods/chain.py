@@ -13,7 +13,7 @@ from tracewire.fit.methods.following import PARTS, followed, spread_of
 from tracewire.formula import evaluate
 from tracewire.residual import (
     Criterion,
-    Linearised,
+    Linearisation,
     Segment,
     half_square,
     of_diagram,
@@ -55,7 +55,7 @@ class Chain:
             parts = _cut(whole, n)
             segments += parts
             self.follows += [True] * (len(parts) - 1) + [False]
-        self.criterion = whole.on(segments, "sum")
+        self.criterion = whole.on_segments(segments, "sum")
         self.parameters = len(whole.unknowns)
         counts = np.cumsum([0, *(len(segment.free) for segment in segments)]) + self.parameters
         self.columns = [
@@ -73,9 +73,9 @@ class Chain:
 
         Infinite where a run fails.
         """
-        named, starts = self.criterion.split(z)
+        named, starts = self.criterion.unpack(z)
         self.criterion.evaluations += 1
-        found = self.criterion.linearised(named, dict(enumerate(starts)), slopes=False)
+        found = self.criterion.linearise(named, dict(enumerate(starts)), slopes=False)
         if not all(near.ran for near in found.values()):
             return np.inf, np.inf
         gaps = np.concatenate([self._gap(n, near, starts) for n, near in found.items()])
@@ -89,18 +89,18 @@ class Chain:
         Raises FitError where a run fails.
         """
         criterion = self.criterion
-        named, starts = criterion.split(z)
+        named, starts = criterion.unpack(z)
         gradient, matrix, total = np.zeros(len(z)), np.zeros((len(z), len(z))), 0.0
         criterion.evaluations += 1 + self.parameters + max(map(len, starts), default=0)
         share = np.sqrt(weight / max(sum(self.follows), 1))
-        for n, near in criterion.linearised(named, dict(enumerate(starts))).items():
+        for n, near in criterion.linearise(named, dict(enumerate(starts))).items():
             if not near.ran and criterion.failure is not None:
                 problems = criterion.failure.problems
                 raise FitError(
                     [Problem(f"a segment does not run: {p.what}", p.place) for p in problems]
                 )
             columns = self.columns[n]
-            vector, jacobian = criterion.weighed(n, near.residual, near.slopes)
+            vector, jacobian = criterion.weigh_segment(n, near.residual, near.slopes)
             if self.follows[n]:
                 moved = share * near.final_slopes / self.sizes[:, None]
                 own = np.vstack([jacobian, moved])
@@ -116,7 +116,7 @@ class Chain:
             matrix[np.ix_(columns, columns)] += jacobian.T @ jacobian
         return Normal(total, gradient, matrix)
 
-    def _gap(self, n: int, near: Linearised, starts: Sequence[Mapping[str, float]]) -> Vector:
+    def _gap(self, n: int, near: Linearisation, starts: Sequence[Mapping[str, float]]) -> Vector:
         if not self.follows[n]:
             return np.zeros(0)
         gap = [end - starts[n + 1][name] for name, end in near.final.items()]
@@ -131,7 +131,7 @@ def _cut(whole: Criterion, n: int) -> list[Segment]:
     has come.
     """
     segment, model = whole.segments[n], whole.model
-    named, starts = whole.split(whole.begin())
+    named, starts = whole.unpack(whole.initial_unknowns())
     rows, measured = segment.rows, segment.measured
     if whole.weighting == "mean":
         measured = replace(measured, weight=measured.weight / len(rows))
@@ -145,9 +145,9 @@ def _cut(whole: Criterion, n: int) -> list[Segment]:
     parts = [replace(segment, measured=measured)]
     first, longest = 0, least
 
-    def followed_to(last: int) -> Linearised:
+    def followed_to(last: int) -> Linearisation:
         part = replace(parts[-1], rows=rows[first : last + 1], start=now, free=())
-        return whole.on([part]).linearised(named, {0: {}}, slopes=False)[0]
+        return whole.on_segments([part]).linearise(named, {0: {}}, slopes=False)[0]
 
     while first + least < len(rows):
         last = min(first + LONGER * longest, len(rows) - 1)

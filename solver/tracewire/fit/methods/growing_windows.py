@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from tracewire.fit.methods.following import PARTS, followed, spread_of
 from tracewire.fit.search import Ended, Search
-from tracewire.residual import Criterion, descend, half_square
+from tracewire.residual import Criterion, half_square, solve_least_squares
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -46,12 +46,12 @@ def by_growing_windows(search: Search) -> Ended:
     while not windows.is_whole() and windows.number < MOST_PARTS:
         windows.next()
     search.tell(0.9, "the whole series")
-    ended = descend(
-        search, windows.z, steps=LAST_STEPS, tolerance=LAST_ENOUGH, stepped=search.iterated
+    ended = solve_least_squares(
+        search, windows.z, steps=LAST_STEPS, tolerance=LAST_ENOUGH, callback=search.iterated
     )
-    if search.best_value < 0.5 * ended.after:  # an earlier part has led to a better minimum
-        ended = descend(
-            search, search.best, steps=LAST_STEPS, tolerance=LAST_ENOUGH, stepped=search.iterated
+    if search.best_value < 0.5 * ended.cost:  # an earlier part has led to a better minimum
+        ended = solve_least_squares(
+            search, search.best, steps=LAST_STEPS, tolerance=LAST_ENOUGH, callback=search.iterated
         )
     parts = f"after {windows.number} growing parts"
     return Ended(ended.z, search.iterations, int(ended.converged), f"{ended.message} {parts}")
@@ -85,7 +85,7 @@ class _Windows:
         share = float(np.mean(self.counts / self.sizes))
         search.tell(0.9 * share, f"part {self.number}, {100 * share:.2g} % of the series")
         part = _Part(search, self.counts, self.z)
-        ended = descend(part, self.z, steps=STEPS, tolerance=ENOUGH)
+        ended = solve_least_squares(part, self.z, steps=STEPS, tolerance=ENOUGH)
         longest = self.counts.copy()
         between = np.sqrt(self.reached * self.counts).astype(int)
         if part.is_astray(ended.z) and np.any(self.counts > SLOWEST * between):
@@ -132,7 +132,7 @@ class _Part:
         self.search, self.around = search, around
         segments = search.criterion.segments
         shorter = [replace(s, rows=s.rows[:n]) for s, n in zip(segments, counts, strict=True)]
-        self.criterion: Criterion = search.criterion.on(shorter)
+        self.criterion: Criterion = search.criterion.on_segments(shorter)
         before = search.vector(around, self.criterion)
         noise = 2 * half_square(before) / max(len(before), 1)
         self.pull = np.sqrt(noise) / (WIDTH * np.maximum(np.abs(around), 1.0))
@@ -146,9 +146,9 @@ class _Part:
         vector = self.search.vector(z, self.criterion)
         return np.concatenate([vector, self.pull * (z - self.around)])
 
-    def both(self, z: Vector) -> tuple[Vector, Matrix]:
+    def vector_and_jacobian(self, z: Vector) -> tuple[Vector, Matrix]:
         """The vector (M + n,) and its derivatives (M + n, n)."""
-        vector, matrix = self.search.both(z, self.criterion)
+        vector, matrix = self.search.vector_and_jacobian(z, self.criterion)
         held = self.pull * (z - self.around)
         return np.concatenate([vector, held]), np.concatenate([matrix, np.diag(self.pull)])
 

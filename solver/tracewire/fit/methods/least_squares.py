@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tracewire.fit.search import Ended, Search
-from tracewire.residual import descend
+from tracewire.residual import solve_least_squares
 
 MOST = 1_000_000
 EXACT, NOISY = 1e-14, 1e-2
@@ -15,12 +15,12 @@ def by_least_squares(search: Search) -> Ended:
     steps = int(min(MOST, search.options.evaluations(search.size)))
     criterion = search.criterion
     moving = bool(criterion.model.states)
-    ended = descend(
+    ended = solve_least_squares(
         search,
         search.begin,
         steps=steps,
         tolerance=NOISY * criterion.rtol if moving else EXACT,
         frugal=moving,
-        stepped=search.iterated,
+        callback=search.iterated,
     )
     return Ended(ended.z, search.iterations, int(ended.converged), ended.message)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tracewire.fit.methods.chain import Chain
 from tracewire.fit.search import Ended, Search, Stopped
-from tracewire.residual import descend
+from tracewire.residual import solve_least_squares
 
 Vector = NDArray[np.float64]
 WEIGHTS = tuple(10.0**k for k in range(-1, 7))
@@ -62,7 +62,7 @@ class _Shooting:
         self.low, self.high = criterion.bounds()
         kept = search.resumed
         self.stage, self.gap = int(kept["stage"]) if kept else 0, np.inf
-        self.z = np.array(kept["z"]) / self.scales if kept else criterion.begin()
+        self.z = np.array(kept["z"]) / self.scales if kept else criterion.initial_unknowns()
         if not kept:
             self.z[: self.chain.parameters] = search.begin[: self.chain.parameters]
         spread = sum(
@@ -119,7 +119,7 @@ class _Shooting:
         search, z = self.search, self._own()
         apart = self.criterion.value(self.z)
         if search.value(z) <= ALIKE * apart + NOTHING * self.unit:
-            ended = descend(search, z, stepped=search.iterated)
+            ended = solve_least_squares(search, z, callback=search.iterated)
             message = f"{ended.message}; {self.segments} have grown together"
             return Ended(ended.z, search.iterations, int(ended.converged), message)
         closed = self.gap < CLOSED
@@ -134,7 +134,7 @@ class _Shooting:
 
     def _own(self) -> Vector:
         """The unknowns of the search among those of the chain."""
-        values, starts = self.criterion.split(self.z)
+        values, starts = self.criterion.unpack(self.z)
         heads = [0, *(n + 1 for n, on in enumerate(self.chain.follows[:-1]) if not on)]
         found = [*values.values(), *(v for n in heads for v in starts[n].values())]
         z = np.array(found) / self.search.criterion.scales

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tracewire.errors import OptionError, Problem
 from tracewire.fit.methods.together import values_at
 from tracewire.fit.search import Ended, Search
-from tracewire.residual import descend
+from tracewire.residual import solve_least_squares
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -54,10 +54,10 @@ def by_multistart(search: Search) -> Ended:
     starts = _best(search, points, values)
     for number in range(len(ends), len(starts)):
         told(f"least squares from point {number + 1} of {len(starts)}")
-        ended = descend(
-            search, starts[number], steps=STEPS, tolerance=ENOUGH, stepped=search.iterated
+        ended = solve_least_squares(
+            search, starts[number], steps=STEPS, tolerance=ENOUGH, callback=search.iterated
         )
-        ends.append((ended.after, (ended.z * search.criterion.scales).tolist()))
+        ends.append((ended.cost, (ended.z * search.criterion.scales).tolist()))
     told("done")
     value, best = min(ends)
     same = sum(end <= value + SAME * abs(value) for end, _ in ends)

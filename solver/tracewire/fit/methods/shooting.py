@@ -18,7 +18,7 @@ from tracewire.fit.fminsearch import CONVERGED, fminsearch
 from tracewire.fit.methods.together import values_at
 from tracewire.fit.optimset import OptimValues, Options
 from tracewire.fit.search import Ended, Search
-from tracewire.residual import descend
+from tracewire.residual import solve_least_squares
 
 Vector = NDArray[np.float64]
 FIRST_RADIUS = 0.05
@@ -179,12 +179,14 @@ def _with_simplex(search: Search, state: _State) -> _State:
 def _with_least_squares(search: Search, state: _State) -> _State:
     """The state after some steps of least squares."""
     scales = search.criterion.scales
-    ended = descend(search, np.array(state.z) / scales, steps=POLISHING, tolerance=ENOUGH)
-    is_polished = ended.after > POLISHED * state.value
-    if ended.after >= state.value:
+    ended = solve_least_squares(
+        search, np.array(state.z) / scales, steps=POLISHING, tolerance=ENOUGH
+    )
+    is_polished = ended.cost > POLISHED * state.value
+    if ended.cost >= state.value:
         return replace(state, is_polished=is_polished)
     there = tuple((ended.z * scales).tolist())
-    return replace(state, z=there, value=ended.after, simplex=None, is_polished=is_polished)
+    return replace(state, z=there, value=ended.cost, simplex=None, is_polished=is_polished)
 
 
 def _sizes(z: Vector) -> Vector:

@@ -26,7 +26,7 @@ def values_at(search: Search, points: Sequence[Vector]) -> Iterator[float]:
     part = points[:allowed]
 
     def valued(z: Vector) -> tuple[Criterion, float]:
-        own = whole.on(whole.segments)
+        own = whole.on_segments(whole.segments)
         return own, own.value(z)
 
     with ThreadPoolExecutor(max(1, min(cores(), len(part)))) as pool:

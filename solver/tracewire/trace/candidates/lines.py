@@ -139,13 +139,13 @@ def _power(
 ) -> Vector:
     """The power of some windows of one series, tapered over all of it by a Hann window."""
     begin, length = float(t[0]), max(float(t[-1] - t[0]), interval)
-    signals = len(windows.near[numbers[0]].residual.T)
+    signals = len(windows.linearisations[numbers[0]].residual.T)
     even = np.zeros((count, signals))
     for n in numbers:
-        near, own = windows.near[n], windows.criterion.segments[n].t
+        near, own = windows.linearisations[n], windows.criterion.segments[n].t
         taper = np.sin(np.pi * (own - begin) / length) ** 2
         rows = np.round((own - begin) / interval).astype(int)
-        left = near.projection.off(near.residual.ravel()).reshape(near.residual.shape)
+        left = near.projection.project_out(near.residual.ravel()).reshape(near.residual.shape)
         even[rows] = taper[:, None] * left
     return np.asarray(np.sum(np.abs(np.fft.rfft(even, axis=0)) ** 2, axis=1))
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tracewire.compile import Model
 from tracewire.errors import DataError, FormulaError, Problem, TracewireError
 from tracewire.formula import Name, same_quantity
-from tracewire.residual import Measured, Section, channel_noise, cut, with_past
+from tracewire.residual import Measured, Section, channel_noise, cut_windows, with_past
 from tracewire.solve import values_at, with_points
 from tracewire.trace.thresholds import CheckOptions
 from tracewire.trace.trials.trial import Bench
@@ -82,7 +82,9 @@ def declared_s2(
     """
     try:
         windows = [
-            w for m in measured for w in cut(model, Section(m, 0, len(m.t)), length, model.states)
+            w
+            for m in measured
+            for w in cut_windows(model, Section(m, 0, len(m.t)), length, model.states)
         ]
         bench = Bench(model, tuple(measured), channel_noise(measured), rtol)
         return bench.fitted((), windows, length, {}, steps=steps).s2

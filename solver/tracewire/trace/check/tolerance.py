@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tracewire.residual import opened
+from tracewire.residual import evaluate_windows
 from tracewire.trace.trials.trial import Bench, Trial
 
 
@@ -23,8 +23,10 @@ def is_loose(bench: Bench, trial: Trial) -> bool:
     sigma; at least 0.3 sigma). A window that does not run so precisely does not count.
     """
     tighter = tightened(bench)
-    there = opened(tighter.criterion(trial, trial.windows.segments)).near
-    pairs = [(a, b) for a, b in zip(trial.windows.near, there, strict=True) if a.ran and b.ran]
+    there = evaluate_windows(tighter.criterion(trial, trial.windows.segments)).linearisations
+    pairs = [
+        (a, b) for a, b in zip(trial.windows.linearisations, there, strict=True) if a.ran and b.ran
+    ]
     if not pairs:
         return False
     moved = np.median([np.sqrt(np.mean((a.residual - b.residual) ** 2)) for a, b in pairs])

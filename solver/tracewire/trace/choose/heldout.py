@@ -13,10 +13,10 @@ from tracewire.errors import FitError
 from tracewire.residual import (
     LEAST_DAMPING,
     bounded_step,
-    descended,
-    eliminated,
-    opened,
-    settled,
+    evaluate_windows,
+    fit_initial_states,
+    fit_windows,
+    project_out_initial_states,
 )
 from tracewire.solve import release
 from tracewire.trace.choose.horizons import REST, Horizon, Horizons, restricted
@@ -126,7 +126,9 @@ def errors_held_out(
 def _judged(bench: Bench, trial: Trial, horizon: Horizon, count: int) -> Array:
     """The mean squared residual of blocks of series that no fit sees, (blocks, channels)."""
     try:
-        windows = settled(opened(bench.criterion(trial, horizon.segments), trial.windows.good))
+        windows = fit_initial_states(
+            evaluate_windows(bench.criterion(trial, horizon.segments), trial.windows.inlier_limit)
+        )
     except FitError:
         columns = trial.windows.residuals[0].shape[1]
         return np.full((count, columns), np.inf)
@@ -145,12 +147,12 @@ class _Newton:
         )
         """Whether no window with a free start is left out in part."""
         self.scales = np.array([u.scale for u in windows.criterion.unknowns])
-        reduced, self.residual = eliminated(windows)
+        reduced, self.residual = project_out_initial_states(windows)
         self.reduced = reduced * self.scales
         self.ridge = np.diag(ridge**0.5 * np.linalg.norm(self.reduced, axis=0))
         self.blocks = np.concatenate([
             np.repeat(of, near.residual.shape[1])
-            for of, near in zip(horizon.blocks, windows.near, strict=True)
+            for of, near in zip(horizon.blocks, windows.linearisations, strict=True)
         ])  # fmt: skip
 
     def without(self, group: Sequence[int]) -> dict[str, float]:
@@ -190,8 +192,10 @@ def _predicted(
     try:
         if steps or not newton.exact:
             segments = [restricted(known[n], rows) for n, rows in kept]
-            begun = opened(bench.warm(trial, segments, values), trial.windows.good)
-            fitted, _ = descended(begun, max(steps, 1), creeps=creeps, settling=1)
+            begun = evaluate_windows(
+                bench.warm(trial, segments, values), trial.windows.inlier_limit
+            )
+            fitted, _ = fit_windows(begun, max(steps, 1), ftol=creeps, initial_state_steps=1)
             values = fitted.values
             starts = {n: start for (n, _), start in zip(kept, fitted.starts, strict=True)}
         residuals = _residuals(bench, trial, held, starts, values)
@@ -214,8 +218,8 @@ def _residuals(
         if n in starts:  # its other rows were fitted, and with them its start
             segment = replace(segment, start={**segment.start, **starts[n]}, free=())
         segments.append(segment)
-    begun = opened(bench.at(trial, segments, values), trial.windows.good)
-    return settled(begun).residuals
+    begun = evaluate_windows(bench.at(trial, segments, values), trial.windows.inlier_limit)
+    return fit_initial_states(begun).residuals
 
 
 def errors_by_block(count: int, parts: Sequence[tuple[Ints, Vector]]) -> Array:

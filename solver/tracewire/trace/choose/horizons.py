@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
-from tracewire.residual import Section, Segment, cut
+from tracewire.residual import Section, Segment, cut_windows
 from tracewire.trace.options import TraceOptions
 
 Vector = NDArray[np.float64]
@@ -238,7 +238,7 @@ def _cut(
     numbered = [*enumerate(pieces), *((REST, rest) for rest in rests)]
     numbered.sort(key=lambda one: (_order(pieces, rests, one[1]), one[1].first))
     for number, piece in numbered:
-        for segment in cut(model, piece, length, free):
+        for segment in cut_windows(model, piece, length, free):
             segments.append(segment)
             blocks.append(np.full(len(segment.rows), number))
     return Horizon(length, tuple(segments), tuple(blocks))
@@ -250,7 +250,7 @@ def _whole(
     segments, blocks = [], []
     for section in sections:
         mine = [(n, p) for n, p in enumerate(pieces) if p.measured is section.measured]
-        for segment in cut(model, section, section.end - section.first, free):
+        for segment in cut_windows(model, section, section.end - section.first, free):
             of = np.full(len(segment.rows), REST)
             of[segment.rows < mine[0][1].first] = mine[0][0]
             for number, piece in mine:

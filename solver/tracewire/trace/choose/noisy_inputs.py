@@ -46,7 +46,12 @@ def _noises(
     windows, values = trial.windows, search.bench.all_values(trial)
     count, segments = len(windows.values), windows.segments
     parts = [
-        (segments[n], windows.near[n].residual, windows.near[n].slopes[:, count:]) for n in numbers
+        (
+            segments[n],
+            windows.linearisations[n].residual,
+            windows.linearisations[n].slopes[:, count:],
+        )
+        for n in numbers
     ]
     found = {}
     for name in measured.inputs:

@@ -19,10 +19,10 @@ from tracewire.errors import OptionError, SimulationError
 from tracewire.residual import (
     Criterion,
     Segment,
-    eliminated,
+    evaluate_windows,
+    fit_initial_states,
     of_diagram,
-    opened,
-    settled,
+    project_out_initial_states,
     with_past,
 )
 from tracewire.solve import Limits, simulate
@@ -55,7 +55,7 @@ def separating(bench: Bench, one: Trial, other: Trial, name: str, rival: str) ->
     rig = rig_of(bench, one)
     states = compile(one.diagram, record=[*bench.signals, *bench.states], backend="quick")
     # what the data at hand say of the rival's unknowns
-    known, _ = eliminated(other.windows)
+    known, _ = project_out_initial_states(other.windows)
     information = known.T @ known
     tried: dict[Setting, float] = {}
 
@@ -146,10 +146,10 @@ def _separation(
         weighting="sum",
         limits=limits,
     )
-    windows = settled(opened(criterion))
-    if not all(near.ran for near in windows.near):
+    windows = fit_initial_states(evaluate_windows(criterion))
+    if not all(near.ran for near in windows.linearisations):
         raise criterion.failure or SimulationError.one("the rival does not run")
-    columns, residual = eliminated(windows)
+    columns, residual = project_out_initial_states(windows)
     matrix = columns.T @ columns + information[np.ix_(free, free)]
     right = columns.T @ residual
     sizes = np.sqrt(np.maximum(np.diag(matrix), 1e-300))

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve
 
-from tracewire.residual import Projection, eliminated
+from tracewire.residual import Projection, project_out_initial_states
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.found import Dependence, Missing
 from tracewire.trace.missing.bases import Basis, bases_of
@@ -133,7 +133,7 @@ class Problem:
             last = first + rows + len(columns)
             here = slice(first + rows, last)
             known, left = self.unknowns[here], self.residual[here]
-            waiting.append(np.column_stack((known, view.off(columns), left)))
+            waiting.append(np.column_stack((known, view.project_out(columns), left)))
             rows = last - first
             if rows >= TOGETHER or n + 1 == len(self.views):
                 block, folds = np.concatenate(waiting), self.folds[first:last]
@@ -146,8 +146,8 @@ class Problem:
 
 def _problem(tangent: Tangent, trial: Trial) -> Problem:
     windows = tangent.windows
-    views = windows.views
-    unknowns, residual = eliminated(windows)
+    views = windows.projections
+    unknowns, residual = project_out_initial_states(windows)
     sizes = np.linalg.norm(unknowns, axis=0)
     seen = sizes > 1e-12 * max(float(sizes.max(initial=0.0)), 1e-300)
     basis = orthonormal(unknowns[:, seen])
@@ -165,11 +165,11 @@ def _folds(tangent: Tangent) -> NDArray[np.intp]:
     windows = tangent.windows
     names = [s.measured.name for s in windows.criterion.segments]
     totals = dict.fromkeys(names, 0)
-    for name, near in zip(names, windows.near, strict=True):
+    for name, near in zip(names, windows.linearisations, strict=True):
         totals[name] += len(near.residual)
     passed = dict.fromkeys(totals, 0)
     found = []
-    for name, near in zip(names, windows.near, strict=True):
+    for name, near in zip(names, windows.linearisations, strict=True):
         rows, width = near.residual.shape
         first, longest = passed[name], totals[name] / options.pieces
         at = np.full(rows, first + rows // 2) if rows <= longest else first + np.arange(rows)

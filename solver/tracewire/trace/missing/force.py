@@ -105,9 +105,9 @@ def _least_squares(
     count = columns[0].shape[1]
     matrix, right = np.zeros((count, count)), np.zeros(count)
     for joined in tangent.joined:
-        view = tangent.windows.near[joined.window].projection
-        answer = view.off(tangent.window_answer(joined, {place.name: columns}))
-        residual = view.off(tangent.windows.near[joined.window].residual.ravel())
+        view = tangent.windows.linearisations[joined.window].projection
+        answer = view.project_out(tangent.window_answer(joined, {place.name: columns}))
+        residual = view.project_out(tangent.windows.linearisations[joined.window].residual.ravel())
         matrix += answer.T @ answer
         right -= answer.T @ residual
     ridge = 1e-12 * max(float(np.trace(matrix)) / count, 1e-300)

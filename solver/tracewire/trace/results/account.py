@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
-from tracewire.residual import Section, Segment, opened
+from tracewire.residual import Section, Segment, evaluate_windows
 from tracewire.trace.found import ChannelError, Curve, Moved, RunKind
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.trial import Bench, Trial
@@ -98,7 +98,7 @@ def free_run(bench: Bench, trial: Trial, whole: Segment, shortest: int) -> Vecto
         first = _first_part(whole, shortest, bench.options.split.first_part)
         (begun,) = bench.settled(trial, [first]).segments
         whole = replace(begun, rows=whole.rows)
-    return opened(bench.criterion(trial, [whole])).residuals[0]
+    return evaluate_windows(bench.criterion(trial, [whole])).residuals[0]
 
 
 def met(search: Search, trial: Trial) -> Trial:

@@ -33,7 +33,7 @@ def without_starts(
     for joined, view in zip(tangent.joined, views, strict=True):
         columns = tangent.window_answer(joined, torques)
         whole += np.einsum("ij,ij->j", columns, columns)
-        shown = view.off(columns)[::every] * every**0.5
+        shown = view.project_out(columns)[::every] * every**0.5
         last = first + len(shown)
         rows[:, first:last] = shown.T
         first = last

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from tracewire.diagram import Diagram, Value
 from tracewire.errors import FitError, SimulationError
 from tracewire.formula import Number
-from tracewire.residual import opened, settled
+from tracewire.residual import evaluate_windows, fit_initial_states
 from tracewire.solve import Interrupted
 from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.places import Place
@@ -66,7 +66,7 @@ def assimilated(bench: Bench, trial: Trial, tangent: Tangent) -> Tangent | None:
     there = replace(trial, diagram=diagram, model=bench.compiled(diagram))
     try:
         criterion = bench.warm(there, segments, trial.values)
-        windows = settled(opened(criterion, trial.windows.good))
+        windows = fit_initial_states(evaluate_windows(criterion, trial.windows.inlier_limit))
         if windows.rss > options.followed * trial.rss:
             return None
         found = Tangent(diagram, windows, tangent.places, bench.rtol, tangent.options)

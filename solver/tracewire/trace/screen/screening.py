@@ -10,7 +10,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.residual import Unknown, Windows, eliminated
+from tracewire.residual import Unknown, Windows, project_out_initial_states
 from tracewire.trace.candidates.candidate import Candidate, is_default
 from tracewire.trace.candidates.histories import Variant, histories
 from tracewire.trace.candidates.levels import Trajectory
@@ -203,8 +203,8 @@ def screened(
     """
     windows = tangent.windows
     every = -(-tangent.size // most)
-    kept = _kept([near.residual.size for near in windows.near], every)
-    unknowns, residual = (part[kept] * every**0.5 for part in eliminated(windows))
+    kept = _kept([near.residual.size for near in windows.linearisations], every)
+    unknowns, residual = (part[kept] * every**0.5 for part in project_out_initial_states(windows))
     if not tangent.along_data:  # a value that sits on its bound cannot give way to an effect
         unknowns = unknowns[
             :, [not _on_bound(u, windows.values[u.name]) for u in windows.criterion.unknowns]
@@ -213,7 +213,7 @@ def screened(
     residual = residual - basis @ (basis.T @ residual)
 
     def answer(place: str, torques: Sequence[Matrix]) -> Matrix:
-        rows, _ = without_starts(tangent, windows.views, {place: torques}, every)
+        rows, _ = without_starts(tangent, windows.projections, {place: torques}, every)
         return without(rows, basis).T
 
     model = windows.criterion.model
@@ -301,7 +301,7 @@ def _rows(
     for variant in known:
         by_place.setdefault(variant.candidate.place.name, []).append(variant)
     variants = [variant for group in by_place.values() for variant in group]
-    size = sum(-(-near.residual.size // every) for near in windows.near)
+    size = sum(-(-near.residual.size // every) for near in windows.linearisations)
     rows, first = np.empty((len(variants) + len(sensors), size)), 0
     whole = np.empty(len(rows))
     for place, group in by_place.items():
@@ -311,14 +311,18 @@ def _rows(
         for variant in group:  # all of them twice are much memory
             del known[variant]
         mine = slice(first, first + len(group))
-        rows[mine], whole[mine] = without_starts(tangent, windows.views, {place: given}, every)
+        rows[mine], whole[mine] = without_starts(
+            tangent, windows.projections, {place: given}, every
+        )
         first += len(group)
-    edges = np.cumsum([near.residual.size for near in windows.near])[:-1]
+    edges = np.cumsum([near.residual.size for near in windows.linearisations])[:-1]
     for row, candidate in enumerate(sensors, start=first):
         shown = tangent.sensed(candidate.effect, candidate.place.definition)
         whole[row] = shown @ shown
-        parts = zip(windows.views, np.split(shown, edges), strict=True)
-        rows[row] = np.concatenate([view.off(part)[::every] for view, part in parts]) * every**0.5
+        parts = zip(windows.projections, np.split(shown, edges), strict=True)
+        rows[row] = (
+            np.concatenate([view.project_out(part)[::every] for view, part in parts]) * every**0.5
+        )
     variants += [Variant(candidate, ()) for candidate in sensors]
     return rows, np.maximum(whole, 1e-300), variants
 
@@ -331,7 +335,7 @@ def _by_series(
     count = len(tangent.trajectories)
     if count < 2 or not any(variant.candidate.each for variant in variants):
         return rows, variants
-    sizes = [near.residual.size for near in tangent.windows.near]
+    sizes = [near.residual.size for near in tangent.windows.linearisations]
     of = np.repeat(tangent.series, sizes)[kept]
     parts = [count if variant.candidate.each else 1 for variant in variants]
     found, first = np.zeros((sum(parts), rows.shape[1])), 0

@@ -108,11 +108,11 @@ class Tangent:
         """The same windows along the data: the residual is what the torques given, (N, 1) for each
         series by place, did to bring them there."""
         near = []
-        for joined, one in zip(self.joined, self.windows.near, strict=True):
+        for joined, one in zip(self.joined, self.windows.linearisations, strict=True):
             done = self.window_answer(joined, histories).sum(axis=1)
             near.append(replace(one, residual=one.residual - np.reshape(done, one.residual.shape)))
         found = copy(self)
-        found.windows = replace(self.windows, near=tuple(near))
+        found.windows = replace(self.windows, linearisations=tuple(near))
         found.along_data = True
         return found
 
@@ -127,7 +127,7 @@ class Tangent:
     @property
     def size(self) -> int:
         """The number of residuals."""
-        return sum(near.residual.size for near in self.windows.near)
+        return sum(near.residual.size for near in self.windows.linearisations)
 
     def sensed(self, effect: str, signal: str) -> Vector:
         """What a small coefficient of a sensor's effect does to the residuals, shape (M,)."""

@@ -43,17 +43,17 @@ def missing_torques(
         hats = np.stack([np.interp(samples, edges, one) for one in np.eye(count)], axis=1)
         given = [np.zeros((len(run.t), count)) for run in runs]
         given[number][samples] = hats
-        near = tangent.windows.near[joined.window]
+        near = tangent.windows.linearisations[joined.window]
         view, answers, rows = near.projection, [], []
         for place in places:
-            answers.append(view.off(tangent.window_answer(joined, {place.name: given})))
+            answers.append(view.project_out(tangent.window_answer(joined, {place.name: given})))
             size = max(bend(runs[number].signals[place.name]), 1e-300)
             rows.append(
                 np.vstack((np.diff(np.eye(count), 2, axis=0), level * np.eye(count))) / size
             )
         held = block_diag(*rows)
         matrix = np.vstack((np.hstack(answers), held))
-        target = np.concatenate((-view.off(near.residual.ravel()), np.zeros(len(held))))
+        target = np.concatenate((-view.project_out(near.residual.ravel()), np.zeros(len(held))))
         torque = np.linalg.lstsq(matrix, target, rcond=None)[0]
         for place, part in zip(places, np.split(torque, len(places)), strict=True):
             found[place.name][number][samples] = hats @ part

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tracewire.errors import TracewireError
-from tracewire.residual import CREEPS, SETTLING, Segment
+from tracewire.residual import FTOL, INITIAL_STATE_STEPS, Segment
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal
 from tracewire.trace.search.workers import Refit, Workers
@@ -154,8 +154,8 @@ class Refits:
         fixed: Mapping[str, float] | None = None,
         steps: int | None = None,
         target: float = np.inf,
-        creeps: float = CREEPS,
-        settling: int = SETTLING,
+        creeps: float = FTOL,
+        settling: int = INITIAL_STATE_STEPS,
         values: Mapping[str, float] | None = None,
         words: str = "",
     ) -> Refit:

@@ -323,7 +323,7 @@ def _is_simpler(other: Tried, one: Tried) -> bool:
 
 def _spread(trial: Trial, most: int, together: int) -> list[int]:
     """The numbers of windows with about so many samples together, in groups over the record."""
-    sizes = [near.residual.size for near in trial.windows.near]
+    sizes = [near.residual.size for near in trial.windows.linearisations]
     every = -(-sum(sizes) // most)
     return [n for n in range(len(sizes)) if n // together % every == 0]
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from tracewire.residual import Criterion, descended, opened
+from tracewire.residual import Criterion, evaluate_windows, fit_windows
 from tracewire.trace.thresholds import TrialOptions
 
 TURN = np.linspace(-np.pi, np.pi, 72, endpoint=False)
@@ -19,14 +19,14 @@ def best_phase(criterion_at: Callable[[float], Criterion], options: TrialOptions
     quarter of a turn, with their derivatives, tell the residual without the wave, a and b; where
     that sum is smallest, the start states free, the fit begins.
     """
-    sine, cosine = (opened(criterion_at(phase)) for phase in (0.0, 0.5 * np.pi))
+    sine, cosine = (evaluate_windows(criterion_at(phase)) for phase in (0.0, 0.5 * np.pi))
     squares = np.zeros(len(TURN))
-    for n, (near, there) in enumerate(zip(sine.near, cosine.near, strict=True)):
-        off = sine.near[n].projection.off
+    for n, (near, there) in enumerate(zip(sine.linearisations, cosine.linearisations, strict=True)):
+        off = sine.linearisations[n].projection.project_out
         b, a = near.slopes[:, 0], -there.slopes[:, 0]
         without = 0.5 * (near.residual.ravel() - a + there.residual.ravel() - b)
         waves = np.outer(off(a), np.cos(TURN)) + np.outer(off(b), np.sin(TURN))
         squares += np.sum((off(without)[:, None] + waves) ** 2, axis=0)
-    begun = opened(criterion_at(float(TURN[np.argmin(squares)])))
-    windows, _ = descended(begun, options.phase_steps)
+    begun = evaluate_windows(criterion_at(float(TURN[np.argmin(squares)])))
+    windows, _ = fit_windows(begun, options.phase_steps)
     return float(next(iter(windows.values.values())))

@@ -10,7 +10,7 @@ import numpy as np
 from tracewire.compile import Model
 from tracewire.data import usual_range
 from tracewire.errors import DataError, Problem
-from tracewire.residual import Measured, Section, Segment, cut
+from tracewire.residual import Measured, Section, Segment, cut_windows
 from tracewire.trace.thresholds import SplitOptions
 
 
@@ -30,7 +30,9 @@ class Stretches:
         self, model: Model, sections: Sequence[Section], length: int, free: Sequence[str]
     ) -> list[Segment]:
         """The windows of some sections."""
-        return [window for section in sections for window in cut(model, section, length, free)]
+        return [
+            window for section in sections for window in cut_windows(model, section, length, free)
+        ]
 
     @property
     def longest(self) -> int:

@@ -14,21 +14,21 @@ from tracewire.compile import Model, compile
 from tracewire.diagram import Diagram, apply, patch
 from tracewire.errors import DiagramError, FitError, OptionError, TracewireError
 from tracewire.residual import (
-    CREEPS,
-    SETTLING,
+    FTOL,
+    INITIAL_STATE_STEPS,
     Criterion,
     InputCovariance,
     Measured,
     Segment,
     Unknown,
     Windows,
-    begun_before,
-    descended,
-    eliminated,
+    evaluate_windows,
+    fit_initial_states,
+    fit_windows,
     free_unknowns,
-    opened,
+    project_out_initial_states,
     sensor_unknowns,
-    settled,
+    with_lead_in,
 )
 from tracewire.solve import Limits, parameter_values, release
 from tracewire.trace.candidates.candidate import Candidate, unknowns_of, without_defaults
@@ -155,7 +155,7 @@ class Trial:
     def standard_errors(self) -> dict[str, float]:
         """The standard error of each fitted value, with the residual's autocorrelation counted."""
         windows = self.windows
-        reduced, _ = eliminated(windows)
+        reduced, _ = project_out_initial_states(windows)
         sizes = np.linalg.norm(reduced, axis=0)
         scaled = reduced / np.where(sizes > 0, sizes, 1.0)
         covariance = np.linalg.pinv(scaled.T @ scaled, rcond=1e-12) * max(self.s2, 1e-300)
@@ -213,8 +213,8 @@ class Bench:
         budget: float = np.inf,
         target: float = np.inf,
         good: float | None = None,
-        creeps: float = CREEPS,
-        settling: int = SETTLING,
+        creeps: float = FTOL,
+        settling: int = INITIAL_STATE_STEPS,
     ) -> Trial:
         """The declared diagram with effects fitted to windows, from the values given.
 
@@ -238,9 +238,9 @@ class Bench:
         segments = [_without_strange(segment, model) for segment in segments]
         criterion = self._criterion(model, self.with_own(segments, effects), unknowns, fixed)
         criterion.budget = budget
-        windows = opened(criterion, good)
+        windows = evaluate_windows(criterion, good)
         _refuse_failed(criterion, windows)
-        windows, converged = descended(windows, steps, target, creeps, settling)
+        windows, converged = fit_windows(windows, steps, target, creeps, settling)
         _refuse_failed(criterion, windows)
         if effects:
             release(model)  # a search keeps hundreds of models
@@ -302,7 +302,7 @@ class Bench:
         if len(numbers) == len(segments):
             return trial
         criterion = self.warm(trial, [segments[n] for n in numbers], trial.values)
-        return replace(trial, windows=opened(criterion, trial.windows.good))
+        return replace(trial, windows=evaluate_windows(criterion, trial.windows.inlier_limit))
 
     def on(self, trial: Trial, segments: Sequence[Segment]) -> list[Vector]:
         """The residuals in sigma of a trial on other windows, where only starts are fitted."""
@@ -310,7 +310,7 @@ class Bench:
 
     def settled(self, trial: Trial, segments: Sequence[Segment]) -> Windows:
         """A trial on other windows, where only starts are fitted."""
-        return settled(opened(self.criterion(trial, segments)))
+        return fit_initial_states(evaluate_windows(self.criterion(trial, segments)))
 
     def criterion(self, trial: Trial, segments: Sequence[Segment]) -> Criterion:
         """The criterion of a trial on other windows, with its values fixed."""
@@ -386,7 +386,7 @@ class Bench:
     ) -> Criterion:
         """The sum of squares in sigma, which is what a likelihood needs."""
         values = {**fixed, **{u.name: u.value for u in unknowns}}
-        segments = [begun_before(model, segment, values) for segment in segments]
+        segments = [with_lead_in(model, segment, values) for segment in segments]
         longest = max(int(np.sum(s.measured.t[: s.rows[-1] + 1] >= s.begin)) for s in segments)
         options = self.options.trial
         return Criterion(
@@ -429,7 +429,7 @@ def begun_there(segments: Sequence[Segment], trial: Trial, rows: Sequence[int]) 
 
 def _refuse_failed(criterion: Criterion, windows: Windows) -> None:
     """Raises FitError where a window does not run."""
-    failed = any(not near.ran for near in windows.near)
+    failed = any(not near.ran for near in windows.linearisations)
     if failed and criterion.failure is not None:
         raise FitError(criterion.failure.problems)
 

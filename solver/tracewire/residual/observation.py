@@ -23,7 +23,7 @@ STEP = 1e-3
 """Of a sample interval: how far to each side a signal is sampled for its rate."""
 
 
-class Sensing:
+class ObservationModel:
     """The sensors of segments of one series with the values of unknowns, and when they look at
     their signals.
 
@@ -71,10 +71,10 @@ class Sensing:
             for segment, times, begin in zip(self.segments, self.times, self.begins, strict=True)
         ]
 
-    def shown(self, run: SpanRuns) -> Vector:
+    def observe(self, run: SpanRuns) -> Vector:
         """What the sensors show, shape (N, signals)."""
         columns = [
-            sensor.shown(run[signal][at], self.since)
+            sensor.observe(run[signal][at], self.since)
             for signal, sensor, at in zip(self.signals, self.sensors, self.at, strict=False)
         ]
         return np.stack(columns, axis=1)

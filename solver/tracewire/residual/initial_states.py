@@ -8,129 +8,133 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.residual.starts import start_from_data
-from tracewire.residual.windows import Windows, begun_at, better
+from tracewire.residual.windows import Windows, keep_better, with_initial_states
 
 Vector = NDArray[np.float64]
-SETTLING = 8
+INITIAL_STATE_STEPS = 8
 """Steps of the starts."""
 FAR_OFF = 100.0
 """A start this many scales of its state away from the one that the data show."""
 CONVERGED = 1e-4
-STRAYED = 10.0
+DIVERGED = 10.0
 """The mean squared residual of a window, in units of the median of all, from which on its start may
 be astray."""
-SETTLED = 0.05
+NEGLIGIBLE_GAIN = 0.05
 """What is still to gain, in units of the noise's variance, where a fit has converged."""
 
 
-def settled(windows: Windows, steps: int = SETTLING) -> Windows:
+def fit_initial_states(windows: Windows, steps: int = INITIAL_STATE_STEPS) -> Windows:
     """The starts alone fitted, each window for itself; the unknowns stay.
 
     A window whose start is led astray (a start inside a stiff barrier kicks it away) is tried from
     the end of the window before it.
     """
-    windows = settled_some(windows, range(len(windows.near)), steps)
-    off = [n for n in range(len(windows.near)) if not _is_good(windows, n)]
-    return from_data(consistent(from_ends(windows, off, steps)), steps)
+    windows = refine_initial_states(windows, range(len(windows.linearisations)), steps)
+    off = [n for n in range(len(windows.linearisations)) if not _is_good(windows, n)]
+    return restart_from_data(update_memories(restart_from_ends(windows, off, steps)), steps)
 
 
-def from_data(windows: Windows, steps: int) -> Windows:
+def restart_from_data(windows: Windows, steps: int) -> Windows:
     """Windows that are much worse than most from the starts that the data tell, where that does
     better: a body that friction holds at its start does not feel where it should begin. The same
     windows where nothing is better.
     """
-    sizes = np.array([near.residual.size for near in windows.near])
+    sizes = np.array([near.residual.size for near in windows.linearisations])
     means = windows.squares / np.maximum(sizes, 1)
-    strayed = np.flatnonzero(means > STRAYED * float(np.median(means))).tolist()
-    criterion, told = windows.criterion, {}
-    for n in strayed:
+    diverged = np.flatnonzero(means > DIVERGED * float(np.median(means))).tolist()
+    criterion, restarts = windows.criterion, {}
+    for n in diverged:
         segment = criterion.segments[n]
         row = int(np.searchsorted(segment.measured.t, segment.begin))
         if windows.starts[n] and not _is_good(windows, n):
             known = start_from_data(criterion.model, segment.measured, row)
             start = {name: known.get(name, value) for name, value in windows.starts[n].items()}
-            if not far_off(windows, n, start):
-                told[n] = start
-    if not told:
+            if not is_far_off(windows, n, start):
+                restarts[n] = start
+    if not restarts:
         return windows
-    found = better(windows, settled_some(begun_at(windows, told), list(told), steps), list(told))
-    changed = any(found.starts[n] is not windows.starts[n] for n in told)
-    return consistent(found) if changed else windows
+    found = keep_better(
+        windows,
+        refine_initial_states(with_initial_states(windows, restarts), list(restarts), steps),
+        list(restarts),
+    )
+    changed = any(found.starts[n] is not windows.starts[n] for n in restarts)
+    return update_memories(found) if changed else windows
 
 
-def from_ends(windows: Windows, rows: Sequence[int], steps: int) -> Windows:
+def restart_from_ends(windows: Windows, rows: Sequence[int], steps: int) -> Windows:
     """Some windows from the ends of those before them, where that does better; once more, where the
     one before has changed by that."""
     changed = {n - 1 for n in rows}
     while True:
         off = [n for n in rows if n - 1 in changed and not _is_good(windows, n)]
-        there = begun_at(windows, ends_before(windows, off))
+        there = with_initial_states(windows, previous_ends(windows, off))
         tried = [n for n in off if there.starts[n] is not windows.starts[n]]
         if not tried:
             return windows
-        found = better(windows, settled_some(there, tried, steps), tried)
+        found = keep_better(windows, refine_initial_states(there, tried, steps), tried)
         changed = {n for n in tried if found.starts[n] is not windows.starts[n]}
         windows = found
 
 
 def _is_good(windows: Windows, n: int) -> bool:
     """Whether a window is so near what the best models leave that it is not astray."""
-    near = windows.near[n]
-    return near.square <= windows.good * near.residual.size
+    near = windows.linearisations[n]
+    return near.square <= windows.inlier_limit * near.residual.size
 
 
-def consistent(windows: Windows) -> Windows:
+def update_memories(windows: Windows) -> Windows:
     """The windows with memories as they are after starts of some have moved."""
     remembers = windows.criterion.remembers
-    return begun_at(windows, dict(enumerate(windows.starts))) if remembers else windows
+    return with_initial_states(windows, dict(enumerate(windows.starts))) if remembers else windows
 
 
-def ends_before(windows: Windows, rows: Sequence[int]) -> dict[int, Mapping[str, float]]:
+def previous_ends(windows: Windows, rows: Sequence[int]) -> dict[int, Mapping[str, float]]:
     """The ends of the windows before some, which are starts for these, by number."""
     found: dict[int, Mapping[str, float]] = {}
     for n in rows:
-        ends = windows.near[n - 1].final if windows.criterion.follows(n) else {}
+        ends = windows.linearisations[n - 1].final if windows.criterion.follows(n) else {}
         if ends:
             found[n] = {name: ends[name] for name in windows.starts[n]}
     return found
 
 
-def settled_some(windows: Windows, rows: Sequence[int], steps: int) -> Windows:
+def refine_initial_states(windows: Windows, rows: Sequence[int], steps: int) -> Windows:
     """The starts of some windows fitted by damped Gauss-Newton steps, each for itself."""
     share = {n: 1.0 for n in rows if windows.starts[n]}
     answers: dict[int, Vector] = {}
     for _ in range(steps):
         moved: dict[int, Mapping[str, float]] = {}
         for n in list(share):
-            near = windows.near[n]
+            near = windows.linearisations[n]
             if n not in answers:
-                view = windows.near[n].projection
+                view = windows.linearisations[n].projection
                 gain = float(np.sum((view.basis.T @ near.residual.ravel()) ** 2))
-                if gain < max(SETTLED, CONVERGED * near.square):
+                if gain < max(NEGLIGIBLE_GAIN, CONVERGED * near.square):
                     del share[n]
                     continue
-                answers[n] = -view.answer @ near.residual.ravel()
+                answers[n] = -view.pseudoinverse @ near.residual.ravel()
             start = np.array(list(windows.starts[n].values())) + share[n] * answers[n]
             moved[n] = dict(zip(windows.starts[n], start.tolist(), strict=True))
-            if far_off(windows, n, moved[n]):
+            if is_far_off(windows, n, moved[n]):
                 share[n] /= 4
                 del moved[n]
         if not share:
             break
-        there = begun_at(windows, moved)
+        there = with_initial_states(windows, moved)
         for n in moved:
-            if not there.near[n].ran:
+            if not there.linearisations[n].ran:
                 del share[n]
-            elif there.near[n].square < windows.near[n].square:
+            elif there.linearisations[n].square < windows.linearisations[n].square:
                 share[n] = min(2 * share[n], 1.0)
                 del answers[n]
             else:
                 share[n] /= 4
-        windows = better(windows, there, list(moved))
+        windows = keep_better(windows, there, list(moved))
     return windows
 
 
-def far_off(windows: Windows, n: int, start: Mapping[str, float]) -> bool:
+def is_far_off(windows: Windows, n: int, start: Mapping[str, float]) -> bool:
     """Whether a start is where no body of this record can be: no run is worth its time there."""
     segment = windows.criterion.segments[n]
     return any(

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from tracewire.compile import Model
 from tracewire.errors import Problem, SimulationError
 from tracewire.residual.measured import LARGEST, Measured
+from tracewire.residual.observation import ObservationModel
 from tracewire.residual.segment import Segment, absolute_tolerances, of_diagram, parameter_in
-from tracewire.residual.sensing import Sensing
 from tracewire.solve import Halt, Interrupted, Limits, Span, SpanRuns, simulate_spans
 
 Vector = NDArray[np.float64]
@@ -28,15 +28,15 @@ class Projection:
     and the start's answer to a residual, (states, N*signals)."""
 
     basis: Matrix
-    answer: Matrix
+    pseudoinverse: Matrix
 
-    def off(self, columns: Matrix) -> Matrix:
+    def project_out(self, columns: Matrix) -> Matrix:
         """Columns without what the start can explain."""
         return np.asarray(columns - self.basis @ (self.basis.T @ columns))
 
 
 @dataclass(frozen=True, eq=False)
-class Linearised:
+class Linearisation:
     """A segment near some unknowns: residuals (N, signals) in sigma, their derivatives `slopes`
     (N*signals, unknowns + free starts) in SI, the `scales` of the free starts, the `final` states
     where it ended with their derivatives `final_slopes` (states, unknowns + free starts), and
@@ -68,18 +68,18 @@ class Linearised:
 
 
 @dataclass(frozen=True, eq=False)
-class Shots:
+class BatchLinearisation:
     """Segments of one series near some unknowns, by their place among them, and the `errors` of
     those whose runs failed. `steps` of all runs, and what they warn of."""
 
-    near: Mapping[int, Linearised]
+    linearisations: Mapping[int, Linearisation]
     errors: Mapping[int, SimulationError]
     steps: int
     warnings: frozenset[str]
 
 
 @dataclass(frozen=True, eq=False)
-class Shooting:
+class SegmentBatch:
     """Segments of one series to run together, with the `values` of unknowns and fixed parameters
     by name and the free `starts` of each segment.
 
@@ -95,18 +95,18 @@ class Shooting:
     limits: Limits
     budget: float
 
-    def shown(
+    def simulate(
         self, halt: Halt, asked: Sequence[str] | None = None, rates: bool = False
-    ) -> tuple[SpanRuns, Sensing]:
+    ) -> tuple[SpanRuns, ObservationModel]:
         """The runs, with the sensitivities that are `asked` for, and the sensors that look at them;
         `rates` of signals are for the derivatives by a delay. Raises Interrupted."""
         measured = self.segments[0].measured
-        sensing = Sensing(self.segments, self.values, rates=rates)
+        observation = ObservationModel(self.segments, self.values, rates=rates)
         atol = None if asked is None else absolute_tolerances(self.model, measured, self.rtol)
         spans = [
             Span(begin, end, times, start if after else {**segment.start, **start}, after)
             for segment, begin, end, times, start, after in zip(
-                self.segments, sensing.begins, sensing.ends, sensing.times, self.starts,
+                self.segments, observation.begins, observation.ends, observation.times, self.starts,
                 self.follows, strict=True,
             )
         ]  # fmt: skip
@@ -124,11 +124,11 @@ class Shooting:
             sensitivities=asked or (),
             halt=halt,
         )
-        return runs, sensing
+        return runs, observation
 
-    def near(
+    def linearise(
         self, samples: Matrix, sigma: Vector, moving: Sequence[str] | None, halt: Halt
-    ) -> Shots:
+    ) -> BatchLinearisation:
         """The residuals of the segments' `samples` (N, signals) with the noise `sigma` (signals,),
         and their derivatives by the unknowns `moving` and the free starts; None: without these."""
         measured = self.segments[0].measured
@@ -140,19 +140,19 @@ class Shooting:
             asked = [name for name in answers.values() if name]
         rates = any(name.startswith("delay.") for name in answers)
         try:
-            runs, sensing = self.shown(halt, asked, rates)
+            runs, observation = self.simulate(halt, asked, rates)
         except Interrupted:
             raise
         except SimulationError as error:  # values that the diagram does not allow: nothing runs
             count = len(self.segments)
             errors = dict.fromkeys(range(count), error)
-            return Shots({}, errors, 0, frozenset())
+            return BatchLinearisation({}, errors, 0, frozenset())
         with np.errstate(over="ignore", invalid="ignore"):  # what overflows is not usable
-            shown = sensing.shown(runs)
-            slopes = sensing.derivatives(runs, answers) / sigma[:, None]
-            residual = difference(measured, samples, shown) / sigma
+            shown = observation.observe(runs)
+            slopes = observation.derivatives(runs, answers) / sigma[:, None]
+            residual = subtract_measured(measured, samples, shown) / sigma
         rows = np.cumsum([0, *(len(segment.rows) for segment in self.segments)])
-        near, errors = dict[int, Linearised](), dict(runs.errors)
+        near, errors = dict[int, Linearisation](), dict(runs.errors)
         columns = {name: column for column, name in enumerate(answers)}
         moved = [column for column, name in enumerate(answers.values()) if name]
         for number, (segment, start) in enumerate(zip(self.segments, self.starts, strict=True)):
@@ -172,10 +172,10 @@ class Shooting:
                 own, ends = own[:, kept], ends[:, kept]
             final = dict(zip(self.model.states, runs.final[number].tolist(), strict=True))
             scales = segment.start_scales(start)
-            near[number] = Linearised(residual[mine], own, scales, final, ends)
+            near[number] = Linearisation(residual[mine], own, scales, final, ends)
         steps = int(runs.steps.sum()) + self.limits.steps * len(runs.errors)
-        told = frozenset(text for texts in runs.warnings.values() for text in texts)
-        return Shots(near, errors, steps, told)
+        warnings = frozenset(text for texts in runs.warnings.values() for text in texts)
+        return BatchLinearisation(near, errors, steps, warnings)
 
 
 def _huge(series: str, shown: Vector) -> SimulationError:
@@ -184,12 +184,14 @@ def _huge(series: str, shown: Vector) -> SimulationError:
     return SimulationError([Problem(what, hint="Begin elsewhere, or narrow `fit:` bounds.")])
 
 
-def difference(measured: Measured, samples: Vector, shown: Vector) -> Vector:
+def subtract_measured(measured: Measured, samples: Vector, shown: Vector) -> Vector:
     """What sensors show without what was measured, (N, signals): the shortest way around."""
     columns = zip(measured.values, (shown - samples).T, strict=True)
-    return np.stack([around(x, measured.periods.get(name, 0.0)) for name, x in columns], axis=1)
+    return np.stack(
+        [wrap_to_period(x, measured.periods.get(name, 0.0)) for name, x in columns], axis=1
+    )
 
 
-def around(off: Vector, period: float) -> Vector:
+def wrap_to_period(off: Vector, period: float) -> Vector:
     """Differences by the shortest way around a period; 0 is none."""
     return off - period * np.round(off / period) if period > 0 else off

@@ -10,8 +10,8 @@ import pytest
 from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.residual import Criterion, Measured
-from tracewire.residual.settling import settled
-from tracewire.residual.windows import Section, cut, opened
+from tracewire.residual.initial_states import fit_initial_states
+from tracewire.residual.windows import Section, cut_windows, evaluate_windows
 from tracewire.solve import simulate
 
 BLOCK = """\
@@ -30,15 +30,15 @@ def test_a_window_that_friction_holds_begins_where_the_data_say() -> None:
     t = np.linspace(0, 4, 401)
     run = simulate(model, times=t, rtol=1e-10)
     measured = Measured("slide", "train", t, {"x": run["x"]}, start={"x": None, "v": None})
-    windows = cut(model, Section(measured, 0, 401), 20, ("x", "v"))
+    windows = cut_windows(model, Section(measured, 0, 401), 20, ("x", "v"))
     moving = [n for n, w in enumerate(windows) if abs(run["v"][w.rows[0]]) > 0.5]
     held = moving[len(moving) // 2]
     wrong = {"x": float(run["x"][windows[held].rows[10]]), "v": 0.0}
     windows[held] = replace(windows[held], start={**windows[held].start, **wrong})
     seen = compile(model.diagram, record=["x"])
     criterion = Criterion(seen, windows, [], {}, 1e-8, {"x": 1e-4}, weighting="sum", chained=False)
-    begun = opened(criterion)
-    assert begun.near[held].square > 1e4 * np.median(begun.squares)
-    found = settled(begun)
-    assert found.near[held].square < 20
+    begun = evaluate_windows(criterion)
+    assert begun.linearisations[held].square > 1e4 * np.median(begun.squares)
+    found = fit_initial_states(begun)
+    assert found.linearisations[held].square < 20
     assert found.starts[held]["v"] == pytest.approx(run["v"][windows[held].rows[0] - 1], abs=1e-2)

@@ -21,34 +21,34 @@ SLOW, UNSEEN, STEADY = 6, 0.1, 0.3
 where the last of them still gains this part of the first: it creeps, and does not converge."""
 
 
-class Squares(Protocol):
+class LeastSquaresProblem(Protocol):
     """What least squares needs to know of a criterion, or of a search on one."""
 
     def bounds(self) -> tuple[Vector, Vector]: ...
     def vector(self, z: Vector) -> Vector: ...
-    def both(self, z: Vector) -> tuple[Vector, Matrix]: ...
+    def vector_and_jacobian(self, z: Vector) -> tuple[Vector, Matrix]: ...
 
 
 @dataclass(frozen=True, eq=False)
-class Descent:
+class LeastSquaresResult:
     """Where least squares ended: scaled unknowns, half the sum of squares there, whether it
     converged, and why it ended."""
 
     z: Vector
-    after: float
+    cost: float
     converged: bool
     message: str
 
 
-def descend(
-    criterion: Squares,
+def solve_least_squares(
+    criterion: LeastSquaresProblem,
     begin: Vector,
     *,
     steps: int = 30,
     tolerance: float = 1e-6,
     frugal: bool = True,
-    stepped: Callable[[Vector, float], None] | None = None,
-) -> Descent:
+    callback: Callable[[Vector, float], None] | None = None,
+) -> LeastSquaresResult:
     """Minimise half the sum of squares of the criterion's vector from `begin`, within the bounds.
 
     `steps` limits the trial steps, `tolerance` is the relative change of the sum that ends it. The
@@ -56,24 +56,24 @@ def descend(
     with sensitivities. A `frugal` search spares those after a step that gained a tenth of the
     criterion: there the derivatives are corrected by what the step has shown (C. G. Broyden, Math.
     Comp. 19, 1965, 577); and it ends where it creeps along, and the noise would hide what it gains.
-    `stepped` gets each point from which a step is made, and its value.
+    `callback` gets each point from which a step is made, and its value.
     """
     from scipy.optimize import least_squares
 
     low, high = criterion.bounds()
     room = np.where(np.isfinite(high - low), 1e-9 * (high - low), 1e-12)
     z = np.clip(begin, low + room, high - room)  # scipy wants to begin inside
-    slopes = _Slopes(criterion, z, frugal, stepped)
+    jacobian = _Jacobian(criterion, z, frugal, callback)
     message, left = "", steps
     while len(z) and not message:
         # derivatives that were corrected may end it early: only true ones tell the end
-        slopes.refresh(z)
-        slopes.trials = 1
+        jacobian.refresh(z)
+        jacobian.trials = 1
         try:
             found = least_squares(
-                slopes.vector,
+                jacobian.vector,
                 z,
-                jac=slopes.jacobian,
+                jac=jacobian.step_jacobian,
                 bounds=(low, high),
                 method="trf",
                 x_scale=np.maximum(np.abs(z), 0.1),
@@ -82,44 +82,49 @@ def descend(
                 gtol=1e-15,
                 max_nfev=max(left, 1),
             )
-        except _Settled:
-            z, message = slopes.best, "converged: what is still to gain is far below the noise"
+        except _Stalled:
+            z, message = jacobian.best, "converged: what is still to gain is far below the noise"
             break
-        except _Renewed:  # a trust region that corrected derivatives have narrowed is of no use
+        except _Refreshed:  # a trust region that corrected derivatives have narrowed is of no use
             # of no use at all where the way to here was lost again: scipy begins off the bounds,
             # which a chaotic criterion feels more than such a step
-            slopes.frugal = frugal and not np.array_equal(slopes.best, z)
-            z, ended = slopes.best, False
+            jacobian.frugal = frugal and not np.array_equal(jacobian.best, z)
+            z, ended = jacobian.best, False
         else:
             z, ended = np.asarray(found.x), found.status > 0
-        left -= slopes.trials
-        if ended and slopes.is_true(z):
+        left -= jacobian.trials
+        if ended and jacobian.is_true(z):
             message = "converged"
         elif left <= 0:
             message = f"stopped at the limit of {steps} steps"
-    return Descent(z, half_square(slopes.vector(z)), not message.startswith("stopped"), message)
+    return LeastSquaresResult(
+        z, half_square(jacobian.vector(z)), not message.startswith("stopped"), message
+    )
 
 
-class _Settled(Exception):
+class _Stalled(Exception):
     """Many steps have gained next to nothing."""
 
 
-class _Renewed(Exception):
+class _Refreshed(Exception):
     """There are true derivatives after corrected ones."""
 
 
-class _Slopes:
+class _Jacobian:
     """Vector and derivatives at the last points, each run once."""
 
     def __init__(
         self,
-        criterion: Squares,
+        criterion: LeastSquaresProblem,
         z: Vector,
         frugal: bool,
-        stepped: Callable[[Vector, float], None] | None,
+        callback: Callable[[Vector, float], None] | None,
     ) -> None:
-        self.criterion, self.frugal, self.stepped = criterion, frugal, stepped
-        self.at = (z.copy(), *criterion.both(z))  # a point, its vector and the derivatives
+        self.criterion, self.frugal, self.callback = criterion, frugal, callback
+        self.at = (
+            z.copy(),
+            *criterion.vector_and_jacobian(z),
+        )  # a point, its vector and the derivatives
         self.last = self.at[:2]
         self.is_fresh = True
         self.trials = 0
@@ -138,19 +143,19 @@ class _Slopes:
     def refresh(self, z: Vector) -> None:
         """Have the true derivatives at a point."""
         if not self.is_true(z):
-            self.at, self.is_fresh = (z.copy(), *self.criterion.both(z)), True
+            self.at, self.is_fresh = (z.copy(), *self.criterion.vector_and_jacobian(z)), True
 
     def is_true(self, z: Vector) -> bool:
         """Whether the derivatives are the true ones at a point."""
         return self.is_fresh and np.array_equal(self.at[0], z)
 
-    def jacobian(self, z: Vector) -> Matrix:
+    def step_jacobian(self, z: Vector) -> Matrix:
         """The derivatives from which the next step is made. Raises _Settled."""
         renewed = False
         if not np.array_equal(self.at[0], z):
             residual = self.vector(z)
             if self.frugal and half_square(residual) < FAST * half_square(self.at[1]):
-                self.at, self.is_fresh = _corrected(self.at, z, residual), False
+                self.at, self.is_fresh = _broyden_update(self.at, z, residual), False
             else:
                 renewed = not self.is_fresh
                 self.refresh(z)
@@ -158,18 +163,18 @@ class _Slopes:
         if not self.values or value < self.values[-1]:
             self.values.append(value)
             self.best = z.copy()
-            if self.stepped is not None:
-                self.stepped(z, value)
+            if self.callback is not None:
+                self.callback(z, value)
         if self.frugal and len(self.values) > SLOW:
             gains = -np.diff(self.values[-1 - SLOW :]) * len(self.at[1])
             if gains.sum() < UNSEEN * value and gains[-1] > STEADY * gains[0]:
-                raise _Settled
+                raise _Stalled
         if renewed:
-            raise _Renewed
+            raise _Refreshed
         return self.at[2]
 
 
-def _corrected(
+def _broyden_update(
     at: tuple[Vector, Vector, Matrix], z: Vector, residual: Vector
 ) -> tuple[Vector, Vector, Matrix]:
     """The derivatives with what the step to z has shown of them.
