@@ -11,7 +11,7 @@ import pytest
 from residual.models import LINE, OSCILLATOR, PENDULUM, C, K, T, made, oscillation, series, swing
 from tracewire.errors import DataError, FitError, OptionError
 from tracewire.fit import Fit, Progress, fit, optimset
-from tracewire.fit.caveats import unfinished
+from tracewire.fit.remarks import unfinished
 from tracewire.residual import Measured, Sensor
 
 METHODS = ("fminsearch", "least_squares")

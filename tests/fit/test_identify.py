@@ -12,7 +12,7 @@ from residual.models import T, made, oscillation, series
 from tracewire.compile import compile
 from tracewire.diagram import read
 from tracewire.fit import Fit, fit
-from tracewire.fit.identify import Columns
+from tracewire.fit.identify import ParameterColumns
 from tracewire.fit.uncertainty import Uncertainty, uncertainty_from
 from tracewire.residual import Measured, Sensor
 
@@ -183,7 +183,7 @@ def test_parameters_with_columns_of_their_own_are_all_determined(seed: int, mix:
 
 def _of(slopes: np.ndarray, residual: np.ndarray, values: np.ndarray) -> Uncertainty:
     infinite = np.full(len(values), np.inf)
-    columns = Columns(tuple("abc"), 3, values, values, -infinite, infinite)
+    columns = ParameterColumns(tuple("abc"), 3, values, values, -infinite, infinite)
     return uncertainty_from(
         [residual[:, None]], [slopes * values], [np.ones(1)], [("run", ["x"])], columns
     )

@@ -14,7 +14,7 @@ from residual.models import LINE, made
 from scipy.stats import linregress
 from scipy.stats import t as student
 from tracewire.fit import fit
-from tracewire.fit.identify import Columns
+from tracewire.fit.identify import ParameterColumns
 from tracewire.fit.uncertainty import Uncertainty, uncertainty_from
 from tracewire.residual import Measured
 
@@ -25,9 +25,9 @@ SHORT = np.linspace(0.0, 6.0, 60)
 LINEAR = made(LINE)
 
 
-def columns_of(names: str, values: Vector, **more: Any) -> Columns:
+def columns_of(names: str, values: Vector, **more: Any) -> ParameterColumns:
     n = len(values)
-    return Columns(
+    return ParameterColumns(
         tuple(names),
         more.get("count", n),
         values,

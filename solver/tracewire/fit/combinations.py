@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.fit.identify import PART, TRACE, Columns, Flat
+from tracewire.fit.identify import PART, TRACE, FlatDirection, ParameterColumns
 
 Vector = NDArray[np.float64]
 
@@ -28,8 +28,8 @@ class Direction:
     words: str
 
 
-def described(
-    flats: Sequence[Flat], missing: set[int], columns: Columns
+def describe_directions(
+    flats: Sequence[FlatDirection], missing: set[int], columns: ParameterColumns
 ) -> tuple[tuple[Direction, ...], tuple[str, ...]]:
     """The directions, and a sentence for each group of parameters that share some."""
     flats = _approximate(flats, missing, columns)
@@ -43,26 +43,28 @@ def described(
     return tuple(directions), tuple(_sentence(g, missing, columns) for g in _groups(flats, missing))
 
 
-def followers(flats: Sequence[Flat], missing: set[int]) -> set[int]:
+def followers(flats: Sequence[FlatDirection], missing: set[int]) -> set[int]:
     """Parameters that are determined once the missing ones are, and move with these until then."""
     return {j for flat in flats if not flat.exact for j in _taking_part(flat)} - missing
 
 
-def _approximate(flats: Sequence[Flat], missing: set[int], columns: Columns) -> list[Flat]:
+def _approximate(
+    flats: Sequence[FlatDirection], missing: set[int], columns: ParameterColumns
+) -> list[FlatDirection]:
     """The same directions; those that conserve no plain product or sum do not count as exact."""
     found = []
     for group in _groups(flats, missing):
         members = _members(group, missing)
         rest = [j for j in members if j not in {flat.fixed for flat in group}]
         exact = all(flat.exact for flat in group)
-        exact = exact and _conserved(group, rest, members, columns) is not None
+        exact = exact and _conserved_quantity(group, rest, members, columns) is not None
         found += [replace(flat, exact=exact) for flat in group]
     return sorted(found, key=lambda flat: -flat.ratio)
 
 
-def _groups(flats: Sequence[Flat], missing: set[int]) -> list[list[Flat]]:
+def _groups(flats: Sequence[FlatDirection], missing: set[int]) -> list[list[FlatDirection]]:
     """Directions that share parameters."""
-    groups: list[list[Flat]] = []
+    groups: list[list[FlatDirection]] = []
     for flat in flats:
         mine = set(_members([flat], missing))
         joined = [g for g in groups if mine & set(_members(g, missing))]
@@ -71,7 +73,7 @@ def _groups(flats: Sequence[Flat], missing: set[int]) -> list[list[Flat]]:
     return groups
 
 
-def _members(flats: Sequence[Flat], missing: set[int]) -> list[int]:
+def _members(flats: Sequence[FlatDirection], missing: set[int]) -> list[int]:
     """The parameters of a group: all of an exact direction, the open ones of another."""
     found = set()
     for flat in flats:
@@ -79,7 +81,7 @@ def _members(flats: Sequence[Flat], missing: set[int]) -> list[int]:
     return sorted(found)
 
 
-def _taking_part(flat: Flat) -> list[int]:
+def _taking_part(flat: FlatDirection) -> list[int]:
     """The parameters of a direction: those that cancel in an exact one, or change much."""
     shares = np.abs(flat.changes) / np.abs(flat.changes).max()
     takes = flat.effects > TRACE if flat.exact else shares > PART
@@ -87,7 +89,7 @@ def _taking_part(flat: Flat) -> list[int]:
     return [int(j) for j in np.flatnonzero(takes)]
 
 
-def _sentence(flats: Sequence[Flat], missing: set[int], columns: Columns) -> str:
+def _sentence(flats: Sequence[FlatDirection], missing: set[int], columns: ParameterColumns) -> str:
     members = _members(flats, missing)
     held = sorted(flat.fixed for flat in flats)
     rest = [j for j in members if j not in held]
@@ -102,7 +104,7 @@ def _sentence(flats: Sequence[Flat], missing: set[int], columns: Columns) -> str
         advice = f"fix {count} of {_listed(names)}"
     else:
         advice = f"fix {count} of them, for example {_listed([columns.names[j] for j in held])}"
-    whole = _conserved(flats, rest, members, columns) if exact else None
+    whole = _conserved_quantity(flats, rest, members, columns) if exact else None
     verb = "is" if len(rest) == 1 else "are"
     if whole is not None:
         return f"only {_listed(whole)} {verb} determined: {advice}"
@@ -122,7 +124,7 @@ def _sentence(flats: Sequence[Flat], missing: set[int], columns: Columns) -> str
     )
 
 
-def _alone(flat: Flat, columns: Columns) -> str:
+def _alone(flat: FlatDirection, columns: ParameterColumns) -> str:
     many = np.flatnonzero(flat.effects > PART).tolist()
     others = [columns.names[j] for j in many if j != flat.fixed]
     name, together = columns.names[flat.fixed], " together" if len(others) > 1 else ""
@@ -132,8 +134,11 @@ def _alone(flat: Flat, columns: Columns) -> str:
     )
 
 
-def _conserved(
-    flats: Sequence[Flat], rest: Sequence[int], members: Sequence[int], columns: Columns
+def _conserved_quantity(
+    flats: Sequence[FlatDirection],
+    rest: Sequence[int],
+    members: Sequence[int],
+    columns: ParameterColumns,
 ) -> list[str] | None:
     """The combinations of an exactly flat group, as products or as sums of the parameters."""
     sums = _exponents(flats, rest, members, columns, linear=True)
@@ -148,10 +153,10 @@ def _conserved(
 
 
 def _exponents(
-    flats: Sequence[Flat],
+    flats: Sequence[FlatDirection],
     rest: Sequence[int],
     members: Sequence[int],
-    columns: Columns,
+    columns: ParameterColumns,
     linear: bool = False,
 ) -> list[dict[str, float]]:
     """For each parameter that is not held, the combination with held ones that is conserved.
@@ -171,7 +176,7 @@ def _exponents(
     return found
 
 
-def _sum_is_flatter(flat: Flat, columns: Columns) -> bool:
+def _sum_is_flatter(flat: FlatDirection, columns: ParameterColumns) -> bool:
     """Whether the criterion changes on a long way along the product and not on one along the sum.
 
     At equal values, or where k/J is 4 as k - 4 J is 0, derivatives cannot tell these apart.
@@ -235,7 +240,7 @@ def _sum(coefficients: dict[str, float]) -> str:
     return text
 
 
-def _changes(flat: Flat, columns: Columns) -> str:
+def _changes(flat: FlatDirection, columns: ParameterColumns) -> str:
     """A change in words, the largest by 10 %, with what the others must change by."""
     units = np.where(columns.values, columns.values, columns.sizes)
     relative = flat.changes * columns.sizes / units

@@ -15,7 +15,7 @@ from tracewire.residual import Criterion, Measured, Segment, own_unknowns, solve
 Vector = NDArray[np.float64]
 
 
-def shown_by_series(
+def outputs_by_series(
     criterion: Criterion, z: Vector, others: Sequence[Segment]
 ) -> dict[str, Vector]:
     """What the sensors show (N, signals) by series, with samples that do not count; NaN where no
@@ -57,7 +57,7 @@ def _fill(
     whole[rows] = shown
 
 
-def compared(
+def compare_series(
     model: Model,
     series: Sequence[Measured],
     before: Mapping[str, Vector],

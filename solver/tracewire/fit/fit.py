@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import DataError, FitError, OptionError, Problem, unknown
-from tracewire.fit.caveats import caveats, starts_elsewhere, unfinished
 from tracewire.fit.checkpoint import Store, resume_from
-from tracewire.fit.compare import compared, shown_by_series
+from tracewire.fit.compare import compare_series, outputs_by_series
 from tracewire.fit.methods import METHODS
 from tracewire.fit.optimset import Options, optimset
 from tracewire.fit.refusals import (
@@ -25,8 +24,9 @@ from tracewire.fit.refusals import (
     refuse_presets_of_free,
     refuse_unusable,
 )
+from tracewire.fit.remarks import collect_remarks, starts_elsewhere, unfinished
 from tracewire.fit.result import Comparison, Fit, Improvement
-from tracewire.fit.search import Ended, Progress, Search, Stopped
+from tracewire.fit.search import MethodResult, Progress, Search, Stopped
 from tracewire.fit.uncertainty import uncertainty_of
 from tracewire.options import options_of
 from tracewire.residual import (
@@ -129,31 +129,31 @@ def fit(
                 for problem in criterion.failure.problems
             ]
         )
-    before = shown_by_series(criterion, first, others)
+    before = outputs_by_series(criterion, first, others)
     criterion.evaluations = 0
 
     def comparisons(z: Vector) -> tuple[Comparison, ...]:
-        return compared(model, series, before, shown_by_series(criterion, z, others))
+        return compare_series(model, series, before, outputs_by_series(criterion, z, others))
 
     if options is None:
         limits = {} if method == "fminsearch" else {"MaxIter": AMPLE, "MaxFunEvals": AMPLE}
         options = optimset(Display="off", **limits)
-    kept = None if save is None else Store(save, method)
+    store = None if save is None else Store(save, method)
     search = Search(
         criterion,
         options,
         seed=seed,
         units=units,
         progress=progress,
-        kept=kept,
+        store=store,
         comparisons=comparisons,
     )
     if resume is not None:
-        _go_on(search, resume_from(resume, method, criterion))
-    ended = _searched(search, method)
+        _resume(search, resume_from(resume, method, criterion))
+    result = _run_method(search, method)
     search.finish()
     evaluations = criterion.evaluations
-    last, z = ended.criterion or criterion, ended.z
+    last, z = result.criterion or criterion, result.z
     failures = criterion.failures if last is criterion else criterion.failures + last.failures
     residuals, derivatives = last.residuals_and_jacobians(z)
     named, starts = last.unpack(z)
@@ -164,7 +164,7 @@ def fit(
     uncertainty = uncertainty_of(last, z, residuals, derivatives, follows)
     matrix = last.weigh_jacobians(residuals, derivatives)
     short = unfinished(uncertainty, last, matrix, last.weigh(residuals))
-    shown = compared(model, series, before, shown_by_series(last, z, others))
+    shown = compare_series(model, series, before, outputs_by_series(last, z, others))
     return Fit(
         model=model,
         method=method,
@@ -176,9 +176,9 @@ def fit(
         criterion_before=criterion_before,
         criterion=half_square(last.weigh(residuals)),
         evaluations=evaluations,
-        iterations=ended.iterations,
-        exitflag=ended.exitflag,
-        message=ended.message,
+        iterations=result.iterations,
+        exitflag=result.exitflag,
+        message=result.message,
         seconds=time.perf_counter() - began,
         comparisons=shown,
         uncertainty=uncertainty,
@@ -187,36 +187,36 @@ def fit(
         loss=loss,
         parameters=dict(parameters or {}),
         rtol=rtol,
-        interrupted=ended.interrupted,
+        interrupted=result.interrupted,
         remarks=(
-            *(kept.remarks if kept else ()),
+            *(store.remarks if store else ()),
             *short,
             *starts_elsewhere(model, series, shown),
-            *caveats(series, failures, last),
+            *collect_remarks(series, failures, last),
         ),
     )
 
 
-def _searched(search: Search, method: str) -> Ended:
+def _run_method(search: Search, method: str) -> MethodResult:
     """Where a method ended, or was stopped."""
     tells_itself = method == "fminsearch"  # as Scilab's does
     try:
         if not tells_itself:
             search.announce("init")
-        ended = METHODS[method](search)
+        result = METHODS[method](search)
     except Stopped as stopped:
-        ended = Ended(search.best, search.iterations, stopped.exitflag, stopped.message)
+        result = MethodResult(search.best, search.iterations, stopped.exitflag, stopped.message)
     except KeyboardInterrupt:
         message = "stopped by Ctrl-C: this is the best so far"
-        ended = Ended(search.best, search.iterations, -1, message, interrupted=True)
+        result = MethodResult(search.best, search.iterations, -1, message, interrupted=True)
         tells_itself = False
     if not tells_itself:
         with suppress(Stopped):  # there is nothing left to stop
             search.announce("done")
-    return ended
+    return result
 
 
-def _go_on(search: Search, saved: Mapping[str, Any]) -> None:
+def _resume(search: Search, saved: Mapping[str, Any]) -> None:
     """Let a search begin where a saved one was."""
     search.begin = search.best = np.array(saved["best"]) / search.criterion.scales
     search.best_value = search.criterion.value(search.best)

@@ -23,7 +23,7 @@ TRACE = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
-class Columns:
+class ParameterColumns:
     """The unknowns of a fit (n,), in SI: parameters and sensors first, then free start values.
 
     `count` are the parameters and sensors. `sizes` are those by which unknowns were scaled. `value`
@@ -40,7 +40,7 @@ class Columns:
 
 
 @dataclass(frozen=True, eq=False)
-class Known:
+class LinearResponse:
     """What the data say of relative changes of parameters, all correlations included.
 
     The residual moves by `response` (n, n) times the relative changes, `noise` (n, n) is the
@@ -71,7 +71,7 @@ class Known:
         basis, square = np.linalg.qr(self.response[:, active])
         return np.asarray(square.T @ np.linalg.pinv(basis.T @ self.noise @ basis) @ square)
 
-    def follow(self, one: int, others: Sequence[int]) -> Vector:
+    def refit_change(self, one: int, others: Sequence[int]) -> Vector:
         """How the others change in a refit when one parameter is changed by its size."""
         moved = np.zeros(self.response.shape[1])
         moved[one] = 1.0
@@ -81,14 +81,14 @@ class Known:
         moved[list(others)] = found / lengths
         return moved
 
-    def flat(self, fixed: int, changes: Vector, ratio: float) -> Flat:
+    def direction_of(self, fixed: int, changes: Vector, ratio: float) -> FlatDirection:
         """A flat direction; exactly flat with an infinite ratio."""
         effects = np.abs(changes) * np.linalg.norm(self.response, axis=0)
-        return Flat(fixed, changes, effects / effects.max(), ratio, not np.isfinite(ratio))
+        return FlatDirection(fixed, changes, effects / effects.max(), ratio, not np.isfinite(ratio))
 
 
 @dataclass(frozen=True, eq=False)
-class Flat:
+class FlatDirection:
     """A direction along which the residual hardly changes, in relative changes (n,).
 
     It is what the others do in a refit when the parameter `fixed` is changed; `ratio` is the
@@ -104,8 +104,8 @@ class Flat:
 
 
 def flat_directions(
-    known: Known, active: Sequence[int], preferred: int, values: Vector
-) -> tuple[list[Flat], set[int]]:
+    response: LinearResponse, active: Sequence[int], preferred: int, values: Vector
+) -> tuple[list[FlatDirection], set[int]]:
     """The directions that the data do not determine, and the parameters that these are made of.
 
     In turn, the parameter that takes the largest part in an undetermined direction is held, until
@@ -119,18 +119,18 @@ def flat_directions(
     """
     left, missing = list(active), set[int]()
     exact: list[int] = []
-    found: list[Flat] = []
-    information = known.information(active) if active else np.zeros((0, 0))
+    found: list[FlatDirection] = []
+    information = response.information(active) if active else np.zeros((0, 0))
     while left:
-        lengths, singular, directions = known.normal(left)
-        is_exact = bool(singular[-1] < known.accuracy)
+        lengths, singular, directions = response.normal(left)
+        is_exact = bool(singular[-1] < response.accuracy)
         if is_exact:
-            null = np.linalg.qr((directions[singular < known.accuracy] / lengths).T)[0]
+            null = np.linalg.qr((directions[singular < response.accuracy] / lengths).T)[0]
             part = np.linalg.norm(null, axis=1)
             weak = part > PART
         else:
             inflation = np.linalg.norm(directions.T / singular, axis=1)
-            covariance = known.covariance(left)
+            covariance = response.covariance(left)
             errors = np.sqrt(np.diag(covariance))
             weak = (errors > LOOSE) & (inflation > COLLINEAR)
             if not weak.any():
@@ -149,7 +149,9 @@ def flat_directions(
             changes[left] = covariance[held] / covariance[held, held]
             unit = changes[list(active)] / np.linalg.norm(changes)
             stiffness = max(float(unit @ information @ unit), 1e-300)
-            found.append(known.flat(left[held], changes, stiffness**-0.5))
+            found.append(response.direction_of(left[held], changes, stiffness**-0.5))
         del left[held]
-    exact_ones = [known.flat(one, known.follow(one, left), np.inf) for one in exact]
+    exact_ones = [
+        response.direction_of(one, response.refit_change(one, left), np.inf) for one in exact
+    ]
     return [*exact_ones, *found], missing

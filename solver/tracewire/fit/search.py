@@ -16,7 +16,7 @@ from tracewire.residual import Criterion, half_square
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-TOLD_EVERY = 0.1
+REPORT_EVERY = 0.1
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Progress:
 
 
 @dataclass(frozen=True, eq=False)
-class Ended:
+class MethodResult:
     """Where a search ended, in scaled unknowns, and why.
 
     A method that has cut the series into segments of its own gives their `criterion`, to which `z`
@@ -62,13 +62,14 @@ class Stopped(Exception):
 
 class Search:
     """A criterion as a method sees it: every evaluation is counted, the best is remembered,
-    progress is told, limits end it.
+    progress is reported, limits end it.
 
     `begin` are the scaled unknowns to begin with, `units` the sizes in which tolerances of the
     simplex are meant (1 is SI), `seed` what random numbers are made from,
     `options` those of optimset (limits hold for every method, tolerances for the simplex),
-    `resumed` what the same method has kept in a saved file. A method calls `vector`, `both` or
-    `value`, `iterated` after each of its iterations, and `keep` with what it needs to go on.
+    `resumed` what the same method has kept in a saved file. A method calls `vector`,
+    `vector_and_jacobian` or `value`, `count_iteration` after each of its iterations, and
+    `checkpoint` with what it needs to go on.
     """
 
     def __init__(
@@ -78,7 +79,7 @@ class Search:
         seed: int = 0,
         units: Vector | None = None,
         progress: Callable[[Progress], None] | None = None,
-        kept: Callable[[Search, bool], None] | None = None,
+        store: Callable[[Search, bool], None] | None = None,
         comparisons: Callable[[Vector], tuple[Comparison, ...]] | None = None,
     ) -> None:
         self.criterion, self.options, self.seed = criterion, options, seed
@@ -91,7 +92,7 @@ class Search:
         self.iterations = 0
         self.stage = ""
         self.history: list[Improvement] = []
-        self._progress, self._kept, self._comparisons = progress, kept, comparisons
+        self._progress, self._store, self._comparisons = progress, store, comparisons
         self._began, self._told, self._share = time.perf_counter(), -np.inf, 0.0
 
     # --- what a method calls ----------------------------------------------------------------------
@@ -109,7 +110,7 @@ class Search:
         """The scaled bounds."""
         return self.low, self.high
 
-    def folded(self, z: Vector) -> Vector:
+    def reflect(self, z: Vector) -> Vector:
         """Unknowns reflected at their bounds until they are inside.
 
         The identity inside, so that a search that keeps away from bounds does not notice them.
@@ -124,39 +125,39 @@ class Search:
 
     def vector(self, z: Vector, part: Criterion | None = None) -> Vector:
         """What the criterion squares (M,), or that of a `part` of the series, which is counted."""
-        self.refuse_more()
+        self.check_limits()
         found = (part or self.criterion).vector(z)
-        self._evaluated(z, found, part)
+        self._record(z, found, part)
         return found
 
     def vector_and_jacobian(
         self, z: Vector, part: Criterion | None = None
     ) -> tuple[Vector, Matrix]:
-        """`vector` (M,) and its derivatives (M, n), by forward sensitivities."""
-        self.refuse_more()
+        """`vector` (M,) and its Jacobian (M, n), by forward sensitivities."""
+        self.check_limits()
         found, matrix = (part or self.criterion).vector_and_jacobian(z)
-        self._evaluated(z, found, part)
+        self._record(z, found, part)
         return found, matrix
 
-    def _evaluated(self, z: Vector, found: Vector, part: Criterion | None) -> None:
+    def _record(self, z: Vector, found: Vector, part: Criterion | None) -> None:
         if part is not None:
-            self.count(part)
-        self.notice(z, half_square(found) if part is None else np.inf)
+            self.count_evaluations(part)
+        self.record_best(z, half_square(found) if part is None else np.inf)
 
-    def notice(self, z: Vector, value: float) -> None:
-        """Remember a point where it is the best so far, and tell progress."""
+    def record_best(self, z: Vector, value: float) -> None:
+        """Remember a point where it is the best so far, and report progress."""
         if value < self.best_value:
             self.best, self.best_value = z.copy(), value
             named, _ = self.criterion.unpack(z)
             self.history.append(Improvement(self.criterion.evaluations, value, named))
         now = time.perf_counter()
-        if now - self._told > TOLD_EVERY:
+        if now - self._told > REPORT_EVERY:
             self._told = now
             self._save(last=False)
             if self._progress is not None:
                 self._progress(self.progress())
 
-    def count(self, other: Criterion) -> None:
+    def count_evaluations(self, other: Criterion) -> None:
         """Count what another criterion has evaluated as evaluations of the search."""
         whole = self.criterion
         whole.evaluations += other.evaluations
@@ -165,21 +166,21 @@ class Search:
         other.evaluations = 0
         other.failures.clear()
 
-    def refuse_more(self) -> None:
+    def check_limits(self) -> None:
         """Raises Stopped where no evaluation is left; for those that a method makes elsewhere."""
         limit = self.options.evaluations(self.size)
         if self.criterion.evaluations >= limit:
             raise Stopped(0, f"stopped at the limit of evaluations: MaxFunEvals is {limit:g}")
 
-    def tell(self, share: float, stage: str = "") -> None:
+    def set_stage(self, share: float, stage: str = "") -> None:
         """How much of what the limits allow is done, 0 to 1, and what the method is at."""
         self._share, self.stage = float(np.clip(share, 0.0, 1.0)), stage
 
-    def keep(self, state: Mapping[str, Any]) -> None:
+    def checkpoint(self, state: Mapping[str, Any]) -> None:
         """What is needed to go on from here: numbers, texts, lists and mappings of these."""
         self.state = state
 
-    def iterated(self, z: Vector, value: float, procedure: str = "") -> None:
+    def count_iteration(self, z: Vector, value: float, procedure: str = "") -> None:
         """Count an iteration of the method, and ask the output functions of the options.
 
         Raises Stopped where the limit of iterations is reached, or one of them wants to stop.
@@ -218,7 +219,7 @@ class Search:
     def finish(self) -> None:
         """Store the last state, and tell that it is done."""
         self._save(last=True)
-        self.tell(1.0, self.stage)
+        self.set_stage(1.0, self.stage)
         if self._progress is not None:
             self._progress(self.progress())
 
@@ -230,5 +231,5 @@ class Search:
             raise Stopped(-1, "stopped by an output function")
 
     def _save(self, last: bool) -> None:
-        if self._kept is not None:
-            self._kept(self, last)
+        if self._store is not None:
+            self._store(self, last)

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
-from tracewire.fit.combinations import Direction, described, followers
-from tracewire.fit.identify import Columns, Known, flat_directions
+from tracewire.fit.combinations import Direction, describe_directions, followers
+from tracewire.fit.identify import LinearResponse, ParameterColumns, flat_directions
 from tracewire.residual import LOSSES, Criterion, degrees_of, noise_in, noises_beside
 
 Vector = NDArray[np.float64]
@@ -80,7 +80,7 @@ def uncertainty_of(
     """
     segments = criterion.segments
     low, high = criterion.bounds()
-    columns = Columns(
+    columns = ParameterColumns(
         tuple(criterion.names),
         len(criterion.unknowns),
         z * criterion.scales,
@@ -139,7 +139,7 @@ def uncertainty_from(
     derivatives: Sequence[Matrix],
     weights: Sequence[Matrix],
     channels: Sequence[tuple[str, Sequence[str]]],
-    columns: Columns,
+    columns: ParameterColumns,
     *,
     correlated: bool = True,
     accuracy: float = 1e-6,
@@ -182,14 +182,16 @@ def uncertainty_from(
     alone = np.array([_error_alone(response[:, j], noise) for j in range(len(names))])
     unmoved = ~moving | (alone > UNMOVED)
     active = [j for j in free if not unmoved[j]]
-    known = Known(response, noise, accuracy)
+    linear_response = LinearResponse(response, noise, accuracy)
     relative = np.where(values, np.abs(values) / sizes, 1.0)
-    flats, missing = flat_directions(known, active, columns.count, relative)
-    directions, words = described(flats, missing, replace(columns, sizes=sizes))
+    flats, missing = flat_directions(linear_response, active, columns.count, relative)
+    directions, words = describe_directions(flats, missing, replace(columns, sizes=sizes))
     covariance = np.full((len(names), len(names)), np.nan)
     kept = [j for j in active if j not in missing | followers(flats, missing)]
     if kept:
-        found = _covariance(known, active, missing) * np.outer(sizes[active], sizes[active])
+        found = _covariance(linear_response, active, missing) * np.outer(
+            sizes[active], sizes[active]
+        )
         rows = [active.index(j) for j in kept]
         covariance[np.ix_(kept, kept)] = found[np.ix_(rows, rows)]
     degrees = degrees_of(residuals, noises, len(free))
@@ -239,7 +241,7 @@ def criterion_unit(
     return 0.5 * variance / float(answer @ answer), variance**0.5
 
 
-def _on_bounds(columns: Columns) -> NDArray[np.bool_]:
+def _on_bounds(columns: ParameterColumns) -> NDArray[np.bool_]:
     width = columns.high - columns.low
     size = np.maximum(np.abs(columns.values), columns.sizes)
     near = AT_BOUND * np.where(np.isfinite(width), width, size)
@@ -253,15 +255,17 @@ def _error_alone(response: Vector, noise: Matrix) -> float:
     return float(np.sqrt(response @ noise @ response)) / square if square > 0 else np.inf
 
 
-def _covariance(known: Known, active: Sequence[int], missing: set[int]) -> Matrix:
+def _covariance(
+    linear_response: LinearResponse, active: Sequence[int], missing: set[int]
+) -> Matrix:
     """Of relative changes; those that are missing are supposed to be known to 100 %."""
     if not missing:
-        return known.covariance(active)
+        return linear_response.covariance(active)
     supposed = np.diag([1.0 if j in missing else 0.0 for j in active])
-    return np.asarray(np.linalg.inv(known.information(active) + supposed))
+    return np.asarray(np.linalg.inv(linear_response.information(active) + supposed))
 
 
-def _on_bound_words(name: str, columns: Columns) -> str:
+def _on_bound_words(name: str, columns: ParameterColumns) -> str:
     j = columns.names.index(name)
     value, low, high = columns.values[j], columns.low[j], columns.high[j]
     side, bound = ("lower", low) if abs(value - low) <= abs(high - value) else ("upper", high)

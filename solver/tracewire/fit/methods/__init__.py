@@ -1,4 +1,4 @@
-"""The methods of a fit by their names: each takes a Search and tells where it ended."""
+"""The methods of a fit by their names: each takes a Search and gives where it ended."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from tracewire.fit.methods.multiple_shooting import by_multiple_shooting
 from tracewire.fit.methods.multistart import by_multistart
 from tracewire.fit.methods.shooting import by_shooting
 from tracewire.fit.methods.simplex import by_simplex
-from tracewire.fit.search import Ended, Search
+from tracewire.fit.search import MethodResult, Search
 
-METHODS: dict[str, Callable[[Search], Ended]] = {
+METHODS: dict[str, Callable[[Search], MethodResult]] = {
     "fminsearch": by_simplex,
     "least_squares": by_least_squares,
     "growing_windows": by_growing_windows,

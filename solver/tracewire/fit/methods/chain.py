@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.errors import FitError, Problem
-from tracewire.fit.methods.following import PARTS, followed, spread_of
+from tracewire.fit.methods.tracking import PARTS, count_tracked, spread_of
 from tracewire.formula import evaluate
 from tracewire.residual import (
     Criterion,
@@ -151,13 +151,13 @@ def _cut(whole: Criterion, n: int) -> list[Segment]:
 
     while first + least < len(rows):
         last = min(first + LONGER * longest, len(rows) - 1)
-        length = max(least, followed(followed_to(last).residual * sigma, spread))
+        length = max(least, count_tracked(followed_to(last).residual * sigma, spread))
         longest = max(longest, min(length, last - first))
         after = min(first + length, last)
         if after + least >= len(rows):
             break  # the last part is rather longer than too short
-        told = start_from_data(model, segment.measured, int(rows[after]))
-        now = {**now, **followed_to(after).final, **told}
+        states = start_from_data(model, segment.measured, int(rows[after]))
+        now = {**now, **followed_to(after).final, **states}
         parts[-1] = replace(parts[-1], rows=parts[-1].rows[: after + 1 - first - (first > 0)])
         begin = float(segment.t[after])
         parts.append(Segment(measured, begin, rows[after + 1 :], now, model.states))

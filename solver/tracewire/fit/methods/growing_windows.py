@@ -11,8 +11,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.fit.methods.following import PARTS, followed, spread_of
-from tracewire.fit.search import Ended, Search
+from tracewire.fit.methods.tracking import PARTS, count_tracked, spread_of
+from tracewire.fit.search import MethodResult, Search
 from tracewire.residual import Criterion, half_square, solve_least_squares
 
 Vector = NDArray[np.float64]
@@ -34,7 +34,7 @@ LAST_STEPS, LAST_ENOUGH = 100, 1e-8
 MOST_PARTS = 200
 
 
-def by_growing_windows(search: Search) -> Ended:
+def by_growing_windows(search: Search) -> MethodResult:
     """The minimum by least squares on the first samples, then on more and more of them.
 
     A part grows to where the model has followed the series so far. On each, unknowns are held to
@@ -45,16 +45,22 @@ def by_growing_windows(search: Search) -> Ended:
     windows = _Windows(search)
     while not windows.is_whole() and windows.number < MOST_PARTS:
         windows.next()
-    search.tell(0.9, "the whole series")
-    ended = solve_least_squares(
-        search, windows.z, steps=LAST_STEPS, tolerance=LAST_ENOUGH, callback=search.iterated
+    search.set_stage(0.9, "the whole series")
+    result = solve_least_squares(
+        search, windows.z, steps=LAST_STEPS, tolerance=LAST_ENOUGH, callback=search.count_iteration
     )
-    if search.best_value < 0.5 * ended.cost:  # an earlier part has led to a better minimum
-        ended = solve_least_squares(
-            search, search.best, steps=LAST_STEPS, tolerance=LAST_ENOUGH, callback=search.iterated
+    if search.best_value < 0.5 * result.cost:  # an earlier part has led to a better minimum
+        result = solve_least_squares(
+            search,
+            search.best,
+            steps=LAST_STEPS,
+            tolerance=LAST_ENOUGH,
+            callback=search.count_iteration,
         )
     parts = f"after {windows.number} growing parts"
-    return Ended(ended.z, search.iterations, int(ended.converged), f"{ended.message} {parts}")
+    return MethodResult(
+        result.z, search.iterations, int(result.converged), f"{result.message} {parts}"
+    )
 
 
 class _Windows:
@@ -72,7 +78,9 @@ class _Windows:
         self.number = int(kept["number"]) if kept else 0
         least = np.minimum(LEAST, self.sizes)
         self.reached = np.array(kept["reached"]) if kept else np.minimum(LEAST // 2, self.sizes)
-        self.counts = np.array(kept["counts"]) if kept else np.maximum(self.followed(self.z), least)
+        self.counts = (
+            np.array(kept["counts"]) if kept else np.maximum(self.count_tracked(self.z), least)
+        )
 
     def is_whole(self) -> bool:
         """Whether the next part is the whole series."""
@@ -83,20 +91,20 @@ class _Windows:
         search = self.search
         self.number += 1
         share = float(np.mean(self.counts / self.sizes))
-        search.tell(0.9 * share, f"part {self.number}, {100 * share:.2g} % of the series")
+        search.set_stage(0.9 * share, f"part {self.number}, {100 * share:.2g} % of the series")
         part = _Part(search, self.counts, self.z)
-        ended = solve_least_squares(part, self.z, steps=STEPS, tolerance=ENOUGH)
+        result = solve_least_squares(part, self.z, steps=STEPS, tolerance=ENOUGH)
         longest = self.counts.copy()
         between = np.sqrt(self.reached * self.counts).astype(int)
-        if part.is_astray(ended.z) and np.any(self.counts > SLOWEST * between):
+        if part.is_astray(result.z) and np.any(self.counts > SLOWEST * between):
             self.counts = np.maximum(between, 1)
         else:
-            self.z, self.reached = ended.z, longest
+            self.z, self.reached = result.z, longest
             most = np.ceil(FASTEST * longest).astype(int)
             least = np.ceil(SLOWEST * longest).astype(int)
-            followed = np.clip(self.followed(self.z), least, most)
-            self.counts = np.minimum(followed, self.sizes)
-        search.keep(
+            tracked = np.clip(self.count_tracked(self.z), least, most)
+            self.counts = np.minimum(tracked, self.sizes)
+        search.checkpoint(
             {
                 "z": (self.z * search.criterion.scales).tolist(),
                 "number": self.number,
@@ -104,21 +112,21 @@ class _Windows:
                 "counts": self.counts.tolist(),
             }
         )
-        search.iterated(self.z, self.value, f"part {self.number}")
+        search.count_iteration(self.z, self.value, f"part {self.number}")
 
-    def followed(self, z: Vector) -> Counts:
+    def count_tracked(self, z: Vector) -> Counts:
         """How many first samples of each series the model follows, shape (segments,)."""
         search = self.search
-        search.refuse_more()
+        search.check_limits()
         residuals = search.criterion.residuals(z)
         self.value = half_square(search.criterion.weigh(residuals))
-        search.notice(z, self.value)
+        search.record_best(z, self.value)
         found = []
         for segment, residual, spread in zip(
             search.criterion.segments, residuals, self.spreads, strict=True
         ):
             sigma = search.criterion.sigma[segment.measured.name]
-            found.append(followed(residual * sigma, spread))
+            found.append(count_tracked(residual * sigma, spread))
         return np.array(found)
 
 
@@ -155,7 +163,7 @@ class _Part:
     def is_astray(self, z: Vector) -> bool:
         """Whether much of the spread of the data on this part remains."""
         residuals = self.criterion.residuals(z)
-        self.search.count(self.criterion)
+        self.search.count_evaluations(self.criterion)
         for segment, residual in zip(self.criterion.segments, residuals, strict=True):
             off = np.sqrt(np.mean(residual**2, axis=0))
             sigma = self.criterion.sigma[segment.measured.name]

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.fit.methods.chain import Chain
-from tracewire.fit.search import Ended, Search, Stopped
+from tracewire.fit.search import MethodResult, Search, Stopped
 from tracewire.residual import solve_least_squares
 
 Vector = NDArray[np.float64]
@@ -31,7 +31,7 @@ NOTHING = 1e-6
 """And where it is this part of what the data spread, it is as good as none."""
 
 
-def by_multiple_shooting(search: Search) -> Ended:
+def by_multiple_shooting(search: Search) -> MethodResult:
     """The minimum over parameters and start states of segments, whose gaps weigh more and more.
 
     Each stage is a damped Gauss-Newton search (Levenberg and Marquardt) by forward sensitivities.
@@ -42,13 +42,13 @@ def by_multiple_shooting(search: Search) -> Ended:
     """
     chain = _Shooting(search)
     try:
-        chain.stages()
+        chain.close_gaps()
     except Stopped as stopped:
-        return chain.ended(stopped.exitflag, stopped.message)
+        return chain.result(stopped.exitflag, stopped.message)
     except KeyboardInterrupt:
         message = "stopped by Ctrl-C: this is the last state"
-        return chain.ended(-1, message, interrupted=True)
-    return chain.together()
+        return chain.result(-1, message, interrupted=True)
+    return chain.merge_segments()
 
 
 class _Shooting:
@@ -73,25 +73,25 @@ class _Shooting:
         self.unit = max(spread, 1e-300) / float(np.mean(sigmas**2))
         self.segments = f"{len(criterion.segments)} segments"
 
-    def stages(self) -> None:
+    def close_gaps(self) -> None:
         """Close the gaps."""
         for stage in range(self.stage, len(WEIGHTS)):
             self.stage = stage
             last = stage == len(WEIGHTS) - 1
             steps, enough = (LAST_STEPS, LAST_ENOUGH) if last else (STEPS, ENOUGH)
-            self.descend(WEIGHTS[stage] * self.unit, steps, enough)
-            self.search.keep({"stage": stage + 1, "z": (self.z * self.scales).tolist()})
+            self.minimise(WEIGHTS[stage] * self.unit, steps, enough)
+            self.search.checkpoint({"stage": stage + 1, "z": (self.z * self.scales).tolist()})
             if self.gap < CLOSED:
                 return
 
-    def descend(self, weight: float, steps: int, enough: float) -> None:
+    def minimise(self, weight: float, steps: int, enough: float) -> None:
         """Levenberg-Marquardt steps with one weight of the gaps."""
         search, chain, damping = self.search, self.chain, DAMPING
         for number in range(steps):
             share = (self.stage + number / steps) / len(WEIGHTS)
-            search.tell(share, f"{self.segments}, gaps up to {self.gap:.2g}")
+            search.set_stage(share, f"{self.segments}, gaps up to {self.gap:.2g}")
             normal = chain.normal(self.z, weight)
-            self._count()
+            self._count_evaluations()
             outward = (self.z <= self.low) & (normal.gradient > 0)
             outward |= (self.z >= self.high) & (normal.gradient < 0)
             free = np.flatnonzero(~outward)
@@ -102,7 +102,7 @@ class _Shooting:
                 step[free] = -np.linalg.solve(damped[np.ix_(free, free)], normal.gradient[free])
                 trial = np.clip(self.z + step, self.low, self.high)
                 value, gap = chain.value(trial, weight)
-                self._count()
+                self._count_evaluations()
                 if value < normal.value:
                     break
                 damping *= 5.0
@@ -110,29 +110,29 @@ class _Shooting:
                 return
             damping = max(damping / 5.0, LEAST_DAMPING)
             self.z, self.gap = trial, gap
-            search.iterated(self._own(), value, f"gaps up to {gap:.2g}")
+            search.count_iteration(self._search_unknowns(), value, f"gaps up to {gap:.2g}")
             if value > (1 - enough) * normal.value:
                 return
 
-    def together(self) -> Ended:
+    def merge_segments(self) -> MethodResult:
         """The end, on one run over the whole series where that is as good as the segments."""
-        search, z = self.search, self._own()
+        search, z = self.search, self._search_unknowns()
         apart = self.criterion.value(self.z)
         if search.value(z) <= ALIKE * apart + NOTHING * self.unit:
-            ended = solve_least_squares(search, z, callback=search.iterated)
-            message = f"{ended.message}; {self.segments} have grown together"
-            return Ended(ended.z, search.iterations, int(ended.converged), message)
+            result = solve_least_squares(search, z, callback=search.count_iteration)
+            message = f"{result.message}; {self.segments} have grown together"
+            return MethodResult(result.z, search.iterations, int(result.converged), message)
         closed = self.gap < CLOSED
-        return self.ended(int(closed), "converged" if closed else "the gaps did not close")
+        return self.result(int(closed), "converged" if closed else "the gaps did not close")
 
-    def ended(self, exitflag: int, message: str, interrupted: bool = False) -> Ended:
+    def result(self, exitflag: int, message: str, interrupted: bool = False) -> MethodResult:
         """The end as it is, on segments."""
         what = f"{self.segments}, gaps up to {self.gap:.1e} of a segment"
         iterations = self.search.iterations
         message = f"{message}: {what}"
-        return Ended(self.z, iterations, exitflag, message, self.criterion, interrupted)
+        return MethodResult(self.z, iterations, exitflag, message, self.criterion, interrupted)
 
-    def _own(self) -> Vector:
+    def _search_unknowns(self) -> Vector:
         """The unknowns of the search among those of the chain."""
         values, starts = self.criterion.unpack(self.z)
         heads = [0, *(n + 1 for n, on in enumerate(self.chain.follows[:-1]) if not on)]
@@ -140,8 +140,8 @@ class _Shooting:
         z = np.array(found) / self.search.criterion.scales
         return np.asarray(np.clip(z, self.search.low, self.search.high))
 
-    def _count(self) -> None:
-        """Count what the chain has evaluated as evaluations of the search, and tell progress."""
-        self.search.count(self.criterion)
-        self.search.notice(self.search.begin, np.inf)
-        self.search.refuse_more()
+    def _count_evaluations(self) -> None:
+        """Count what the chain has evaluated as evaluations of the search, and report progress."""
+        self.search.count_evaluations(self.criterion)
+        self.search.record_best(self.search.begin, np.inf)
+        self.search.check_limits()

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.errors import OptionError, Problem
-from tracewire.fit.methods.together import values_at
-from tracewire.fit.search import Ended, Search
+from tracewire.fit.methods.parallel import evaluate_parallel
+from tracewire.fit.search import MethodResult, Search
 from tracewire.residual import solve_least_squares
 
 Vector = NDArray[np.float64]
@@ -27,7 +27,7 @@ SAME = 1e-3
 """Two ends are one minimum where their criteria differ by less than this part."""
 
 
-def by_multistart(search: Search) -> Ended:
+def by_multistart(search: Search) -> MethodResult:
     """The best minimum that least squares finds from the best of many points within the bounds.
 
     The points are those of a Sobol sequence, shifted by a random vector; the begin is one more. An
@@ -43,22 +43,22 @@ def by_multistart(search: Search) -> Ended:
     ends: list[tuple[float, list[float]]] = [(v, z) for v, z in kept.get("ends", [])]
     total = len(points) + POLISHED * STEPS * (search.size + 2)  # of evaluations, at most
 
-    def told(stage: str) -> None:
+    def report(stage: str) -> None:
         done = min(len(values), len(points)) + len(ends) * STEPS * (search.size + 2)
-        search.tell(done / total, stage)
-        search.keep({"values": values, "ends": [list(end) for end in ends]})
+        search.set_stage(done / total, stage)
+        search.checkpoint({"values": values, "ends": [list(end) for end in ends]})
 
     while len(values) < len(points):
-        told(f"{len(values)} of {len(points)} points")
-        values += values_at(search, points[len(values) : len(values) + BATCH])
+        report(f"{len(values)} of {len(points)} points")
+        values += evaluate_parallel(search, points[len(values) : len(values) + BATCH])
     starts = _best(search, points, values)
     for number in range(len(ends), len(starts)):
-        told(f"least squares from point {number + 1} of {len(starts)}")
-        ended = solve_least_squares(
-            search, starts[number], steps=STEPS, tolerance=ENOUGH, callback=search.iterated
+        report(f"least squares from point {number + 1} of {len(starts)}")
+        result = solve_least_squares(
+            search, starts[number], steps=STEPS, tolerance=ENOUGH, callback=search.count_iteration
         )
-        ends.append((ended.cost, (ended.z * search.criterion.scales).tolist()))
-    told("done")
+        ends.append((result.cost, (result.z * search.criterion.scales).tolist()))
+    report("done")
     value, best = min(ends)
     same = sum(end <= value + SAME * abs(value) for end, _ in ends)
     message = (
@@ -67,7 +67,7 @@ def by_multistart(search: Search) -> Ended:
         else f"only one of the {len(ends)} best of {len(points)} points led to the best minimum: "
         "there may be a better one"
     )
-    return Ended(np.array(best) / search.criterion.scales, search.iterations, 1, message)
+    return MethodResult(np.array(best) / search.criterion.scales, search.iterations, 1, message)
 
 
 def _refuse_unbounded(search: Search) -> None:

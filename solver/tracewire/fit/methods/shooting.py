@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.fit.fminsearch import CONVERGED, fminsearch
-from tracewire.fit.methods.together import values_at
+from tracewire.fit.methods.parallel import evaluate_parallel
 from tracewire.fit.optimset import OptimValues, Options
-from tracewire.fit.search import Ended, Search
+from tracewire.fit.search import MethodResult, Search
 from tracewire.residual import solve_least_squares
 
 Vector = NDArray[np.float64]
@@ -65,7 +65,7 @@ class _State:
     is_polished: bool = False
 
 
-def by_shooting(search: Search) -> Ended:
+def by_shooting(search: Search) -> MethodResult:
     """The minimum by rounds of shots round the best point, and of the simplex.
 
     Shots are normally distributed in each unknown. From a better one a new simplex begins; else
@@ -81,19 +81,19 @@ def by_shooting(search: Search) -> Ended:
         state = _State(tuple(search.begin * scales), search.value(search.begin))
     while state.lost < LOST:
         before = state.value
-        search.tell(0.0, f"round {state.number + 1}, shots of {100 * state.radius:.2g} %")
+        search.set_stage(0.0, f"round {state.number + 1}, shots of {100 * state.radius:.2g} %")
         state = _with_shots(search, state)
-        search.tell(0.0, f"round {state.number + 1}, simplex")
+        search.set_stage(0.0, f"round {state.number + 1}, simplex")
         state = _with_simplex(search, state)
         if not state.is_polished:
-            search.tell(0.0, f"round {state.number + 1}, least squares")
+            search.set_stage(0.0, f"round {state.number + 1}, least squares")
             state = _with_least_squares(search, state)
         lost = 0 if state.value < (1 - GAIN) * before else state.lost + 1
         state = replace(state, number=state.number + 1, lost=lost)
-        search.keep(asdict(state))
-        search.iterated(np.array(state.z) / scales, state.value, f"round {state.number}")
+        search.checkpoint(asdict(state))
+        search.count_iteration(np.array(state.z) / scales, state.value, f"round {state.number}")
     message = f"converged: {LOST} rounds of shots and of the simplex have gained nothing"
-    return Ended(np.array(state.z) / scales, search.iterations, 1, message)
+    return MethodResult(np.array(state.z) / scales, search.iterations, 1, message)
 
 
 def _with_shots(search: Search, state: _State) -> _State:
@@ -103,8 +103,8 @@ def _with_shots(search: Search, state: _State) -> _State:
     count = max(SHOTS * search.size, LEAST_SHOTS) * (2 if state.simplex is None else 1)
     radii = state.radius * NEAREST ** rng.uniform(0.0, 1.0, count)
     moves = rng.standard_normal((count, search.size)) * radii[:, None] * _sizes(z)
-    points = [search.folded(z + move) for move in moves]
-    values = np.array(list(values_at(search, points)))
+    points = [search.reflect(z + move) for move in moves]
+    values = np.array(list(evaluate_parallel(search, points)))
     best = int(np.argmin(values))
     if values[best] < state.value:  # another motion, or far from the end: a new simplex
         radius = float(np.clip(2 * radii[best], state.radius / 2, 2 * FIRST_RADIUS))
@@ -124,7 +124,7 @@ def _with_long_shots(
     spread = (vertices - vertices.mean(axis=0)) / np.sqrt(search.size)
     stretch = LONGEST ** rng.uniform(0.0, 1.0, (search.size, 1))
     shots = vertices[0] + stretch * rng.standard_normal((search.size, len(vertices))) @ spread
-    values = np.array(list(values_at(search, [_point(search, simplex, x) for x in shots])))
+    values = np.array(list(evaluate_parallel(search, [_point(search, simplex, x) for x in shots])))
     vertices, known = np.vstack([vertices, shots]), np.concatenate([known, values])
     kept = np.argsort(known, kind="stable")[: search.size + 1]
     joined = {**simplex, "vertices": vertices[kept].tolist(), "values": known[kept].tolist()}
@@ -137,7 +137,7 @@ def _with_long_shots(
 def _point(search: Search, kept: Mapping[str, Any], x: Vector) -> Vector:
     """The scaled unknowns of a vertex. fminsearch moves in unknowns that are all 1 at the centre of
     a simplex, so that its edges are a radius."""
-    return search.folded(np.array(kept["centre"]) + (x - 1.0) * np.array(kept["unit"]))
+    return search.reflect(np.array(kept["centre"]) + (x - 1.0) * np.array(kept["unit"]))
 
 
 def _with_simplex(search: Search, state: _State) -> _State:
@@ -147,12 +147,12 @@ def _with_simplex(search: Search, state: _State) -> _State:
     unit = state.radius / EDGE * _sizes(z)
     kept = state.simplex or {"centre": z.tolist(), "unit": unit.tolist()}
     last = {key: kept[key] for key in KEPT if key in kept}
-    told: list[tuple[int, float]] = []
+    values_so_far: list[tuple[int, float]] = []
 
     def stalls(x: Vector, values: OptimValues, when: str) -> bool:
-        told.append((values.funccount, values.fval))
+        values_so_far.append((values.funccount, values.fval))
         since = values.funccount - PATIENCE * search.size
-        old = [value for count, value in told if count <= since]
+        old = [value for count, value in values_so_far if count <= since]
         return when == "iter" and bool(old) and values.fval > STALLED * old[-1]
 
     found = fminsearch(
@@ -179,14 +179,14 @@ def _with_simplex(search: Search, state: _State) -> _State:
 def _with_least_squares(search: Search, state: _State) -> _State:
     """The state after some steps of least squares."""
     scales = search.criterion.scales
-    ended = solve_least_squares(
+    result = solve_least_squares(
         search, np.array(state.z) / scales, steps=POLISHING, tolerance=ENOUGH
     )
-    is_polished = ended.cost > POLISHED * state.value
-    if ended.cost >= state.value:
+    is_polished = result.cost > POLISHED * state.value
+    if result.cost >= state.value:
         return replace(state, is_polished=is_polished)
-    there = tuple((ended.z * scales).tolist())
-    return replace(state, z=there, value=ended.cost, simplex=None, is_polished=is_polished)
+    there = tuple((result.z * scales).tolist())
+    return replace(state, z=there, value=result.cost, simplex=None, is_polished=is_polished)
 
 
 def _sizes(z: Vector) -> Vector:

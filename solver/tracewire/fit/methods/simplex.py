@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 from tracewire.fit.fminsearch import fminsearch
 from tracewire.fit.optimset import OptimValues, OutputFunction
-from tracewire.fit.search import Ended, Search
+from tracewire.fit.search import MethodResult, Search
 
 Vector = NDArray[np.float64]
 
 
-def by_simplex(search: Search) -> Ended:
+def by_simplex(search: Search) -> MethodResult:
     """The minimum by `fminsearch`, reflected at bounds.
 
     The unknowns are in SI, or in units of `scale` where that is given, so that TolX is too. With
@@ -24,7 +24,7 @@ def by_simplex(search: Search) -> Ended:
     units = search.units
 
     def inside(x: Vector) -> Vector:
-        return search.folded(x * units / criterion.scales)
+        return search.reflect(x * units / criterion.scales)
 
     def fun(x: Vector) -> float:
         return search.value(inside(x))
@@ -36,19 +36,19 @@ def by_simplex(search: Search) -> Ended:
                 values.funccount / options.evaluations(search.size),
                 values.iteration / options.iterations(search.size),
             )
-            search.tell(share, values.procedure)
+            search.set_stage(share, values.procedure)
         return False
 
-    def told(function: OutputFunction) -> OutputFunction:
+    def with_comparisons(function: OutputFunction) -> OutputFunction:
         return lambda x, values, state: function(x, search.with_comparisons(values), state)
 
     watched = replace(
         options,
-        OutputFcn=[*map(told, options.output_functions()), report],
-        PlotFcns=[*map(told, options.plot_functions())],
+        OutputFcn=[*map(with_comparisons, options.output_functions()), report],
+        PlotFcns=[*map(with_comparisons, options.plot_functions())],
     )
     first = search.begin * criterion.scales / units
-    found = fminsearch(fun, first, watched, resumed=search.resumed, keep=search.keep)
-    return Ended(
+    found = fminsearch(fun, first, watched, resumed=search.resumed, keep=search.checkpoint)
+    return MethodResult(
         inside(np.asarray(found.x)), found.output.iterations, found.exitflag, found.output.message
     )

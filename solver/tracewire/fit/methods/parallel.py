@@ -15,7 +15,7 @@ from tracewire.solve import cores
 Vector = NDArray[np.float64]
 
 
-def values_at(search: Search, points: Sequence[Vector]) -> Iterator[float]:
+def evaluate_parallel(search: Search, points: Sequence[Vector]) -> Iterator[float]:
     """The criterion at each of the points, in their order.
 
     What comes is the same for any number of threads. Raises Stopped where the limit of evaluations
@@ -32,11 +32,11 @@ def values_at(search: Search, points: Sequence[Vector]) -> Iterator[float]:
     with ThreadPoolExecutor(max(1, min(cores(), len(part)))) as pool:
         try:
             for z, (own, value) in zip(part, pool.map(valued, part), strict=True):
-                search.count(own)
-                search.notice(z, value)
+                search.count_evaluations(own)
+                search.record_best(z, value)
                 yield value
         except BaseException:  # Ctrl-C, or a limit: what is not yet begun shall not begin
             pool.shutdown(wait=False, cancel_futures=True)
             raise
     if len(part) < len(points):
-        search.refuse_more()
+        search.check_limits()

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from tracewire.residual import Segment, noise_level
 
 Vector = NDArray[np.float64]
-FOLLOWED = 0.2
+TRACKED = 0.2
 """A model follows a series where it is off by less than this part of the series' spread."""
 PARTS = 10
 """Of a series, to see what it usually swings."""
@@ -16,9 +16,10 @@ NOISE = 4.0
 """A spread of data is at least this many times their noise."""
 
 
-def followed(off: Vector, spread: Vector) -> int:
-    """The first samples that are followed, of those that are `off` (N, signals), in SI."""
-    lost = np.any(np.abs(off) > FOLLOWED * spread, axis=1)
+def count_tracked(off: Vector, spread: Vector) -> int:
+    """The number of first samples that are followed, of those that are `off` (N, signals), in
+    SI."""
+    lost = np.any(np.abs(off) > TRACKED * spread, axis=1)
     return int(np.argmax(lost)) if lost.any() else len(lost)
 
 

@@ -71,7 +71,7 @@ def starts_elsewhere(
     return found
 
 
-def caveats(
+def collect_remarks(
     series: Sequence[Measured], failures: Mapping[str, int], criterion: Criterion
 ) -> list[str]:
     """What a reader of the result must know."""
