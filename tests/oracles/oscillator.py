@@ -18,12 +18,12 @@ from tracewire.diagram import read_text
 from tracewire.residual import Measured
 from tracewire.residual.windows import Section, cut_windows
 from tracewire.trace.candidates.candidates import Candidate, find_candidates
-from tracewire.trace.candidates.levels import Level, Levels
 from tracewire.trace.candidates.places import find_places
+from tracewire.trace.candidates.signal_scales import SignalScale, SignalScales
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.search.search import Search
-from tracewire.trace.trials.stretches import share_out
-from tracewire.trace.trials.trial import Added, Bench, Trial
+from tracewire.trace.trials.data_split import split_data
+from tracewire.trace.trials.trial import PlacedEffect, TraceProblem, Trial
 
 OPTIONS = TraceOptions()
 
@@ -43,8 +43,10 @@ measured:
 """
 STIFFNESS, DAMPING, NOISE = 25.0, 0.2, 1e-3
 STEP = 0.03
-LEVELS = Levels(
-    {"x": Level(0.5, 1.0), "v": Level(2.5, 5.0), "force": Level(12.0, 25.0)}, 12.0, STEP
+LEVELS = SignalScales(
+    {"x": SignalScale(0.5, 1.0), "v": SignalScale(2.5, 5.0), "force": SignalScale(12.0, 25.0)},
+    12.0,
+    STEP,
 )
 
 
@@ -92,28 +94,28 @@ def _folder() -> Path:
     return folder
 
 
-def bench_of(*series: Measured, text: str = DIAGRAM, sigma: float = NOISE) -> Bench:
+def problem_of(*series: Measured, text: str = DIAGRAM, sigma: float = NOISE) -> TraceProblem:
     """What trials on these series share."""
-    return Bench(model_of(text), series, {"x": sigma}, 1e-8)
+    return TraceProblem(model_of(text), series, {"x": sigma}, 1e-8)
 
 
-def candidates_of(bench: Bench) -> dict[str, Candidate]:
+def candidates_of(bench: TraceProblem) -> dict[str, Candidate]:
     """What may be missing, by name."""
     found = find_candidates(bench.declared, find_places(bench.declared), LEVELS, OPTIONS.candidate)
     return {str(candidate): candidate for candidate in found}
 
 
-def trial_of(bench: Bench, effects: Sequence[Added] = (), length: int = 60) -> Trial:
+def trial_of(bench: TraceProblem, effects: Sequence[PlacedEffect] = (), length: int = 60) -> Trial:
     """The diagram with effects, fitted to windows of all train series."""
     sections = [Section(m, 0, len(m.t)) for m in bench.measured if m.use == "train"]
     windows = [w for s in sections for w in cut_windows(bench.declared, s, length, bench.states)]
-    return bench.fitted(effects, windows, length, {})
+    return bench.fit(effects, windows, length, {})
 
 
-def search_of(bench: Bench, shortest: int = 20) -> Search:
+def search_of(bench: TraceProblem, shortest: int = 20) -> Search:
     """A search that has not begun."""
     places = find_places(bench.declared)
-    stretches = share_out(bench.measured, OPTIONS.split)
+    stretches = split_data(bench.measured, OPTIONS.split)
     return Search(bench, stretches, places, shortest, {}, lambda text: None, [])
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from oracles.oscillator import DIAGRAM, NOISE, bench_of, exact, model_of, record, trial_of
+from oracles.oscillator import DIAGRAM, NOISE, exact, model_of, problem_of, record, trial_of
 from scipy.optimize import least_squares
 from tracewire.compile import compile
 from tracewire.diagram import read_text
@@ -54,8 +54,8 @@ def _drop() -> tuple[np.ndarray, dict[str, np.ndarray]]:
 
 def test_the_starts_eliminated_the_fit_is_that_of_all_numbers_at_once() -> None:
     m = record(noise=5e-3, end=5.0)
-    bench = bench_of(m, sigma=5e-3)
-    trial = trial_of(bench, length=50)
+    problem = problem_of(m, sigma=5e-3)
+    trial = trial_of(problem, length=50)
     segments = trial.windows.segments
 
     def residual(z: np.ndarray) -> np.ndarray:
@@ -81,7 +81,7 @@ def test_the_starts_eliminated_the_fit_is_that_of_all_numbers_at_once() -> None:
 
 
 def test_what_is_left_without_the_starts_is_the_dense_least_squares() -> None:
-    windows = trial_of(bench_of(record()), length=80).windows
+    windows = trial_of(problem_of(record()), length=80).windows
     reduced, residual = project_out_initial_states(windows)
     blocks = [near.slopes for near in windows.linearisations]
     starts = np.zeros((len(residual), sum(b.shape[1] - 2 for b in blocks)))
@@ -100,7 +100,7 @@ def test_what_is_left_without_the_starts_is_the_dense_least_squares() -> None:
 
 
 def test_the_answer_of_a_start_takes_away_what_a_start_can_explain() -> None:
-    windows = trial_of(bench_of(record()), length=80).windows
+    windows = trial_of(problem_of(record()), length=80).windows
     view = windows.linearisations[1].projection
     slopes = windows.linearisations[1].slopes[:, 2:]
     np.testing.assert_allclose(view.pseudoinverse @ slopes, np.eye(2), atol=1e-8)
@@ -111,19 +111,19 @@ def test_the_answer_of_a_start_takes_away_what_a_start_can_explain() -> None:
 
 def test_an_unknown_ends_at_its_bound_where_it_wants_to_pass_it() -> None:
     grows = record(lambda x, v: 0.3 * v, end=4.0)  # its damping is -0.1, which c must not be
-    trial = trial_of(bench_of(grows))
+    trial = trial_of(problem_of(grows))
     assert trial.values["c"] == pytest.approx(0.0, abs=1e-9)
     text = DIAGRAM.replace("fit: [5, 80]", "fit: [5, 24]")
-    trial = trial_of(bench_of(record(), text=text))
+    trial = trial_of(problem_of(record(), text=text))
     assert trial.values["k"] == pytest.approx(24.0, abs=1e-6)
 
 
 def test_settling_moves_starts_and_no_unknown() -> None:
     m = record()
-    bench = bench_of(m)
-    trial = trial_of(bench, length=60)
-    criterion = bench.criterion(
-        trial, cut_windows(bench.declared, Section(m, 90, 270), 90, bench.states)
+    problem = problem_of(m)
+    trial = trial_of(problem, length=60)
+    criterion = problem.criterion_on(
+        trial, cut_windows(problem.declared, Section(m, 90, 270), 90, problem.states)
     )
     begun = evaluate_windows(criterion)
     done = fit_initial_states(begun)

@@ -16,7 +16,7 @@ from tracewire.errors import DataError
 from tracewire.residual import Measured
 from tracewire.trace import CheckOptions, SearchOptions, SplitOptions, TraceOptions, trace
 from tracewire.trace.saved import from_data, to_data
-from tracewire.trace.trials.stretches import share_out
+from tracewire.trace.trials.data_split import split_data
 
 ROOM = Path(__file__).parents[2] / "solver/tracewire/trace"
 OPTIONS = TraceOptions()
@@ -31,13 +31,13 @@ FORMATS = {
     "units.py:BASES": "exponents of units",
     "units.py:SYMBOL_UNITS": "exponents of units",
     "check/refusals.py:FACTORS": "between units",
-    "check/spikes.py:CUBIC": "the coefficients of a filter",
-    "check/spikes.py:SIDE": "the length of a filter",
-    "check/spikes.py:SPREAD": "the noise of a filter",
-    "check/spikes.py:ONWARD_SPREAD": "the noise of a filter",
-    "check/spikes.py:ONWARD": "the coefficients of a filter",
+    "check/outliers.py:CUBIC": "the coefficients of a filter",
+    "check/outliers.py:SIDE": "the length of a filter",
+    "check/outliers.py:SPREAD": "the noise of a filter",
+    "check/outliers.py:ONWARD_SPREAD": "the noise of a filter",
+    "check/outliers.py:ONWARD": "the coefficients of a filter",
     "screen/screening.py:QUADRATURE": "0 and a quarter of a turn",
-    "trials/phases.py:TURN": "the angles of a turn",
+    "trials/phase_fit.py:TURN": "the angles of a turn",
     "screen/answers.py:ROWS": "how much is worked on at once: the answer is the same",
     "missing/dependence.py:TOGETHER": "the same",
     "missing/dependence.py:COLUMNS": "the same",
@@ -144,5 +144,5 @@ def test_thresholds_that_are_set_are_those_of_the_trace() -> None:
     asked = TraceOptions(check=CheckOptions(least_samples=1000), split=SplitOptions(validated=0.5))
     with pytest.raises(DataError, match="At least 1000 are needed"):
         trace(model, [swing], options=asked)
-    (section,) = share_out([swing], asked.split).validate
+    (section,) = split_data([swing], asked.split).validate
     assert (section.first, section.end) == (100, 200)

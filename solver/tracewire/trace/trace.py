@@ -41,9 +41,9 @@ def trace(
 
     Every effect of the library is tried at every place, first by a score test on one linearisation,
     then the best, and pairs of them, by a refit in the loop. Where the noise of the sensors is in
-    reach, BIC ranks them and stretches that no fit saw accept them; elsewhere models are chosen by
-    what they predict on blocks of time that their fits did not see. The errors reported come from a
-    third stretch. `options`, a record or a dictionary, says what is tried, and
+    reach, BIC ranks them and parts of the data that no fit saw accept them; elsewhere models are
+    chosen by what they predict on blocks of time that their fits did not see. The errors reported
+    come from a third part. `options`, a record or a dictionary, says what is tried, and
     from when on an effect is believed. With an `executor` of `concurrent.futures` its workers do
     the refits that do not need each other, with the same result to the last bit; what is left when
     one of them ends is done here. Ctrl-C ends it with what was found so far.

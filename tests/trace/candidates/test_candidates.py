@@ -14,8 +14,14 @@ from tracewire.diagram import Diagram, difference, read_text
 from tracewire.solve import simulate
 from tracewire.trace.candidates.candidate import Candidate, unknowns_of
 from tracewire.trace.candidates.candidates import find_candidates
-from tracewire.trace.candidates.levels import Level, Levels, Trajectory, levels_of, signals_at
 from tracewire.trace.candidates.places import find_places
+from tracewire.trace.candidates.signal_scales import (
+    SignalScale,
+    SignalScales,
+    Trajectory,
+    signal_scales_of,
+    signals_at,
+)
 from tracewire.trace.options import TraceOptions
 
 OPTIONS = TraceOptions()
@@ -65,7 +71,7 @@ blocks:
   oil: {type: viscous, rate: v, c: c}
   force: {type: sum, of: [oil], place: {v: v}}
 """
-LAGGED = Levels({"v": Level(1.0, 2.0), "force": Level(2.0, 4.0)}, 10.0, 0.01)
+LAGGED = SignalScales({"v": SignalScale(1.0, 2.0), "force": SignalScale(2.0, 4.0)}, 10.0, 0.01)
 OWN = """
 subsystems:
   magnet:
@@ -91,7 +97,7 @@ def found_in(diagram: Diagram, taken: Sequence[Candidate] = ()) -> list[Candidat
     places = find_places(compile(diagram))
     model = compile(diagram, record=signals_at(places))
     return find_candidates(
-        model, places, levels_of(runs(model), OPTIONS.candidate), OPTIONS.candidate, taken
+        model, places, signal_scales_of(runs(model), OPTIONS.candidate), OPTIONS.candidate, taken
     )
 
 
@@ -107,10 +113,12 @@ def driven(folder: Path) -> Diagram:
 def test_levels_are_taken_over_all_series() -> None:
     short = Trajectory(np.array([0, 0.5, 1.0]), {"x": np.array([3.0, 0, 0])})
     long = Trajectory(np.array([5.0, 6, 7, 8]), {"x": np.array([0, 0, -4, 0.0])})
-    levels = levels_of([short, long], OPTIONS.candidate)
-    assert levels.signals["x"] == Level(pytest.approx(5 / 7**0.5), 4.0, 4.0, 4.0, slowest=3.01)
+    levels = signal_scales_of([short, long], OPTIONS.candidate)
+    assert levels.signals["x"] == SignalScale(
+        pytest.approx(5 / 7**0.5), 4.0, 4.0, 4.0, slowest=3.01
+    )
     assert (levels.duration, levels.interval) == (3.0, 1.0)
-    assert levels.of("unknown") == Level(0.0, 0.0)
+    assert levels.of("unknown") == SignalScale(0.0, 0.0)
 
 
 def test_an_effect_is_wired_to_the_signals_of_its_place() -> None:
@@ -135,9 +143,13 @@ def test_effects_read_a_drive_as_an_effect_at_it_leaves_it_in_any_order() -> Non
 def test_shapes_are_sizes_of_the_signals() -> None:
     diagram = read_text(PENDULUM)
     places = find_places(compile(diagram))
-    sizes = {"omega": Level(2.0, 5.0), "theta": Level(0.5, 3.0), "torque": Level(7.0, 9.0)}
+    sizes = {
+        "omega": SignalScale(2.0, 5.0),
+        "theta": SignalScale(0.5, 3.0),
+        "torque": SignalScale(7.0, 9.0),
+    }
     candidates = find_candidates(
-        compile(diagram), places, Levels(sizes, 10.0, 0.01), OPTIONS.candidate
+        compile(diagram), places, SignalScales(sizes, 10.0, 0.01), OPTIONS.candidate
     )
     known = named(candidates)
     assert known["coulomb @ torque"].shapes == {"width": (0.0, 0.2)}, (
@@ -146,20 +158,24 @@ def test_shapes_are_sizes_of_the_signals() -> None:
     assert known["backlash @ torque"].shapes["gap"] == pytest.approx((0.3, 0.75, 1.5))
     assert known["harmonic @ torque"].shapes["period"][:2] == (10.0, 5.0)
     assert known["bias @ torque"].scale == pytest.approx(7.0)
-    still = find_candidates(compile(diagram), places, Levels({}, 10.0, 0.01), OPTIONS.candidate)
+    still = find_candidates(
+        compile(diagram), places, SignalScales({}, 10.0, 0.01), OPTIONS.candidate
+    )
     assert "backlash @ torque" not in named(still) and "bias @ torque" in named(still)
 
 
 def test_shapes_stay_within_what_the_record_shows() -> None:
     diagram = read_text(PENDULUM)
     sizes = {
-        "omega": Level(2.0, 5.0, slowest=0.1),
-        "theta": Level(0.5, 3.0, stroke=4.0, step=0.05),
-        "torque": Level(7.0, 9.0),
+        "omega": SignalScale(2.0, 5.0, slowest=0.1),
+        "theta": SignalScale(0.5, 3.0, stroke=4.0, step=0.05),
+        "torque": SignalScale(7.0, 9.0),
     }
     places = find_places(compile(diagram))
     known = named(
-        find_candidates(compile(diagram), places, Levels(sizes, 10.0, 0.01), OPTIONS.candidate)
+        find_candidates(
+            compile(diagram), places, SignalScales(sizes, 10.0, 0.01), OPTIONS.candidate
+        )
     )
     stribeck = known["stribeck @ torque"]
     assert stribeck.limits["speed"] == (0.1, 5.0)
@@ -175,9 +191,9 @@ def test_shapes_stay_within_what_the_record_shows() -> None:
     assert known["position_friction @ torque"].limits["pitch"] == pytest.approx((0.2, 8.0))
     assert known["harmonic @ torque"].limits["period"][1] == 10.0, "one wave in the record"
     assert known["backlash @ torque"].limits["gap"] == pytest.approx((0.03, 3.0))
-    fast = {**sizes, "theta": Level(0.5, 3.0, stroke=4.0, step=2.0)}
+    fast = {**sizes, "theta": SignalScale(0.5, 3.0, stroke=4.0, step=2.0)}
     left = named(
-        find_candidates(compile(diagram), places, Levels(fast, 10.0, 0.01), OPTIONS.candidate)
+        find_candidates(compile(diagram), places, SignalScales(fast, 10.0, 0.01), OPTIONS.candidate)
     )
     assert "cogging @ torque" not in left, "no wave is four samples long"
 
@@ -185,7 +201,7 @@ def test_shapes_stay_within_what_the_record_shows() -> None:
 def test_levels_know_strokes_steps_and_slow_rates() -> None:
     t = np.linspace(0, 2, 2001)
     there_and_back = Trajectory(t, {"q": np.abs(3 * (1 - t)), "v": np.where(t < 1, -3.0, 0.0)})
-    levels = levels_of([there_and_back], OPTIONS.candidate)
+    levels = signal_scales_of([there_and_back], OPTIONS.candidate)
     assert levels.of("q").stroke == pytest.approx(3.0)
     assert levels.of("q").step == pytest.approx(0.003)
     assert levels.of("v").slowest == 3.0, "what rests is not slow"

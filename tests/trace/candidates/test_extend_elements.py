@@ -8,8 +8,8 @@ from oracles.written import with_effects
 from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.trace.candidates.candidates import find_candidates
-from tracewire.trace.candidates.levels import Level, Levels
 from tracewire.trace.candidates.places import find_places
+from tracewire.trace.candidates.signal_scales import SignalScale, SignalScales
 from tracewire.trace.options import TraceOptions
 
 CRANE = """\
@@ -30,7 +30,9 @@ SIGNALS = ("x", "v", "q", "w", "cart", "rod", "acceleration[0]", "acceleration[1
 
 def test_an_inertia_beside_a_solved_acceleration_can_be_added() -> None:
     model = compile(read_text(CRANE, Path("crane.yaml")))
-    levels = Levels({name: Level(1.0, 2.0, 4.0, 0.1, 0.01) for name in SIGNALS}, 2.0, 0.01)
+    levels = SignalScales(
+        {name: SignalScale(1.0, 2.0, 4.0, 0.1, 0.01) for name in SIGNALS}, 2.0, 0.01
+    )
     known = find_candidates(model, find_places(model), levels, TraceOptions().candidate)
     (inertia,) = [c for c in known if str(c) == "inertia @ rod"]
     assert "acceleration[1]" in inertia.signals.values()

@@ -12,15 +12,15 @@ from tracewire.compile import compile
 from tracewire.diagram import read, read_text
 from tracewire.solve import simulate
 from tracewire.trace.candidates.candidates import find_candidates
-from tracewire.trace.candidates.levels import Level, Levels
-from tracewire.trace.candidates.places import Place, find_places, untried
+from tracewire.trace.candidates.places import Place, describe_untried, find_places
+from tracewire.trace.candidates.signal_scales import SignalScale, SignalScales
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.probe import probed
 
 OPTIONS = TraceOptions()
 
 PENDULUM = Path(__file__).parents[3] / "diagrams/papers/a_torsion/pendulum.yaml"
-LEVELS = Levels({"u": Level(1.0, 2.0), "x": Level(2.0, 4.0)}, 10.0, 0.01)
+LEVELS = SignalScales({"u": SignalScale(1.0, 2.0), "x": SignalScale(2.0, 4.0)}, 10.0, 0.01)
 
 
 def places(text: str) -> list[Place]:
@@ -326,7 +326,7 @@ def test_a_row_of_sums_is_no_place_and_that_is_said() -> None:
         """
     model = compile(read_text(text), backend="quick")
     assert find_places(model) == []
-    assert untried(model.diagram, []) == [
+    assert describe_untried(model.diagram, []) == [
         "nothing is tried at the sums 'f': they are a row of blocks"
     ]
 
@@ -425,7 +425,7 @@ def test_what_cannot_be_tried_at_a_place_is_said() -> None:
             """
         )
     )
-    flow, position = untried(model.diagram, find_places(model))
+    flow, position = describe_untried(model.diagram, find_places(model))
     assert "'x' has no rate: " in flow + position
     assert (
         "are not tried there; name it, as in `place: {v: SIGNAL}`, where there is one"
@@ -459,7 +459,7 @@ def test_subsystems_that_get_no_effect_are_said(tmp_path: Path) -> None:
         encoding="utf-8",
     )
     model = compile(read(file))
-    assert untried(model.diagram, find_places(model)) == [
+    assert describe_untried(model.diagram, find_places(model)) == [
         "nothing is tried at sums inside 'left', 'right': several blocks are made from 'pair'",
         "nothing is tried at sums inside 'chain': it is a row of blocks",
         "nothing is tried at sums inside 'chosen': a parameter chooses its body",
@@ -474,13 +474,13 @@ def test_a_place_with_both_is_not_talked_about() -> None:
           force: {type: sum, of: [-x]}
         """
     model = compile(read_text(text))
-    assert untried(model.diagram, find_places(model)) == []
+    assert describe_untried(model.diagram, find_places(model)) == []
 
 
 def test_a_level_overflows_where_there_is_no_coordinate() -> None:
     text = "blocks: {h: {type: integrator, of: flow}, flow: {type: sum, of: [-h]}}"
     model = compile(read_text(text))
-    levels = Levels({"h": Level(1.0, 2.0), "flow": Level(1.0, 1.0)}, 10.0, 0.01)
+    levels = SignalScales({"h": SignalScale(1.0, 2.0), "flow": SignalScale(1.0, 1.0)}, 10.0, 0.01)
     known = {
         c.effect: c for c in find_candidates(model, find_places(model), levels, OPTIONS.candidate)
     }

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from oracles.oscillator import bench_of, trial_of
+from oracles.oscillator import problem_of, trial_of
 from scipy.integrate import solve_ivp
 from tracewire.residual import Measured
 from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.candidates import find_candidates
-from tracewire.trace.candidates.levels import levels_of
 from tracewire.trace.candidates.places import find_places
+from tracewire.trace.candidates.signal_scales import signal_scales_of
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Row, screened
 from tracewire.trace.screen.tangent import Tangent
@@ -53,14 +53,14 @@ def turned(teeth: float, amplitude: float, rubbing: float = 0.0) -> Measured:
 
 
 def best_row(record: Measured, effect: str, unit: str = "rad") -> Row:
-    bench = bench_of(record, text=ROTOR.replace("UNIT", unit), sigma=5e-4)
-    trial = trial_of(bench, length=40)
-    places = find_places(bench.declared)
+    problem = problem_of(record, text=ROTOR.replace("UNIT", unit), sigma=5e-4)
+    trial = trial_of(problem, length=40)
+    places = find_places(problem.declared)
     tangent = Tangent(trial.diagram, trial.windows, places, 1e-6, OPTIONS)
     known: list[Candidate] = find_candidates(
-        bench.declared,
+        problem.declared,
         places,
-        levels_of(tangent.trajectories, OPTIONS.candidate),
+        signal_scales_of(tangent.trajectories, OPTIONS.candidate),
         OPTIONS.candidate,
     )
     screen = screened(tangent, trial, [c for c in known if c.effect == effect])

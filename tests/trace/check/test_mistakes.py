@@ -13,7 +13,7 @@ from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.errors import DataError
 from tracewire.residual import Measured
-from tracewire.trace.check.mistakes import likely_lags, refuse_mistakes, shifted
+from tracewire.trace.check.mistakes import likely_lags, refuse_mistakes, shift_inputs
 from tracewire.trace.options import TraceOptions
 
 OPTIONS = TraceOptions()
@@ -95,9 +95,9 @@ def test_lags_are_found_and_undone() -> None:
         m = record(late=late)
         lag = likely_lags(MODEL, m, OPTIONS.check)[0]
         assert lag == pytest.approx(-late, abs=0.011)
-        t, u = shifted(m, lag).inputs["u"]
+        t, u = shift_inputs(m, lag).inputs["u"]
         assert np.interp(2.0, t, u) == pytest.approx(drive(np.array([2.0]))[0], abs=0.3)
 
 
 def test_nothing_is_tried_near_the_noise() -> None:
-    refuse_mistakes(MODEL, [record(late=0.3)], OPTIONS.check, s2=1.2)
+    refuse_mistakes(MODEL, [record(late=0.3)], OPTIONS.check, reduced_chi2=1.2)

@@ -44,9 +44,9 @@ def prediction(held_out: dict[tuple[str, ...], float] = HELD_OUT) -> Prediction:
 def search(left: dict[tuple[str, ...], float], other_runs: tuple[str, ...] = ("cold",)) -> Any:
     """A search with another run of one window, where each model leaves so much."""
     series = SimpleNamespace(other_runs=other_runs)
-    bench = SimpleNamespace(on=lambda names, windows: [np.full(5, left[names])])
+    problem = SimpleNamespace(residuals_on=lambda names, windows: [np.full(5, left[names])])
     return SimpleNamespace(
-        stretches=series, bench=bench, words=[], windows=lambda sections, length: sections
+        data_split=series, problem=problem, words=[], windows=lambda sections, length: sections
     )
 
 
@@ -107,12 +107,12 @@ def run_of(left: dict[tuple[str, ...], float]) -> Any:
     """A search with one unseen run of a sine of 1000 sigma, in which a model leaves so many."""
     wave = 1000 * np.sin(np.linspace(0, 20, WHOLE))
     section = SimpleNamespace(first=0, end=WHOLE, measured=SimpleNamespace(values={"x": wave}))
-    bench = SimpleNamespace(
-        on=lambda names, windows: [np.full(WHOLE, left[names])], sigma={"x": 1.0}
+    problem = SimpleNamespace(
+        residuals_on=lambda names, windows: [np.full(WHOLE, left[names])], sigma={"x": 1.0}
     )
     return SimpleNamespace(
-        stretches=SimpleNamespace(unseen=[section]),
-        bench=bench,
+        data_split=SimpleNamespace(unseen=[section]),
+        problem=problem,
         windows=lambda sections, length: [length],
         options=TraceOptions(),
     )
@@ -137,7 +137,7 @@ def test_a_rival_that_is_worse_in_windows_is_not_told() -> None:
     drag = ("quad_drag @ forces",)
     there, found = run_of({}), prediction({(): 100, (DRY,): 4, drag: 16})
     left = {(DRY, WHOLE): 50.0, (drag[0], WHOLE): 30.0, (DRY, 100): 2.0, (drag[0], 100): 3.0}
-    there.bench.on = lambda names, windows: [np.full(WHOLE, left[names[0], windows[0]])]
+    there.problem.residuals_on = lambda names, windows: [np.full(WHOLE, left[names[0], windows[0]])]
     there.words = []
     assert better_unseen(there, found) == []
 
@@ -183,7 +183,7 @@ def test_effects_that_hardly_help_on_whole_unseen_runs_are_an_approximation(
     there = run_of({(): 50.0, (DRY,): after})
     there.words, there.short = [], WHOLE
     final: Any = SimpleNamespace(declared=(), best=Names((DRY,)))
-    monkeypatch.setattr(safeguards, "is_loose", lambda bench, trial: False)
+    monkeypatch.setattr(safeguards, "is_loose", lambda problem, trial: False)
     monkeypatch.setattr(safeguards, "residual_map", lambda search, trial: ((), None))
     found = safeguards.safeguard(there, safeguards.Judgement("effect", final))
     assert found.verdict == verdict

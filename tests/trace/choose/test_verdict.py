@@ -21,7 +21,9 @@ def model(*names: str, rss: tuple[float, ...] = ()) -> Any:
     """A fitted model with effects, which leaves so much beyond the noise at each horizon."""
     effects = [SimpleNamespace(candidate=SimpleNamespace(effect=name)) for name in names]
     squares = rss or (0.0,)
-    trials = [SimpleNamespace(effects=effects, rss=100.0 + r, freedom=100) for r in squares]
+    trials = [
+        SimpleNamespace(effects=effects, rss=100.0 + r, degrees_of_freedom=100) for r in squares
+    ]
     return SimpleNamespace(trials=trials)
 
 

@@ -12,13 +12,13 @@ from tracewire.diagram import read
 from tracewire.residual import Measured
 from tracewire.residual.windows import Section, cut_windows
 from tracewire.trace.candidates.candidates import find_candidates
-from tracewire.trace.candidates.levels import Trajectory, levels_of
 from tracewire.trace.candidates.places import find_places
+from tracewire.trace.candidates.signal_scales import Trajectory, signal_scales_of
 from tracewire.trace.experiment.experiment import separating
 from tracewire.trace.experiment.rig import main_frequency
 from tracewire.trace.found import Experiment
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.trials.trial import Added, Bench
+from tracewire.trace.trials.trial import PlacedEffect, TraceProblem
 
 OPTIONS = TraceOptions()
 
@@ -59,17 +59,17 @@ def between(folder: Path, one: str, values: dict[str, float], other: str) -> Exp
     path = folder / "oscillator.yaml"
     path.write_text(OSCILLATOR)
     model = compile(read(path), record=("q",))
-    bench = Bench(model, (series,), {"q": NOISE}, 1e-6)
+    problem = TraceProblem(model, (series,), {"q": NOISE}, 1e-6)
     places = find_places(model)
     signals = {"q": run[0], "v": run[1], "u": drive(T), "torque": np.gradient(run[1], T)}
-    levels = levels_of([Trajectory(T, signals)], OPTIONS.candidate)
+    levels = signal_scales_of([Trajectory(T, signals)], OPTIONS.candidate)
     known = {c.effect: c for c in find_candidates(model, places, levels, OPTIONS.candidate)}
     windows = cut_windows(model, Section(series, 0, len(T)), 150, ("q", "v"))
     trials = []
     for name in (one, other):
         begun = values if name == one else {known[name].parameter: known[name].scale / 10}
-        trials.append(bench.fitted((Added(known[name], begun),), windows, 150, {}))
-    return separating(bench, trials[0], trials[1], str(known[one]), str(known[other]))
+        trials.append(problem.fit((PlacedEffect(known[name], begun),), windows, 150, {}))
+    return separating(problem, trials[0], trials[1], str(known[one]), str(known[other]))
 
 
 def test_a_drag_that_was_seen_at_one_amplitude_shows_its_power_at_others(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.experiment.power import powers
 from tracewire.trace.screen.screening import Row, Screen
-from tracewire.trace.trials.statistics import Columns
+from tracewire.trace.trials.statistics import CandidateColumns
 
 RANDOM = np.random.default_rng(2)
 N = 400
@@ -30,7 +30,7 @@ def screen(matrix: np.ndarray, groups: list[tuple[str, tuple[int, ...]]], masked
         for name, indices in groups
     )
     hidden = np.full(matrix.shape[1], masked)
-    columns = Columns(RANDOM.standard_normal(N), matrix, hidden, 1.0, N)
+    columns = CandidateColumns(RANDOM.standard_normal(N), matrix, hidden, 1.0, N)
     return Screen(columns, rows, np.arange(N))
 
 

@@ -12,7 +12,7 @@ from tracewire.residual import Measured
 from tracewire.residual.windows import Section, cut_windows
 from tracewire.trace.experiment.rig import Rig, Setting, rig_of
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.trials.trial import Bench
+from tracewire.trace.trials.trial import TraceProblem
 
 OPTIONS = TraceOptions()
 
@@ -37,9 +37,9 @@ def rig() -> Rig:
     start = {"q": None, "v": None}
     series = Measured("run", "train", T, {"q": q}, inputs={"u": (T, u)}, start=start)
     model = compile(read_text(DRIVEN), record=("q",))
-    bench = Bench(model, (series,), {"q": 1e-3}, 1e-6)
+    problem = TraceProblem(model, (series,), {"q": 1e-3}, 1e-6)
     windows = cut_windows(model, Section(series, 0, len(T)), 50, ("q", "v"))
-    return rig_of(bench, bench.fitted((), windows, 50, {}))
+    return rig_of(problem, problem.fit((), windows, 50, {}))
 
 
 def test_inputs_and_sine_blocks_are_drives_with_what_was_measured(rig: Rig) -> None:

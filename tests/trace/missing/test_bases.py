@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tracewire.trace.candidates.levels import Trajectory
 from tracewire.trace.candidates.places import Place
+from tracewire.trace.candidates.signal_scales import Trajectory
 from tracewire.trace.missing.bases import bases_of, drive_phase, lowpassed, stopped
 from tracewire.trace.options import TraceOptions
 

@@ -20,7 +20,7 @@ from tracewire.trace.missing.bases import Basis, bases_of
 from tracewire.trace.missing.dependence import Scored, smallest, where_what
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.tangent import Tangent
-from tracewire.trace.trials.trial import Bench, Trial
+from tracewire.trace.trials.trial import TraceProblem, Trial
 
 OPTIONS = TraceOptions()
 
@@ -74,9 +74,9 @@ def mapped(
 def tangent_of(law: Law, memory: Law = lambda q, v, z: 0.0) -> tuple[Tangent, Trial, list[Place]]:
     model = compile(read_text(OSCILLATOR), record=("q",))
     series = tuple(record(number, law, memory) for number in range(len(DRIVES)))
-    bench = Bench(model, series, {"q": NOISE}, 1e-6)
+    problem = TraceProblem(model, series, {"q": NOISE}, 1e-6)
     windows = [w for m in series for w in cut_windows(model, Section(m, 0, len(T)), 40, ("q", "v"))]
-    trial = bench.fitted((), windows, 40, {})
+    trial = problem.fit((), windows, 40, {})
     places = [*find_places(model), Place("sensor.q", "sensor", "q")]
     return Tangent(trial.diagram, trial.windows, places, 1e-6, OPTIONS), trial, places
 

@@ -6,50 +6,50 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.oscillator import NOISE, bench_of, later, record, search_of, trial_of
+from oracles.oscillator import NOISE, later, problem_of, record, search_of, trial_of
 from tracewire.residual import Measured, Segment
 from tracewire.residual.windows import Section, cut_windows
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.results.account import compared, free_run, intervals, moved, rmse
-from tracewire.trace.trials.trial import Bench
+from tracewire.trace.trials.trial import TraceProblem
 
 OPTIONS = TraceOptions()
 
 
-def whole(bench: Bench, measured: Measured) -> Segment:
+def whole(problem: TraceProblem, measured: Measured) -> Segment:
     (segment,) = cut_windows(
-        bench.declared, Section(measured, 0, len(measured.t)), len(measured.t), bench.states
+        problem.declared, Section(measured, 0, len(measured.t)), len(measured.t), problem.states
     )
     return segment
 
 
 def test_a_free_run_uses_only_the_first_fifth_for_its_start() -> None:
     m = record()
-    bench = bench_of(m)
-    trial = trial_of(bench)
+    problem = problem_of(m)
+    trial = trial_of(problem)
     seen = int(OPTIONS.split.first_part * len(m.t))
-    before = free_run(bench, trial, whole(bench, m), 20)
-    after = free_run(bench, trial, whole(bench, later(m, slice(seen, None), 0.1)), 20)
+    before = free_run(problem, trial, whole(problem, m), 20)
+    after = free_run(problem, trial, whole(problem, later(m, slice(seen, None), 0.1)), 20)
     np.testing.assert_allclose(after[:seen], before[:seen], atol=1e-9)
     np.testing.assert_allclose(after[seen:], before[seen:] - 0.1 / NOISE, atol=1e-9)
-    moved = free_run(bench, trial, whole(bench, later(m, slice(0, seen), 0.1)), 20)
+    moved = free_run(problem, trial, whole(problem, later(m, slice(0, seen), 0.1)), 20)
     assert np.max(np.abs(moved[seen:] - before[seen:])) > 1.0, "the first fifth does count"
 
 
 def test_a_free_run_of_the_truth_is_at_the_noise() -> None:
     m = record()
-    bench = bench_of(m)
-    residual = free_run(bench, trial_of(bench, length=300), whole(bench, m), 20)
+    problem = problem_of(m)
+    residual = free_run(problem, trial_of(problem, length=300), whole(problem, m), 20)
     assert np.mean(residual**2) == pytest.approx(1.0, abs=0.3)
 
 
 def test_each_stretch_is_compared_by_use_and_told_in_si() -> None:
     series = [record(name=use, use=use, end=6.0, seed=n)
               for n, use in enumerate(("train", "gate", "validate"))]  # fmt: skip
-    bench = bench_of(*series)
-    search = search_of(bench)
-    good = trial_of(bench)
-    poor = bench.fitted((), good.windows.segments, 60, {}, fixed={"c": 0.0})
+    problem = problem_of(*series)
+    search = search_of(problem)
+    good = trial_of(problem)
+    poor = problem.fit((), good.windows.segments, 60, {}, fixed={"c": 0.0})
     parts = compared(search, poor, good)
     assert [part.use for part in parts] == ["train", "gate", "validate"]
     assert rmse(parts, 1) == pytest.approx(NOISE, rel=0.2) and rmse(parts, 0) > 5 * NOISE
@@ -66,15 +66,15 @@ def test_each_stretch_is_compared_by_use_and_told_in_si() -> None:
 
 def test_intervals_cover_the_truth_as_often_as_they_say() -> None:
     exact = record(noise=0.0, end=6.0)
-    bench = bench_of(exact)
-    segments = trial_of(bench).windows.segments
+    problem = problem_of(exact)
+    segments = trial_of(problem).windows.segments
     rng = np.random.default_rng(4)
     inside = []
     for _ in range(60):
         x = exact.values["x"] + NOISE * rng.standard_normal(len(exact.t))
         noisy = replace(exact, values={"x": x})
         drawn = [replace(segment, measured=noisy) for segment in segments]
-        ends = intervals(bench.fitted((), drawn, 60, {"k": 25.0, "c": 0.2}), OPTIONS.confidence)
+        ends = intervals(problem.fit((), drawn, 60, {"k": 25.0, "c": 0.2}), OPTIONS.confidence)
         inside += [ends[n][0] <= value <= ends[n][1] for n, value in (("k", 25.0), ("c", 0.2))]
     assert np.mean(inside) == pytest.approx(0.95, abs=0.06)
 
@@ -82,16 +82,21 @@ def test_intervals_cover_the_truth_as_often_as_they_say() -> None:
 def test_a_slow_residual_widens_the_intervals() -> None:
     m = record()
     slow = replace(m, values={"x": m.values["x"] + 2 * NOISE * np.sin(3 * m.t)})
-    white, coloured = trial_of(bench_of(m), length=400), trial_of(bench_of(slow), length=400)
-    assert coloured.part < 0.8 < white.part
+    white, coloured = trial_of(problem_of(m), length=400), trial_of(problem_of(slow), length=400)
+    assert coloured.effective_fraction < 0.8 < white.effective_fraction
     errors = white.standard_errors, coloured.standard_errors
-    ratio = (coloured.s2 / white.s2 * white.part / coloured.part) ** 0.5
+    ratio = (
+        coloured.reduced_chi2
+        / white.reduced_chi2
+        * white.effective_fraction
+        / coloured.effective_fraction
+    ) ** 0.5
     assert errors[1]["k"] / errors[0]["k"] == pytest.approx(ratio, rel=0.1)
 
 
 def test_what_the_declared_parameters_did_is_told_with_units() -> None:
-    bench = bench_of(record(end=6.0))
-    declared = trial_of(bench)
-    (k, c) = moved(bench, declared, declared, {"k": 25.5})
+    problem = problem_of(record(end=6.0))
+    declared = trial_of(problem)
+    (k, c) = moved(problem, declared, declared, {"k": 25.5})
     assert (k.name, k.unit, k.before, k.after) == ("k", "1/s^2", declared.values["k"], 25.5)
     assert (c.name, c.after) == ("c", 0.0), "what was dropped is zero"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from oracles.oscillator import bench_of, candidates_of, record, trial_of
+from oracles.oscillator import candidates_of, problem_of, record, trial_of
 from scipy.optimize import lsq_linear
 from tracewire.trace.candidates.places import find_places
 from tracewire.trace.options import TraceOptions
@@ -12,26 +12,26 @@ from tracewire.trace.screen.assimilated import assimilated, seen_along
 from tracewire.trace.screen.screening import Screen, screened
 from tracewire.trace.screen.tangent import Tangent
 from tracewire.trace.trials.statistics import BoundedColumns
-from tracewire.trace.trials.trial import Bench, Trial
+from tracewire.trace.trials.trial import TraceProblem, Trial
 
 OPTIONS = TraceOptions()
 LEVEL, BIAS = 1.5, 4.0
 
 
-def far_trial() -> tuple[Bench, Trial]:
+def far_trial() -> tuple[TraceProblem, Trial]:
     """An oscillator with friction and a constant force that are not declared, in long windows."""
-    bench = bench_of(record(lambda x, v: -LEVEL * np.tanh(v / 1e-3) + BIAS, end=6.0))
-    return bench, trial_of(bench, length=100)
+    problem = problem_of(record(lambda x, v: -LEVEL * np.tanh(v / 1e-3) + BIAS, end=6.0))
+    return problem, trial_of(problem, length=100)
 
 
 def along() -> tuple[Trial, Tangent, Screen]:
-    bench, trial = far_trial()
-    places = find_places(bench.declared)
+    problem, trial = far_trial()
+    places = find_places(problem.declared)
     tangent = Tangent(trial.diagram, trial.windows, places, 1e-6, OPTIONS)
-    found = assimilated(bench, trial, tangent)
+    found = assimilated(problem, trial, tangent)
     assert found is not None
     names = ("bias @ force", "coulomb @ force", "cubic_stiffness @ force", "quad_drag @ force")
-    candidates = [candidates_of(bench)[name] for name in names]
+    candidates = [candidates_of(problem)[name] for name in names]
     return trial, found, screened(found, trial, candidates)
 
 
@@ -57,8 +57,8 @@ def test_a_pair_is_promised_with_the_values_that_belong_to_it() -> None:
 
 
 def test_what_drives_a_sum_is_not_judged_along_the_data() -> None:
-    bench, _ = far_trial()
-    kept = {str(candidate) for candidate in seen_along(list(candidates_of(bench).values()))}
+    problem, _ = far_trial()
+    kept = {str(candidate) for candidate in seen_along(list(candidates_of(problem).values()))}
     assert "coulomb @ force" in kept
     assert not any(name.endswith(("@ sensor.x", "@ drive.u")) for name in kept)
     assert "inertia @ force" not in kept and "load_friction @ force" not in kept
@@ -81,4 +81,4 @@ def test_columns_beside_bounded_unknowns_are_those_of_bounded_least_squares() ->
         assert values == pytest.approx(right.x[2:], abs=1e-8)
         assert fall == pytest.approx(2 * (alone.cost - right.cost), rel=1e-8)
         assert columns.left(chosen) == pytest.approx(right.fun, abs=1e-8)
-        assert columns.moved(chosen) == pytest.approx(right.x[:2], abs=1e-8)
+        assert columns.unknown_changes(chosen) == pytest.approx(right.x[:2], abs=1e-8)

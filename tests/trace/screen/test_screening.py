@@ -6,12 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from oracles.oscillator import bench_of, candidates_of, record, trial_of
+from oracles.oscillator import candidates_of, problem_of, record, trial_of
 from tracewire.trace.candidates.places import find_places
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Screen, screened
 from tracewire.trace.screen.tangent import Tangent
-from tracewire.trace.trials.trial import Added
+from tracewire.trace.trials.trial import PlacedEffect
 
 OPTIONS = TraceOptions()
 
@@ -22,10 +22,10 @@ NAMES = (
 
 
 def screen_of(law: Callable[[float, float], float] | None = None) -> Screen:
-    bench = bench_of(record(law))
-    trial = trial_of(bench, length=40)
-    candidates = candidates_of(bench)
-    tangent = Tangent(trial.diagram, trial.windows, find_places(bench.declared), 1e-6, OPTIONS)
+    problem = problem_of(record(law))
+    trial = trial_of(problem, length=40)
+    candidates = candidates_of(problem)
+    tangent = Tangent(trial.diagram, trial.windows, find_places(problem.declared), 1e-6, OPTIONS)
     return screened(tangent, trial, [candidates[name] for name in NAMES])
 
 
@@ -74,7 +74,7 @@ def test_two_effects_promise_more_together_than_each_alone() -> None:
     assert {str(row.candidate) for row in pair.rows} >= {"coulomb @ force"}
     assert {str(row.candidate) for row in pair.rows} & {"bias @ force", "sensor_offset @ sensor.x"}
     assert pair.gain > screen.best()[0].gain
-    assert [type(row.added) for row in pair.rows] == [Added, Added]
+    assert [type(row.added) for row in pair.rows] == [PlacedEffect, PlacedEffect]
 
 
 def test_the_best_at_each_number_of_numbers_are_known() -> None:
@@ -89,10 +89,10 @@ def test_the_best_at_each_number_of_numbers_are_known() -> None:
 
 
 def test_a_free_phase_is_fitted_by_sine_and_cosine_together() -> None:
-    bench = bench_of(record())
-    waves = [c for name, c in candidates_of(bench).items() if name.startswith("harmonic @ force")]
-    trial = trial_of(bench, length=40)
-    tangent = Tangent(trial.diagram, trial.windows, find_places(bench.declared), 1e-6, OPTIONS)
+    problem = problem_of(record())
+    waves = [c for name, c in candidates_of(problem).items() if name.startswith("harmonic @ force")]
+    trial = trial_of(problem, length=40)
+    tangent = Tangent(trial.diagram, trial.windows, find_places(problem.declared), 1e-6, OPTIONS)
     found = screened(tangent, trial, waves)
     assert found.rows
     assert all(len(row.columns) == 2 for row in found.rows)
@@ -112,6 +112,6 @@ def test_a_slim_screen_keeps_all_but_the_other_variants() -> None:
     assert list(slim.visible()) == list(screen.visible())
     one, other = (slim.best()[n] for n in (0, 1))
     told = {str(row.candidate): row.columns for row in screen.best()}
-    assert slim.columns.likeness(one.columns, other.columns) == pytest.approx(
-        screen.columns.likeness(told[str(one.candidate)], told[str(other.candidate)])
+    assert slim.columns.canonical_correlation(one.columns, other.columns) == pytest.approx(
+        screen.columns.canonical_correlation(told[str(one.candidate)], told[str(other.candidate)])
     )

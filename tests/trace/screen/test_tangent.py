@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.oscillator import bench_of, record, trial_of
+from oracles.oscillator import problem_of, record, trial_of
 from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.residual import Criterion, Measured
@@ -119,7 +119,7 @@ def test_while_it_sticks_no_torque_moves_it() -> None:
 
 
 def test_the_trajectories_are_the_fitted_run_at_every_sample() -> None:
-    trial = trial_of(bench_of(record(), record(name="again", seed=1)))
+    trial = trial_of(problem_of(record(), record(name="again", seed=1)))
     places = find_places(trial.model)
     tangent = Tangent(trial.diagram, trial.windows, places, 1e-8, OPTIONS)
     assert len(tangent.trajectories) == 2
@@ -139,8 +139,8 @@ def test_the_trajectories_are_the_fitted_run_at_every_sample() -> None:
 
 
 def test_a_sensor_is_told_by_what_it_shows() -> None:
-    bench = bench_of(record(end=4.0))
-    trial = trial_of(bench)
+    problem = problem_of(record(end=4.0))
+    trial = trial_of(problem)
     tangent = Tangent(trial.diagram, trial.windows, find_places(trial.model), 1e-8, OPTIONS)
     run = tangent.trajectories[0]
     rows = np.concatenate([s.rows for s in trial.windows.criterion.segments])
@@ -158,7 +158,7 @@ def test_a_sensor_is_told_by_what_it_shows() -> None:
 
 def test_the_nodes_of_a_window_are_its_samples_and_where_it_begins() -> None:
     m = record()
-    first, second = cut_windows(bench_of(m).declared, Section(m, 0, 100), 50, ("x", "v"))
+    first, second = cut_windows(problem_of(m).declared, Section(m, 0, 100), 50, ("x", "v"))
     times, samples, counts = nodes_of(second)
     assert times[0] == second.begin and not counts[0] and counts[1:].all()
     np.testing.assert_array_equal(times, m.t[samples])

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from oracles.oscillator import bench_of, candidates_of, record, search_of
+from oracles.oscillator import candidates_of, problem_of, record, search_of
 from tracewire.trace.candidates.places import find_places
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal, screened
@@ -16,7 +16,7 @@ from tracewire.trace.screen.tangent import Tangent
 from tracewire.trace.search.finish import Final, _without_trifles, finished
 from tracewire.trace.search.refits import Tried
 from tracewire.trace.search.search import Search, Step
-from tracewire.trace.trials.trial import Added, Trial
+from tracewire.trace.trials.trial import PlacedEffect, Trial
 
 OPTIONS = TraceOptions()
 
@@ -36,22 +36,22 @@ def ended(
     law: Law, names: Sequence[str], screen: Sequence[str], damping: float = 0.2
 ) -> tuple[Search, Final]:
     """The end of a search that has accepted `names`, after a screen of `screen`."""
-    bench = bench_of(
+    problem = problem_of(
         record(law, damping=damping, end=7.0),
         record(law, damping=damping, end=6.0, use="gate", name="gate", seed=1),
     )
-    search = search_of(bench)
-    known = candidates_of(bench)
+    search = search_of(problem)
+    known = candidates_of(problem)
     now = search.declared()
     search.first = now
     best = now
     for name in names:
-        tangent = Tangent(best.diagram, best.windows, find_places(bench.declared), 1e-6, OPTIONS)
+        tangent = Tangent(best.diagram, best.windows, find_places(problem.declared), 1e-6, OPTIONS)
         shown = screened(tangent, best, [known[other] for other in screen])
         rows = {str(row.candidate): row for row in shown.best()}
         tried = []
         for other in screen:
-            added = Added(known[other], {known[other].parameter: 0.02})
+            added = PlacedEffect(known[other], {known[other].parameter: 0.02})
             refit = search.refits.refit(best, [*best.effects, added], now.windows.segments)
             (trial,) = search.refits.trials(best, [refit])
             if trial is not None and other in rows:
@@ -80,9 +80,9 @@ def test_a_wrong_effect_is_exchanged_for_its_better_rival() -> None:
 def test_the_right_effect_stays_on_long_windows() -> None:
     search, final = ended(rubbed, [COULOMB], [COULOMB, DRAG])
     assert names_of(final.best) == [COULOMB]
-    assert final.best.length == search.stretches.longest
-    assert final.best.s2 == pytest.approx(1.0, abs=0.2)
-    assert final.declared.effects == () and final.declared.s2 > 3
+    assert final.best.length == search.data_split.longest
+    assert final.best.reduced_chi2 == pytest.approx(1.0, abs=0.2)
+    assert final.declared.effects == () and final.declared.reduced_chi2 > 3
 
 
 def test_an_effect_that_the_others_make_superfluous_is_pruned() -> None:
@@ -104,13 +104,13 @@ def test_a_declared_term_that_is_there_is_kept() -> None:
 
 
 def test_without_effects_the_declared_model_is_the_end() -> None:
-    bench = bench_of(record(end=7.0), record(end=6.0, use="gate", name="gate", seed=1))
-    search = search_of(bench)
+    problem = problem_of(record(end=7.0), record(end=6.0, use="gate", name="gate", seed=1))
+    search = search_of(problem)
     now = search.declared()
     final = finished(search, now, now)
     assert final.best is final.declared and final.best.effects == ()
     assert final.rivals == {} and final.dropped == ()
-    assert final.best.length == search.stretches.longest
+    assert final.best.length == search.data_split.longest
 
 
 def test_effects_are_told_the_surest_first() -> None:
@@ -158,7 +158,7 @@ def test_what_explains_next_to_nothing_and_may_be_another_law_is_a_refinement(
     ]
     best = SimpleNamespace(
         effects=effects,
-        s2=1.0,
+        reduced_chi2=1.0,
         count=1000,
         rss=1000.0,
         standard_errors={"coulomb": 1.0, second: 1.0},
@@ -169,7 +169,7 @@ def test_what_explains_next_to_nothing_and_may_be_another_law_is_a_refinement(
         finish, "_refitted", lambda search, best, kept: SimpleNamespace(effects=kept)
     )
     rivals = {second: [SimpleNamespace(added=name, tied=True) for name in ties]}
-    declared = SimpleNamespace(s2=1001.0)
+    declared = SimpleNamespace(reduced_chi2=1001.0)
     found = _without_trifles(search, best, declared, rivals)  # type: ignore[arg-type]
     assert [str(e) for e in found.effects] == ["coulomb", second][: 1 if told is not None else 2]
     words = (
@@ -206,7 +206,7 @@ def test_a_slight_wave_beside_what_is_no_noise_is_a_part_of_that(
     ]
     best = SimpleNamespace(
         effects=effects,
-        s2=s2,
+        reduced_chi2=s2,
         count=1000,
         rss=1000.0 * s2,
         standard_errors={"coulomb": 1.0, second: 1.0},
@@ -221,7 +221,7 @@ def test_a_slight_wave_beside_what_is_no_noise_is_a_part_of_that(
     monkeypatch.setattr(
         finish, "_refitted", lambda search, best, kept: SimpleNamespace(effects=kept)
     )
-    declared = SimpleNamespace(s2=2.0 + s2)
+    declared = SimpleNamespace(reduced_chi2=2.0 + s2)
     found = _without_trifles(search, best, declared, {})  # type: ignore[arg-type]
     assert len(found.effects) == 1 + stays
     assert len(search.words) == 1 - stays

@@ -7,16 +7,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.oscillator import bench_of, candidates_of, record, search_of
+from oracles.oscillator import candidates_of, problem_of, record, search_of
 from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Row, Screen
 from tracewire.trace.screen.shortlist import shortlist
 from tracewire.trace.search.search import Search
-from tracewire.trace.trials.statistics import Columns
-from tracewire.trace.trials.stretches import share_out, shortest_window
-from tracewire.trace.trials.trial import Added, Trial
+from tracewire.trace.trials.data_split import shortest_window, split_data
+from tracewire.trace.trials.statistics import CandidateColumns
+from tracewire.trace.trials.trial import PlacedEffect, Trial
 
 OPTIONS = TraceOptions()
 
@@ -32,7 +32,7 @@ def screen_of(truth: Mapping[str, float], sign: int = 0, count: int = 10) -> Scr
     residual = rng.normal(size=N)
     for name, coefficient in truth.items():
         residual = residual - coefficient * matrix[:, names.index(name)]
-    columns = Columns(residual, matrix, np.zeros(count), 1.0, N)
+    columns = CandidateColumns(residual, matrix, np.zeros(count), 1.0, N)
     rows = []
     for n, name in enumerate(names):
         fall, values = columns.score([n])
@@ -86,21 +86,21 @@ def test_the_shortest_window_is_a_fifth_of_a_period() -> None:
     slow = record(end=12.0)
     t = np.arange(0, 30, 0.03)
     slow = replace(slow, t=t, values={"x": np.cos(2 * np.pi * t / 6.0)})  # 200 samples a period
-    assert shortest_window(share_out([slow], OPTIONS.split), OPTIONS.split) == pytest.approx(
+    assert shortest_window(split_data([slow], OPTIONS.split), OPTIONS.split) == pytest.approx(
         40, abs=6
     )
     fast = replace(slow, values={"x": np.cos(2 * np.pi * t / 0.3)})
-    assert shortest_window(share_out([fast], OPTIONS.split), OPTIONS.split) == 16, (
+    assert shortest_window(split_data([fast], OPTIONS.split), OPTIONS.split) == 16, (
         "never below that"
     )
 
 
 def test_windows_grow_threefold_up_to_the_whole_section() -> None:
-    search = search_of(bench_of(record(end=30.0), record(use="gate", name="gate")), shortest=20)
-    longest = search.stretches.longest
+    search = search_of(problem_of(record(end=30.0), record(use="gate", name="gate")), shortest=20)
+    longest = search.data_split.longest
     assert search.lengths == [20, 60, 180, 540, longest]
-    short = search_of(bench_of(record(end=3.0), record(use="gate", name="gate")), shortest=200)
-    assert short.lengths == [short.stretches.longest]
+    short = search_of(problem_of(record(end=3.0), record(use="gate", name="gate")), shortest=200)
+    assert short.lengths == [short.data_split.longest]
 
 
 def rubbed(x: float, v: float) -> float:
@@ -108,27 +108,27 @@ def rubbed(x: float, v: float) -> float:
 
 
 def test_a_model_that_is_right_climbs_to_whole_sections() -> None:
-    search = search_of(bench_of(record(), record(use="gate", name="gate")))
+    search = search_of(problem_of(record(), record(use="gate", name="gate")))
     declared = search.declared()
     assert declared.length == 20
     climbed = search.climbed(declared)
-    assert climbed.length == search.stretches.longest
-    assert climbed.s2 == pytest.approx(1.0, abs=0.2)
+    assert climbed.length == search.data_split.longest
+    assert climbed.reduced_chi2 == pytest.approx(1.0, abs=0.2)
 
 
 def test_a_model_that_is_far_off_stays_on_short_windows() -> None:
     far = record(lambda x, v: -6.0 * float(np.tanh(v / 0.05)) - 30 * x**3)
-    search = search_of(bench_of(far, record(use="gate", name="gate")))
+    search = search_of(problem_of(far, record(use="gate", name="gate")))
     climbed = search.climbed(search.declared())
-    assert climbed.length < search.stretches.longest
+    assert climbed.length < search.data_split.longest
 
 
 def test_an_effect_that_cannot_be_run_is_left_out_with_a_reason() -> None:
-    search = search_of(bench_of(record(end=6.0), record(use="gate", name="gate")))
+    search = search_of(problem_of(record(end=6.0), record(use="gate", name="gate")))
     now = search.declared()
-    coulomb = candidates_of(search.bench)["coulomb @ force"]
+    coulomb = candidates_of(search.problem)["coulomb @ force"]
     nowhere = replace(coulomb, signals={"rate": "nowhere"})
-    added = [Added(nowhere, {"level": 0.1})]
+    added = [PlacedEffect(nowhere, {"level": 0.1})]
     refit = search.refits.refit(now, added, now.windows.segments)
     assert search.refits.trials(now, [refit]) == [None]
     (told,) = search.words
@@ -139,7 +139,9 @@ def test_an_effect_that_cannot_be_run_is_left_out_with_a_reason() -> None:
 def step() -> tuple[Search, Trial | None]:
     """The first step of a search where dry friction is missing."""
     search = search_of(
-        bench_of(record(rubbed, end=7.0), record(rubbed, end=7.0, use="gate", name="gate", seed=1))
+        problem_of(
+            record(rubbed, end=7.0), record(rubbed, end=7.0, use="gate", name="gate", seed=1)
+        )
     )
     declared = search.declared()
     search.first = search.best = search.climbed(declared)

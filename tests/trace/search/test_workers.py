@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from oracles.oscillator import bench_of, candidates_of, record, search_of
+from oracles.oscillator import candidates_of, problem_of, record, search_of
 from oracles.swing import write_pendulum
 from tracewire.compile import compile
 from tracewire.diagram import read
@@ -20,7 +20,7 @@ from tracewire.errors import DataError
 from tracewire.trace import Found, trace
 from tracewire.trace.found import data_of
 from tracewire.trace.search.workers import Workers
-from tracewire.trace.trials.trial import Added, Trial
+from tracewire.trace.trials.trial import PlacedEffect, Trial
 
 
 @pytest.fixture
@@ -84,13 +84,13 @@ def test_a_worker_that_is_killed_loses_nothing(
 
 def refits(executor: Executor | None) -> list[Trial | None]:
     """Two refits of an oscillator, of which the first has an effect that no wire reaches."""
-    search = search_of(bench_of(record(end=6.0), record(use="gate", name="gate")))
+    search = search_of(problem_of(record(end=6.0), record(use="gate", name="gate")))
     search.workers = Workers(executor)
     now = search.declared()
-    coulomb = candidates_of(search.bench)["coulomb @ force"]
+    coulomb = candidates_of(search.problem)["coulomb @ force"]
     nowhere = replace(coulomb, signals={"rate": "nowhere"})
     asked = [
-        search.refits.refit(now, [Added(c, {"level": 0.1})], now.windows.segments)
+        search.refits.refit(now, [PlacedEffect(c, {"level": 0.1})], now.windows.segments)
         for c in (nowhere, coulomb)
     ]
     trials = search.refits.trials(now, asked)

@@ -5,19 +5,19 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from oracles.oscillator import DIAGRAM, bench_of, candidates_of, record, trial_of
+from oracles.oscillator import DIAGRAM, candidates_of, problem_of, record, trial_of
 from tracewire.residual.sensor import Sensor
 from tracewire.trace.trials.bounds import AtBound, at_bounds
-from tracewire.trace.trials.trial import Added
+from tracewire.trace.trials.trial import PlacedEffect
 
 
 def test_a_fit_inside_its_bounds_has_nothing_on_one() -> None:
-    assert at_bounds(trial_of(bench_of(record()))) == []
+    assert at_bounds(trial_of(problem_of(record()))) == []
 
 
 def test_a_declared_parameter_on_its_bound_is_told_with_the_bound() -> None:
     narrow = DIAGRAM.replace("fit: [5, 80]", "fit: [5, 24]")
-    trial = trial_of(bench_of(record(), text=narrow))
+    trial = trial_of(problem_of(record(), text=narrow))
     (one,) = at_bounds(trial)
     assert (one.name, one.kind, one.upper, one.bound, one.absent) == (
         "k",
@@ -33,7 +33,7 @@ def test_a_declared_parameter_on_its_bound_is_told_with_the_bound() -> None:
 
 
 def test_a_term_that_goes_to_zero_is_not_used() -> None:
-    trial = trial_of(bench_of(record(lambda x, v: 0.5 * v)))  # more than the damping takes
+    trial = trial_of(problem_of(record(lambda x, v: 0.5 * v)))  # more than the damping takes
     (one,) = at_bounds(trial)
     assert one.absent
     assert one.words == "'c' sits on its bound 0 1/s: the fit does not use it"
@@ -41,18 +41,18 @@ def test_a_term_that_goes_to_zero_is_not_used() -> None:
 
 def test_a_small_value_far_from_zero_by_its_size_is_on_no_bound() -> None:
     wide = DIAGRAM.replace("fit: [0, 2]", "fit: [0, 5000]")
-    assert at_bounds(trial_of(bench_of(record(), text=wide))) == []
+    assert at_bounds(trial_of(problem_of(record(), text=wide))) == []
 
 
 def test_an_offset_on_its_bound_is_told_as_that_of_a_sensor() -> None:
     offset = "signals: {x: {column: x, offset: {value: 0, fit: [-0.01, 0.01]}}}"
     text = DIAGRAM.replace("signals: {x: x}", offset)
-    bench = bench_of(record(), text=text)
-    (series,) = bench.measured
+    problem = problem_of(record(), text=text)
+    (series,) = problem.measured
     shifted = {"x": series.values["x"] + 0.05}
     sensor = {"x": Sensor(free={"offset": (-0.01, 0.01)})}
-    bench = bench_of(replace(series, values=shifted, sensors=sensor), text=text)
-    (one,) = at_bounds(trial_of(bench))
+    problem = problem_of(replace(series, values=shifted, sensors=sensor), text=text)
+    (one,) = at_bounds(trial_of(problem))
     assert (one.name, one.kind) == ("offset.x", "sensor")
     assert one.words.startswith(
         "the offset of the sensor of 'x' sits on its bound 0.01 m: widen its `fit: [-0.01, 0.01]`"
@@ -60,11 +60,11 @@ def test_an_offset_on_its_bound_is_told_as_that_of_a_sensor() -> None:
 
 
 def test_a_shape_on_its_bound_says_that_the_record_ends_there() -> None:
-    bench = bench_of(record(lambda x, v: -0.5 * np.tanh(v / 1e-3)))
-    stribeck = candidates_of(bench)["stribeck @ force"]
+    problem = problem_of(record(lambda x, v: -0.5 * np.tanh(v / 1e-3)))
+    stribeck = candidates_of(problem)["stribeck @ force"]
     stribeck = replace(stribeck, limits={**stribeck.limits, "speed": (0.05, 1.0)})
-    fast = Added(stribeck, {"level": 0.4, "speed": 0.9, "width": 0.0})
-    found = at_bounds(trial_of(bench, [fast]))
+    fast = PlacedEffect(stribeck, {"level": 0.4, "speed": 0.9, "width": 0.0})
+    found = at_bounds(trial_of(problem, [fast]))
     (one,) = [one for one in found if one.kind == "shape"]
     assert one.bound == 1.0, "what is there is a Coulomb friction"
     assert one.words == (

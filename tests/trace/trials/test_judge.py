@@ -7,26 +7,29 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.trials.judge import Verdict, gate
+from tracewire.trace.trials.judge import GateResult, judge_on_gate
 
 WINDOWS = 10
 
 
-def judged(before: list[float], after: list[float], s2: float = 1.0, fall: float = 20.0) -> Verdict:
+def judged(
+    before: list[float], after: list[float], s2: float = 1.0, fall: float = 20.0
+) -> GateResult:
     """The gate on windows with these squared errors."""
-    now, trial = SimpleNamespace(s2=9.0), SimpleNamespace(s2=s2)
+    now, trial = SimpleNamespace(reduced_chi2=9.0), SimpleNamespace(reduced_chi2=s2)
     squares = {id(now): before, id(trial): after}
-    bench = SimpleNamespace(
-        on=lambda one, windows: [np.sqrt([[x]]) for x in squares[id(one)]], options=TraceOptions()
+    problem = SimpleNamespace(
+        residuals_on=lambda one, windows: [np.sqrt([[x]]) for x in squares[id(one)]],
+        options=TraceOptions(),
     )
-    return gate(bench, now, trial, [], fall)  # type: ignore[arg-type]
+    return judge_on_gate(problem, now, trial, [], fall)  # type: ignore[arg-type]
 
 
 def test_what_halves_the_error_everywhere_passes() -> None:
     verdict = judged([10.0] * WINDOWS, [5.0] * WINDOWS)
     assert verdict.passed
     assert verdict.drop == pytest.approx(0.5)
-    assert verdict.improved == 1.0
+    assert verdict.improved_fraction == 1.0
     assert verdict.words == "gate: squared error falls by 50%, passed"
 
 

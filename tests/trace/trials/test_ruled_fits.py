@@ -37,9 +37,9 @@ def test_two_windows_that_hold_all_values_are_left_out_first(tmp_path: Path) -> 
     file = tmp_path / "pendulum.yaml"
     file.write_text(text, encoding="utf-8")
     search = begun(compile(read(file)), None, 1e-6, lambda _: None, TraceOptions())
-    train, bench = search.stretches.train, search.bench
-    short = bench.fitted((), search.windows(train, 25), 25, VALUES)
-    longer = bench.again(short, search.windows(train, 75), 75)
+    train, problem = search.data_split.train, search.problem
+    short = problem.fit((), search.windows(train, 25), 25, VALUES)
+    longer = problem.refit(short, search.windows(train, 75), 75)
     means = longer.windows.squares / [r.size for r in longer.windows.residuals]
-    assert longer.s2 < 1.5  # 2.2 from there
+    assert longer.reduced_chi2 < 1.5  # 2.2 from there
     assert np.max(means) < 3  # 14

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tracewire.trace.trials.statistics import Columns, bic, effective_part
+from tracewire.trace.trials.statistics import CandidateColumns, bic, effective_fraction
 
 
 def test_white_residuals_count_fully_and_slow_ones_by_their_half_waves() -> None:
     white = np.random.default_rng(7).normal(size=(5000, 1))
-    assert effective_part([white]) == pytest.approx(1.0, abs=0.05)
+    assert effective_fraction([white]) == pytest.approx(1.0, abs=0.05)
     t = np.arange(0, 100, 0.01)
     wave = np.sin(2 * np.pi * t)[:, None]
-    assert effective_part([wave]) * len(t) == pytest.approx(2 * 2 * 100, rel=0.05)
+    assert effective_fraction([wave]) * len(t) == pytest.approx(2 * 2 * 100, rel=0.05)
 
 
 def test_the_step_from_one_window_to_the_next_is_no_correlation() -> None:
     rng = np.random.default_rng(8)
     levels = [np.full((2, 1), value) for value in rng.normal(size=50)]
-    assert effective_part(levels) < 0.8, "inside a window the two samples are the same"
-    assert effective_part([level[:1] for level in levels]) == 1.0
+    assert effective_fraction(levels) < 0.8, "inside a window the two samples are the same"
+    assert effective_fraction([level[:1] for level in levels]) == 1.0
 
 
 def test_bic_prefers_the_smaller_model_where_the_larger_gains_nothing() -> None:
@@ -36,13 +36,13 @@ N = 2000
 TRUE, OTHER, ALIAS, ABSORBED = range(4)
 
 
-def made() -> Columns:
+def made() -> CandidateColumns:
     """Four columns: of the effect, another, one just like it, one that the unknowns imitate."""
     rng = np.random.default_rng(9)
     matrix = rng.normal(size=(N, 4))
     matrix[:, ALIAS] = matrix[:, TRUE] + 1e-3 * rng.normal(size=N)
     residual = -0.5 * matrix[:, TRUE] + rng.normal(size=N)
-    return Columns(residual, matrix, np.array([0.0, 0.0, 0.0, 1.0]), 1.0, N)
+    return CandidateColumns(residual, matrix, np.array([0.0, 0.0, 0.0, 1.0]), 1.0, N)
 
 
 def test_the_score_finds_the_column_and_its_coefficient() -> None:
@@ -66,18 +66,22 @@ def test_the_gain_is_half_the_fall_of_bic() -> None:
 
 def test_columns_that_the_data_cannot_tell_apart_are_alike() -> None:
     tested = made()
-    assert tested.likeness([TRUE], [ALIAS]) > 0.999
-    assert tested.likeness([TRUE], [OTHER]) < 0.1
-    assert tested.likeness([TRUE, OTHER], [OTHER]) == pytest.approx(1.0), "one spans the other"
+    assert tested.canonical_correlation([TRUE], [ALIAS]) > 0.999
+    assert tested.canonical_correlation([TRUE], [OTHER]) < 0.1
+    assert tested.canonical_correlation([TRUE, OTHER], [OTHER]) == pytest.approx(1.0), (
+        "one spans the other"
+    )
 
 
 def chance_of(seed: int, effect: float = 0.0, signs: tuple[int, ...] = (0,) * 20) -> float:
     rng = np.random.default_rng(seed)
     matrix = rng.normal(size=(500, 20))
-    columns = Columns(rng.normal(size=500) - effect * matrix[:, 3], matrix, np.zeros(20), 1.0, 500)
+    columns = CandidateColumns(
+        rng.normal(size=500) - effect * matrix[:, 3], matrix, np.zeros(20), 1.0, 500
+    )
     groups = [(n,) for n in range(20)]
     best = max(columns.score(group)[0] for group in groups)
-    return columns.chance(groups, signs, best)
+    return columns.p_value(groups, signs, best)
 
 
 def test_the_best_of_many_columns_on_noise_is_no_surprise() -> None:

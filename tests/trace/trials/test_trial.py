@@ -10,9 +10,9 @@ import pytest
 from oracles.oscillator import (
     DIAGRAM,
     NOISE,
-    bench_of,
     candidates_of,
     later,
+    problem_of,
     record,
     search_of,
     trial_of,
@@ -21,7 +21,7 @@ from scipy.integrate import solve_ivp
 from tracewire.errors import DiagramError, FitError
 from tracewire.residual import Measured
 from tracewire.residual.windows import Section, cut_windows
-from tracewire.trace.trials.trial import Added
+from tracewire.trace.trials.trial import PlacedEffect
 
 COULOMB = "coulomb @ force"
 
@@ -31,76 +31,78 @@ def rubbed(x: float, v: float) -> float:
 
 
 def test_the_declared_model_is_fitted_to_the_truth_of_its_record() -> None:
-    trial = trial_of(bench_of(record()))
+    trial = trial_of(problem_of(record()))
     assert trial.values == pytest.approx({"k": 25.0, "c": 0.2}, rel=0.05)
-    assert trial.s2 == pytest.approx(1.0, abs=0.2)
+    assert trial.reduced_chi2 == pytest.approx(1.0, abs=0.2)
     assert trial.unknowns == 2 + 2 * len(trial.windows.segments)
-    assert trial.freedom == trial.count - trial.unknowns
+    assert trial.degrees_of_freedom == trial.count - trial.unknowns
 
 
 def test_an_added_effect_is_fitted_with_its_coefficient() -> None:
-    bench = bench_of(record(rubbed, end=7.0))
-    coulomb = Added(candidates_of(bench)[COULOMB], {"level": 0.1})
-    without, trial = trial_of(bench), trial_of(bench, [coulomb])
+    problem = problem_of(record(rubbed, end=7.0))
+    coulomb = PlacedEffect(candidates_of(problem)[COULOMB], {"level": 0.1})
+    without, trial = trial_of(problem), trial_of(problem, [coulomb])
     (effect,) = trial.effects
     assert effect.coefficient == pytest.approx(0.4, rel=0.03)
     assert trial.values["coulomb.level"] == effect.coefficient
-    assert trial.s2 == pytest.approx(1.0, abs=0.2) and without.s2 > 3
+    assert trial.reduced_chi2 == pytest.approx(1.0, abs=0.2) and without.reduced_chi2 > 3
     assert "coulomb" in trial.diagram.blocks
-    assert bench.declared.diagram.text == without.diagram.text
+    assert problem.declared.diagram.text == without.diagram.text
 
 
 def test_bic_tells_an_effect_that_is_there_from_one_that_is_not() -> None:
-    bench = bench_of(record(rubbed, end=7.0))
-    known = candidates_of(bench)
-    now = trial_of(bench)
-    there = trial_of(bench, [Added(known[COULOMB], {"level": 0.1})])
+    problem = problem_of(record(rubbed, end=7.0))
+    known = candidates_of(problem)
+    now = trial_of(problem)
+    there = trial_of(problem, [PlacedEffect(known[COULOMB], {"level": 0.1})])
     other = trial_of(
-        bench,
+        problem,
         [
-            Added(known[COULOMB], {"level": 0.1}),
-            Added(known["cubic_stiffness @ force"], {"k": 0.01}),
+            PlacedEffect(known[COULOMB], {"level": 0.1}),
+            PlacedEffect(known["cubic_stiffness @ force"], {"k": 0.01}),
         ],
     )
-    part = there.part
-    assert there.quality(part) < now.quality(part) - 100
-    assert other.quality(part) > there.quality(part)
+    part = there.effective_fraction
+    assert there.bic(part) < now.bic(part) - 100
+    assert other.bic(part) > there.bic(part)
 
 
 def test_an_effect_knows_the_names_of_its_unknowns() -> None:
-    known = candidates_of(bench_of(record()))
-    coulomb = Added(known[COULOMB], {"level": 0.1, "width": 0.2})
+    known = candidates_of(problem_of(record()))
+    coulomb = PlacedEffect(known[COULOMB], {"level": 0.1, "width": 0.2})
     assert [coulomb.unknown(name) for name in coulomb.values] == ["coulomb.level", "coulomb.width"]
-    offset = Added(known["sensor_offset @ sensor.x"], {"offset": 0.01})
+    offset = PlacedEffect(known["sensor_offset @ sensor.x"], {"offset": 0.01})
     assert offset.unknown("offset") == "offset.x"
-    moved = coulomb.at({"coulomb.level": 0.3, "k": 9.0})
+    moved = coulomb.with_values({"coulomb.level": 0.3, "k": 9.0})
     assert moved.values == {"level": 0.3, "width": 0.2}
-    sharp = coulomb.at({"coulomb.level": 0.3, "coulomb.width": 0.01})
+    sharp = coulomb.with_values({"coulomb.level": 0.3, "coulomb.width": 0.01})
     assert sharp.values["width"] == 0.0, "as narrow as that it sticks, as far as the record shows"
 
 
 def test_what_is_fixed_is_not_fitted() -> None:
-    bench = bench_of(record())
-    segments = trial_of(bench).windows.segments
-    trial = bench.fitted((), segments, 60, {}, fixed={"c": 0.0})
+    problem = problem_of(record())
+    segments = trial_of(problem).windows.segments
+    trial = problem.fit((), segments, 60, {}, fixed={"c": 0.0})
     assert set(trial.values) == {"k"}
-    assert bench.all_values(trial) == {**trial.values, "c": 0.0}
-    assert bench.again(trial, segments, 60).values == pytest.approx(trial.values, rel=1e-3)
+    assert problem.all_values(trial) == {**trial.values, "c": 0.0}
+    assert problem.refit(trial, segments, 60).values == pytest.approx(trial.values, rel=1e-3)
 
 
 def test_on_other_windows_only_the_starts_are_fitted() -> None:
     m = record()
-    bench = bench_of(m)
-    trial = trial_of(bench)
-    other = bench.criterion(
-        trial, cut_windows(bench.declared, Section(m, 90, 270), 90, bench.states)
+    problem = problem_of(m)
+    trial = trial_of(problem)
+    other = problem.criterion_on(
+        trial, cut_windows(problem.declared, Section(m, 90, 270), 90, problem.states)
     )
     assert other.unknowns == () and other.parameters == trial.values
-    residuals = bench.on(trial, cut_windows(bench.declared, Section(m, 90, 270), 90, bench.states))
+    residuals = problem.residuals_on(
+        trial, cut_windows(problem.declared, Section(m, 90, 270), 90, problem.states)
+    )
     assert np.mean(np.concatenate(residuals) ** 2) == pytest.approx(1.0, abs=0.3)
     shifted = later(m, slice(90, 270), 0.05)
-    worse = bench.on(
-        trial, cut_windows(bench.declared, Section(shifted, 90, 270), 90, bench.states)
+    worse = problem.residuals_on(
+        trial, cut_windows(problem.declared, Section(shifted, 90, 270), 90, problem.states)
     )
     assert np.mean(np.concatenate(worse) ** 2) > 10, "an offset is no start"
 
@@ -108,7 +110,7 @@ def test_on_other_windows_only_the_starts_are_fitted() -> None:
 def test_a_diagram_that_does_not_run_is_told_with_its_block() -> None:
     text = DIAGRAM.replace("k: -k}", "k: -k/(c - c)}")
     with pytest.raises(FitError, match="'spring' is not finite"):
-        trial_of(bench_of(record(end=3.0), text=text))
+        trial_of(problem_of(record(end=3.0), text=text))
 
 
 def test_a_model_that_takes_too_many_events_is_given_up() -> None:
@@ -119,7 +121,7 @@ def test_a_model_that_takes_too_many_events_is_given_up() -> None:
         "  - {when: x - 0.501, crosses: both, set: {v: -1000 + 0*v}}\n"
     )
     with pytest.raises(FitError, match="more than 305 events"):
-        trial_of(bench_of(record(end=3.0), text=text))
+        trial_of(problem_of(record(end=3.0), text=text))
 
 
 def test_a_delay_is_found_on_short_windows_too() -> None:
@@ -137,11 +139,11 @@ def test_a_delay_is_found_on_short_windows_too() -> None:
     text = DIAGRAM.replace("spring, damper]", "spring, damper, drive]").replace(
         "  damper:", f"  drive: {{type: expression, formula: {drive}}}\n  damper:"
     )
-    bench = bench_of(m, text=text)
-    late = Added(candidates_of(bench)["sensor_delay @ sensor.x"], {"delay": 0.7 * delay})
-    trial = trial_of(bench, [late], length=20)
+    problem = problem_of(m, text=text)
+    late = PlacedEffect(candidates_of(problem)["sensor_delay @ sensor.x"], {"delay": 0.7 * delay})
+    trial = trial_of(problem, [late], length=20)
     assert trial.values["delay.x"] == pytest.approx(delay, rel=0.02)
-    assert trial.s2 == pytest.approx(1.0, abs=0.2)
+    assert trial.reduced_chi2 == pytest.approx(1.0, abs=0.2)
     begins = [window.begin for window in trial.windows.segments]
     assert all(b < w.t[0] - delay for b, w in zip(begins, trial.windows.segments, strict=True))
 
@@ -150,24 +152,24 @@ def test_where_the_text_has_no_room_for_an_effect_none_is_tried() -> None:
     """What a search finds is written into the text at its end."""
     folded = "force:\n    type: sum\n    of: >\n      spring"
     text = DIAGRAM.replace("force: {type: sum, of: [spring, damper]}", folded)
-    bench = bench_of(record(end=3.0), text=text)
+    problem = problem_of(record(end=3.0), text=text)
     for name in ("coulomb @ force", "bias @ force"):
-        effect = candidates_of(bench)[name]
+        effect = candidates_of(problem)[name]
         with pytest.raises(DiagramError, match="laid out here in a way that cannot be edited"):
-            trial_of(bench, [Added(effect, {effect.parameter: 0.1})])
-    assert [*bench.unwritable] == ["force"], "the text is tried once"
+            trial_of(problem, [PlacedEffect(effect, {effect.parameter: 0.1})])
+    assert [*problem.unwritable] == ["force"], "the text is tried once"
 
 
 def test_a_sum_of_a_row_is_told_and_no_end_of_a_search() -> None:
     """It is no place; where a candidate is there all the same, its change is refused."""
     text = DIAGRAM.replace("of: [spring, damper]}", "of: [spring, damper], replicate: 1}")
-    bench = bench_of(record(end=6.0), text=text.replace("of: force", "of: force_1"))
-    search = search_of(bench)
+    problem = problem_of(record(end=6.0), text=text.replace("of: force", "of: force_1"))
+    search = search_of(problem)
     now = search.declared()
-    assert "coulomb @ force_1" not in candidates_of(bench)
-    plain = candidates_of(bench_of(record(end=6.0), text=DIAGRAM))["coulomb @ force"]
+    assert "coulomb @ force_1" not in candidates_of(problem)
+    plain = candidates_of(problem_of(record(end=6.0), text=DIAGRAM))["coulomb @ force"]
     place = replace(plain.place, name="force_1", definition="force_1")
-    coulomb = Added(replace(plain, place=place), {"level": 0.1})
+    coulomb = PlacedEffect(replace(plain, place=place), {"level": 0.1})
     refit = search.refits.refit(now, [coulomb], now.windows.segments)
     assert search.refits.trials(now, [refit]) == [None]
     assert "coulomb @ force_1 was not tried: block 'force_1' is one of the row" in search.words[0]

@@ -51,7 +51,7 @@ class Candidate:
     """Shapes that are periods in time, as of a line in the spectrum of the residual."""
     modulated: Mapping[str, str] = field(default_factory=dict, hash=False)
     """The signals that waves of such periods multiply, by shape."""
-    scanned: Mapping[str, tuple[float, ...]] = field(default_factory=dict, hash=False)
+    scan_grid: Mapping[str, tuple[float, ...]] = field(default_factory=dict, hash=False)
     """Values of shapes of which a screen looks for the best, by parameter."""
     alias: tuple[str, ...] = ()
     """Effects that imitate this one on many records."""

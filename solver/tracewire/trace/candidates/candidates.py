@@ -10,11 +10,11 @@ from tracewire.compile import Model
 from tracewire.diagram import BlockUse, Diagram, EffectType, effects_of
 from tracewire.library import SENSOR_TERMS, Effect, Shape
 from tracewire.trace.candidates.candidate import Candidate
+from tracewire.trace.candidates.drive_sines import Sine, own_values
 from tracewire.trace.candidates.effects import bounds_of, scale_of
-from tracewire.trace.candidates.inside import opened
-from tracewire.trace.candidates.levels import Levels
+from tracewire.trace.candidates.inside import extensible_subsystems
 from tracewire.trace.candidates.places import Place
-from tracewire.trace.candidates.tones import Sine, own_values
+from tracewire.trace.candidates.signal_scales import SignalScales
 from tracewire.trace.thresholds import CandidateOptions
 
 NO_NAME = re.compile(r"\W+", re.ASCII)
@@ -25,10 +25,10 @@ RANGES = {"rates": "slowest", "drives": "least"}
 def find_candidates(
     model: Model,
     places: Sequence[Place],
-    levels: Levels,
+    signal_scales: SignalScales,
     options: CandidateOptions,
     taken: Sequence[Candidate] = (),
-    tones: Mapping[str, Mapping[str, Sine]] | None = None,
+    sines: Mapping[str, Mapping[str, Sine]] | None = None,
 ) -> list[Candidate]:
     """Every effect at every place that has the signals it needs.
 
@@ -36,20 +36,22 @@ def find_candidates(
     another body is tried for each. `taken` are effects that the model has already got from the
     trace. An offset, gain ... of a sensor that the diagram gives, free or not, is no candidate. An
     effect whose shapes are sizes of a signal that is always zero is left out, and so is one that
-    follows the tone of its drive where that has none in `tones` (by drive and series).
+    follows the tone of its drive where that has none in `sines` (by drive and series).
     """
     diagram = model.diagram
     found: list[Candidate] = []
     have = {(c.effect, c.place.name, c.of) for c in taken}
     names = set().union(diagram.blocks, diagram.parameters, diagram.inputs, diagram.subsystems)
     names |= {
-        f"{name}.{inner}" for name, use in opened(diagram).items() for inner in _names_in(use)
+        f"{name}.{inner}"
+        for name, use in extensible_subsystems(diagram).items()
+        for inner in _names_in(use)
     }
     kinds = effects_of(diagram)
     several = {kind: sum(p.kind == kind for p in places) > 1 for kind in ("sum", "drive")}
     for place in places:
         if place.kind == "sensor":
-            found += _sensor_candidates(diagram, place, levels)
+            found += _sensor_candidates(diagram, place, signal_scales)
             continue
         for kind in kinds:
             name = kind.name
@@ -62,7 +64,7 @@ def find_candidates(
                 block = f"{wanted}_{of}" if of else wanted
                 block = free_name(f"{place.within}.{block}" if place.within else block, names)
                 candidate = _candidate(
-                    kind, place, block, of, signals, levels, tones or {}, options
+                    kind, place, block, of, signals, signal_scales, sines or {}, options
                 )
                 if candidate is not None:
                     names.add(block)
@@ -121,15 +123,15 @@ def _candidate(
     block: str,
     of: str,
     signals: dict[str, str],
-    levels: Levels,
-    tones: Mapping[str, Mapping[str, Sine]],
+    signal_scales: SignalScales,
+    sines: Mapping[str, Mapping[str, Sine]],
     options: CandidateOptions,
 ) -> Candidate | None:
     effect = kind.effect
-    own = own_values(effect.tone, tones.get(place.definition)) if effect.tone else {}
+    own = own_values(effect.tone, sines.get(place.definition)) if effect.tone else {}
     if effect.tone and not own:
         return None
-    sizes = _sizes(effect, signals, place, levels, options)
+    sizes = _sizes(effect, signals, place, signal_scales, options)
     shapes: dict[str, tuple[float, ...]] = {}
     limits: dict[str, tuple[float, float]] = {}
     resolved: dict[str, float] = {}
@@ -155,9 +157,9 @@ def _candidate(
         at = values[0]
     low, high = bounds_of(kind, effect.coefficient)
     limits[effect.coefficient] = max(low, 0.0) if effect.sign else low, high
-    base = levels.of(place.definition if place.kind == "drive" else place.name).rms
-    inputs = {port: levels.of(signal) for port, signal in signals.items()}
-    scale = scale_of(kind, inputs, shapes, base, at, levels.duration, options.parts)
+    base = signal_scales.of(place.definition if place.kind == "drive" else place.name).rms
+    inputs = {port: signal_scales.of(signal) for port, signal in signals.items()}
+    scale = scale_of(kind, inputs, shapes, base, at, signal_scales.duration, options.parts)
     return Candidate(
         kind.name,
         place,
@@ -186,14 +188,14 @@ def _sizes(
     effect: Effect,
     signals: Mapping[str, str],
     place: Place,
-    levels: Levels,
+    signal_scales: SignalScales,
     options: CandidateOptions,
 ) -> dict[str, float]:
     """What the shapes of an effect are multiples of."""
     read = {symbol: signals[port] for port, symbol in effect.inputs.items()}
-    q = levels.of(read.get("q") or read.get("other_q") or place.q)
-    v = levels.of(read.get("v") or read.get("other_v") or place.v)
-    u = levels.of(read.get("u") or "".join(place.drive[:1]))
+    q = signal_scales.of(read.get("q") or read.get("other_q") or place.q)
+    v = signal_scales.of(read.get("v") or read.get("other_v") or place.v)
+    u = signal_scales.of(read.get("u") or "".join(place.drive[:1]))
     return {
         "": 1.0,
         "Q": q.max,
@@ -206,8 +208,8 @@ def _sizes(
         "U": u.max,
         "drives": u.max,
         "least": u.slowest,
-        "T": levels.duration,
-        "dt": levels.interval,
+        "T": signal_scales.duration,
+        "dt": signal_scales.interval,
     }
 
 
@@ -248,15 +250,17 @@ def _limits(
     return low, max(high, *grid)
 
 
-def _sensor_candidates(diagram: Diagram, place: Place, levels: Levels) -> Iterator[Candidate]:
+def _sensor_candidates(
+    diagram: Diagram, place: Place, signal_scales: SignalScales
+) -> Iterator[Candidate]:
     signal = place.definition
-    level = levels.of(signal)
+    scale = signal_scales.of(signal)
     scales = {
-        "offset": level.rms,
+        "offset": scale.rms,
         "gain": 1.0,
-        "delay": levels.interval,
-        "quad": 1 / level.max if level.max > 0 else 1.0,
-        "drift": level.rms / levels.duration,
+        "delay": signal_scales.interval,
+        "quad": 1 / scale.max if scale.max > 0 else 1.0,
+        "drift": scale.rms / signal_scales.duration,
     }
     channels = [s.channels[signal] for s in diagram.measured.values() if signal in s.channels]
     for kind, term in SENSOR_TERMS.items():

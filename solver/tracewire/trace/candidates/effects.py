@@ -9,7 +9,7 @@ from tracewire.compile import compile
 from tracewire.diagram import BlockUse, Diagram, EffectType, InputPort, Value, Wire
 from tracewire.errors import TracewireError
 from tracewire.formula import Number, evaluate
-from tracewire.trace.candidates.levels import Level
+from tracewire.trace.candidates.signal_scales import SignalScale
 
 
 def bounds_of(kind: EffectType, parameter: str) -> tuple[float, float]:
@@ -23,7 +23,7 @@ def bounds_of(kind: EffectType, parameter: str) -> tuple[float, float]:
 
 def scale_of(
     kind: EffectType,
-    inputs: Mapping[str, Level],
+    inputs: Mapping[str, SignalScale],
     shapes: Mapping[str, Sequence[float]],
     size: float,
     at: float,
@@ -43,7 +43,7 @@ def scale_of(
     numbers[kind.effect.coefficient] = at
     squares = []
     for part in parts:
-        given = {port: part * level.rms for port, level in inputs.items()}
+        given = {port: part * scale.rms for port, scale in inputs.items()}
         given["t"] = abs(part) * duration / 2
         try:
             squares.append(_output(kind, numbers, given) ** 2)

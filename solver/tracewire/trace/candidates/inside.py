@@ -10,7 +10,7 @@ from tracewire.diagram import BlockUse, Diagram, find_signal
 from tracewire.errors import Place
 
 
-def opened(diagram: Diagram) -> dict[str, BlockUse]:
+def extensible_subsystems(diagram: Diagram) -> dict[str, BlockUse]:
     """The blocks whose subsystems may get an effect, by their path, at any depth.
 
     An effect is added to the text of a definition. So that has to be in the diagram's own text or
@@ -18,7 +18,7 @@ def opened(diagram: Diagram) -> dict[str, BlockUse]:
     its name. What an included file defines stays as it is: the block gets a definition that extends
     it (`AddBlock.own`). A body that a parameter chooses has no block of its own in the text.
     """
-    return {path: use for path, use, why in _looked_into(diagram) if not why}
+    return {path: use for path, use, why in _subsystems(diagram) if not why}
 
 
 def is_included(diagram: Diagram, use: BlockUse) -> bool:
@@ -26,11 +26,11 @@ def is_included(diagram: Diagram, use: BlockUse) -> bool:
     return use.subsystem is not None and use.subsystem.file != diagram.file
 
 
-def closed(diagram: Diagram) -> dict[str, str]:
+def closed_subsystems(diagram: Diagram) -> dict[str, str]:
     """Why subsystems with sums are not looked into, by the path of a block or a row of blocks."""
     return {
         path: why
-        for path, use, why in _looked_into(diagram)
+        for path, use, why in _subsystems(diagram)
         if why and any(inside.type == "sum" for inside in _blocks(use))
     }
 
@@ -38,14 +38,14 @@ def closed(diagram: Diagram) -> dict[str, str]:
 def rows_of_sums(diagram: Diagram) -> list[str]:
     """The rows of sums where an effect could be added otherwise, by their paths."""
     found: dict[str, None] = {}
-    for path in ("", *opened(diagram)):
+    for path in ("", *extensible_subsystems(diagram)):
         for use in diagram_at(diagram, path).blocks.values():
             if use.row and use.type == "sum":
                 found.setdefault(f"{path}.{use.row}" if path else use.row)
     return [*found]
 
 
-def _looked_into(diagram: Diagram) -> Iterator[tuple[str, BlockUse, str]]:
+def _subsystems(diagram: Diagram) -> Iterator[tuple[str, BlockUse, str]]:
     """The blocks that are subsystems, and why one gets no effect ('' where it may). What is inside
     of one that gets none for all of it is left out; a row stands once, by its name."""
     uses = Counter(_used(diagram))

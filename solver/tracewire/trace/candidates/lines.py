@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tracewire.residual import Windows
 from tracewire.trace.candidates.candidate import Candidate
-from tracewire.trace.candidates.levels import Trajectory
+from tracewire.trace.candidates.signal_scales import Trajectory
 from tracewire.trace.thresholds import CandidateOptions
 
 Vector = NDArray[np.float64]
@@ -41,7 +41,7 @@ def with_lines(
                 inside = [period for period in beside if low <= period <= high]
                 if inside:  # else the grid stays as a whole, by which chance is judged
                     own = sorted({*inside, *grid}, reverse=True)
-                    candidate = replace(candidate, scanned={shape: tuple(own)})
+                    candidate = replace(candidate, scan_grid={shape: tuple(own)})
             else:
                 own = [period for period in periods if low <= period <= high]
                 shapes = {**candidate.shapes, shape: (*own, *grid)}

@@ -11,11 +11,11 @@ from tracewire.compile import Flat, FlatBlock, FlatState, Model
 from tracewire.diagram import Diagram, element_name, find_signal, split_index
 from tracewire.formula import Name, names_of
 from tracewire.trace.candidates.inside import (
-    closed,
+    closed_subsystems,
     diagram_at,
+    extensible_subsystems,
     is_included,
     local_name,
-    opened,
     rows_of_sums,
 )
 
@@ -58,8 +58,9 @@ def find_places(model: Model) -> list[Place]:
     another place of the same state says nothing new and is left out. Where the diagram itself says
     which sum is the place of a rate (`place: {q: ..., v: ...}`), that sum is the only one; it may
     name a coordinate alone, where nothing has a rate (see `untried`). A sum
-    inside subsystems is a place where each is the only block of its type (see `opened`). Each
-    element of a sum of vectors is a place; sums of matrices are not tried.
+    inside subsystems is a place where each is the only block of its type (see
+    `extensible_subsystems`). Each element of a sum of vectors is a place; sums of matrices are not
+    tried.
 
     A sum of a row is no place: a row has one line, and each block of it other signals.
 
@@ -72,7 +73,7 @@ def find_places(model: Model) -> list[Place]:
     Sensors: the signals that a series measures in a column of its own; but not an input.
     """
     drives = tuple(_drives(model))
-    inside = opened(model.diagram)
+    inside = extensible_subsystems(model.diagram)
     sums = _sums(model.flat, drives, inside)
     included = {path for path, use in inside.items() if is_included(model.diagram, use)}
     sums = [replace(p, own=p.within) if p.within in included else p for p in sums]
@@ -85,11 +86,11 @@ def find_places(model: Model) -> list[Place]:
     ]
 
 
-def untried(diagram: Diagram, places: Sequence[Place]) -> list[str]:
+def describe_untried(diagram: Diagram, places: Sequence[Place]) -> list[str]:
     """What cannot be tried, in words: at sums inside some subsystems, at rows of sums, and at sums
     that have no rate, or no coordinate."""
     shut: dict[str, list[str]] = {}
-    for path, why in closed(diagram).items():
+    for path, why in closed_subsystems(diagram).items():
         shut.setdefault(why, []).append(f"'{path}'")
     found = [
         f"nothing is tried at sums inside {', '.join(paths[:MOST_TOLD])}"
@@ -128,17 +129,17 @@ def _sums(flat: Flat, drives: tuple[str, ...], inside: Collection[str]) -> list[
         for name, distance in _sums_behind(flat, names_of(state.rate)):
             if name not in nearest or distance < nearest[name][0]:
                 nearest[name] = (distance, state.name)
-    told = {
+    local_names = {
         name: _local(flat, name, block)
         for name, block in flat.blocks.items()
         if block.type == "sum"
         and {"q", "v"} & block.local.keys()
         and _is_reached(name, block, inside)
     }
-    taken = {local["v"] for local in told.values() if "v" in local}
-    rates = {n: (local.get("v", ""), local.get("q", "")) for n, local in told.items()}
+    taken = {local["v"] for local in local_names.values() if "v" in local}
+    rates = {n: (local.get("v", ""), local.get("q", "")) for n, local in local_names.items()}
     for name, (_, fed) in nearest.items():
-        if name in told or fed in taken or not _is_reached(name, flat.blocks[name], inside):
+        if name in local_names or fed in taken or not _is_reached(name, flat.blocks[name], inside):
             continue
         if not _only_feeds(flat, name, fed, nearest):
             rates[name] = fed, coordinates.get(fed, "")

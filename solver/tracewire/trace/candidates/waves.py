@@ -16,7 +16,7 @@ from tracewire.errors import TracewireError
 from tracewire.formula import evaluate_along
 from tracewire.residual import Windows
 from tracewire.trace.candidates.candidate import Candidate
-from tracewire.trace.candidates.levels import Trajectory
+from tracewire.trace.candidates.signal_scales import Trajectory
 from tracewire.trace.thresholds import CandidateOptions
 
 Vector = NDArray[np.float64]
@@ -29,7 +29,7 @@ TOGETHER = 64
 """Lengths that are scanned at once: what the columns of all would take is much memory."""
 
 
-def scanned(
+def scan_waves(
     model: Model,
     candidates: Sequence[Candidate],
     runs: Sequence[Trajectory],
@@ -49,7 +49,7 @@ def scanned(
     """
     found = []
     for candidate in candidates:
-        for shape in (*candidate.waves, *candidate.scanned):
+        for shape in (*candidate.waves, *candidate.scan_grid):
             try:
                 grid = _peaks(model, candidate, shape, runs, used, residual, answer, options)
             except TracewireError:
@@ -86,7 +86,7 @@ def _peaks(
 ) -> tuple[float, ...]:
     """The lengths at the highest peaks of the score, the best first."""
     angle = model.flat.units.get(candidate.place.q) == "rad"
-    near = candidate.scanned.get(shape)
+    near = candidate.scan_grid.get(shape)
     lengths = np.array(near) if near else _lengths(*candidate.limits[shape], angle, options)
     falls = []
     for first in range(0, len(lengths), TOGETHER):
@@ -96,7 +96,7 @@ def _peaks(
             for run, samples in zip(runs, used, strict=True)
         ]
         columns = answer(candidate.place.name, torques)
-        falls += [_fall(part, residual) for part in np.split(columns, len(some), axis=1)]
+        falls += [_rss_reduction(part, residual) for part in np.split(columns, len(some), axis=1)]
     scores = np.array(falls)
     ahead = np.r_[-np.inf, scores[:-1]], np.r_[scores[1:], -np.inf]
     peaks = np.flatnonzero((scores >= ahead[0]) & (scores >= ahead[1]))
@@ -141,7 +141,7 @@ def _outputs(
     return found
 
 
-def _fall(columns: Matrix, residual: Vector) -> float:
+def _rss_reduction(columns: Matrix, residual: Vector) -> float:
     """By how much columns together lower the sum of squares of a residual."""
     sizes = np.linalg.norm(columns, axis=0)
     kept = columns[:, sizes > 0] / sizes[sizes > 0]

@@ -16,7 +16,7 @@ from tracewire.formula import Name, same_quantity
 from tracewire.residual import Measured, Section, channel_noise, cut_windows, with_past
 from tracewire.solve import values_at, with_points
 from tracewire.trace.thresholds import CheckOptions
-from tracewire.trace.trials.trial import Bench
+from tracewire.trace.trials.trial import TraceProblem
 
 Vector = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ def refuse_mistakes(
     model: Model,
     measured: Sequence[Measured],
     options: CheckOptions,
-    s2: float = np.inf,
+    reduced_chi2: float = np.inf,
     rtol: float = 1e-6,
 ) -> None:
     """Refuse a record that the declared model explains once a mistake in it is undone.
@@ -44,20 +44,24 @@ def refuse_mistakes(
     the first train series, in short windows. A mistake is told only where a record far from the
     noise comes nearer by a factor of 30 without it: no effect of the library does that.
 
-    s2: RSS per degree of freedom of the declared model in short windows, where it is known; below
-    30 nothing is tried. Raises DataError.
+    reduced_chi2: RSS per degree of freedom of the declared model in short windows, where it is
+    known; below 30 nothing is tried. Raises DataError.
     """
     train = [m for m in measured if m.use == "train" and len(m.t) > options.mistake_window]
-    if s2 < options.mistake_from or not train:
+    if reduced_chi2 < options.mistake_from or not train:
         return
     m = _beginning(model, train[0], options.mistake_samples)
-    before = declared_s2(model, [m], rtol, options.mistake_window, options.mistake_first_steps)
+    before = declared_reduced_chi2(
+        model, [m], rtol, options.mistake_window, options.mistake_first_steps
+    )
     if before < options.mistake_from:
         return
     best, found = np.inf, None
     for mistake in chain(_shifts(model, train[0], m, before, rtol, options), _units(model, m)):
         length, steps = options.mistake_window, options.mistake_steps
-        after = declared_s2(model, [_with_own_past(model, mistake.undone(m))], rtol, length, steps)
+        after = declared_reduced_chi2(
+            model, [_with_own_past(model, mistake.undone(m))], rtol, length, steps
+        )
         if after < best:
             best, found = after, mistake
         if best < options.mistake_undone:
@@ -72,7 +76,7 @@ def _with_own_past(model: Model, m: Measured) -> Measured:
     return with_past(model, replace(m, past={}), "each window") if m.past else m
 
 
-def declared_s2(
+def declared_reduced_chi2(
     model: Model, measured: Sequence[Measured], rtol: float, length: int, steps: int
 ) -> float:
     """RSS per degree of freedom of the declared model, fitted to windows of `length` samples with
@@ -86,8 +90,8 @@ def declared_s2(
             for m in measured
             for w in cut_windows(model, Section(m, 0, len(m.t)), length, model.states)
         ]
-        bench = Bench(model, tuple(measured), channel_noise(measured), rtol)
-        return bench.fitted((), windows, length, {}, steps=steps).s2
+        problem = TraceProblem(model, tuple(measured), channel_noise(measured), rtol)
+        return problem.fit((), windows, length, {}, steps=steps).reduced_chi2
     except TracewireError:
         return np.inf
 
@@ -116,14 +120,14 @@ def _units(model: Model, m: Measured) -> Iterator[Mistake]:
             yield Mistake(
                 f"if {shown} {verb} in {meaning}",
                 "Say the unit of the column: in its header, or in the diagram.",
-                partial(_scaled, names=names, factor=factor),
+                partial(_scale_signals, names=names, factor=factor),
             )
     for name in m.inputs:
         for factor, meaning in ((1e-3, "thousandths of"), (1e3, "thousands of")):
             yield Mistake(
                 f"if the input '{name}' is in {meaning} its unit",
                 "Say the unit of the column: in its header, or in the diagram.",
-                partial(_louder, name=name, factor=factor),
+                partial(_scale_input, name=name, factor=factor),
             )
 
 
@@ -137,7 +141,7 @@ def _is(unit: str, *others: str) -> bool:
         return False
 
 
-def _scaled(m: Measured, names: Sequence[str], factor: float) -> Measured:
+def _scale_signals(m: Measured, names: Sequence[str], factor: float) -> Measured:
     values = {name: v * factor if name in names else v for name, v in m.values.items()}
     sigma = {
         name: None if s is None else s * factor if name in names else s
@@ -146,7 +150,7 @@ def _scaled(m: Measured, names: Sequence[str], factor: float) -> Measured:
     return replace(m, values=values, sigma=sigma)
 
 
-def _louder(m: Measured, name: str, factor: float) -> Measured:
+def _scale_input(m: Measured, name: str, factor: float) -> Measured:
     t, values = m.inputs[name]
     return replace(m, inputs={**m.inputs, name: with_points(m.inputs[name], t, values * factor)})
 
@@ -162,29 +166,32 @@ def _shifts(
 
     def left(lag: float) -> float:
         length, steps = options.mistake_window, options.mistake_steps
-        return declared_s2(model, [shifted(part, lag)], rtol, length, steps)
+        return declared_reduced_chi2(model, [shift_inputs(part, lag)], rtol, length, steps)
 
-    def hopeful(s2: float) -> bool:
-        return options.mistake_undone < s2 < before / options.lag_hopeful
+    def is_worth_refining(reduced_chi2: float) -> bool:
+        return options.mistake_undone < reduced_chi2 < before / options.lag_hopeful
 
-    for begun in likely_lags(model, m, options):
-        if -options.lag_before < begun / step < options.lag_after:
+    for likely in likely_lags(model, m, options):
+        if -options.lag_before < likely / step < options.lag_after:
             continue
-        lag, least = begun, left(begun)
+        lag, least = likely, left(likely)
         for side in (-step, step):
-            while hopeful(least) and (there := left(lag + side)) < options.lag_better * least:
+            while (
+                is_worth_refining(least)
+                and (there := left(lag + side)) < options.lag_better * least
+            ):
                 lag, least = lag + side, there
-                if abs(lag - begun) > options.lag_steps * step:
+                if abs(lag - likely) > options.lag_steps * step:
                     break
         when = f"about {abs(lag):.2g} s {'after' if lag > 0 else 'before'} its drive"
         yield Mistake(
             f"if its signals come {when}",
             "Are drive and signals from one clock? Put them to the same time.",
-            partial(shifted, lag=lag),
+            partial(shift_inputs, lag=lag),
         )
 
 
-def shifted(m: Measured, lag: float) -> Measured:
+def shift_inputs(m: Measured, lag: float) -> Measured:
     """A series whose inputs act later by `lag` (s)."""
     later = {n: with_points(known, known[0] + lag, known[1]) for n, known in m.inputs.items()}
     return replace(m, inputs=later)
@@ -200,7 +207,7 @@ def likely_lags(model: Model, m: Measured, options: CheckOptions, most: int = 3)
     step = float(np.median(np.diff(m.t)))
     if not m.inputs or len(m.t) < 8 * options.lag_bump:
         return []
-    target, basis = _weighed(model, m, step, options.lag_bump)
+    target, basis = _weak_form(model, m, step, options.lag_bump)
     basis, _ = np.linalg.qr(basis)
     target = target - basis @ (basis.T @ target)
     bump, _, _ = _bump(step, options.lag_bump)
@@ -223,7 +230,7 @@ def likely_lags(model: Model, m: Measured, options: CheckOptions, most: int = 3)
     return found
 
 
-def _weighed(model: Model, m: Measured, step: float, half: int) -> tuple[Vector, Vector]:
+def _weak_form(model: Model, m: Measured, step: float, half: int) -> tuple[Vector, Vector]:
     """Accelerations (N, signals), and what they may depend on (N, n)."""
     bump, first, second = _bump(step, half)
     rates = {state.name: state.rate for state in model.flat.states}

@@ -28,7 +28,7 @@ from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal, Screen
 from tracewire.trace.screen.shortlist import distinct
 from tracewire.trace.search.search import Search
-from tracewire.trace.trials.trial import Added, Trial, begun_there
+from tracewire.trace.trials.trial import PlacedEffect, Trial, with_starts_of
 
 Array = NDArray[np.float64]
 Key = tuple[frozenset[str], tuple[str, ...]]
@@ -49,9 +49,9 @@ class Pool:
 
     def declared(self, begun: Trial) -> Finalist:
         """The declared model at each horizon, from a fit of it."""
-        bench, trials, trial = self.search.bench, [], begun
+        problem, trials, trial = self.search.problem, [], begun
         for horizon in self.horizons.each:
-            trial = bench.fitted((), list(horizon.segments), horizon.length, trial.values)
+            trial = problem.fit((), list(horizon.segments), horizon.length, trial.values)
             trials.append(trial)
         return self._kept(Finalist(tuple(trials)))
 
@@ -89,7 +89,7 @@ class Pool:
         most, declared = self.options.negligible, self.models[frozenset(), ()].trials
         return any(
             all(
-                one.rss - one.freedom <= most * (whole.rss - whole.freedom)
+                one.rss - one.degrees_of_freedom <= most * (whole.rss - whole.degrees_of_freedom)
                 for one, whole in zip(model.trials, declared, strict=True)
             )
             and not any(
@@ -120,7 +120,7 @@ class Pool:
         for horizon in self.horizons.each:
             try:
                 target = self._target(horizon.length, len(trial.effects))
-                trial = self.search.bench.again(trial, horizon.segments, horizon.length, target)
+                trial = self.search.problem.refit(trial, horizon.segments, horizon.length, target)
             except FitError:
                 return None
             self.spent += trial.windows.criterion.steps
@@ -186,7 +186,7 @@ class Pool:
 
     def at(self, parent: Finalist, number: int) -> Trial:
         """A model on the windows of a horizon on which effects are screened."""
-        return self.search.bench.some(parent.trials[number], self.sparse[number])
+        return self.search.problem.on_some_windows(parent.trials[number], self.sparse[number])
 
     def screened(self, parent: Finalist, number: int) -> Screen:
         """The screen beside a model at a horizon."""
@@ -244,7 +244,7 @@ class Pool:
     def fitted(
         self,
         parent: Finalist,
-        added: Sequence[Added],
+        added: Sequence[PlacedEffect],
         dropped: Sequence[str] = (),
         begun: tuple[int, Trial] | None = None,
     ) -> Finalist | None:
@@ -261,7 +261,7 @@ class Pool:
             now = parent.trials[number]
             segments = now.windows.segments
             if begun and number == begun[0]:
-                segments = begun_there(segments, begun[1], self.sparse[number])
+                segments = with_starts_of(segments, begun[1], self.sparse[number])
             target = self._target(now.length, len(parent.names) + len(effects))
             steps = self.options.steps
             trial = self._refitted(now, effects, dropped, steps, target, values, segments)
@@ -276,9 +276,9 @@ class Pool:
         """The model refitted until it converges."""
         if all(trial.converged for trial in model.trials):
             return model
-        bench = self.search.bench
+        problem = self.search.problem
         trials = tuple(
-            trial if trial.converged else bench.again(trial, trial.windows.segments, trial.length)
+            trial if trial.converged else problem.refit(trial, trial.windows.segments, trial.length)
             for trial in model.trials
         )
         self.models[model.key] = replace(model, trials=trials)
@@ -342,7 +342,7 @@ class Pool:
 
     def without_terms(self, model: Finalist) -> list[Finalist]:
         """The model without each declared term that may be zero and is not."""
-        own, found = self.search.bench.declared.flat.parameters, []
+        own, found = self.search.problem.declared.flat.parameters, []
         for unknown in model.trials[0].windows.criterion.unknowns:
             if unknown.low != 0.0 or unknown.name not in own or unknown.name in model.vanished:
                 continue
@@ -358,7 +358,7 @@ class Pool:
     def _refitted(
         self,
         now: Trial,
-        added: Sequence[Added],
+        added: Sequence[PlacedEffect],
         dropped: Sequence[str],
         steps: int,
         target: float,
@@ -370,7 +370,9 @@ class Pool:
         trial = self._fit(now, effects, fixed, steps, target, values, segments)
         if added and (trial is None or trial.rss > now.rss):  # the promised size led it astray
             part = self.options.restart
-            small = [one.having(one.candidate.parameter, part * one.coefficient) for one in added]
+            small = [
+                one.with_value(one.candidate.parameter, part * one.coefficient) for one in added
+            ]
             again = self._fit(now, (*now.effects, *small), fixed, steps, target)
             trial = min((t for t in (trial, again) if t), key=lambda t: t.rss, default=None)
         return trial
@@ -378,7 +380,7 @@ class Pool:
     def _fit(
         self,
         now: Trial,
-        effects: Sequence[Added],
+        effects: Sequence[PlacedEffect],
         fixed: dict[str, float],
         steps: int,
         target: float,
@@ -393,8 +395,8 @@ class Pool:
             fixed=fixed,
             steps=steps,
             target=target,
-            creeps=self.options.coarse,
-            settling=1,
+            ftol=self.options.coarse,
+            initial_state_steps=1,
             values=values,
         )
         (fitted,) = self.search.refits.trials(now, [refit])
@@ -418,7 +420,7 @@ class Pool:
             for name in sorted(model.names):
                 self._replaced(model, name, self._instead_of(model, name))
 
-    def _instead_of(self, model: Finalist, name: str) -> list[Added]:
+    def _instead_of(self, model: Finalist, name: str) -> list[PlacedEffect]:
         """The effects that promise the most in the place of one, at the values that the model has
         with it: refitted without it these may be far away, and others look alike there."""
         number = len(self.horizons.each) - 1
@@ -427,7 +429,7 @@ class Pool:
         fixed = now.windows.criterion.parameters
         self.search.tell(f"screening effects in the place of {name}")
         try:
-            bare = self.search.bench.fitted(
+            bare = self.search.problem.fit(
                 kept, now.windows.segments, now.length, now.values, fixed=fixed, steps=0
             )
         except FitError:
@@ -437,7 +439,7 @@ class Pool:
         found = [row.added for proposal in proposals for row in proposal.rows]
         return [one for one in found if str(one) not in model.names][:count]
 
-    def _replaced(self, model: Finalist, name: str, others: Sequence[Added]) -> None:
+    def _replaced(self, model: Finalist, name: str, others: Sequence[PlacedEffect]) -> None:
         """Refit a model with others in the place of an effect, from its values: also one that is
         known and far behind, as its fit may have ended in another minimum."""
         for other in others:

@@ -22,7 +22,7 @@ from tracewire.solve import release
 from tracewire.trace.choose.horizons import REST, Horizon, Horizons, restricted
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.trials.bounds import at_bounds
-from tracewire.trace.trials.trial import Bench, Trial
+from tracewire.trace.trials.trial import TraceProblem, Trial
 
 Vector = NDArray[np.float64]
 Array = NDArray[np.float64]
@@ -93,7 +93,7 @@ def errors_in_sample(finalist: Finalist, horizons: Horizons) -> Array:
 
 
 def errors_held_out(
-    bench: Bench, finalist: Finalist, horizons: Horizons, options: TraceOptions
+    problem: TraceProblem, finalist: Finalist, horizons: Horizons, options: TraceOptions
 ) -> Array:
     """The mean squared residual E/n in sigma of each block, predicted by fits without it.
 
@@ -108,7 +108,7 @@ def errors_held_out(
         for number, family in enumerate(horizons.folds):
             steps = options.fold_steps if number else 0
             parts = [
-                _predicted(bench, trial, horizon, newton, group, steps, options.coarse)
+                _predicted(problem, trial, horizon, newton, group, steps, options.coarse)
                 for group in family
             ]
             families.append(
@@ -116,18 +116,20 @@ def errors_held_out(
             )
         predicted = np.stack(families)
         if horizons.gate:
-            judged = _judged(bench, trial, horizons.gate[at], horizons.count - horizons.fitted)
+            judged = _judged(problem, trial, horizons.gate[at], horizons.count - horizons.fitted)
             predicted = np.concatenate((predicted, np.stack([judged] * len(families))), axis=1)
         release(trial.model)
         found.append(predicted)
     return np.stack(found)
 
 
-def _judged(bench: Bench, trial: Trial, horizon: Horizon, count: int) -> Array:
+def _judged(problem: TraceProblem, trial: Trial, horizon: Horizon, count: int) -> Array:
     """The mean squared residual of blocks of series that no fit sees, (blocks, channels)."""
     try:
         windows = fit_initial_states(
-            evaluate_windows(bench.criterion(trial, horizon.segments), trial.windows.inlier_limit)
+            evaluate_windows(
+                problem.criterion_on(trial, horizon.segments), trial.windows.inlier_limit
+            )
         )
     except FitError:
         columns = trial.windows.residuals[0].shape[1]
@@ -172,13 +174,13 @@ class _Newton:
 
 
 def _predicted(
-    bench: Bench,
+    problem: TraceProblem,
     trial: Trial,
     horizon: Horizon,
     newton: _Newton,
     group: Sequence[int],
     steps: int,
-    creeps: float,
+    ftol: float,
 ) -> list[tuple[Ints, Vector]]:
     """The blocks and the residuals in sigma of the rows that a fold leaves out."""
     known = trial.windows.segments
@@ -193,19 +195,19 @@ def _predicted(
         if steps or not newton.exact:
             segments = [restricted(known[n], rows) for n, rows in kept]
             begun = evaluate_windows(
-                bench.warm(trial, segments, values), trial.windows.inlier_limit
+                problem.free_criterion(trial, segments, values), trial.windows.inlier_limit
             )
-            fitted, _ = fit_windows(begun, max(steps, 1), ftol=creeps, initial_state_steps=1)
+            fitted, _ = fit_windows(begun, max(steps, 1), ftol=ftol, initial_state_steps=1)
             values = fitted.values
             starts = {n: start for (n, _), start in zip(kept, fitted.starts, strict=True)}
-        residuals = _residuals(bench, trial, held, starts, values)
+        residuals = _residuals(problem, trial, held, starts, values)
     except FitError:
         return failed
     return [(horizon.blocks[n][rows], r) for (n, rows), r in zip(held, residuals, strict=True)]
 
 
 def _residuals(
-    bench: Bench,
+    problem: TraceProblem,
     trial: Trial,
     held: Sequence[tuple[int, Ints]],
     starts: Mapping[int, Mapping[str, float]],
@@ -218,7 +220,9 @@ def _residuals(
         if n in starts:  # its other rows were fitted, and with them its start
             segment = replace(segment, start={**segment.start, **starts[n]}, free=())
         segments.append(segment)
-    begun = evaluate_windows(bench.at(trial, segments, values), trial.windows.inlier_limit)
+    begun = evaluate_windows(
+        problem.fixed_criterion(trial, segments, values), trial.windows.inlier_limit
+    )
     return fit_initial_states(begun).residuals
 
 

@@ -43,7 +43,7 @@ def _noises(
     search: Search, trial: Trial, measured: Measured, numbers: list[int]
 ) -> Mapping[str, tuple[float, float]]:
     """The likely noise of each input of a series, and the reduced chi-square that it leaves."""
-    windows, values = trial.windows, search.bench.all_values(trial)
+    windows, values = trial.windows, search.problem.all_values(trial)
     count, segments = len(windows.values), windows.segments
     parts = [
         (
@@ -57,7 +57,7 @@ def _noises(
     for name in measured.inputs:
         try:
             response = response_in_windows(trial.model, measured, values, trial.length)
-            noise = likely_input_noise(response, name, search.bench.sigma, parts)
+            noise = likely_input_noise(response, name, search.problem.sigma, parts)
         except SimulationError:
             continue
         if noise.sigma > 0:

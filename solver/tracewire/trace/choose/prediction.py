@@ -82,7 +82,7 @@ class Prediction:
         rows = self.screen.visible()
         if one not in rows or other not in rows:
             return float("nan")
-        return self.screen.columns.likeness(rows[one].columns, rows[other].columns)
+        return self.screen.columns.canonical_correlation(rows[one].columns, rows[other].columns)
 
     def told(self) -> StepTold:
         """The comparison as a step of the search."""
@@ -97,25 +97,25 @@ class Prediction:
                     f"{model.title}{without}",
                     float("nan"),
                     float(scores[0] - scores[n]) * self.horizons.count,
-                    s2=model.trials[-1].s2,
+                    s2=model.trials[-1].reduced_chi2,
                     remark=f"{model.numbers} numbers, {change:+.1%} error on held-out blocks",
                 )
             )
         longest = self.horizons.each[-1].length * self.horizons.interval
-        declared = self.models[0].trials[-1].s2
+        declared = self.models[0].trials[-1].reduced_chi2
         words = f"held-out blocks choose {self.taken.title} (z = {self.choice.z:.3g})"
         return StepTold(longest, declared, float("nan"), tuple(rows), words)
 
 
 def predict(search: Search, begun: Trial) -> Prediction:
     """Compare the declared model and the best extended ones by what they predict."""
-    options, stretches = search.options, search.stretches
+    options, data_split = search.options, search.data_split
     if not search.returns:  # what adds to an effect along one way is not to be told from it
         options = replace(options, effects=1)
-    gate = [section for section in stretches.gate if section.measured.use == "gate"]
-    declared_model = search.bench.declared
+    gate = [section for section in data_split.gate if section.measured.use == "gate"]
+    declared_model = search.problem.declared
     horizons = horizons_of(
-        declared_model, stretches.whole(), gate, search.free, search.bench.sigma, options
+        declared_model, data_split.whole(), gate, search.free, search.problem.sigma, options
     )
     search.tell("fitting the declared model at both horizons")
     pool = Pool(search, horizons, options)
@@ -230,7 +230,7 @@ def _stand(pool: Pool, errors: dict[Key, Array]) -> None:
 def _errors(pool: Pool, model: Finalist) -> Array:
     search = pool.search
     search.tell(f"predicting with {' and '.join(sorted(model.names)) or 'the declared model'}")
-    return errors_held_out(search.bench, model, pool.horizons, pool.options)
+    return errors_held_out(search.problem, model, pool.horizons, pool.options)
 
 
 def _chosen(pool: Pool, errors: dict[Key, Array]) -> Prediction:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from tracewire.trace.check.mistakes import refuse_mistakes
-from tracewire.trace.check.tolerance import is_loose, tightened
+from tracewire.trace.check.tolerance import is_loose, tighten_tolerance
 from tracewire.trace.choose.unseen import (
     joined,
     raises_unseen,
@@ -22,7 +22,7 @@ def fit_declared(search: Search) -> Trial:
     """The declared fit, with a tolerance at which the solver's error does not count."""
     declared = search.declared()
     for _ in range(search.options.check.tightened):
-        if not is_loose(search.bench, declared):
+        if not is_loose(search.problem, declared):
             break
         _tighten(search)
         declared = search.declared()
@@ -30,9 +30,9 @@ def fit_declared(search: Search) -> Trial:
 
 
 def _tighten(search: Search) -> None:
-    search.bench = tightened(search.bench)
+    search.problem = tighten_tolerance(search.problem)
     search.words.append(
-        f"the solver's error counted beside the residual: rtol is {search.bench.rtol:.0e} now"
+        f"the solver's error counted beside the residual: rtol is {search.problem.rtol:.0e} now"
     )
 
 
@@ -42,11 +42,11 @@ def safeguard(search: Search, judgement: Judgement) -> Judgement:
     hardly lower the error of whole unseen runs are an approximation."""
     final = judgement.final
     for _ in range(search.options.check.tightened):
-        if not (final.best.effects and is_loose(search.bench, final.best)):
+        if not (final.best.effects and is_loose(search.problem, final.best)):
             break
         _tighten(search)
         declared, best = (
-            search.bench.again(trial, trial.windows.segments, trial.length)
+            search.problem.refit(trial, trial.windows.segments, trial.length)
             for trial in (final.declared, final.best)
         )
         final = replace(final, declared=declared, best=best)
@@ -89,8 +89,10 @@ def refuse_mistaken(search: Search, declared: Trial, judgement: Judgement) -> No
     best = judgement.final.best
     suspicious = any(e.candidate.place.kind != "sum" for e in best.effects)
     if suspicious or (
-        judgement.verdict == "unexplained" and best.s2 > search.options.check.suspicious
+        judgement.verdict == "unexplained" and best.reduced_chi2 > search.options.check.suspicious
     ):
         search.tell("looking for mistakes in the records")
-        bench, options = search.bench, search.options.check
-        refuse_mistakes(bench.declared, bench.measured, options, declared.s2, bench.rtol)
+        problem, options = search.problem, search.options.check
+        refuse_mistakes(
+            problem.declared, problem.measured, options, declared.reduced_chi2, problem.rtol
+        )

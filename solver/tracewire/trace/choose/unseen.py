@@ -26,7 +26,7 @@ def raises_unseen(search: Search, fewer: Trial, more: Trial, lengths: Sequence[i
     """
     options = search.options
     for length in lengths:
-        unseen = search.stretches.unseen
+        unseen = search.data_split.unseen
         before, after = (squares_on(search, unseen, trial, length) for trial in (fewer, more))
         if not np.isfinite(before.sum()):
             continue
@@ -69,7 +69,7 @@ def share_of_whole_runs(search: Search, fewer: Trial, more: Trial) -> float:
 def _whole_runs(search: Search, fewer: Trial, more: Trial) -> tuple[float, float, int]:
     """The sums of squares of two models in whole unseen runs, in sigma^2, and of how many
     residuals; nothing where the first has lost track of the data."""
-    unseen = search.stretches.unseen
+    unseen = search.data_split.unseen
     whole = max((section.end - section.first for section in unseen), default=0)
     before, after = (squares_on(search, unseen, trial, whole) for trial in (fewer, more))
     if not before.sum() < search.options.tracked**2 * _spread(search, unseen):
@@ -97,7 +97,7 @@ def better_unseen(search: Search, prediction: Prediction) -> list[int]:
     ]
     if not rivals:
         return []
-    unseen = search.stretches.unseen
+    unseen = search.data_split.unseen
     lengths = {horizon.length for horizon in prediction.horizons.each}
     whole = max((section.end - section.first for section in unseen), default=0)
 
@@ -125,7 +125,7 @@ def prune_by_other_runs(search: Search, prediction: Prediction) -> Prediction:
     What is left of laws that are only nearly right has the shape of some effect on the run that is
     fitted, and not on others. Where there is no other run, the blocks that were held out decide.
     """
-    others = search.stretches.other_runs
+    others = search.data_split.other_runs
     if not others:
         return prediction
     length = prediction.horizons.each[-1].length
@@ -148,12 +148,12 @@ def squares_on(search: Search, sections: Sequence[Section], trial: Trial, length
     """The sum of squared residuals in sigma of each window of about so many samples, where only
     starts are fitted."""
     windows = [w for section in sections for w in search.windows([section], length)]
-    return np.array([float(np.sum(r**2)) for r in search.bench.on(trial, windows)])
+    return np.array([float(np.sum(r**2)) for r in search.problem.residuals_on(trial, windows)])
 
 
 def _spread(search: Search, sections: Sequence[Section]) -> float:
     """The sum of squares of the measured signals about their means, in sigma."""
-    sigma = search.bench.sigma
+    sigma = search.problem.sigma
     return sum(
         float(np.var(values[section.first : section.end])) * (section.end - section.first)
         / sigma[name] ** 2

@@ -52,9 +52,10 @@ class Judgement:
 
 def noise_limit(search: Search, trial: Trial) -> float:
     """The reduced chi-square up to which a residual is at the noise, some standard errors at least:
-    Var(s2) = 2/freedom."""
+    its variance is 2/degrees_of_freedom."""
     return max(
-        search.options.at_noise, 1 + search.options.noise_errors * float(np.sqrt(2 / trial.freedom))
+        search.options.at_noise,
+        1 + search.options.noise_errors * float(np.sqrt(2 / trial.degrees_of_freedom)),
     )
 
 
@@ -62,15 +63,15 @@ def is_at_noise(search: Search, trial: Trial) -> bool:
     """Whether a model leaves no more than the noise of the sensors, on fitted windows and, with the
     effects that were chosen there, on windows that no fit saw."""
     limit = noise_limit(search, trial)
-    if not trial.s2 < limit:
+    if not trial.reduced_chi2 < limit:
         return False
     if trial.length < search.short:  # the shortest windows alone see little
-        windows = search.windows(search.stretches.train, search.short)
+        windows = search.windows(search.data_split.train, search.short)
         try:
-            longer = search.bench.again(trial, windows, search.short)
+            longer = search.problem.refit(trial, windows, search.short)
         except FitError:
             return True
-        if longer.s2 > search.options.lost:
+        if longer.reduced_chi2 > search.options.lost:
             return False
     return not trial.effects or _gate(search, trial) < limit**2
 
@@ -78,7 +79,9 @@ def is_at_noise(search: Search, trial: Trial) -> bool:
 def is_slow_noise(search: Search, trial: Trial) -> bool:
     """Whether what is left without effects may be slow noise of a sensor: where no body comes back
     to where it was, that is not to be told from a force."""
-    return not trial.effects and not search.returns and trial.s2 < search.options.slow_noise
+    return (
+        not trial.effects and not search.returns and trial.reduced_chi2 < search.options.slow_noise
+    )
 
 
 def judge_at_noise(search: Search, final: Final) -> Judgement:
@@ -97,7 +100,7 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
     options = search.options
     prediction, harmed = _harmless(search, prediction)
     declared = prediction.models[0].trials
-    above = any(trial.s2 > noise_limit(search, trial) for trial in declared)
+    above = any(trial.reduced_chi2 > noise_limit(search, trial) for trial in declared)
     names = bool(prediction.taken.names)  # not by dropped terms alone
     named = above and prediction.choice.sure and names
     if not named:
@@ -110,7 +113,7 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
         for horizon in prediction.horizons.each
     ]
     maps = [
-        residual_map(search, search.bench.some(trial, numbers))
+        residual_map(search, search.problem.on_some_windows(trial, numbers))
         for trial, numbers in zip(taken.trials, spread, strict=True)
     ]
     floors = [_left(trial, shares) for trial, (shares, _) in zip(taken.trials, maps, strict=True)]
@@ -122,8 +125,9 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
         dependences, missing = maps[0]
         if above and not missed:
             search.words.append(
-                f"the residual is {declared[-1].s2 ** 0.5:.2g} σ, and no effect or smooth function"
-                " explains it: the noise is larger than σ, or the record is disturbed otherwise"
+                f"the residual is {declared[-1].reduced_chi2 ** 0.5:.2g} σ, and no effect"
+                " or smooth function explains it: the noise is larger than σ, or the record is"
+                " disturbed otherwise"
             )
     else:
         enough = _is_enough(prediction, share.share, share.share - error)
@@ -137,7 +141,9 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
             search.words.append(f"{joined(taken.names)} cannot be all: {law}")
         verdict = "effect" if enough and not law else "unexplained"
         dependences, missing = (
-            residual_map(search, search.bench.some(prediction.models[0].trials[0], spread[0]))
+            residual_map(
+                search, search.problem.on_some_windows(prediction.models[0].trials[0], spread[0])
+            )
             if verdict == "unexplained"
             else ((), None)
         )
@@ -151,7 +157,7 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
         dependences,
         missing if verdict == "unexplained" else None,
         share if named else None,
-        remainders(prediction, floors, search.bench.sigma, final.best.model.flat.units),
+        remainders(prediction, floors, search.problem.sigma, final.best.model.flat.units),
         maps[0][0],
         held_out(prediction, floors),
         noisy,
@@ -162,7 +168,7 @@ def _is_enough(prediction: Prediction, share: float, surely: float) -> bool:
     """Whether the named effects explain enough of the excess error, and leave little enough of the
     error on held-out blocks; at the noise no model leaves less."""
     options = prediction.options
-    at_noise = prediction.taken.trials[-1].s2 <= options.at_noise
+    at_noise = prediction.taken.trials[-1].reduced_chi2 <= options.at_noise
     little = at_noise or error_left(prediction) <= options.error_left
     return share >= options.explained and surely >= options.explained_surely and little
 
@@ -229,7 +235,7 @@ def final_of(search: Search, prediction: Prediction) -> Final:
                 f" {abs(more)} fitted number(s) {'more' if more > 0 else 'less'}"
             )
     search.words += _refined(prediction)
-    own = search.bench.declared.flat.parameters
+    own = search.problem.declared.flat.parameters
     dropped = (*taken.dropped, *(name for name in taken.vanished if name in own))
     return Final(declared, ordered(best), {k: tuple(v) for k, v in rivals.items()}, dropped)
 
@@ -267,7 +273,7 @@ def residual_map(search: Search, trial: Trial) -> tuple[tuple[Dependence, ...], 
 def _left(trial: Trial, shares: Sequence[Dependence]) -> float:
     """The part of the squared residual that the best smooth map leaves."""
     best = max((d.share for d in shares), default=0.0)
-    excess = max(trial.rss - trial.freedom, 0.0)
+    excess = max(trial.rss - trial.degrees_of_freedom, 0.0)
     return float(np.clip(1 - best * excess / trial.rss, 1e-6, 1.0)) if trial.rss > 0 else 1.0
 
 
@@ -279,9 +285,9 @@ def _law_left(
     time alone is no law: gusts, and the air of a room, do not come again."""
     laws = [d for d in shares if d.variables != ("t",)]
     best = max(laws, key=lambda d: d.share, default=None)
-    if best is None or trial.s2 < options.law_from or explained >= options.law_below:
+    if best is None or trial.reduced_chi2 < options.law_from or explained >= options.law_below:
         return ""
-    left = 1 + (1 - best.share) * (trial.s2 - 1)
+    left = 1 + (1 - best.share) * (trial.reduced_chi2 - 1)
     if left > options.at_noise and best.share < options.law_share:
         return ""
     of = " and ".join(best.variables)
@@ -290,8 +296,8 @@ def _law_left(
 
 def _gate(search: Search, best: Trial) -> float:
     """The squared residual per residual on windows that no fit saw, their starts counted."""
-    windows = search.windows(search.stretches.gate, search.short)
-    residuals = search.bench.on(best, windows)
+    windows = search.windows(search.data_split.gate, search.short)
+    residuals = search.problem.residuals_on(best, windows)
     count = sum(r.size for r in residuals) - sum(len(w.free) for w in windows)
     return sum(float(np.sum(r**2)) for r in residuals) / max(count, 1)
 

@@ -28,7 +28,7 @@ from tracewire.residual import (
 from tracewire.solve import Limits, simulate
 from tracewire.trace.experiment.rig import Rig, Setting, rig_of
 from tracewire.trace.found import Experiment
-from tracewire.trace.trials.trial import Bench, Trial
+from tracewire.trace.trials.trial import TraceProblem, Trial
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -44,7 +44,9 @@ ALIASES = {
 """What tells effects apart that are the same law on a rig."""
 
 
-def separating(bench: Bench, one: Trial, other: Trial, name: str, rival: str) -> Experiment:
+def separating(
+    problem: TraceProblem, one: Trial, other: Trial, name: str, rival: str
+) -> Experiment:
     """The experiment that best tells two fitted trials apart, and by how many sigma (rms).
 
     Searched: the body released from rest without drive, and at rest driven by a sine, on each named
@@ -52,8 +54,8 @@ def separating(bench: Bench, one: Trial, other: Trial, name: str, rival: str) ->
     coarsely, then around the best. Deterministic.
     Raises OptionError where nothing can be simulated.
     """
-    rig = rig_of(bench, one)
-    states = compile(one.diagram, record=[*bench.signals, *bench.states], backend="quick")
+    rig = rig_of(problem, one)
+    states = compile(one.diagram, record=[*problem.signals, *problem.states], backend="quick")
     # what the data at hand say of the rival's unknowns
     known, _ = project_out_initial_states(other.windows)
     information = known.T @ known
@@ -62,13 +64,13 @@ def separating(bench: Bench, one: Trial, other: Trial, name: str, rival: str) ->
     def tell(setting: Setting) -> None:
         if setting not in tried and rig.allowed(setting):
             try:
-                tried[setting] = _separation(bench, rig, states, one, other, information, setting)
+                tried[setting] = _separation(problem, rig, states, one, other, information, setting)
             except SimulationError:
                 tried[setting] = math.nan
 
     for setting in rig.settings():
         tell(setting)
-    options = bench.options.experiment
+    options = problem.options.experiment
     for _ in range(options.rounds):
         if any(math.isfinite(value) for value in tried.values()):
             for setting in _best(tried).near(options):
@@ -91,7 +93,7 @@ def _best(tried: Mapping[Setting, float]) -> Setting:
 
 
 def _separation(
-    bench: Bench,
+    problem: TraceProblem,
     rig: Rig,
     states: Model,
     one: Trial,
@@ -100,16 +102,16 @@ def _separation(
     setting: Setting,
 ) -> float:
     """The residual of the rival on what the pick does, root mean square in sigma."""
-    options = bench.options.experiment
+    options = problem.options.experiment
     limits = Limits(options.steps, options.seconds, options.events)
     set_here, inputs = rig.parameters(setting), rig.inputs(setting)
     start = rig.start(setting)
-    blank = {signal: np.zeros(len(rig.t)) for signal in bench.signals}
+    blank = {signal: np.zeros(len(rig.t)) for signal in problem.signals}
     base = replace(rig.template, t=rig.t, values=blank, inputs=inputs, past={}, drift_from=0.0)
     whole = Segment(base, 0.0, np.arange(len(rig.t)), start)
-    mine = {**bench.all_values(one), **set_here}
+    mine = {**problem.all_values(one), **set_here}
     maker = Criterion(
-        one.model, [whole], [], mine, bench.rtol, bench.sigma, weighting="sum", limits=limits
+        one.model, [whole], [], mine, problem.rtol, problem.sigma, weighting="sum", limits=limits
     )
     shown = maker.outputs(whole, {}, {})
     run = simulate(
@@ -118,31 +120,31 @@ def _separation(
         start=start,
         span=(0.0, float(rig.t[-1])),
         times=rig.t,
-        rtol=bench.rtol,
+        rtol=problem.rtol,
         preset=base.preset,
         inputs=inputs,
         limits=limits,
     )
     measured = replace(base, values=dict(zip(base.values, shown.T, strict=True)))
-    measured = with_past(bench.declared, measured, "each window of an experiment")
+    measured = with_past(problem.declared, measured, "each window of an experiment")
     edges = np.linspace(0, len(rig.t), _count(one, rig, options.windows) + 1).astype(int)
     segments = []
     for a, b in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
         begin = max(a - 1, 0)
-        there = {state: float(run[state][begin]) for state in bench.states}
+        there = {state: float(run[state][begin]) for state in problem.states}
         rows = np.arange(a, b)
-        segments.append(Segment(measured, float(rig.t[begin]), rows, there, bench.states))
+        segments.append(Segment(measured, float(rig.t[begin]), rows, there, problem.states))
     unknowns = other.windows.criterion.unknowns
     unknowns = tuple(replace(u, value=other.values[u.name]) for u in unknowns)
-    fixed = {**bench.all_values(other), **set_here}
+    fixed = {**problem.all_values(other), **set_here}
     free = [n for n, u in enumerate(unknowns) if u.name not in set_here]
     criterion = Criterion(
         other.model,
         segments,
         [unknowns[n] for n in free],
         fixed,
-        bench.rtol,
-        bench.sigma,
+        problem.rtol,
+        problem.sigma,
         weighting="sum",
         limits=limits,
     )

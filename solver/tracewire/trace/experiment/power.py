@@ -6,7 +6,7 @@ import numpy as np
 
 from tracewire.trace.found import Power
 from tracewire.trace.screen.screening import Screen
-from tracewire.trace.trials.statistics import HIDDEN
+from tracewire.trace.trials.statistics import ABSORBED
 
 
 def powers(screen: Screen) -> tuple[Power, ...]:
@@ -20,7 +20,7 @@ def powers(screen: Screen) -> tuple[Power, ...]:
     found: dict[str, Power] = {}
     for row in screen.rows:
         indices = list(row.columns)
-        if float(np.max(screen.columns.masked[indices])) > 1 - HIDDEN:
+        if float(np.max(screen.columns.absorbed_fraction[indices])) > 1 - ABSORBED:
             continue
         singular = np.linalg.svd(screen.columns.matrix[:, indices], compute_uv=False)
         if not singular[-1] > 0:

@@ -13,7 +13,7 @@ from tracewire.formula import Name
 from tracewire.residual import Measured
 from tracewire.solve import parameter_values
 from tracewire.trace.thresholds import ExperimentOptions
-from tracewire.trace.trials.trial import Bench, Trial
+from tracewire.trace.trials.trial import TraceProblem, Trial
 
 Vector = NDArray[np.float64]
 
@@ -107,24 +107,24 @@ class Rig:
         return found
 
 
-def rig_of(bench: Bench, one: Trial) -> Rig:
-    train = [m for m in bench.measured if m.use == "train"]
+def rig_of(problem: TraceProblem, one: Trial) -> Rig:
+    train = [m for m in problem.measured if m.use == "train"]
     longest = max(train, key=lambda m: float(m.t[-1] - m.t[0]))
     interval = float(np.median(np.diff(longest.t)))
     frequency = main_frequency(longest)
-    options = bench.options.experiment
+    options = problem.options.experiment
     fine = 1 / (options.samples_a_period * frequency)
     step = max(interval, min(fine, options.coarser * interval))
     duration = min(float(longest.t[-1] - longest.t[0]), (options.samples - 1) * step)
     t = step * np.arange(int(duration / step) + 1, dtype=np.float64)
-    rest, width = _reach(bench, one, train)
+    rest, width = _reach(problem, one, train)
     drives: dict[str, float] = {}
     for m in train:
         for name, (_, u) in m.inputs.items():
             drives[name] = max(drives.get(name, 0.0), float(np.max(np.abs(u - np.mean(u)))))
-    knobs = _knobs(bench, one)
+    knobs = _knobs(problem, one)
     for drive, (amplitude, _, _) in knobs.items():
-        drives[drive] = abs(bench.all_values(one).get(amplitude, _default(bench, amplitude)))
+        drives[drive] = abs(problem.all_values(one).get(amplitude, _default(problem, amplitude)))
     drives = {name: size for name, size in drives.items() if size > 0}
     return Rig(t, rest, width, drives, knobs, frequency, longest, options)
 
@@ -139,13 +139,13 @@ def main_frequency(measured: Measured) -> float:
 
 
 def _reach(
-    bench: Bench, one: Trial, train: Sequence[Measured]
+    problem: TraceProblem, one: Trial, train: Sequence[Measured]
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Where each state rests (rates at zero), and how far each coordinate moved from there."""
-    states = {state.name: state for state in bench.declared.flat.states}
+    states = {state.name: state for state in problem.declared.flat.states}
     rates = {s.rate.name for s in states.values() if isinstance(s.rate, Name)} & set(states)
     rest, width = {}, {}
-    for name in bench.states:
+    for name in problem.states:
         parts = [m.values[name] for m in train if name in m.values]
         parts += [np.array([s.start[name]]) for s in one.windows.segments if name in s.start]
         values = np.concatenate(parts) if parts else np.zeros(1)
@@ -159,9 +159,9 @@ def _reach(
     return rest, {name: size for name, size in width.items() if size > 0}
 
 
-def _knobs(bench: Bench, one: Trial) -> dict[str, tuple[str, str, float]]:
+def _knobs(problem: TraceProblem, one: Trial) -> dict[str, tuple[str, str, float]]:
     """Drives that are blocks with a sine or square: parameters of amplitude and frequency."""
-    diagram, flat = bench.declared.diagram, bench.declared.flat
+    diagram, flat = problem.declared.diagram, problem.declared.flat
     found = {}
     for name, block in diagram.blocks.items():
         if block.type not in ("sine", "square"):
@@ -180,5 +180,5 @@ def _knobs(bench: Bench, one: Trial) -> dict[str, tuple[str, str, float]]:
     return found
 
 
-def _default(bench: Bench, parameter: str) -> float:
-    return float(parameter_values(bench.declared, {})[parameter])
+def _default(problem: TraceProblem, parameter: str) -> float:
+    return float(parameter_values(problem.declared, {})[parameter])

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.trace.candidates.levels import Trajectory
+from tracewire.trace.candidates.drive_sines import fit_sine
 from tracewire.trace.candidates.places import Place
-from tracewire.trace.candidates.tones import sine_of
+from tracewire.trace.candidates.signal_scales import Trajectory
 from tracewire.trace.thresholds import MapOptions
 
 Vector = NDArray[np.float64]
@@ -98,7 +98,7 @@ def bases_of(place: Place, runs: Sequence[Trajectory], options: MapOptions) -> I
 def drive_phase(t: Vector, u: Vector, tonal: float) -> Vector | None:
     """The phase of a drive in rad, 0 where it rises through its mean; None where it is no sine, as
     one explains less than the part `tonal` of its variance."""
-    sine = sine_of(t, u, 1 - tonal)
+    sine = fit_sine(t, u, 1 - tonal)
     return None if sine is None else np.asarray(2 * np.pi * t / sine.period + sine.phase)
 
 

@@ -151,7 +151,7 @@ def _problem(tangent: Tangent, trial: Trial) -> Problem:
     sizes = np.linalg.norm(unknowns, axis=0)
     seen = sizes > 1e-12 * max(float(sizes.max(initial=0.0)), 1e-300)
     basis = orthonormal(unknowns[:, seen])
-    return Problem(tangent, views, residual, basis, _folds(tangent), trial.freedom)
+    return Problem(tangent, views, residual, basis, _folds(tangent), trial.degrees_of_freedom)
 
 
 def _folds(tangent: Tangent) -> NDArray[np.intp]:

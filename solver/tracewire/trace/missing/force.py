@@ -73,7 +73,7 @@ def _means(tangent: Tangent, best: Trial, place: Place, rtol: float) -> tuple[Me
         count = len(edges) - 1
         bins = [np.clip(np.searchsorted(edges, x, "right") - 1, 0, count - 1) for x in runs]
         steps = [np.eye(count)[numbers] for numbers in bins]
-        extra, error = _least_squares(tangent, place, steps, best.s2)
+        extra, error = _least_squares(tangent, place, steps, best.reduced_chi2)
         numbers = np.concatenate(bins)[inside]
         members = np.maximum(np.bincount(numbers, minlength=count), 1)
         at = np.bincount(numbers, values, count) / members

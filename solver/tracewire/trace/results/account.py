@@ -12,7 +12,7 @@ from scipy.special import stdtrit
 from tracewire.residual import Section, Segment, evaluate_windows
 from tracewire.trace.found import ChannelError, Curve, Moved, RunKind
 from tracewire.trace.search.search import Search
-from tracewire.trace.trials.trial import Bench, Trial
+from tracewire.trace.trials.trial import TraceProblem, Trial
 
 Vector = NDArray[np.float64]
 
@@ -59,11 +59,11 @@ class Compared:
 
 def compared(search: Search, declared: Trial, best: Trial) -> list[Compared]:
     """Both models on every section: what was fitted, the gate, and what played no part."""
-    stretches = search.stretches
+    data_split = search.data_split
     uses = (
-        ("train", stretches.whole()),
-        ("gate", [s for s in stretches.gate if s.measured.use == "gate"]),
-        ("validate", stretches.validate),
+        ("train", data_split.whole()),
+        ("gate", [s for s in data_split.gate if s.measured.use == "gate"]),
+        ("validate", data_split.validate),
     )
     return [
         _compared(search, use, section, declared, best)
@@ -73,13 +73,13 @@ def compared(search: Search, declared: Trial, best: Trial) -> list[Compared]:
 
 
 def _compared(search: Search, use: str, section: Section, declared: Trial, best: Trial) -> Compared:
-    bench = replace(search.bench, inputs=None)  # residuals as they are, and not as they count
+    problem = replace(search.problem, inputs=None)  # residuals as they are, and not as they count
     windows = search.windows([section], search.short)
     (whole,) = search.windows([section], section.end - section.first)
-    sigma = np.array([bench.sigma[name] for name in whole.signals])
+    sigma = np.array([problem.sigma[name] for name in whole.signals])
     trials = (declared, best) if best is not declared else (declared,)
-    inside = [np.concatenate(bench.on(trial, windows)) * sigma for trial in trials]
-    free = [free_run(bench, trial, whole, search.shortest) * sigma for trial in trials]
+    inside = [np.concatenate(problem.residuals_on(trial, windows)) * sigma for trial in trials]
+    free = [free_run(problem, trial, whole, search.shortest) * sigma for trial in trials]
     return Compared(
         use,
         whole,
@@ -89,16 +89,16 @@ def _compared(search: Search, use: str, section: Section, declared: Trial, best:
     )
 
 
-def free_run(bench: Bench, trial: Trial, whole: Segment, shortest: int) -> Vector:
+def free_run(problem: TraceProblem, trial: Trial, whole: Segment, shortest: int) -> Vector:
     """The residuals in sigma of one run over a section, shape (N, signals).
 
     A free start is fitted on the first part of the section alone.
     """
     if whole.free:
-        first = _first_part(whole, shortest, bench.options.split.first_part)
-        (begun,) = bench.settled(trial, [first]).segments
+        first = _first_part(whole, shortest, problem.options.split.first_part)
+        (begun,) = problem.windows_on(trial, [first]).segments
         whole = replace(begun, rows=whole.rows)
-    return evaluate_windows(bench.criterion(trial, [whole])).residuals[0]
+    return evaluate_windows(problem.criterion_on(trial, [whole])).residuals[0]
 
 
 def met(search: Search, trial: Trial) -> Trial:
@@ -108,10 +108,10 @@ def met(search: Search, trial: Trial) -> Trial:
         return trial
     firsts = [
         _first_part(whole, search.shortest, search.options.split.first_part)
-        for section in search.stretches.unseen
+        for section in search.data_split.unseen
         for whole in search.windows([section], section.end - section.first)
     ]
-    return replace(trial, effects=search.bench.met(trial, firsts))
+    return replace(trial, effects=search.problem.fit_unseen_phases(trial, firsts))
 
 
 def _first_part(whole: Segment, shortest: int, part: float) -> Segment:
@@ -126,7 +126,9 @@ def rmse(parts: Sequence[Compared], which: int) -> float:
 
 def intervals(trial: Trial, confidence: float) -> dict[str, tuple[float, float]]:
     """The interval of each fitted value, which holds the truth with this confidence."""
-    quantile = float(stdtrit(max(trial.freedom * trial.part, 1.0), 0.5 + confidence / 2))
+    quantile = float(
+        stdtrit(max(trial.degrees_of_freedom * trial.effective_fraction, 1.0), 0.5 + confidence / 2)
+    )
     errors = trial.standard_errors
     return {
         name: (value - quantile * errors[name], value + quantile * errors[name])
@@ -134,9 +136,11 @@ def intervals(trial: Trial, confidence: float) -> dict[str, tuple[float, float]]
     }
 
 
-def moved(bench: Bench, declared: Trial, best: Trial, values: dict[str, float]) -> list[Moved]:
+def moved(
+    problem: TraceProblem, declared: Trial, best: Trial, values: dict[str, float]
+) -> list[Moved]:
     """The declared parameters without and with the effects."""
-    errors, flat = best.standard_errors, bench.declared.flat
+    errors, flat = best.standard_errors, problem.declared.flat
     known = flat.parameters
     return [
         Moved(

@@ -32,15 +32,15 @@ def result_of(
     search.tell("checking on what played no part")
     final = judgement.final
     final = replace(final, best=met(search, final.best))
-    bench, declared, best = search.bench, final.declared, final.best
+    problem, declared, best = search.problem, final.declared, final.best
     search.words += dict.fromkeys(one.words for t in (declared, best) for one in at_bounds(t))
     parts = compared(search, declared, best)
     claimed = [part for part in parts if part.use == "validate"]
     values = {**best.values, **dict.fromkeys(final.dropped, 0.0)}
-    sigma = dict(bench.sigma)
+    sigma = dict(problem.sigma)
     units = dict(best.model.flat.units)
     units |= {name: p.unit for name, p in best.model.flat.parameters.items()}
-    interval = float(np.median([np.median(np.diff(m.t)) for m in bench.measured]))
+    interval = float(np.median([np.median(np.diff(m.t)) for m in problem.measured]))
     return Found(
         verdict=judgement.verdict,
         effects=told_effects(search, final),
@@ -50,9 +50,9 @@ def result_of(
         rmse_before=rmse(claimed, 0),
         rmse_after=rmse(claimed, 1),
         sigma=sigma,
-        s2_before=declared.s2,
-        s2_after=best.s2,
-        moved=tuple(moved(bench, declared, best, values)) if best.effects else (),
+        s2_before=declared.reduced_chi2,
+        s2_after=best.reduced_chi2,
+        moved=tuple(moved(problem, declared, best, values)) if best.effects else (),
         errors=tuple(error for part in parts for error in part.errors(sigma, units)),
         steps=(*told_steps(search, interval), *([prediction.told()] if prediction else [])),
         power=powers(search.steps[-1].screen) if search.steps else (),
@@ -63,8 +63,8 @@ def result_of(
         curves=tuple(curve for part in parts for curve in part.curves(sigma, units)),
         find_forces=partial(_forces, search, best),
         words=tuple(search.words),
-        original=bench.declared.diagram,
-        diagram=edited(bench.declared, best.effects, values),
+        original=problem.declared.diagram,
+        diagram=edited(problem.declared, best.effects, values),
         units=units,
         interrupted=interrupted,
         options=search.options,
@@ -85,7 +85,7 @@ def _with_some(
     told = zip(final.best.effects, told_effects(search, final), strict=True)
     kept = [added for added, effect in told if str(effect) in effects]
     restored = {name: final.declared.values[name] for name in final.dropped}
-    return edited(search.bench.declared, kept, {**values, **restored})
+    return edited(search.problem.declared, kept, {**values, **restored})
 
 
 def _experiments(search: Search, final: Final) -> tuple[Experiment, ...]:
@@ -97,7 +97,9 @@ def _experiments(search: Search, final: Final) -> tuple[Experiment, ...]:
             search.tell(f"an experiment to tell {effect} from {rival.added}")
             try:
                 found.append(
-                    separating(search.bench, final.best, rival.trial, str(effect), str(rival.added))
+                    separating(
+                        search.problem, final.best, rival.trial, str(effect), str(rival.added)
+                    )
                 )
             except TracewireError as error:
                 search.words.append(error.problems[0].what)
@@ -108,8 +110,8 @@ def _forces(search: Search, best: Trial) -> tuple[Force, ...]:
     """The restoring-force picture of the places that got an effect."""
     if not any(effect.candidate.block for effect in best.effects) or not search.steps:
         return ()
-    bench = search.bench
-    windows = bench.settled(best, search.windows(search.stretches.train, search.short))
-    tangent = Tangent(best.diagram, windows, search.places, bench.rtol, search.options)
-    fitted = Tangent(best.diagram, best.windows, search.places, bench.rtol, search.options)
-    return forces(tangent, best, bench.rtol, fitted)
+    problem = search.problem
+    windows = problem.windows_on(best, search.windows(search.data_split.train, search.short))
+    tangent = Tangent(best.diagram, windows, search.places, problem.rtol, search.options)
+    fitted = Tangent(best.diagram, best.windows, search.places, problem.rtol, search.options)
+    return forces(tangent, best, problem.rtol, fitted)

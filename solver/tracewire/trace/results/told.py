@@ -15,7 +15,7 @@ from tracewire.trace.found import FoundEffect, Ranked, StepTold, Tie
 from tracewire.trace.results.account import intervals
 from tracewire.trace.search.finish import Final, Rival
 from tracewire.trace.search.search import Search, Step
-from tracewire.trace.trials.trial import Added, Trial
+from tracewire.trace.trials.trial import PlacedEffect, Trial
 
 Matrix = NDArray[np.float64]
 
@@ -61,7 +61,7 @@ def tie_of(rival: Rival) -> Tie:
     )
 
 
-def _shown(effect: Added, trial: Trial) -> dict[str, float]:
+def _shown(effect: PlacedEffect, trial: Trial) -> dict[str, float]:
     """The parameters of an effect that were fitted."""
     fitted = {**trial.windows.criterion.parameters, **trial.values}
     return {
@@ -71,7 +71,7 @@ def _shown(effect: Added, trial: Trial) -> dict[str, float]:
     }
 
 
-def _standing(search: Search, effect: Added) -> tuple[float, float, float]:
+def _standing(search: Search, effect: PlacedEffect) -> tuple[float, float, float]:
     """The gain, the masked part and the weight of an effect in the step that found it."""
     for step in search.steps:
         rows = {str(row.candidate): row for row in step.screen.best()}
@@ -95,7 +95,7 @@ def _told(step: Step, interval: float, shown: int) -> StepTold:
             -one.rise / 2,
             one.weight,
             max(row.masked for row in one.proposal.rows),
-            one.trial.s2,
+            one.trial.reduced_chi2,
             one.remark,
         )
         for one in step.tried
@@ -105,7 +105,11 @@ def _told(step: Step, interval: float, shown: int) -> StepTold:
         if str(row.candidate) not in seen:
             rows.append(Ranked(str(row.candidate), row.gain, masked=row.masked))
     return StepTold(
-        step.before.length * interval, step.before.s2, step.chance, tuple(rows), step.words
+        step.before.length * interval,
+        step.before.reduced_chi2,
+        step.chance,
+        tuple(rows),
+        step.words,
     )
 
 
@@ -118,11 +122,13 @@ def confusable(search: Search) -> tuple[tuple[str, ...], Matrix]:
     matrix = np.eye(len(rows))
     for i, one in enumerate(rows):
         for j in range(i):
-            matrix[i, j] = matrix[j, i] = screen.columns.likeness(one.columns, rows[j].columns)
+            matrix[i, j] = matrix[j, i] = screen.columns.canonical_correlation(
+                one.columns, rows[j].columns
+            )
     return tuple(str(row.candidate) for row in rows), matrix
 
 
-def edited(model: Model, effects: Sequence[Added], values: Mapping[str, float]) -> Diagram:
+def edited(model: Model, effects: Sequence[PlacedEffect], values: Mapping[str, float]) -> Diagram:
     """The original text with effects and with the refitted parameters."""
     if not effects:
         return model.diagram

@@ -28,12 +28,12 @@ from tracewire.trace.candidates.places import Place
 from tracewire.trace.screen.probe import probed
 from tracewire.trace.screen.tangent import Tangent
 from tracewire.trace.screen.torques import missing_torques
-from tracewire.trace.trials.trial import Bench, Trial
+from tracewire.trace.trials.trial import TraceProblem, Trial
 
 Vector = NDArray[np.float64]
 
 
-def assimilated(bench: Bench, trial: Trial, tangent: Tangent) -> Tangent | None:
+def assimilated(problem: TraceProblem, trial: Trial, tangent: Tangent) -> Tangent | None:
     """The tangent along the data, with what torques at the sums do there as the residual.
 
     None where they do not take most of the residual away, as of a sensor, or where such a model
@@ -63,19 +63,19 @@ def assimilated(bench: Bench, trial: Trial, tangent: Tangent) -> Tangent | None:
         for s in trial.windows.segments
     }
     segments = [replace(s, measured=measured[s.measured.name]) for s in trial.windows.segments]
-    there = replace(trial, diagram=diagram, model=bench.compiled(diagram))
+    there = replace(trial, diagram=diagram, model=problem.compile_diagram(diagram))
     try:
-        criterion = bench.warm(there, segments, trial.values)
+        criterion = problem.free_criterion(there, segments, trial.values)
         windows = fit_initial_states(evaluate_windows(criterion, trial.windows.inlier_limit))
         if windows.rss > options.followed * trial.rss:
             return None
-        found = Tangent(diagram, windows, tangent.places, bench.rtol, tangent.options)
+        found = Tangent(diagram, windows, tangent.places, problem.rtol, tangent.options)
     except Interrupted:
         raise
     except (FitError, SimulationError):
         return None
-    histories = {place.name: [w[:, None] for w in torques[place.name]] for place in places}
-    return found.explaining(histories)
+    given_torques = {place.name: [w[:, None] for w in torques[place.name]] for place in places}
+    return found.explaining(given_torques)
 
 
 def seen_along(candidates: Sequence[Candidate]) -> list[Candidate]:

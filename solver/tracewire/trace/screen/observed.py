@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from tracewire.compile import Model
 from tracewire.residual import LIMITS, Segment, Windows, absolute_tolerances, of_diagram
 from tracewire.solve import Span, SpanRuns, simulate_spans
-from tracewire.trace.candidates.levels import Trajectory
+from tracewire.trace.candidates.signal_scales import Trajectory
 
 Vector = NDArray[np.float64]
 Signals = Mapping[str, Vector]

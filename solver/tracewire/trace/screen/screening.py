@@ -12,15 +12,20 @@ from numpy.typing import NDArray
 
 from tracewire.residual import Unknown, Windows, project_out_initial_states
 from tracewire.trace.candidates.candidate import Candidate, is_default
-from tracewire.trace.candidates.histories import Variant, histories
-from tracewire.trace.candidates.levels import Trajectory
+from tracewire.trace.candidates.effect_outputs import Variant, effect_outputs
 from tracewire.trace.candidates.lines import with_lines
-from tracewire.trace.candidates.waves import as_measured, scanned
+from tracewire.trace.candidates.signal_scales import Trajectory
+from tracewire.trace.candidates.waves import as_measured, scan_waves
 from tracewire.trace.screen.answers import without, without_starts
 from tracewire.trace.screen.tangent import Tangent
 from tracewire.trace.thresholds import ScreenOptions
-from tracewire.trace.trials.statistics import HIDDEN, BoundedColumns, Columns, orthonormal
-from tracewire.trace.trials.trial import Added, Trial
+from tracewire.trace.trials.statistics import (
+    ABSORBED,
+    BoundedColumns,
+    CandidateColumns,
+    orthonormal,
+)
+from tracewire.trace.trials.trial import PlacedEffect, Trial
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -57,7 +62,7 @@ class Row:
         return _count(self.candidate, self.shapes, self.series)
 
     @property
-    def added(self) -> Added:
+    def added(self) -> PlacedEffect:
         """The effect as a refit begins it, within the bounds of its numbers: a coefficient of the
         wrong sign begins with a small one of the right sign."""
         values = dict(self.values)
@@ -67,7 +72,7 @@ class Row:
         name, neutral = self.candidate.parameter, self.candidate.neutral
         if values[name] == neutral != self.values[name]:
             values[name] = neutral + self.options.wrong_sign * abs(self.values[name] - neutral)
-        return Added(self.candidate, values)
+        return PlacedEffect(self.candidate, values)
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +100,7 @@ class Screen:
     """All variants of all candidates, scored on one linearisation; `kept` are the residuals that
     were looked at, by number among all of its windows."""
 
-    columns: Columns
+    columns: CandidateColumns
     rows: tuple[Row, ...]
     kept: Ints
     unknowns: Mapping[str, float] = field(default_factory=dict)
@@ -104,7 +109,7 @@ class Screen:
     def begun(self, proposal: Proposal) -> Proposal:
         """A proposal with the values that what is declared has beside it."""
         columns = [number for row in proposal.rows for number in row.columns]
-        moved = self.columns.moved(columns)
+        moved = self.columns.unknown_changes(columns)
         if moved is None:
             return proposal
         values = np.array(list(self.unknowns.values())) + moved
@@ -119,7 +124,7 @@ class Screen:
     def visible(self) -> dict[str, Row]:
         """The best variant of each candidate that the unknowns do not imitate, of any sign, by its
         name."""
-        seen = (row for row in self.rows if row.masked < 1 - HIDDEN)
+        seen = (row for row in self.rows if row.masked < 1 - ABSORBED)
         return _best_of_each(seen, lambda row: row.fall)
 
     def slim(self) -> Screen:
@@ -141,7 +146,7 @@ class Screen:
             return 1.0
         best = max(row.fall for row in rows)
         groups = [row.columns for row in self.rows]
-        return self.columns.chance(groups, [row.candidate.sign for row in self.rows], best)
+        return self.columns.p_value(groups, [row.candidate.sign for row in self.rows], best)
 
     def pairs(self) -> list[Proposal]:
         """Pairs of candidates with possible signs, the most promising first.
@@ -221,7 +226,7 @@ def screened(
     options = tangent.options
     candidates = with_lines(candidates, windows, measured, options.candidate)
     if scan:
-        candidates = scanned(
+        candidates = scan_waves(
             model, candidates, measured, tangent.used, residual, answer, options.candidate
         )
     reduced, whole, variants = _rows(tangent, candidates, measured, every, tell)
@@ -234,9 +239,9 @@ def screened(
     left = without(reduced, basis)
     masked = 1 - _squares(left) / np.maximum(seen, 1e-300)
     masked = np.where(seen > 0, np.clip(masked, 0.0, 1.0), 1.0)
-    part = min(trial.part * every, 1.0)
-    freedom = max(trial.freedom // every, 1)
-    columns = Columns(residual, left.T, masked, part, freedom, options.screen)
+    part = min(trial.effective_fraction * every, 1.0)
+    freedom = max(trial.degrees_of_freedom // every, 1)
+    columns = CandidateColumns(residual, left.T, masked, part, freedom, options.screen)
     if both is not None:
         columns = _bounded(columns, both, unknowns, rest, windows)
     names = tuple(run.series for run in tangent.trajectories)
@@ -245,8 +250,8 @@ def screened(
 
 
 def _bounded(
-    columns: Columns, both: Matrix, unknowns: Matrix, rest: Vector, windows: Windows
-) -> Columns:
+    columns: CandidateColumns, both: Matrix, unknowns: Matrix, rest: Vector, windows: Windows
+) -> CandidateColumns:
     """Columns beside unknowns that move as far as their bounds; promises are kept whole, as both
     move together."""
     values = np.array([windows.values[u.name] for u in windows.criterion.unknowns])
@@ -256,9 +261,9 @@ def _bounded(
     found = BoundedColumns(
         columns.residual,
         columns.matrix,
-        columns.masked,
-        columns.part,
-        columns.freedom,
+        columns.absorbed_fraction,
+        columns.effective_fraction,
+        columns.degrees_of_freedom,
         replace(columns.options, trust=1.0),
         both,
         unknowns,
@@ -295,8 +300,8 @@ def _rows(
     sensors = [c for c in candidates if c.place.kind == "sensor"]
     model, options = windows.criterion.model, tangent.options.candidate
     plain = [c for c in wired if not c.waves]
-    known = histories(model, plain, tangent.trajectories, options, tell)
-    known |= histories(model, [c for c in wired if c.waves], measured, options, tell)
+    known = effect_outputs(model, plain, tangent.trajectories, options, tell)
+    known |= effect_outputs(model, [c for c in wired if c.waves], measured, options, tell)
     by_place: dict[str, list[Variant]] = {}
     for variant in known:
         by_place.setdefault(variant.candidate.place.name, []).append(variant)
@@ -358,7 +363,9 @@ def _groups(variants: Sequence[Variant]) -> Iterator[list[tuple[int, Variant]]]:
     yield from groups.values()
 
 
-def _row(columns: Columns, group: Sequence[tuple[int, Variant]], names: tuple[str, ...]) -> Row:
+def _row(
+    columns: CandidateColumns, group: Sequence[tuple[int, Variant]], names: tuple[str, ...]
+) -> Row:
     """One row: the score of a variant."""
     indices = tuple(number for number, _ in group)
     candidate = group[0][1].candidate
@@ -372,7 +379,7 @@ def _row(columns: Columns, group: Sequence[tuple[int, Variant]], names: tuple[st
         fall=fall,
         gain=columns.gain(fall, _count(candidate, shapes, series)),
         values={},
-        masked=float(np.max(columns.masked[list(indices)])),
+        masked=float(np.max(columns.absorbed_fraction[list(indices)])),
         possible=fall > 0 and _possible(candidate, values),
         series=series,
         options=columns.options,

@@ -18,7 +18,9 @@ def shortlist(screen: Screen, room: int, count: int) -> list[Proposal]:
     singles: list[Row] = []
     for row in sorted(screen.best(), key=lambda row: (-round(row.gain, 3), not row.candidate.sign)):
         # an exact copy, as of what is more in one direction where there is no other, has its name
-        same = (screen.columns.likeness(row.columns, other.columns) for other in singles)
+        same = (
+            screen.columns.canonical_correlation(row.columns, other.columns) for other in singles
+        )
         if row.gain > least and (len(singles) >= options.many or all(x < COPY for x in same)):
             singles.append(row)
     found = [Proposal((row,), row.gain) for row in singles[:count]]

@@ -20,8 +20,8 @@ from tracewire.diagram import Diagram
 from tracewire.library import SENSOR_TERMS
 from tracewire.residual import Segment, Windows
 from tracewire.solve import Span
-from tracewire.trace.candidates.levels import signals_at
 from tracewire.trace.candidates.places import Place
+from tracewire.trace.candidates.signal_scales import signals_at
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.observed import (
     Signals,
@@ -96,20 +96,20 @@ class Tangent:
         joined = [one for group in groups.values() for one in self._joined(group, runs)]
         self.joined = sorted(joined, key=lambda one: one.window)
 
-    def answer(self, histories: Mapping[str, Sequence[Matrix]]) -> Matrix:
+    def answer(self, torques: Mapping[str, Sequence[Matrix]]) -> Matrix:
         """What torques do to the residuals in sigma, shape (M, K), before anything is projected.
 
         `histories` gives, for some places, for each series, (N, k) torques at its samples; the
         columns stand in the order of the places given.
         """
-        return np.concatenate([self.window_answer(joined, histories) for joined in self.joined])
+        return np.concatenate([self.window_answer(joined, torques) for joined in self.joined])
 
-    def explaining(self, histories: Mapping[str, Sequence[Matrix]]) -> Tangent:
+    def explaining(self, torques: Mapping[str, Sequence[Matrix]]) -> Tangent:
         """The same windows along the data: the residual is what the torques given, (N, 1) for each
         series by place, did to bring them there."""
         near = []
         for joined, one in zip(self.joined, self.windows.linearisations, strict=True):
-            done = self.window_answer(joined, histories).sum(axis=1)
+            done = self.window_answer(joined, torques).sum(axis=1)
             near.append(replace(one, residual=one.residual - np.reshape(done, one.residual.shape)))
         found = copy(self)
         found.windows = replace(self.windows, linearisations=tuple(near))
@@ -147,11 +147,11 @@ class Tangent:
             parts.append(self.windows.criterion.whiten(joined.window, column.ravel()))
         return np.concatenate(parts)
 
-    def window_answer(self, joined: Joined, histories: Mapping[str, Sequence[Matrix]]) -> Matrix:
+    def window_answer(self, joined: Joined, torques: Mapping[str, Sequence[Matrix]]) -> Matrix:
         """The same for one window."""
         order = {place.name: n for n, place in enumerate(self.places)}
         number = self.series[joined.window]
-        columns = sum(given[number].shape[1] for given in histories.values())
+        columns = sum(given[number].shape[1] for given in torques.values())
         m = len(self.outputs)
         state = np.zeros((len(self.states), columns))
         rows = np.zeros((len(joined.times), m, columns))
@@ -159,7 +159,7 @@ class Tangent:
             out = piece.start @ state
             samples = joined.samples[piece.nodes]
             first = 0
-            for name, given in histories.items():
+            for name, given in torques.items():
                 last = first + given[number].shape[1]
                 hats = piece.hats[:, :, order[name], :]
                 out[:, :, first:last] += hats @ given[number][samples]

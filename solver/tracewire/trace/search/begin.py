@@ -16,15 +16,15 @@ from tracewire.residual import (
     with_measured_signals,
     with_past,
 )
-from tracewire.trace.candidates.places import find_places, untried
+from tracewire.trace.candidates.places import describe_untried, find_places
 from tracewire.trace.check.option_checks import check_options
+from tracewire.trace.check.outliers import drop_outliers
 from tracewire.trace.check.refusals import check_series, remarks
-from tracewire.trace.check.spikes import without_spikes
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.search.search import Search
 from tracewire.trace.search.workers import Workers
-from tracewire.trace.trials.stretches import share_out, shortest_window
-from tracewire.trace.trials.trial import Bench
+from tracewire.trace.trials.data_split import shortest_window, split_data
+from tracewire.trace.trials.trial import TraceProblem
 
 
 def begun(
@@ -47,14 +47,14 @@ def begun(
     refuse_readers_of_free(model)
     check_options(options, model)
     sigma = channel_noise([m for m in series if m.use != "validate"])
-    series = tuple(without_spikes(m, sigma, options.check) for m in series)
+    series = tuple(drop_outliers(m, sigma, options.check) for m in series)
     series = tuple(with_past(model, m, "each window of a trace") for m in series)
-    stretches = share_out(series, options.split)
-    shortest = shortest_window(stretches, options.split)
+    data_split = split_data(series, options.split)
+    shortest = shortest_window(data_split, options.split)
     inputs = InputCovariance(sigma, model, series, shortest)
-    bench = Bench(model, series, sigma, rtol, inputs, options)
+    problem = TraceProblem(model, series, sigma, rtol, inputs, options)
     places = find_places(model)
-    words = [*remarks(series, options.check), *stretches.words]
-    words += untried(model.diagram, [place for place in places if place.q])
+    words = [*remarks(series, options.check), *data_split.words]
+    words += describe_untried(model.diagram, [place for place in places if place.q])
     workers = Workers(executor)
-    return Search(bench, stretches, places, shortest, values, progress, words, workers)
+    return Search(problem, data_split, places, shortest, values, progress, words, workers)

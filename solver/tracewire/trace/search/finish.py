@@ -12,7 +12,7 @@ from tracewire.trace.candidates.candidate import is_default
 from tracewire.trace.search.refits import few_of, target_of
 from tracewire.trace.search.search import Search
 from tracewire.trace.search.workers import Refit
-from tracewire.trace.trials.trial import Added, Trial
+from tracewire.trace.trials.trial import PlacedEffect, Trial
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,7 +21,7 @@ class Rival:
     when it takes that place, and the trial where it does. `tied`: it predicts as well, or BIC puts
     it next to nothing behind: these data cannot tell it from what was found."""
 
-    added: Added
+    added: PlacedEffect
     likeness: float
     trial: Trial
     rise: float
@@ -41,7 +41,7 @@ class Final:
 
 def finished(search: Search, declared: Trial, best: Trial) -> Final:
     """The best model on long windows, without what is superfluous, effects beside their rivals."""
-    sections = search.stretches.whole()
+    sections = search.data_split.whole()
     declared = search.climbed(_over(search, declared), sections, np.inf)  # its best free run
     if not best.effects:
         return Final(declared, declared, {}, ())
@@ -61,15 +61,18 @@ def finished(search: Search, declared: Trial, best: Trial) -> Final:
 def _over(search: Search, trial: Trial) -> Trial:
     """The trial over all that is not held back for the final claim, on windows as they are; where
     it does not run on some of them, as it was."""
-    windows = search.windows(search.stretches.whole(), trial.length)
+    windows = search.windows(search.data_split.whole(), trial.length)
     try:
-        return search.bench.again(trial, windows, trial.length)
+        return search.problem.refit(trial, windows, trial.length)
     except FitError:
         return trial
 
 
 def _refitted(
-    search: Search, trial: Trial, effects: Sequence[Added], fixed: dict[str, float] | None = None
+    search: Search,
+    trial: Trial,
+    effects: Sequence[PlacedEffect],
+    fixed: dict[str, float] | None = None,
 ) -> Trial | None:
     """The trial with other effects on the same windows; None where that does not run."""
     (smaller,) = search.refits.trials(trial, [_refit(search, trial, effects, fixed)])
@@ -79,7 +82,7 @@ def _refitted(
 def _refit(
     search: Search,
     trial: Trial,
-    effects: Sequence[Added],
+    effects: Sequence[PlacedEffect],
     fixed: dict[str, float] | None = None,
     words: str = "",
 ) -> Refit:
@@ -93,8 +96,8 @@ def _exchanged(search: Search, best: Trial, number: int) -> tuple[Trial, tuple[R
     effect = best.effects[number]
     search.tell(f"comparing {effect} with its rivals")
     others = [e for e in best.effects if e is not effect]
-    part = best.part
-    results: list[tuple[float, Trial, Added]] = []
+    part = best.effective_fraction
+    results: list[tuple[float, Trial, PlacedEffect]] = []
     known = _known_rivals(search, effect)
     kept = {str(e) for e in others}
     few = _few_short(search, best)
@@ -108,8 +111,8 @@ def _exchanged(search: Search, best: Trial, number: int) -> tuple[Trial, tuple[R
     near = [_refit(search, best, effects) for effects in _not_far_behind(search, few, each)]
     for trial in search.refits.trials(best, near):
         if trial is not None:
-            results.append((trial.quality(part), trial, trial.effects[number]))
-    results.append((best.quality(part), best, effect))
+            results.append((trial.bic(part), trial, trial.effects[number]))
+    results.append((best.bic(part), best, effect))
     # where BIC is the same, a law with a physical sign goes before others, and a sensor comes last
     results.sort(
         key=lambda result: (
@@ -141,19 +144,19 @@ def _few_short(search: Search, best: Trial) -> Trial | None:
     length = search.lengths[0]
     if length >= best.length:
         return None
-    segments = search.windows(search.stretches.whole(), length)
+    segments = search.windows(search.data_split.whole(), length)
     try:
-        few = search.bench.again(
+        few = search.problem.refit(
             best, [segments[n] for n in few_of(segments, search.options.search.few)], length
         )
     except FitError:
         return None
-    return few if few.s2 < search.options.trial.gate_noise else None
+    return few if few.reduced_chi2 < search.options.trial.gate_noise else None
 
 
 def _not_far_behind(
-    search: Search, few: Trial | None, each: Sequence[list[Added]]
-) -> list[list[Added]]:
+    search: Search, few: Trial | None, each: Sequence[list[PlacedEffect]]
+) -> list[list[PlacedEffect]]:
     """The effects that do not so badly on few short windows that long ones need not be tried."""
     if few is None:
         return list(each)
@@ -164,7 +167,7 @@ def _not_far_behind(
     return [e for e, t in zip(each, trials, strict=True) if t is not None and t.rss <= target]
 
 
-def _known_rivals(search: Search, effect: Added) -> list[tuple[Added, float]]:
+def _known_rivals(search: Search, effect: PlacedEffect) -> list[tuple[PlacedEffect, float]]:
     """Effects that looked like one when it was screened, the most likely first."""
     options = search.options.search
     for step in search.steps:
@@ -183,7 +186,7 @@ def _known_rivals(search: Search, effect: Added) -> list[tuple[Added, float]]:
         for name, row in rows.items():
             if name == str(effect):
                 continue
-            likeness = step.screen.columns.likeness(mine.columns, row.columns)
+            likeness = step.screen.columns.canonical_correlation(mine.columns, row.columns)
             if likeness > least or name in tried:
                 found.append((row.added, likeness, tried.get(name, np.inf)))
         found.sort(key=lambda item: (item[2], -item[1]))
@@ -206,7 +209,10 @@ def _opened_shapes(search: Search, best: Trial) -> Trial:
             effects = [*best.effects[:number], wider, *best.effects[number + 1 :]]
             trial = _refitted(search, best, effects)
             worth = search.options.search.cheap
-            if trial is not None and trial.quality(best.part) < best.quality(best.part) - worth:
+            if (
+                trial is not None
+                and trial.bic(best.effective_fraction) < best.bic(best.effective_fraction) - worth
+            ):
                 best = trial
                 effect = best.effects[number]
     return best
@@ -225,7 +231,9 @@ def _common_phases(search: Search, best: Trial) -> Trial:
             values[shape] = float(np.angle(np.mean(np.exp(1j * np.array(own)))))
         effects = [*best.effects[:number], replace(effect, values=values)]
         trial = _refitted(search, best, [*effects, *best.effects[number + 1 :]])
-        if trial is not None and trial.quality(best.part) < best.quality(best.part):
+        if trial is not None and trial.bic(best.effective_fraction) < best.bic(
+            best.effective_fraction
+        ):
             best = trial
     return best
 
@@ -239,7 +247,7 @@ def _pruned(search: Search, best: Trial) -> Trial:
     options = search.options
     while len(best.effects) > 1:
         costs = []
-        at_noise = best.s2 < options.trial.gate_noise
+        at_noise = best.reduced_chi2 < options.trial.gate_noise
         tried = [
             _refit(
                 search,
@@ -253,7 +261,7 @@ def _pruned(search: Search, best: Trial) -> Trial:
         for smaller in search.refits.trials(best, tried):
             if smaller is None:
                 continue
-            loss = smaller.quality(best.part) - best.quality(best.part)
+            loss = smaller.bic(best.effective_fraction) - best.bic(best.effective_fraction)
             left = 1 - options.trial.gate_material
             immaterial = not at_noise and best.rss > left * smaller.rss
             if loss < options.search.cheap or immaterial:
@@ -264,7 +272,7 @@ def _pruned(search: Search, best: Trial) -> Trial:
     return best
 
 
-def _errors_from_nothing(best: Trial, effect: Added) -> float:
+def _errors_from_nothing(best: Trial, effect: PlacedEffect) -> float:
     """By how many standard errors a coefficient differs from that of no effect."""
     error = best.standard_errors.get(effect.candidate.coefficient, np.inf)
     return float(abs(effect.coefficient - effect.candidate.neutral) / max(error, 1e-300))
@@ -279,9 +287,9 @@ def _without_trifles(
     about z^2 variances off the sum of squares."""
     options = search.options
     while len(best.effects) > 1:
-        excess = (declared.s2 - best.s2) * best.count
+        excess = (declared.reduced_chi2 - best.reduced_chi2) * best.count
         for effect in best.effects:
-            taken = _errors_from_nothing(best, effect) ** 2 * best.s2
+            taken = _errors_from_nothing(best, effect) ** 2 * best.reduced_chi2
             ties = [str(rival.added) for rival in rivals.get(str(effect), ()) if rival.tied]
             unsure = effect.candidate.effect in options.uncommon or ties
             if unsure and taken < options.search.trifle * excess:
@@ -304,11 +312,14 @@ def _without_trifles(
     return best
 
 
-def _is_part_of_a_rest(search: Search, best: Trial, effect: Added, taken: float) -> bool:
+def _is_part_of_a_rest(search: Search, best: Trial, effect: PlacedEffect, taken: float) -> bool:
     """Whether a wave or a drift takes little beside the noise and leaves what is no noise: it is
     the part with its shape of a small law that no block has."""
     options = search.options
-    if effect.candidate.effect not in options.uncommon or best.s2 >= options.trial.gate_noise:
+    if (
+        effect.candidate.effect not in options.uncommon
+        or best.reduced_chi2 >= options.trial.gate_noise
+    ):
         return False
     if taken >= options.search.slight * best.rss:
         return False
@@ -326,11 +337,11 @@ def _dropped(search: Search, best: Trial) -> tuple[Trial, tuple[str, ...]]:
     """The best model without declared terms that the effects make superfluous, and their names."""
     names = []
     options = search.options.search
-    own = search.bench.declared.flat.parameters
+    own = search.problem.declared.flat.parameters
     for unknown in best.windows.criterion.unknowns:
         if unknown.low != 0.0 or unknown.name not in own:
             continue
-        at_noise = best.s2 < search.options.trial.gate_noise
+        at_noise = best.reduced_chi2 < search.options.trial.gate_noise
         error = best.standard_errors[unknown.name]
         if at_noise and best.values[unknown.name] > options.certain * error:
             continue
@@ -338,7 +349,7 @@ def _dropped(search: Search, best: Trial) -> tuple[Trial, tuple[str, ...]]:
         smaller = _refitted(search, best, best.effects, fixed)
         if smaller is None:
             continue
-        loss = smaller.quality(best.part) - best.quality(best.part)
+        loss = smaller.bic(best.effective_fraction) - best.bic(best.effective_fraction)
         if loss < 0 or (not at_noise and best.rss > (1 - options.immaterial) * smaller.rss):
             names.append(unknown.name)
             best = smaller

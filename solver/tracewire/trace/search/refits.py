@@ -13,7 +13,7 @@ from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal
 from tracewire.trace.search.workers import Refit, Workers
 from tracewire.trace.thresholds import SearchOptions
-from tracewire.trace.trials.trial import Added, Bench, Trial, begun_there
+from tracewire.trace.trials.trial import PlacedEffect, TraceProblem, Trial, with_starts_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,14 +31,14 @@ class Tried:
     def by_windows(self) -> float:
         """The mean over windows of the logarithm of what they leave, ln(E/n + 1): a few windows
         that were led astray, as by a friction that sticks, do not rule it."""
-        return float(np.mean(np.log(self.trial.means + 1.0)))
+        return float(np.mean(np.log(self.trial.window_mean_squares + 1.0)))
 
 
 @dataclass(frozen=True)
 class Refits:
     """What refits share, and who carries them out; `words` gets what could not be tried."""
 
-    bench: Bench
+    problem: TraceProblem
     tell: Callable[[str], None]
     words: list[str]
     workers: Workers
@@ -46,7 +46,7 @@ class Refits:
     @property
     def options(self) -> SearchOptions:
         """The thresholds of refits."""
-        return self.bench.options.search
+        return self.problem.options.search
 
     def tried(
         self, now: Trial, singles: Sequence[Proposal], pairs: Sequence[Proposal]
@@ -58,10 +58,10 @@ class Refits:
         leaves far behind is not refitted on all windows.
         """
         begun = self.begun(now, singles)
-        near = any(one.trial.s2 < self.options.near for one in begun)
+        near = any(one.trial.reduced_chi2 < self.options.near for one in begun)
         tried = self.whole(now, begun) if near else []
-        at_noise = self.bench.options.at_noise
-        if any(one.trial.s2 < at_noise for one in tried):
+        at_noise = self.problem.options.at_noise
+        if any(one.trial.reduced_chi2 < at_noise for one in tried):
             pairs = [pair for pair in pairs if pair.count <= tried[0].proposal.count]
             if not pairs:
                 return tried
@@ -95,7 +95,9 @@ class Refits:
     def _from_small(self, now: Trial, proposal: Proposal, few: Sequence[Segment]) -> Refit:
         """A proposal refitted from a small part of what it promises."""
         small = [
-            row.added.having(row.candidate.parameter, self.options.small * row.added.coefficient)
+            row.added.with_value(
+                row.candidate.parameter, self.options.small * row.added.coefficient
+            )
             for row in proposal.rows
         ]
         effects = (*now.effects, *small)
@@ -106,7 +108,7 @@ class Refits:
 
         Those that are too slow to come near the best, or below `target`, are given up on the way.
         """
-        most = self.options.kept if now.s2 < self.options.far else self.options.kept_far
+        most = self.options.kept if now.reduced_chi2 < self.options.far else self.options.kept_far
         kept: list[Tried] = []
         by_sum = sorted(begun, key=lambda one: one.trial.rss)
         by_windows = sorted(begun, key=lambda one: one.by_windows)
@@ -123,20 +125,20 @@ class Refits:
         for number, one in enumerate(kept, start=1):
             names = named(one.trial, now)
             self.tell(f"refitting {names} on all windows ({number} of {len(kept)})")
-            there = begun_there(segments, one.trial, rows)
+            there = with_starts_of(segments, one.trial, rows)
             refit = self.refit(one.trial, one.trial.effects, there, target=target)
             (trial,) = self.trials(one.trial, [refit])
             if trial is not None:
                 tried.append(Tried(trial, one.proposal))
-                target = min(target, target_of(trial, self.bench.options))
+                target = min(target, target_of(trial, self.problem.options))
         return self.ranked(now, tried)
 
     def ranked(self, now: Trial, tried: Sequence[Tried]) -> list[Tried]:
         """Trials on the same windows by BIC, the best first, with their weights."""
         if not tried:
             return []
-        part = min((one.trial for one in tried), key=lambda trial: trial.rss).part
-        rises = np.array([one.trial.quality(part) - now.quality(part) for one in tried])
+        part = min((one.trial for one in tried), key=lambda trial: trial.rss).effective_fraction
+        rises = np.array([one.trial.bic(part) - now.bic(part) for one in tried])
         weights = np.exp(-0.5 * (rises - rises.min()))
         weights = weights / weights.sum()
         rows = [
@@ -148,14 +150,14 @@ class Refits:
     def refit(
         self,
         now: Trial,
-        effects: Sequence[Added],
+        effects: Sequence[PlacedEffect],
         segments: Sequence[Segment],
         *,
         fixed: Mapping[str, float] | None = None,
         steps: int | None = None,
         target: float = np.inf,
-        creeps: float = FTOL,
-        settling: int = INITIAL_STATE_STEPS,
+        ftol: float = FTOL,
+        initial_state_steps: int = INITIAL_STATE_STEPS,
         values: Mapping[str, float] | None = None,
         words: str = "",
     ) -> Refit:
@@ -170,11 +172,11 @@ class Refits:
             {
                 "fixed": now.windows.criterion.parameters if fixed is None else fixed,
                 "steps": steps,
-                "budget": self.options.slower * steps * len(segments) * now.cost,
+                "budget": self.options.slower * steps * len(segments) * now.steps_per_run,
                 "target": target,
-                "good": now.good,
-                "creeps": creeps,
-                "settling": settling,
+                "inlier_limit": now.inlier_limit,
+                "ftol": ftol,
+                "initial_state_steps": initial_state_steps,
             },
             words,
         )
@@ -184,7 +186,7 @@ class Refits:
         not run."""
         there = {str(effect) for effect in now.effects}
         trials: list[Trial | None] = []
-        ended = self.workers.fitted(self.bench, refits, self.tell, self.words.append)
+        ended = self.workers.fitted(self.problem, refits, self.tell, self.words.append)
         for refit, result in zip(refits, ended, strict=True):
             if isinstance(result, TracewireError):
                 names = " and ".join(str(e) for e in refit.effects if str(e) not in there)
@@ -207,7 +209,7 @@ def few_of(segments: Sequence[Segment], count: int) -> list[int]:
 
 def target_of(trial: Trial, options: TraceOptions) -> float:
     """The sum of squares that a rival must promise to reach, or be given up."""
-    search, at_noise = options.search, trial.s2 < options.at_noise
+    search, at_noise = options.search, trial.reduced_chi2 < options.at_noise
     return (search.within_noise if at_noise else search.within) * trial.rss
 
 

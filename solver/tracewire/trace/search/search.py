@@ -11,10 +11,10 @@ from tracewire.errors import FitError
 from tracewire.residual import Section, Segment
 from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.candidates import find_candidates
-from tracewire.trace.candidates.levels import levels_of
 from tracewire.trace.candidates.places import Place
-from tracewire.trace.check.repeated import comes_back, visible
-from tracewire.trace.check.strays import without_strays
+from tracewire.trace.candidates.signal_scales import signal_scales_of
+from tracewire.trace.check.outlier_windows import fit_without_outliers
+from tracewire.trace.check.revisits import has_revisits, observable_candidates
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.assimilated import assimilated, seen_along
 from tracewire.trace.screen.screening import Proposal, Screen, screened
@@ -22,9 +22,9 @@ from tracewire.trace.screen.shortlist import distinct, shortlist
 from tracewire.trace.screen.tangent import Tangent
 from tracewire.trace.search.refits import Refits, Tried, named
 from tracewire.trace.search.workers import Workers
-from tracewire.trace.trials.judge import Verdict, gate
-from tracewire.trace.trials.stretches import Stretches
-from tracewire.trace.trials.trial import Bench, Trial
+from tracewire.trace.trials.data_split import DataSplit
+from tracewire.trace.trials.judge import GateResult, judge_on_gate
+from tracewire.trace.trials.trial import TraceProblem, Trial
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,8 +43,8 @@ class Step:
 class Search:
     """What the steps of a search share."""
 
-    bench: Bench
-    stretches: Stretches
+    problem: TraceProblem
+    data_split: DataSplit
     places: Sequence[Place]
     shortest: int
     values: Mapping[str, float]
@@ -63,7 +63,7 @@ class Search:
     @property
     def options(self) -> TraceOptions:
         """What the user asks, and every threshold."""
-        return self.bench.options
+        return self.problem.options
 
     @property
     def standing(self) -> tuple[Trial, Trial]:
@@ -80,20 +80,20 @@ class Search:
     @property
     def refits(self) -> Refits:
         """How proposals are refitted."""
-        return Refits(self.bench, self.tell, self.words, self.workers)
+        return Refits(self.problem, self.tell, self.words, self.workers)
 
     @property
     def free(self) -> tuple[str, ...]:
         """The states that are free where a window begins: none where the motion is prescribed, so
         that no place moves a state and each series begins as it says."""
         moved = any(place.a for place in self.places) or not any(p.v for p in self.places)
-        begun = any(value is None for m in self.bench.measured for value in m.start.values())
-        return self.bench.states if moved or begun else ()
+        begun = any(value is None for m in self.problem.measured for value in m.start.values())
+        return self.problem.states if moved or begun else ()
 
     @property
     def lengths(self) -> list[int]:
         """The window lengths in samples, from the shortest to whole sections."""
-        longest = self.stretches.longest
+        longest = self.data_split.longest
         if not self.free:
             return [longest]
         lengths = [min(self.shortest, longest)]
@@ -109,54 +109,55 @@ class Search:
 
     def windows(self, sections: Sequence[Section], length: int) -> list[Segment]:
         """The windows of some sections."""
-        return self.stretches.windows(self.bench.declared, sections, length, self.free)
+        return self.data_split.windows(self.problem.declared, sections, length, self.free)
 
     def declared(self) -> Trial:
         """The diagram as it is, fitted to the shortest windows."""
         self.tell("fitting the declared model")
         options, length = self.options.search, self.lengths[0]
-        windows = self.windows(self.stretches.train, length)
-        trial = self.bench.fitted((), windows, length, self.values, steps=options.first_steps)
-        if trial.s2 > options.far:  # a fit that few windows rule also ends where it looks flat
-            trial = without_strays(self.bench, trial, windows, options.first_steps)
+        windows = self.windows(self.data_split.train, length)
+        trial = self.problem.fit((), windows, length, self.values, steps=options.first_steps)
+        if trial.reduced_chi2 > options.far:
+            # a fit that few windows rule also ends where it looks flat
+            trial = fit_without_outliers(self.problem, trial, windows, options.first_steps)
         if trial.converged:
             return trial
-        return self.bench.fitted((), trial.windows.segments, length, trial.values)
+        return self.problem.fit((), trial.windows.segments, length, trial.values)
 
     def is_part(self, trial: Trial) -> bool:
         """Whether a trial leaves out windows that it does not bear."""
-        return len(trial.windows.segments) < len(self.windows(self.stretches.train, trial.length))
+        return len(trial.windows.segments) < len(self.windows(self.data_split.train, trial.length))
 
     def completed(self, trial: Trial) -> Trial:
         """A trial on all windows, where it bears those that were left out."""
         if not self.is_part(trial):
             return trial
-        windows = self.windows(self.stretches.train, trial.length)
+        windows = self.windows(self.data_split.train, trial.length)
         try:
-            whole = self.bench.again(trial, windows, trial.length)
+            whole = self.problem.refit(trial, windows, trial.length)
         except FitError:
             return trial
-        return whole if whole.s2 < self.options.search.far else trial
+        return whole if whole.reduced_chi2 < self.options.search.far else trial
 
     def climbed(
         self, trial: Trial, sections: Sequence[Section] | None = None, far: float | None = None
     ) -> Trial:
         """A trial refitted on longer and longer windows, as far as its residual stays small."""
-        sections = self.stretches.train if sections is None else sections
+        sections = self.data_split.train if sections is None else sections
         far = self.options.search.far if far is None else far
         longest = max(section.end - section.first for section in sections)
         lengths = [
             n for n in self.lengths if trial.length < n < self.options.split.nearly_whole * longest
         ]
         for length in [*lengths, *([longest] if trial.length < longest else [])]:
-            if trial.s2 > far:
+            if trial.reduced_chi2 > far:
                 break
             self.tell(f"refitting on windows of {length} samples")
             try:
-                longer = self.bench.again(trial, self.windows(sections, length), length)
+                longer = self.problem.refit(trial, self.windows(sections, length), length)
             except FitError:
                 break
-            if not longer.converged or longer.s2 > far:
+            if not longer.converged or longer.reduced_chi2 > far:
                 break
             trial = longer
         return trial
@@ -172,9 +173,9 @@ class Search:
             found = self.step(self.best)
             if found is None:
                 break
-            before, self.best = self.best.s2, self.climbed(self.completed(found))
+            before, self.best = self.best.reduced_chi2, self.climbed(self.completed(found))
             options = self.options.search
-            if self.best.s2 > max(options.far, before / options.nearer):
+            if self.best.reduced_chi2 > max(options.far, before / options.nearer):
                 break  # the noise is out of reach: models are compared otherwise
 
     def step(self, now: Trial) -> Trial | None:
@@ -182,9 +183,9 @@ class Search:
         self.tell("screening effects")
         self.steps[-1:] = [replace(step, screen=step.screen.slim()) for step in self.steps[-1:]]
         seen = now
-        if now.s2 > self.options.search.far and now.count > self.options.most_samples:
+        if now.reduced_chi2 > self.options.search.far and now.count > self.options.most_samples:
             most, together = self.options.most_samples, self.options.windows_together
-            seen = self.bench.some(now, _spread(now, most, together))
+            seen = self.problem.on_some_windows(now, _spread(now, most, together))
         screen = self.screen(seen)
         chance = screen.chance()
         proposals = self._proposals(seen, screen) if chance <= self.options.screen.chance else []
@@ -219,7 +220,7 @@ class Search:
         room = self.options.effects - len(now.effects)
         along = self.along_data(now)
         if along is None:
-            near = now.s2 < self.options.search.far
+            near = now.reduced_chi2 < self.options.search.far
             return shortlist(screen, room, options.singles if near else options.many)
         first = [along.begun(p) for p in shortlist(along, room, options.singles)]
         return distinct([*first, *shortlist(screen, room, options.singles)])
@@ -249,10 +250,12 @@ class Search:
         """The screen beside a model far from the data, along these; None where it is near them, or
         where none can be."""
         options = self.options
-        near = trial.s2 < options.search.far or misfit(trial) < options.screen.far_from_data
+        near = (
+            trial.reduced_chi2 < options.search.far or misfit(trial) < options.screen.far_from_data
+        )
         if near or not self.free:
             return None
-        along = assimilated(self.bench, trial, self.tangent(trial))
+        along = assimilated(self.problem, trial, self.tangent(trial))
         if along is None:
             return None
         taken = [effect.candidate for effect in trial.effects]
@@ -262,19 +265,21 @@ class Search:
         """The windows of a model linearised in torques at the places; that of the last one is
         kept, as a screen and one along the data ask for the same."""
         if self._last is None or self._last[0] is not trial:
-            args = trial.diagram, trial.windows, self.places, self.bench.rtol, self.options
+            args = trial.diagram, trial.windows, self.places, self.problem.rtol, self.options
             self._last = trial, Tangent(*args)
         return self._last[1]
 
     def candidates(self, tangent: Tangent, taken: Sequence[Candidate]) -> list[Candidate]:
         """The effects at places that may be tried beside those that are there."""
         options, runs = self.options, tangent.trajectories
-        levels = levels_of(runs, options.candidate)
-        declared, tones = self.bench.declared, self.bench.tones
-        found = find_candidates(declared, self.places, levels, options.candidate, taken, tones)
-        self.returns = comes_back(self.places, runs, options.check.again)
+        signal_scales = signal_scales_of(runs, options.candidate)
+        declared, sines = self.problem.declared, self.problem.drive_sines
+        found = find_candidates(
+            declared, self.places, signal_scales, options.candidate, taken, sines
+        )
+        self.returns = has_revisits(self.places, runs, options.check.again)
         if not self.returns:
-            found = visible(declared, found, runs)
+            found = observable_candidates(declared, found, runs)
         only, without = self.options.only, self.options.without
         return [
             c
@@ -284,16 +289,18 @@ class Search:
             and str(c) not in without
         ]
 
-    def judged(self, now: Trial, one: Tried, tried: Sequence[Tried]) -> tuple[Verdict, int | None]:
+    def judged(
+        self, now: Trial, one: Tried, tried: Sequence[Tried]
+    ) -> tuple[GateResult, int | None]:
         """What the gate says of a trial, also beside each simpler one that was tried, and the
         number of the one that it does not improve on."""
         length = one.trial.length
-        windows = self.windows(self.stretches.gate, length)
-        verdict = gate(self.bench, now, one.trial, windows, -one.rise)
+        windows = self.windows(self.data_split.gate, length)
+        verdict = judge_on_gate(self.problem, now, one.trial, windows, -one.rise)
         for number, other in enumerate(tried):
             if verdict.passed and _is_simpler(other, one):
                 fall = other.rise - one.rise
-                verdict = gate(self.bench, other.trial, one.trial, windows, fall)
+                verdict = judge_on_gate(self.problem, other.trial, one.trial, windows, fall)
                 if not verdict.passed:
                     return verdict, number
         return verdict, None

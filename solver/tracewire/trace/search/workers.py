@@ -10,7 +10,7 @@ from typing import Any
 from tracewire.errors import DiagramError, FitError, OptionError, TracewireError
 from tracewire.residual import Segment
 from tracewire.solve import Halt, WorkerEnded, carry_out
-from tracewire.trace.trials.trial import Added, Bench, Trial
+from tracewire.trace.trials.trial import PlacedEffect, TraceProblem, Trial
 
 REFUSED = (FitError, DiagramError, OptionError)
 """How a refit may end without a trial: it does not run, or the effects cannot be wired."""
@@ -18,9 +18,9 @@ REFUSED = (FitError, DiagramError, OptionError)
 
 @dataclass(frozen=True, eq=False)
 class Refit:
-    """One refit: what `Bench.fitted` takes, and what is told of it."""
+    """One refit: what `TraceProblem.fit` takes, and what is told of it."""
 
-    effects: tuple[Added, ...]
+    effects: tuple[PlacedEffect, ...]
     segments: tuple[Segment, ...]
     length: int
     values: Mapping[str, float]
@@ -32,11 +32,11 @@ class Refit:
 class Fitting:
     """The job of the workers: refits of the trials of a trace. It is sent to them once."""
 
-    bench: Bench
+    problem: TraceProblem
 
     def run(self, number: int, refit: Refit, halt: Halt) -> Trial:
-        """The trial of a refit. Raises what `Bench.fitted` raises."""
-        return self.bench.fitted(
+        """The trial of a refit. Raises what `TraceProblem.fit` raises."""
+        return self.problem.fit(
             refit.effects, refit.segments, refit.length, refit.values, **refit.options
         )
 
@@ -53,7 +53,7 @@ class Workers:
 
     def fitted(
         self,
-        bench: Bench,
+        problem: TraceProblem,
         refits: Sequence[Refit],
         tell: Callable[[str], None],
         note: Callable[[str], None],
@@ -63,7 +63,7 @@ class Workers:
         found: dict[int, Trial | TracewireError] = {}
         if self.executor is not None and len(refits) > 1:
             try:
-                self._sent(self.executor, bench, refits, found, tell)
+                self._sent(self.executor, problem, refits, found, tell)
             except WorkerEnded as error:
                 self.executor = None
                 note(f"{error.problems[0].what}: what was left was done without the executor")
@@ -71,7 +71,7 @@ class Workers:
             if number not in found:
                 _tell(refit, len(found) + 1, len(refits), tell)
                 try:
-                    found[number] = Fitting(bench).run(number, refit, Halt())
+                    found[number] = Fitting(problem).run(number, refit, Halt())
                 except REFUSED as error:
                     found[number] = error
         return [found[number] for number in range(len(refits))]
@@ -79,7 +79,7 @@ class Workers:
     def _sent(
         self,
         executor: Executor,
-        bench: Bench,
+        problem: TraceProblem,
         refits: Sequence[Refit],
         found: dict[int, Trial | TracewireError],
         tell: Callable[[str], None],
@@ -92,7 +92,7 @@ class Workers:
             found[task[0]] = result
             _tell(task[1], len(found), len(refits), tell)
 
-        if carry_out(Fitting(bench).run, list(enumerate(refits)), take, executor=executor):
+        if carry_out(Fitting(problem).run, list(enumerate(refits)), take, executor=executor):
             raise KeyboardInterrupt
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from tracewire.residual import OWN, SENSED, Unknown
-from tracewire.trace.trials.trial import Added, Trial
+from tracewire.trace.trials.trial import PlacedEffect, Trial
 
 Kind = Literal["parameter", "sensor", "coefficient", "shape"]
 
@@ -105,13 +105,13 @@ def _near(unknown: Unknown, value: float, part: float, upper: bool) -> bool:
     return abs(value - bound) <= part * min(size, high - low)
 
 
-def _kind(name: str, effect: Added | None) -> Kind:
+def _kind(name: str, effect: PlacedEffect | None) -> Kind:
     if effect is not None:
         return "coefficient" if name == effect.candidate.coefficient else "shape"
     return "sensor" if name.startswith(SENSED) else "parameter"
 
 
-def _unit(trial: Trial, name: str, effect: Added | None) -> str:
+def _unit(trial: Trial, name: str, effect: PlacedEffect | None) -> str:
     """The unit in SI of a number; '' where it is not known."""
     flat = trial.model.flat
     if effect is not None:

@@ -9,57 +9,61 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.residual import Segment
-from tracewire.trace.trials.trial import Bench, Trial
+from tracewire.trace.trials.trial import TraceProblem, Trial
 
 Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Verdict:
+class GateResult:
     """What the gate says of a trial: whether it passes, by how much the squared error falls there,
     the paired z over windows, the part of windows that improve, and that in words."""
 
     passed: bool
     drop: float
     z: float
-    improved: float
+    improved_fraction: float
     words: str
 
 
-def gate(
-    bench: Bench, now: Trial, trial: Trial, windows: Sequence[Segment], fall: float
-) -> Verdict:
+def judge_on_gate(
+    problem: TraceProblem,
+    now: Trial,
+    trial: Trial,
+    windows: Sequence[Segment],
+    bic_reduction: float,
+) -> GateResult:
     """Whether a trial does better than another on windows that no fit saw.
 
     Its squared error must be 2 % smaller there (a third, where it stays far above the noise, where
     everything is significant), and either the paired z over windows exceeds 2, or
     more than three of four windows improve; where BIC has fallen by more than 100, z above 1 is
-    enough, or that hardly any window does worse. `fall` is that fall of BIC. Of a trial at the
-    noise, few windows in which both models lose their track say nothing and do not count.
+    enough, or that hardly any window does worse. `bic_reduction` is that fall of BIC. Of a trial at
+    the noise, few windows in which both models lose their track say nothing and do not count.
     """
-    options = bench.options.trial
-    at_noise = trial.s2 <= options.gate_noise
-    old, new = bench.on(now, windows), bench.on(trial, windows)
+    options = problem.options.trial
+    at_noise = trial.reduced_chi2 <= options.gate_noise
+    old, new = problem.residuals_on(now, windows), problem.residuals_on(trial, windows)
     before = np.array([float(np.sum(r**2)) for r in old])
     after = np.array([float(np.sum(r**2)) for r in new])
     astray = np.minimum(before, after) > options.gate_astray * np.array([r.size for r in new])
     if at_noise and astray.sum() <= options.gate_few_astray * len(astray):
         before, after = before[~astray], after[~astray]
     if not before.sum() > 0:
-        return Verdict(False, 0.0, 0.0, 0.0, "gate: nothing to improve")
+        return GateResult(False, 0.0, 0.0, 0.0, "gate: nothing to improve")
     drop = float(1 - after.sum() / before.sum())
     change = before - after
     spread = float(np.std(change, ddof=1)) if len(change) > 1 else 0.0
     mean = float(np.mean(change))
     z = mean / (spread / len(change) ** 0.5) if spread > 0 else np.copysign(np.inf, mean)
-    improved = float(np.mean(change > 0))
+    improved_fraction = float(np.mean(change > 0))
     gained, lost = float(np.maximum(change, 0.0).sum()), -float(np.minimum(change, 0.0).sum())
-    supported = z > options.gate_errors or improved > options.gate_improved
-    if fall > options.gate_decisive:
+    supported = z > options.gate_errors or improved_fraction > options.gate_improved
+    if bic_reduction > options.gate_decisive:
         supported |= z > options.gate_few_errors or lost < options.gate_harm * gained
     passed = drop > (options.gate_drop if at_noise else options.gate_material) and bool(supported)
     size = f"{abs(drop):.0%}" if not 0.995 <= drop < 1 else "more than 99.5%"
     words = f"gate: squared error {'falls' if drop > 0 else 'rises'} by {size}"
-    return Verdict(
-        passed, drop, float(z), improved, words + (", passed" if passed else ", refused")
+    return GateResult(
+        passed, drop, float(z), improved_fraction, words + (", passed" if passed else ", refused")
     )

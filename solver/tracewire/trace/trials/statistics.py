@@ -1,4 +1,4 @@
-"""The numbers by which effects are judged: effective sample size, BIC, scores, chance."""
+"""The numbers by which effects are judged: effective sample size, BIC, scores, p-values."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from tracewire.trace.thresholds import ScreenOptions
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 NEGLIGIBLE = 1e-9
-HIDDEN = 1e-6
+ABSORBED = 1e-6
 """The part of a column's square beyond which the unknowns that are there imitate it completely."""
 
 
-def effective_part(residuals: Sequence[Vector]) -> float:
+def effective_fraction(residuals: Sequence[Vector]) -> float:
     """N_eff/N = 2 arccos(rho)/pi, rho the lag-1 correlation of residuals inside windows.
 
     For white residuals it is 1. For a smooth, oscillating residual it is twice its number of sign
@@ -33,9 +33,11 @@ def effective_part(residuals: Sequence[Vector]) -> float:
     return max(2 * float(np.arccos(rho)) / np.pi, 1e-4)
 
 
-def bic(rss: float, count: int, part: float, unknowns: int) -> float:
+def bic(rss: float, count: int, effective_fraction: float, unknowns: int) -> float:
     """N_eff ln(RSS/N) + k ln(N): smaller is better."""
-    return count * part * float(np.log(max(rss, 1e-300) / count)) + unknowns * float(np.log(count))
+    return count * effective_fraction * float(np.log(max(rss, 1e-300) / count)) + unknowns * float(
+        np.log(count)
+    )
 
 
 def orthonormal(columns: Matrix, least: float = 1e-8) -> Matrix:
@@ -52,20 +54,20 @@ def orthonormal(columns: Matrix, least: float = 1e-8) -> Matrix:
 
 
 @dataclass(frozen=True, eq=False)
-class Columns:
+class CandidateColumns:
     """Candidate columns beside what is there already: d residual/d coefficient, without what
     start values and unknowns can imitate.
 
-    residual (M,), matrix (M, K), `masked` (K,) the part of each column's square that the unknowns
-    imitate (that beyond the start values: 1 = completely), `part` N_eff/N of the residual,
-    `freedom` its degrees of freedom.
+    residual (M,), matrix (M, K), `absorbed_fraction` (K,) the part of each column's square that the
+    unknowns imitate (that beyond the start values: 1 = completely), `effective_fraction` N_eff/N of
+    the residual, `degrees_of_freedom` those of it.
     """
 
     residual: Vector
     matrix: Matrix
-    masked: Vector
-    part: float
-    freedom: int
+    absorbed_fraction: Vector
+    effective_fraction: float
+    degrees_of_freedom: int
     options: ScreenOptions = field(default_factory=ScreenOptions)
 
     @property
@@ -76,13 +78,15 @@ class Columns:
     def some(self, indices: Sequence[int]) -> Self:
         """Some of the columns, by number."""
         chosen = list(indices)
-        return replace(self, matrix=self.matrix[:, chosen], masked=self.masked[chosen])
+        return replace(
+            self, matrix=self.matrix[:, chosen], absorbed_fraction=self.absorbed_fraction[chosen]
+        )
 
     @cached_property
     def _alone(self) -> tuple[Vector, Vector]:
         """The falls and the coefficients (K,) of each column alone."""
         sizes = np.einsum("ij,ij->j", self.matrix, self.matrix)
-        seen = (1 - self.masked >= HIDDEN) & (sizes > 0)
+        seen = (1 - self.absorbed_fraction >= ABSORBED) & (sizes > 0)
         along = self.residual @ self.matrix
         values = np.where(seen, -along / np.where(seen, sizes, 1.0), 0.0)
         return -along * values, values
@@ -93,7 +97,7 @@ class Columns:
             falls, values = self._alone
             return float(falls[indices[0]]), values[list(indices)]
         chosen = self.matrix[:, list(indices)]
-        if min(1 - self.masked[list(indices)]) < HIDDEN:
+        if min(1 - self.absorbed_fraction[list(indices)]) < ABSORBED:
             return 0.0, np.zeros(len(indices))
         sizes = np.linalg.norm(chosen, axis=0)
         matrix, along = chosen.T @ chosen, self.residual @ chosen
@@ -107,23 +111,23 @@ class Columns:
         _, values = self.score(indices)
         return np.asarray(self.residual + self.matrix[:, list(indices)] @ values)
 
-    def moved(self, indices: Sequence[int]) -> Vector | None:
+    def unknown_changes(self, indices: Sequence[int]) -> Vector | None:
         """How the unknowns move beside columns, in SI; None where only the effects are known."""
         return None
 
-    def gain(self, fall: float, count: int) -> float:
+    def gain(self, rss_reduction: float, count: int) -> float:
         """What a fall of the sum of squares is worth: half the fall of BIC, for `count` numbers."""
         rows = len(self.residual)
-        left = max(self.rss - fall, 1e-12 * self.rss, 1e-300)
-        size = 0.5 * rows * self.part * float(np.log(self.rss / left))
+        left = max(self.rss - rss_reduction, 1e-12 * self.rss, 1e-300)
+        size = 0.5 * rows * self.effective_fraction * float(np.log(self.rss / left))
         return size - 0.5 * count * float(np.log(rows))
 
-    def likeness(self, one: Sequence[int], other: Sequence[int]) -> float:
+    def canonical_correlation(self, one: Sequence[int], other: Sequence[int]) -> float:
         """The canonical correlation of two groups of columns: 1 where no data tell them apart."""
         mine, its = (orthonormal(self.matrix[:, list(indices)]) for indices in (one, other))
         return float(np.linalg.norm(mine.T @ its, 2)) if mine.size and its.size else 0.0
 
-    def chance(self, groups: Sequence[Sequence[int]], signs: Sequence[int], best: float) -> float:
+    def p_value(self, groups: Sequence[Sequence[int]], signs: Sequence[int], best: float) -> float:
         """The probability that noise alone gives some group a fall of `best` or more.
 
         Draws of white noise are scored as the residual is, all groups at once, and a Gumbel
@@ -132,24 +136,28 @@ class Columns:
         N_eff. Where the sum of the chances of all groups, which is never less, is next to nothing,
         it is that sum.
         """
-        variance = (self.rss - best) / max(self.freedom, 1)
-        fall = best * self.part / max(variance, 1e-300)
-        most = sum(float(chdtrc(len(group), fall)) for group in groups)
+        variance = (self.rss - best) / max(self.degrees_of_freedom, 1)
+        rss_reduction = best * self.effective_fraction / max(variance, 1e-300)
+        most = sum(float(chdtrc(len(group), rss_reduction)) for group in groups)
         if most < NEGLIGIBLE:
             return most
         rng = np.random.default_rng(self.options.seed)
         for draws in self.options.draws:
-            chance = self._drawn(
-                groups, signs, fall, rng.standard_normal((draws, len(self.residual)))
+            p_value = self._monte_carlo_p_value(
+                groups, signs, rss_reduction, rng.standard_normal((draws, len(self.residual)))
             )
-            if not self.options.sure[0] < chance < self.options.sure[1]:
+            if not self.options.sure[0] < p_value < self.options.sure[1]:
                 break
-        return chance
+        return p_value
 
-    def _drawn(
-        self, groups: Sequence[Sequence[int]], signs: Sequence[int], fall: float, noise: Matrix
+    def _monte_carlo_p_value(
+        self,
+        groups: Sequence[Sequence[int]],
+        signs: Sequence[int],
+        rss_reduction: float,
+        noise: Matrix,
     ) -> float:
-        """The chance of a fall by draws of noise, (draws, M)."""
+        """The p-value of a fall by draws of noise, (draws, M)."""
         largest = np.zeros(len(noise))
         single = [n for n, group in enumerate(groups) if len(group) == 1]
         alone = self.matrix[:, [groups[n][0] for n in single]]
@@ -165,11 +173,11 @@ class Columns:
                 largest = np.maximum(largest, np.sum((noise @ basis) ** 2, axis=1))
         scale = float(np.std(largest, ddof=1)) * 6**0.5 / np.pi
         place = float(np.mean(largest)) - np.euler_gamma * scale
-        return float(-np.expm1(-np.exp(-(fall - place) / max(scale, 1e-300))))
+        return float(-np.expm1(-np.exp(-(rss_reduction - place) / max(scale, 1e-300))))
 
 
 @dataclass(frozen=True, eq=False)
-class BoundedColumns(Columns):
+class BoundedColumns(CandidateColumns):
     """Candidate columns far from the noise: unknowns move far beside them, up to their bounds.
 
     residual (M,) is what the unknowns leave where they move alone, `whole` (M, K) the columns with
@@ -197,9 +205,9 @@ class BoundedColumns(Columns):
         return columns.T @ columns, columns.T @ self.rest
 
     @cached_property
-    def _falls(self) -> float:
+    def _unknowns_reduction(self) -> float:
         """The fall of the sum of squares where the unknowns move alone."""
-        return self._solved(())[0]
+        return self._solve(())[0]
 
     def some(self, indices: Sequence[int]) -> Self:
         """As of columns without bounds."""
@@ -207,23 +215,23 @@ class BoundedColumns(Columns):
 
     def score(self, indices: Sequence[int]) -> tuple[float, Vector]:
         """As of columns without bounds; the unknowns move with them."""
-        if min(1 - self.masked[list(indices)]) < HIDDEN:
+        if min(1 - self.absorbed_fraction[list(indices)]) < ABSORBED:
             return 0.0, np.zeros(len(indices))
-        fall, values = self._solved(indices)
-        return max(fall - self._falls, 0.0), values[self.unknowns.shape[1] :]
+        rss_reduction, values = self._solve(indices)
+        return max(rss_reduction - self._unknowns_reduction, 0.0), values[self.unknowns.shape[1] :]
 
     def left(self, indices: Sequence[int]) -> Vector:
         """As of columns without bounds; the unknowns move with them."""
-        _, values = self._solved(indices)
+        _, values = self._solve(indices)
         count = self.unknowns.shape[1]
         with_unknowns = self.rest + self.unknowns @ values[:count]
         return np.asarray(with_unknowns + self.whole[:, list(indices)] @ values[count:])
 
-    def moved(self, indices: Sequence[int]) -> Vector:
+    def unknown_changes(self, indices: Sequence[int]) -> Vector:
         """How the unknowns move beside columns, in SI (n,)."""
-        return self._solved(indices)[1][: self.unknowns.shape[1]]
+        return self._solve(indices)[1][: self.unknowns.shape[1]]
 
-    def _solved(self, indices: Sequence[int]) -> tuple[float, Vector]:
+    def _solve(self, indices: Sequence[int]) -> tuple[float, Vector]:
         """The fall from `rest`, and the values of the unknowns' columns and of some others."""
         count = self.unknowns.shape[1]
         chosen = [*range(count), *(count + n for n in indices)]
@@ -240,5 +248,5 @@ class BoundedColumns(Columns):
         root = (np.sqrt(size[kept]) * turned[:, kept]).T
         target = (turned[:, kept] / np.sqrt(size[kept])).T @ -right
         found = lsq_linear(root, target, (low, high), method="bvls").x
-        fall = -float(found @ (matrix @ found) + 2 * right @ found)
-        return fall, np.asarray(found / sizes)
+        rss_reduction = -float(found @ (matrix @ found) + 2 * right @ found)
+        return rss_reduction, np.asarray(found / sizes)

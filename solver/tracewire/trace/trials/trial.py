@@ -33,17 +33,17 @@ from tracewire.residual import (
 from tracewire.solve import Limits, parameter_values, release
 from tracewire.trace.candidates.candidate import Candidate, unknowns_of, without_defaults
 from tracewire.trace.candidates.changes import changes_of
-from tracewire.trace.candidates.tones import Sine, tones_of
+from tracewire.trace.candidates.drive_sines import Sine, drive_sines_of
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.thresholds import TrialOptions
-from tracewire.trace.trials.phases import best_phase
-from tracewire.trace.trials.statistics import bic, effective_part
+from tracewire.trace.trials.phase_fit import fit_phase
+from tracewire.trace.trials.statistics import bic, effective_fraction
 
 Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Added:
+class PlacedEffect:
     """An effect in a diagram: the candidate, and the values of its parameters by their names in
     its block; a shape that is not among them keeps its default."""
 
@@ -64,14 +64,14 @@ class Added:
         """The series in which a shape has a value of its own."""
         return {key.partition("@")[2] for key in self.values if "@" in key}
 
-    def own_in(self, series: str) -> dict[str, float]:
+    def series_values(self, series: str) -> dict[str, float]:
         """The values of its own that a series has, by path."""
         ends = f"@{series}"
         own = dict(self.candidate.own.get(series, {}))
         own |= {key.removesuffix(ends): v for key, v in self.values.items() if key.endswith(ends)}
         return {f"{self.candidate.block}.{name}": value for name, value in own.items()}
 
-    def having(self, name: str, value: float) -> Added:
+    def with_value(self, name: str, value: float) -> PlacedEffect:
         """The effect with one more value."""
         return replace(self, values={**self.values, name: value})
 
@@ -80,7 +80,7 @@ class Added:
         """The value of the coefficient."""
         return self.values[self.candidate.parameter]
 
-    def at(self, named: Mapping[str, float]) -> Added:
+    def with_values(self, named: Mapping[str, float]) -> PlacedEffect:
         """The effect with the values that the unknowns of a fit have."""
         values = {n: named.get(self.unknown(n), value) for n, value in self.values.items()}
         return replace(self, values=without_defaults(self.candidate, values))
@@ -92,7 +92,7 @@ class Trial:
 
     diagram: Diagram
     model: Model
-    effects: tuple[Added, ...]
+    effects: tuple[PlacedEffect, ...]
     windows: Windows
     length: int
     converged: bool
@@ -119,37 +119,37 @@ class Trial:
         return len(self.windows.values) + sum(len(s) for s in self.windows.starts)
 
     @property
-    def freedom(self) -> int:
+    def degrees_of_freedom(self) -> int:
         """Degrees of freedom of the residual."""
         return max(self.count - self.unknowns, 1)
 
     @property
-    def s2(self) -> float:
+    def reduced_chi2(self) -> float:
         """RSS per degree of freedom; 1 is at the noise."""
-        return self.rss / self.freedom
+        return self.rss / self.degrees_of_freedom
 
     @property
-    def good(self) -> float:
+    def inlier_limit(self) -> float:
         """The mean squared residual of a window up to which its start is not taken for astray:
         twice that of the middle one, and what the noise alone may give."""
-        return max(2 * float(np.median(self.means)), self.options.not_astray)
+        return max(2 * float(np.median(self.window_mean_squares)), self.options.not_astray)
 
     @property
-    def means(self) -> Vector:
+    def window_mean_squares(self) -> Vector:
         """The mean squared residual of each window."""
         windows = self.windows
         return np.asarray(windows.squares / [max(r.size, 1) for r in windows.residuals])
 
     @property
-    def cost(self) -> float:
+    def steps_per_run(self) -> float:
         """The steps that a run takes on average."""
         criterion = self.windows.criterion
         return criterion.steps / max(criterion.runs, 1)
 
     @property
-    def part(self) -> float:
+    def effective_fraction(self) -> float:
         """N_eff/N of the residuals."""
-        return effective_part(self.windows.residuals)
+        return effective_fraction(self.windows.residuals)
 
     @cached_property
     def standard_errors(self) -> dict[str, float]:
@@ -158,18 +158,18 @@ class Trial:
         reduced, _ = project_out_initial_states(windows)
         sizes = np.linalg.norm(reduced, axis=0)
         scaled = reduced / np.where(sizes > 0, sizes, 1.0)
-        covariance = np.linalg.pinv(scaled.T @ scaled, rcond=1e-12) * max(self.s2, 1e-300)
-        spread = np.sqrt(np.maximum(np.diag(covariance) / self.part, 0.0))
+        covariance = np.linalg.pinv(scaled.T @ scaled, rcond=1e-12) * max(self.reduced_chi2, 1e-300)
+        spread = np.sqrt(np.maximum(np.diag(covariance) / self.effective_fraction, 0.0))
         spread = np.divide(spread, sizes, out=np.full(len(sizes), np.inf), where=sizes > 0)
         return dict(zip(windows.values, spread.tolist(), strict=True))
 
-    def quality(self, part: float) -> float:
+    def bic(self, effective_fraction: float) -> float:
         """BIC, of residuals of which this part is independent."""
-        return bic(self.rss, self.count, part, self.unknowns)
+        return bic(self.rss, self.count, effective_fraction, self.unknowns)
 
 
 @dataclass(frozen=True, eq=False)
-class Bench:
+class TraceProblem:
     """What the trials of a trace share: the declared model, series, their noise, tolerance, and
     what the noise of their inputs does; and what the user asks."""
 
@@ -183,9 +183,9 @@ class Bench:
     """Why no effect can be written at a place, by its name; None where one can."""
 
     @cached_property
-    def tones(self) -> dict[str, dict[str, Sine]]:
+    def drive_sines(self) -> dict[str, dict[str, Sine]]:
         """The sine that each measured drive is, by drive and series."""
-        return tones_of(self.measured, self.options.candidate)
+        return drive_sines_of(self.measured, self.options.candidate)
 
     @property
     def signals(self) -> tuple[str, ...]:
@@ -197,13 +197,13 @@ class Bench:
         """The states that are free where a window begins: those of the declared diagram."""
         return self.declared.states
 
-    def compiled(self, diagram: Diagram) -> Model:
+    def compile_diagram(self, diagram: Diagram) -> Model:
         """A diagram as a model that records what is measured."""
         return compile(diagram, record=self.signals, backend="quick")
 
-    def fitted(
+    def fit(
         self,
-        effects: Sequence[Added],
+        effects: Sequence[PlacedEffect],
         segments: Sequence[Segment],
         length: int,
         values: Mapping[str, float],
@@ -212,42 +212,44 @@ class Bench:
         steps: int | None = None,
         budget: float = np.inf,
         target: float = np.inf,
-        good: float | None = None,
-        creeps: float = FTOL,
-        settling: int = INITIAL_STATE_STEPS,
+        inlier_limit: float | None = None,
+        ftol: float = FTOL,
+        initial_state_steps: int = INITIAL_STATE_STEPS,
     ) -> Trial:
         """The declared diagram with effects fitted to windows, from the values given.
 
         `fixed` are parameters that are not fitted, `budget` the steps of all runs together. A fit
         that is too slow to reach the sum of squares `target` ends early; windows whose squared
-        residual is at most `good` are not taken for astray; `creeps` and `settling` as in
-        `descended`. Raises FitError where the
+        residual is at most `inlier_limit` are not taken for astray; `ftol` and
+        `initial_state_steps` as in `fit_windows`. Raises FitError where the
         model cannot be simulated, DiagramError or OptionError where an effect cannot be wired, or
         the text at its place cannot be edited by program.
         """
         steps = self.options.trial.steps if steps is None else steps
-        good = self.options.trial.not_astray if good is None else good
+        inlier_limit = self.options.trial.not_astray if inlier_limit is None else inlier_limit
         diagram, model = self.declared.diagram, self.declared
         if effects:
             added = [(effect.candidate, effect.values) for effect in effects]
             diagram = apply(diagram, changes_of(diagram, added))
             self._refuse_unwritable(effects)
-            model = self.compiled(diagram)
+            model = self.compile_diagram(diagram)
         fixed = fixed or {}
         unknowns = [u for u in self._unknowns(effects, values) if u.name not in fixed]
-        segments = [_without_strange(segment, model) for segment in segments]
-        criterion = self._criterion(model, self.with_own(segments, effects), unknowns, fixed)
+        segments = [_drop_foreign_starts(segment, model) for segment in segments]
+        criterion = self._criterion(
+            model, self.with_series_values(segments, effects), unknowns, fixed
+        )
         criterion.budget = budget
-        windows = evaluate_windows(criterion, good)
+        windows = evaluate_windows(criterion, inlier_limit)
         _refuse_failed(criterion, windows)
-        windows, converged = fit_windows(windows, steps, target, creeps, settling)
+        windows, converged = fit_windows(windows, steps, target, ftol, initial_state_steps)
         _refuse_failed(criterion, windows)
         if effects:
             release(model)  # a search keeps hundreds of models
-        now = tuple(effect.at(windows.values) for effect in effects)
+        now = tuple(effect.with_values(windows.values) for effect in effects)
         return Trial(diagram, model, now, windows, length, converged, self.options.trial)
 
-    def _refuse_unwritable(self, effects: Sequence[Added]) -> None:
+    def _refuse_unwritable(self, effects: Sequence[PlacedEffect]) -> None:
         """Refuse effects at places where the text has no room for one: what a search finds is
         written at its end. The text is tried once for each place."""
         diagram = self.declared.diagram
@@ -262,62 +264,68 @@ class Bench:
             if (known := self.unwritable[place]) is not None:
                 raise known
 
-    def again(
+    def refit(
         self, trial: Trial, segments: Sequence[Segment], length: int, target: float = np.inf
     ) -> Trial:
-        """A trial fitted to other windows, from where it stands; `target` as in `fitted`."""
+        """A trial fitted to other windows, from where it stands; `target` as in `fit`."""
         fixed = trial.windows.criterion.parameters
-        effects = self.met(trial, segments)
-        found = self.fitted(
-            effects, segments, length, trial.values, fixed=fixed, target=target, good=trial.good
+        effects = self.fit_unseen_phases(trial, segments)
+        found = self.fit(
+            effects,
+            segments,
+            length,
+            trial.values,
+            fixed=fixed,
+            target=target,
+            inlier_limit=trial.inlier_limit,
         )
-        return self._freed(found)
+        return self._refit_ruled(found)
 
-    def _freed(self, trial: Trial) -> Trial:
+    def _refit_ruled(self, trial: Trial) -> Trial:
         """A trial that a few windows rule, fitted without them first and then to all, where that
         does better: values and a start may hold each other where neither is right."""
         options, segments = self.options.trial, trial.windows.segments
-        means = trial.means
+        means = trial.window_mean_squares
         others = np.flatnonzero(means <= options.ruling * np.median(means)).tolist()
         few = len(others) >= (1 - options.few_ruling) * len(segments)
-        if trial.s2 < options.not_astray or len(others) == len(segments) or not few:
+        if trial.reduced_chi2 < options.not_astray or len(others) == len(segments) or not few:
             return trial
-        fixed, good = trial.windows.criterion.parameters, trial.good
+        fixed, inlier_limit = trial.windows.criterion.parameters, trial.inlier_limit
         try:
-            there = self.fitted(
+            there = self.fit(
                 trial.effects, [segments[n] for n in others], trial.length, trial.values,
-                fixed=fixed, good=good,
+                fixed=fixed, inlier_limit=inlier_limit,
             )  # fmt: skip
-            whole = self.fitted(
-                there.effects, begun_there(segments, there, others), trial.length, there.values,
-                fixed=fixed, target=trial.rss, good=good,
+            whole = self.fit(
+                there.effects, with_starts_of(segments, there, others), trial.length, there.values,
+                fixed=fixed, target=trial.rss, inlier_limit=inlier_limit,
             )  # fmt: skip
         except FitError:
             return trial
         return whole if whole.rss < trial.rss else trial
 
-    def some(self, trial: Trial, numbers: Sequence[int]) -> Trial:
+    def on_some_windows(self, trial: Trial, numbers: Sequence[int]) -> Trial:
         """A trial on some of its windows, by number, as they are."""
         segments = trial.windows.segments
         if len(numbers) == len(segments):
             return trial
-        criterion = self.warm(trial, [segments[n] for n in numbers], trial.values)
+        criterion = self.free_criterion(trial, [segments[n] for n in numbers], trial.values)
         return replace(trial, windows=evaluate_windows(criterion, trial.windows.inlier_limit))
 
-    def on(self, trial: Trial, segments: Sequence[Segment]) -> list[Vector]:
+    def residuals_on(self, trial: Trial, segments: Sequence[Segment]) -> list[Vector]:
         """The residuals in sigma of a trial on other windows, where only starts are fitted."""
-        return self.settled(trial, segments).residuals
+        return self.windows_on(trial, segments).residuals
 
-    def settled(self, trial: Trial, segments: Sequence[Segment]) -> Windows:
+    def windows_on(self, trial: Trial, segments: Sequence[Segment]) -> Windows:
         """A trial on other windows, where only starts are fitted."""
-        return fit_initial_states(evaluate_windows(self.criterion(trial, segments)))
+        return fit_initial_states(evaluate_windows(self.criterion_on(trial, segments)))
 
-    def criterion(self, trial: Trial, segments: Sequence[Segment]) -> Criterion:
+    def criterion_on(self, trial: Trial, segments: Sequence[Segment]) -> Criterion:
         """The criterion of a trial on other windows, with its values fixed."""
-        segments = self.with_own(segments, self.met(trial, segments))
+        segments = self.with_series_values(segments, self.fit_unseen_phases(trial, segments))
         return self._criterion(trial.model, segments, [], self.all_values(trial))
 
-    def warm(
+    def free_criterion(
         self, trial: Trial, segments: Sequence[Segment], values: Mapping[str, float]
     ) -> Criterion:
         """The criterion of a trial on other windows, with its unknowns free from `values`."""
@@ -325,14 +333,16 @@ class Bench:
         fixed = trial.windows.criterion.parameters
         return self._criterion(trial.model, segments, unknowns, fixed)
 
-    def at(
+    def fixed_criterion(
         self, trial: Trial, segments: Sequence[Segment], values: Mapping[str, float]
     ) -> Criterion:
         """The criterion of a trial on other windows, with its unknowns fixed at `values`."""
         fixed = {**trial.windows.criterion.parameters, **values}
         return self._criterion(trial.model, segments, [], fixed)
 
-    def met(self, trial: Trial, segments: Sequence[Segment]) -> tuple[Added, ...]:
+    def fit_unseen_phases(
+        self, trial: Trial, segments: Sequence[Segment]
+    ) -> tuple[PlacedEffect, ...]:
         """The effects of a trial with what each series of other windows has of its own: a series
         that the trial did not see gets the phase that fits it best."""
         effects = list(trial.effects)
@@ -349,26 +359,30 @@ class Bench:
 
                 def criterion_at(phase: float, number: int = number, key: str = key,
                                  mine: list[Segment] = mine) -> Criterion:  # fmt: skip
-                    tried = effects[number].having(key, phase)
-                    unknown = Unknown(tried.unknown(key), phase)
-                    those = self.with_own(mine, [*effects[:number], tried, *effects[number + 1 :]])
+                    changed = effects[number].with_value(key, phase)
+                    unknown = Unknown(changed.unknown(key), phase)
+                    those = self.with_series_values(
+                        mine, [*effects[:number], changed, *effects[number + 1 :]]
+                    )
                     return self._criterion(trial.model, those, [unknown], fixed)
 
-                effects[number] = effects[number].having(
-                    key, best_phase(criterion_at, self.options.trial)
+                effects[number] = effects[number].with_value(
+                    key, fit_phase(criterion_at, self.options.trial)
                 )
         return tuple(effects)
 
-    def with_own(self, segments: Sequence[Segment], effects: Sequence[Added]) -> list[Segment]:
+    def with_series_values(
+        self, segments: Sequence[Segment], effects: Sequence[PlacedEffect]
+    ) -> list[Segment]:
         """Windows whose series have what effects need of each series, and nothing of others: the
-        tone of its drive, a phase of its own."""
+        sine of its drive, a phase of its own."""
         declared = {measured.name: measured.parameters for measured in self.measured}
         known: dict[int, Measured] = {}
         for segment in segments:
             measured = segment.measured
             own = dict(declared.get(measured.name, {}))
             for effect in effects:
-                own |= effect.own_in(measured.series or measured.name)
+                own |= effect.series_values(measured.series or measured.name)
             if own != measured.parameters:
                 known.setdefault(id(measured), replace(measured, parameters=own))
         return [replace(s, measured=known.get(id(s.measured), s.measured)) for s in segments]
@@ -406,7 +420,9 @@ class Bench:
             ),
         )
 
-    def _unknowns(self, effects: Sequence[Added], values: Mapping[str, float]) -> list[Unknown]:
+    def _unknowns(
+        self, effects: Sequence[PlacedEffect], values: Mapping[str, float]
+    ) -> list[Unknown]:
         given = parameter_values(self.declared, {})
         names = [n for n, p in self.declared.flat.parameters.items() if p.fit is not None]
         free = free_unknowns(self.declared, names, given) if names else []
@@ -419,7 +435,7 @@ class Bench:
         return [replace(u, value=min(max(u.value, u.low), u.high)) for u in free]
 
 
-def begun_there(segments: Sequence[Segment], trial: Trial, rows: Sequence[int]) -> list[Segment]:
+def with_starts_of(segments: Sequence[Segment], trial: Trial, rows: Sequence[int]) -> list[Segment]:
     """Windows of which some, by number, begin where a trial on those begins."""
     found = list(segments)
     for n, segment in zip(rows, trial.windows.segments, strict=True):
@@ -434,7 +450,7 @@ def _refuse_failed(criterion: Criterion, windows: Windows) -> None:
         raise FitError(criterion.failure.problems)
 
 
-def _without_strange(segment: Segment, model: Model) -> Segment:
+def _drop_foreign_starts(segment: Segment, model: Model) -> Segment:
     """The segment without starts of states that the model has not: another effect's memory."""
     start = {name: value for name, value in segment.start.items() if name in model.states}
     return segment if len(start) == len(segment.start) else replace(segment, start=start)

@@ -18,7 +18,7 @@ from tracewire.errors import TracewireError
 from tracewire.formula import Number
 from tracewire.solve import Interrupted, simulate
 from tracewire.trace.candidates.candidate import Candidate
-from tracewire.trace.candidates.levels import Trajectory
+from tracewire.trace.candidates.signal_scales import Trajectory
 from tracewire.trace.thresholds import CandidateOptions
 
 Vector = NDArray[np.float64]
@@ -51,7 +51,7 @@ def variants_of(candidate: Candidate, most: int) -> list[Variant]:
     return [Variant(candidate, tuple(zip(counts, chosen, strict=True))) for chosen in choices]
 
 
-def histories(
+def effect_outputs(
     model: Model,
     candidates: Sequence[Candidate],
     trajectories: Sequence[Trajectory],
@@ -79,7 +79,7 @@ def histories(
     while queue:
         group = queue.pop()
         try:
-            found |= _together(model.diagram, group, trajectories, options.memory_tolerance)
+            found |= _simulate_outputs(model.diagram, group, trajectories, options.memory_tolerance)
         except Interrupted:
             raise
         except TracewireError as error:
@@ -101,7 +101,7 @@ def _memory(diagram: Diagram, effect: str) -> str:
     return "modes" if block.modes else "states" if block.states else ""
 
 
-def _together(
+def _simulate_outputs(
     diagram: Diagram,
     variants: Sequence[Variant],
     trajectories: Sequence[Trajectory],

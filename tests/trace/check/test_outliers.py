@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from oracles.oscillator import model_of, record
 from tracewire.residual import Measured
-from tracewire.trace.check.spikes import spikes, without_spikes
+from tracewire.trace.check.outliers import drop_outliers, find_outliers
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.search.begin import begun
 
@@ -29,7 +29,7 @@ def swing(seed: int = 0) -> np.ndarray:
 def test_a_single_wrong_sample_is_found(row: int, size: float, sign: int) -> None:
     y = np.exp(-0.1 * T) * np.cos(5.0 * T)
     y[row] += sign * size * NOISE
-    assert np.flatnonzero(spikes(T, y, NOISE, OPTIONS.check)).tolist() == [row]
+    assert np.flatnonzero(find_outliers(T, y, NOISE, OPTIONS.check)).tolist() == [row]
 
 
 def test_noise_hides_a_spike_seldom() -> None:
@@ -39,7 +39,7 @@ def test_noise_hides_a_spike_seldom() -> None:
     for row in rows:
         y = swing(row)
         y[row] += 0.05
-        there = np.flatnonzero(spikes(T, y, NOISE, OPTIONS.check)).tolist()
+        there = np.flatnonzero(find_outliers(T, y, NOISE, OPTIONS.check)).tolist()
         assert there in ([row], []), "never another one"
         found += len(there)
     assert found > 0.9 * len(rows)
@@ -47,7 +47,7 @@ def test_noise_hides_a_spike_seldom() -> None:
 
 @given(st.integers(0, 200))
 def test_noise_has_no_spikes(seed: int) -> None:
-    assert not spikes(T, swing(seed), NOISE, OPTIONS.check).any()
+    assert not find_outliers(T, swing(seed), NOISE, OPTIONS.check).any()
 
 
 @pytest.mark.parametrize("speed", [0.3, 1.0, 3.0, 10.0])
@@ -55,15 +55,17 @@ def test_the_kink_of_an_impact_is_no_spike(speed: float) -> None:
     """A ball's bounce, a rate that turns under dry friction, and one of a body that is stopped."""
     for shift in np.linspace(0, 0.01, 7):
         noise = 1e-4 * np.random.default_rng(1).standard_normal(len(T))
-        assert not spikes(T, speed * np.abs(T - 5.0 - shift) + noise, 1e-4, OPTIONS.check).any()
-        assert not spikes(T, speed * (5.0 + shift > T) + noise, 1e-4, OPTIONS.check).any()
+        assert not find_outliers(
+            T, speed * np.abs(T - 5.0 - shift) + noise, 1e-4, OPTIONS.check
+        ).any()
+        assert not find_outliers(T, speed * (5.0 + shift > T) + noise, 1e-4, OPTIONS.check).any()
 
 
 def test_a_series_tells_what_was_left_out() -> None:
     y = swing(3)
     y[[100, 400, 700]] += 0.5
     m = Measured("swing", "train", T, {"x": y, "v": swing(1)})
-    found = without_spikes(m, {"x": NOISE, "v": NOISE}, OPTIONS.check)
+    found = drop_outliers(m, {"x": NOISE, "v": NOISE}, OPTIONS.check)
     assert len(found.t) == len(found.values["v"]) == len(T) - 3
     assert found.remarks == ("3 single samples left out, far off their neighbours: 3 of x",)
     assert np.abs(np.diff(found.values["x"])).max() < 0.1
@@ -73,13 +75,13 @@ def test_many_wrong_samples_are_no_mistake_of_single_ones() -> None:
     y = swing()
     y[10::40] += 0.5
     m = Measured("swing", "train", T, {"x": y})
-    assert without_spikes(m, {"x": NOISE}, OPTIONS.check) is m
+    assert drop_outliers(m, {"x": NOISE}, OPTIONS.check) is m
 
 
 def test_a_series_without_spikes_is_the_same() -> None:
     m = Measured("swing", "train", T, {"x": swing()})
-    assert without_spikes(m, {"x": NOISE}, OPTIONS.check) is m
-    assert without_spikes(replace(m, t=T**1.5), {"x": NOISE}, OPTIONS.check).values.keys() == {"x"}
+    assert drop_outliers(m, {"x": NOISE}, OPTIONS.check) is m
+    assert drop_outliers(replace(m, t=T**1.5), {"x": NOISE}, OPTIONS.check).values.keys() == {"x"}
 
 
 def test_a_trace_leaves_them_out_and_says_so() -> None:
@@ -87,6 +89,6 @@ def test_a_trace_leaves_them_out_and_says_so() -> None:
     x = m.values["x"].copy()
     x[[150, 260]] -= 0.3
     search = begun(model_of(), [replace(m, values={"x": x})], 1e-8, str, TraceOptions())
-    assert len(search.bench.measured[0].t) == len(m.t) - 2
+    assert len(search.problem.measured[0].t) == len(m.t) - 2
     assert any("2 single samples left out" in words for words in search.words)
-    assert search.declared().s2 == pytest.approx(1.0, abs=0.25)
+    assert search.declared().reduced_chi2 == pytest.approx(1.0, abs=0.25)

@@ -1,4 +1,4 @@
-"""Tones: the sine that a measured drive is, in each series."""
+"""Drive sines: the sine that a measured drive is, in each series."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Sine:
     phase: float
 
 
-def sine_of(t: Vector, u: Vector, pure: float) -> Sine | None:
+def fit_sine(t: Vector, u: Vector, pure: float) -> Sine | None:
     """The sine that a drive u (N,) is at times t (N,), fitted by least squares; None where it
     leaves more than the part `pure` of the variance."""
     centred = u - np.mean(u)
@@ -55,7 +55,9 @@ def sine_of(t: Vector, u: Vector, pure: float) -> Sine | None:
     return Sine(math.hypot(sine, cosine), 1 / frequency, math.atan2(cosine, sine))
 
 
-def tones_of(measured: Sequence[Measured], options: CandidateOptions) -> dict[str, dict[str, Sine]]:
+def drive_sines_of(
+    measured: Sequence[Measured], options: CandidateOptions
+) -> dict[str, dict[str, Sine]]:
     """The sine of each measured input in each series, for inputs that are sines in all of them."""
     found: dict[str, dict[str, Sine]] = {}
     missing: set[str] = set()
@@ -65,19 +67,19 @@ def tones_of(measured: Sequence[Measured], options: CandidateOptions) -> dict[st
             if series.series in found.get(name, {}):  # another window of the same record
                 continue
             known = series.inputs.get(name)
-            sine = sine_of(*known, options.pure_tone) if known else None
+            sine = fit_sine(*known, options.pure_tone) if known else None
             if sine is None:
                 missing.add(name)
             else:
                 found.setdefault(name, {})[series.series or series.name] = sine
-    return {name: tones for name, tones in found.items() if name not in missing}
+    return {name: sines for name, sines in found.items() if name not in missing}
 
 
 def own_values(
-    tone: Mapping[str, str], tones: Mapping[str, Sine] | None
+    tone: Mapping[str, str], sines: Mapping[str, Sine] | None
 ) -> dict[str, dict[str, float]]:
     """The parameters of an effect that follow the drive: by series and parameter."""
     return {
         series: {parameter: float(getattr(sine, of)) for parameter, of in tone.items()}
-        for series, sine in (tones or {}).items()
+        for series, sine in (sines or {}).items()
     }

@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.oscillator import STIFFNESS, bench_of, record
+from oracles.oscillator import STIFFNESS, problem_of, record
 from tracewire.residual import Measured, Segment
 from tracewire.residual.windows import Section, cut_windows
-from tracewire.trace.check.strays import without_strays
-from tracewire.trace.trials.trial import Bench, Trial
+from tracewire.trace.check.outlier_windows import fit_without_outliers
+from tracewire.trace.trials.trial import TraceProblem, Trial
 
 LENGTH = 25
 WRONG = (100, 200, 300)
@@ -27,51 +27,51 @@ def kicked(law: Callable[[float, float], float] | None = None) -> Measured:
     return replace(m, values={"x": x})
 
 
-def begun(bench: Bench, measured: Measured) -> tuple[list[Segment], Trial]:
+def begun(problem: TraceProblem, measured: Measured) -> tuple[list[Segment], Trial]:
     segments = cut_windows(
-        bench.declared, Section(measured, 0, len(measured.t)), LENGTH, bench.states
+        problem.declared, Section(measured, 0, len(measured.t)), LENGTH, problem.states
     )
-    return segments, bench.fitted((), segments, LENGTH, {"k": 60.0}, steps=1)
+    return segments, problem.fit((), segments, LENGTH, {"k": 60.0}, steps=1)
 
 
 def test_a_fit_is_led_by_the_windows_that_are_alike() -> None:
     m = kicked(lambda x, v: -0.3 * v * abs(v))
-    bench = bench_of(m)
-    segments, first = begun(bench, m)
-    found = without_strays(bench, first, segments, 5)
+    problem = problem_of(m)
+    segments, first = begun(problem, m)
+    found = fit_without_outliers(problem, first, segments, 5)
     left_out = [
         s for s in segments if not any(s.rows[0] == k.rows[0] for k in found.windows.segments)
     ]
     assert 3 <= len(left_out) <= 6
     assert all(min(abs(int(s.rows[0]) - first) for first in WRONG) <= LENGTH for s in left_out)
-    assert found.s2 < first.s2 / 100
+    assert found.reduced_chi2 < first.reduced_chi2 / 100
     assert found.values["k"] == pytest.approx(STIFFNESS, rel=0.02)
 
 
 def test_what_shows_in_a_few_windows_alone_is_not_left_out() -> None:
     m = kicked()
-    bench = bench_of(m)
-    segments, first = begun(bench, m)
-    found = without_strays(bench, first, segments, 5)
+    problem = problem_of(m)
+    segments, first = begun(problem, m)
+    found = fit_without_outliers(problem, first, segments, 5)
     assert len(found.windows.segments) == len(segments)
-    assert found.s2 > 1000
+    assert found.reduced_chi2 > 1000
 
 
 def test_windows_that_are_all_alike_stay() -> None:
     m = record(lambda x, v: -0.3 * v * abs(v))
-    bench = bench_of(m)
-    segments, first = begun(bench, m)
-    assert without_strays(bench, first, segments, 5) is first
+    problem = problem_of(m)
+    segments, first = begun(problem, m)
+    assert fit_without_outliers(problem, first, segments, 5) is first
 
 
 def test_a_fit_that_cannot_reach_its_target_ends_early() -> None:
     m = record(lambda x, v: -30.0 * np.sign(x) * (abs(x) > 0.5))
-    bench = bench_of(m)
+    problem = problem_of(m)
     length, start = 60, {"k": 6.0, "c": 1.9}
-    segments = cut_windows(bench.declared, Section(m, 0, len(m.t)), length, bench.states)
-    free = bench.fitted((), segments, length, start)
-    ended = bench.fitted((), segments, length, start, target=free.rss / 100)
-    reached = bench.fitted((), segments, length, start, target=2 * free.rss)
+    segments = cut_windows(problem.declared, Section(m, 0, len(m.t)), length, problem.states)
+    free = problem.fit((), segments, length, start)
+    ended = problem.fit((), segments, length, start, target=free.rss / 100)
+    reached = problem.fit((), segments, length, start, target=2 * free.rss)
     assert free.converged and not ended.converged
     assert ended.windows.criterion.runs < free.windows.criterion.runs
     assert reached.rss == free.rss

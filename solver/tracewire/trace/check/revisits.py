@@ -12,13 +12,13 @@ from tracewire.errors import TracewireError
 from tracewire.formula import evaluate, names_of
 from tracewire.library import Block
 from tracewire.trace.candidates.candidate import Candidate
-from tracewire.trace.candidates.levels import Trajectory
 from tracewire.trace.candidates.places import Place
+from tracewire.trace.candidates.signal_scales import Trajectory
 
 PITCH = "pitch"
 
 
-def comes_back(places: Sequence[Place], trajectories: Sequence[Trajectory], again: float) -> bool:
+def has_revisits(places: Sequence[Place], trajectories: Sequence[Trajectory], again: float) -> bool:
     """Whether in some series some body is twice at the same coordinate: the way it goes is `again`
     times the range."""
     coordinates = {place.q for place in places if place.kind == "sum" and place.q}
@@ -30,7 +30,7 @@ def comes_back(places: Sequence[Place], trajectories: Sequence[Trajectory], agai
     return not known
 
 
-def visible(
+def observable_candidates(
     model: Model, candidates: Sequence[Candidate], trajectories: Sequence[Trajectory]
 ) -> list[Candidate]:
     """The candidates that a motion without return can show.

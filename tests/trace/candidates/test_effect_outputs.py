@@ -12,9 +12,9 @@ from tracewire.diagram import read_text
 from tracewire.solve import Interrupted
 from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.candidates import find_candidates
-from tracewire.trace.candidates.histories import histories, variants_of
-from tracewire.trace.candidates.levels import Trajectory, levels_of
+from tracewire.trace.candidates.effect_outputs import effect_outputs, variants_of
 from tracewire.trace.candidates.places import find_places
+from tracewire.trace.candidates.signal_scales import Trajectory, signal_scales_of
 from tracewire.trace.options import TraceOptions
 
 OPTIONS = TraceOptions()
@@ -45,7 +45,7 @@ def resting() -> Trajectory:
 def candidates_of(text: str, runs: list[Trajectory]) -> tuple[Model, dict[str, Candidate]]:
     model = compile(read_text(text))
     found = find_candidates(
-        model, find_places(model), levels_of(runs, OPTIONS.candidate), OPTIONS.candidate
+        model, find_places(model), signal_scales_of(runs, OPTIONS.candidate), OPTIONS.candidate
     )
     return model, {str(candidate): candidate for candidate in found}
 
@@ -64,7 +64,7 @@ def test_memoryless_effects_follow_their_formulas() -> None:
         "drive_gain @ drive.u": lambda x, v, a, u: u,
     }
     chosen = [known[name] for name in formulas]
-    found = histories(model, chosen, runs, OPTIONS.candidate, pytest.fail)
+    found = effect_outputs(model, chosen, runs, OPTIONS.candidate, pytest.fail)
     for name, formula in formulas.items():
         first = next(v for v in found if str(v.candidate) == name)
         for run, values in zip(runs, found[first], strict=True):
@@ -75,7 +75,7 @@ def test_memoryless_effects_follow_their_formulas() -> None:
 def test_a_shape_is_a_variant_of_its_own() -> None:
     runs = [moving()]
     model, known = candidates_of(TEXT, runs)
-    found = histories(model, [known["coulomb @ force"]], runs, OPTIONS.candidate, pytest.fail)
+    found = effect_outputs(model, [known["coulomb @ force"]], runs, OPTIONS.candidate, pytest.fail)
     assert [dict(variant.shapes)["width"] for variant in found] == pytest.approx(
         known["coulomb @ force"].shapes["width"]
     )
@@ -89,7 +89,7 @@ def test_a_memory_is_integrated_along_the_run() -> None:
     run = moving()
     model, known = candidates_of(TEXT, [run])
     dahl = known["hysteresis @ force"]
-    found = histories(model, [dahl], [run], OPTIONS.candidate, pytest.fail)
+    found = effect_outputs(model, [dahl], [run], OPTIONS.candidate, pytest.fail)
     for variant, (values,) in found.items():
         (s,) = (value for _, value in variant.shapes)
 
@@ -106,7 +106,7 @@ def test_a_lag_is_that_of_its_coefficient_over_it() -> None:
     model, known = candidates_of(TEXT, [run])
     lag = known["drive_lag @ drive.u"]
     assert lag.at == pytest.approx(2 * 0.005)
-    ((values,),) = histories(model, [lag], [run], OPTIONS.candidate, pytest.fail).values()
+    ((values,),) = effect_outputs(model, [lag], [run], OPTIONS.candidate, pytest.fail).values()
     late = T > 0.2  # behind the start, a sine after a lag is known
     phase = np.arctan(3 * lag.at)
     expected = (np.cos(phase) * np.sin(3 * T - phase) - np.sin(3 * T)) / lag.at
@@ -118,7 +118,7 @@ def test_a_body_at_rest_neither_hangs_nor_fails() -> None:
     runs = [resting(), resting()]
     model, known = candidates_of(TEXT, runs)
     told: list[str] = []
-    found = histories(model, list(known.values()), runs, OPTIONS.candidate, told.append)
+    found = effect_outputs(model, list(known.values()), runs, OPTIONS.candidate, told.append)
     assert told == []
     assert {str(variant.candidate) for variant in found} == {
         name
@@ -142,7 +142,9 @@ subsystems:
     model, known = candidates_of(TEXT + bad, runs)
     told: list[str] = []
     names = ["viscous @ force", "root @ force", "stiffness @ force", "bias @ force"]
-    found = histories(model, [known[name] for name in names], runs, OPTIONS.candidate, told.append)
+    found = effect_outputs(
+        model, [known[name] for name in names], runs, OPTIONS.candidate, told.append
+    )
     assert [str(v.candidate) for v in found] == [n for n in names if n != "root @ force"]
     assert len(told) == 1 and told[0].startswith("root @ force was not tried: ")
 
@@ -170,6 +172,6 @@ def test_ctrl_c_is_no_reason_to_leave_one_out(monkeypatch: pytest.MonkeyPatch) -
 
     model, known = candidates_of(TEXT, [moving()])
     # the package has a function of its name, which hides the module from its path
-    monkeypatch.setattr(sys.modules[histories.__module__], "simulate", stopped)
+    monkeypatch.setattr(sys.modules[effect_outputs.__module__], "simulate", stopped)
     with pytest.raises(Interrupted):
-        histories(model, list(known.values()), [moving()], OPTIONS.candidate, pytest.fail)
+        effect_outputs(model, list(known.values()), [moving()], OPTIONS.candidate, pytest.fail)

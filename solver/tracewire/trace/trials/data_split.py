@@ -1,4 +1,4 @@
-"""Which stretch of the data does what: fit (train), accept (gate), the final claim (validate)."""
+"""Which part of the data does what: fit (train), accept (gate), the final claim (validate)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tracewire.trace.thresholds import SplitOptions
 
 
 @dataclass(frozen=True, eq=False)
-class Stretches:
+class DataSplit:
     """Sections of series by use, and how they came about in words.
 
     Train and gate are cut into windows; validation is run as a whole.
@@ -61,7 +61,7 @@ class Stretches:
         return list(ends.values())
 
 
-def share_out(measured: Sequence[Measured], options: SplitOptions) -> Stretches:
+def split_data(measured: Sequence[Measured], options: SplitOptions) -> DataSplit:
     """The sections of the measured series.
 
     Without a series for it, every third ninth of the train series is the gate (the last third where
@@ -101,17 +101,17 @@ def share_out(measured: Sequence[Measured], options: SplitOptions) -> Stretches:
         for n in range(0, blocks, 3):
             train.append(Section(m, edges[n], edges[n + 2]))
             gate.append(Section(m, edges[n + 2], edges[n + 3]))
-    return Stretches(tuple(train), tuple(gate), tuple(validate), tuple(words))
+    return DataSplit(tuple(train), tuple(gate), tuple(validate), tuple(words))
 
 
-def shortest_window(stretches: Stretches, options: SplitOptions) -> int:
+def shortest_window(data_split: DataSplit, options: SplitOptions) -> int:
     """The samples of the shortest window: about a fifth of the slowest series' period, at least 16.
 
     A series without a period, as of a falling body, has no phase that a long run could lose: it is
     one window.
     """
     lengths = []
-    for section in stretches.train:
+    for section in data_split.train:
         for values in section.measured.values.values():
             y = values[section.first : section.end]
             centred = y - np.mean(y)
@@ -119,7 +119,7 @@ def shortest_window(stretches: Stretches, options: SplitOptions) -> int:
             lengths.append(
                 2 * len(y) / crossings if crossings > 1 else options.in_a_period * len(y)
             )
-    longest = max(stretches.longest, options.shortest)
+    longest = max(data_split.longest, options.shortest)
     return int(np.clip(np.median(lengths) / options.in_a_period, options.shortest, longest))
 
 

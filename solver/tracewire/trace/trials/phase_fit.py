@@ -12,7 +12,7 @@ from tracewire.trace.thresholds import TrialOptions
 TURN = np.linspace(-np.pi, np.pi, 72, endpoint=False)
 
 
-def best_phase(criterion_at: Callable[[float], Criterion], options: TrialOptions) -> float:
+def fit_phase(criterion_at: Callable[[float], Criterion], options: TrialOptions) -> float:
     """The phase in rad that fits windows best, the one unknown of the criterion that begins at it.
 
     A wave that is small moves the residual by a*cos(phase) + b*sin(phase). Two runs, at 0 and at a
@@ -27,6 +27,6 @@ def best_phase(criterion_at: Callable[[float], Criterion], options: TrialOptions
         without = 0.5 * (near.residual.ravel() - a + there.residual.ravel() - b)
         waves = np.outer(off(a), np.cos(TURN)) + np.outer(off(b), np.sin(TURN))
         squares += np.sum((off(without)[:, None] + waves) ** 2, axis=0)
-    begun = evaluate_windows(criterion_at(float(TURN[np.argmin(squares)])))
-    windows, _ = fit_windows(begun, options.phase_steps)
+    first = evaluate_windows(criterion_at(float(TURN[np.argmin(squares)])))
+    windows, _ = fit_windows(first, options.phase_steps)
     return float(next(iter(windows.values.values())))

@@ -24,7 +24,7 @@ class Trajectory:
 
 
 @dataclass(frozen=True)
-class Level:
+class SignalScale:
     """The size of a signal: its root mean square and its largest absolute value.
 
     stroke: the longest way in one direction. step: the way from one sample to the next, the median
@@ -39,20 +39,20 @@ class Level:
 
 
 @dataclass(frozen=True)
-class Levels:
+class SignalScales:
     """The sizes of signals, the duration of the longest series and the sample interval in s."""
 
-    signals: Mapping[str, Level]
+    signals: Mapping[str, SignalScale]
     duration: float
     interval: float
 
-    def of(self, name: str) -> Level:
+    def of(self, name: str) -> SignalScale:
         """The size of a signal; 0 where it is not known."""
-        return self.signals.get(name, Level(0.0, 0.0))
+        return self.signals.get(name, SignalScale(0.0, 0.0))
 
 
 def signals_at(places: Sequence[Place]) -> tuple[str, ...]:
-    """The signals that the levels and histories of candidates at these places need."""
+    """The signals that the scales and outputs of candidates at these places need."""
     found: dict[str, None] = {}
     for place in places:
         own = place.name if place.kind == "sum" else place.definition
@@ -61,25 +61,25 @@ def signals_at(places: Sequence[Place]) -> tuple[str, ...]:
     return tuple(name for name in found if name)
 
 
-def levels_of(trajectories: Sequence[Trajectory], options: CandidateOptions) -> Levels:
+def signal_scales_of(trajectories: Sequence[Trajectory], options: CandidateOptions) -> SignalScales:
     """The sizes of all signals over all series."""
     parts: dict[str, list[Vector]] = {}
     for run in trajectories:
         for name, values in run.signals.items():
             parts.setdefault(name, []).append(values)
-    return Levels(
-        {name: _level(values, options) for name, values in parts.items()},
+    return SignalScales(
+        {name: _signal_scale(values, options) for name, values in parts.items()},
         max(float(run.t[-1] - run.t[0]) for run in trajectories),
         float(np.median(np.concatenate([np.diff(run.t) for run in trajectories]))),
     )
 
 
-def _level(parts: Sequence[Vector], options: CandidateOptions) -> Level:
+def _signal_scale(parts: Sequence[Vector], options: CandidateOptions) -> SignalScale:
     """The size of a signal from its values (N,) in each series."""
     x = np.concatenate(parts)
     ways = np.concatenate([_ways(part) for part in parts])
     steps = np.abs(np.concatenate([np.diff(part) for part in parts]))
-    return Level(
+    return SignalScale(
         float(np.sqrt(np.mean(x**2))),
         float(np.max(np.abs(x))),
         float(np.max(ways, initial=0.0)),

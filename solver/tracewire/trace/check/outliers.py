@@ -1,4 +1,4 @@
-"""Spikes: single samples that a sensor or a file got wrong, far off their smooth neighbours."""
+"""Outliers: single samples that a sensor or a file got wrong, far off their smooth neighbours."""
 
 from __future__ import annotations
 
@@ -21,32 +21,35 @@ ONWARD = np.linalg.pinv(np.vander(np.arange(-SIDE, 0.0), 3))[-1]
 SPREAD, ONWARD_SPREAD = (float(np.sqrt(1 + np.sum(w**2))) for w in (CUBIC, ONWARD))
 
 
-def without_spikes(
+def drop_outliers(
     measured: Measured, sigma: Mapping[str, float], options: CheckOptions
 ) -> Measured:
-    """A series without the samples at which a signal has a spike; its `remarks` tell how many.
+    """A series without the samples at which a signal has an outlier; its `remarks` tell how many.
 
-    A spike is more than 8 standard deviations off both parabolas, that of the five samples before
-    it and that of the five after it, which agree on what should be there; its neighbours are less
-    than 3 off the cubic through theirs, once it stands on its own. So the kink of an impact, a turn
-    under dry friction and the step of a body that is stopped are none.
+    An outlier is more than 8 standard deviations off both parabolas, that of the five samples
+    before it and that of the five after it, which agree on what should be there; its neighbours are
+    less than 3 off the cubic through theirs, once it stands on its own. So the kink of an impact, a
+    turn under dry friction and the step of a body that is stopped are none.
     """
     t = measured.t
     found = {
-        name: spikes(t, y, sigma.get(name, 0.0), options) for name, y in measured.values.items()
+        name: find_outliers(t, y, sigma.get(name, 0.0), options)
+        for name, y in measured.values.items()
     }
     bad = np.any(list(found.values()), axis=0)
     if not bad.any() or np.mean(bad) > options.most_spikes:
         return measured
-    told = " and ".join(f"{flags.sum()} of {name}" for name, flags in found.items() if flags.any())
+    counts = " and ".join(
+        f"{flags.sum()} of {name}" for name, flags in found.items() if flags.any()
+    )
     plural = "s" * (int(bad.sum()) > 1)
-    remark = f"{bad.sum()} single sample{plural} left out, far off their neighbours: {told}"
+    remark = f"{bad.sum()} single sample{plural} left out, far off their neighbours: {counts}"
     values = {name: y[~bad] for name, y in measured.values.items()}
     return replace(measured, t=t[~bad], values=values, remarks=(*measured.remarks, remark))
 
 
-def spikes(t: Vector, y: Vector, sigma: float, options: CheckOptions) -> Flags:
-    """Which samples (N,) are spikes beside noise of the standard deviation sigma; none at 0."""
+def find_outliers(t: Vector, y: Vector, sigma: float, options: CheckOptions) -> Flags:
+    """Which samples (N,) are outliers beside noise of the standard deviation sigma; none at 0."""
     flags = np.zeros(len(y), dtype=bool)
     if len(y) <= 2 * SIDE or sigma <= 0:
         return flags

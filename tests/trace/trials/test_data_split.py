@@ -9,7 +9,7 @@ from tracewire.errors import DataError
 from tracewire.residual import Measured
 from tracewire.residual.windows import Section
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.trials.stretches import Stretches, share_out
+from tracewire.trace.trials.data_split import DataSplit, split_data
 
 OPTIONS = TraceOptions()
 
@@ -20,7 +20,7 @@ def rows(sections: tuple[Section, ...]) -> np.ndarray:
 
 def test_of_a_lone_series_no_sample_is_used_twice() -> None:
     m = record()
-    found = share_out([m], OPTIONS.split)
+    found = split_data([m], OPTIONS.split)
     train, gate, last = rows(found.train), rows(found.gate), rows(found.validate)
     assert len(np.intersect1d(train, gate)) == 0
     np.testing.assert_array_equal(np.sort(np.concatenate((train, gate, last))), np.arange(len(m.t)))
@@ -37,14 +37,14 @@ def test_a_run_that_ends_at_rest_is_told() -> None:
     """The claim on its last sixth would be one about a body at rest."""
     swing, still = record(damping=0.2), record(damping=3.0)
     said = "nothing moves in the last sixth of 'swing', so that the free runs there tell little"
-    assert not [words for words in share_out([swing], OPTIONS.split).words if said in words]
-    (words,) = (words for words in share_out([still], OPTIONS.split).words if said in words)
+    assert not [words for words in split_data([swing], OPTIONS.split).words if said in words]
+    (words,) = (words for words in split_data([still], OPTIONS.split).words if said in words)
     assert words.endswith("name another run under `measured:`, with `use: validate`")
 
 
 def test_series_that_have_a_use_keep_it_whole() -> None:
     series = [record(name=use, use=use, end=6.0) for use in ("train", "gate", "validate")]
-    found = share_out(series, OPTIONS.split)
+    found = split_data(series, OPTIONS.split)
     for sections, m in zip((found.train, found.gate, found.validate), series, strict=True):
         assert sections == (Section(m, 0, len(m.t)),) or [
             (s.measured.name, s.first, s.end) for s in sections
@@ -54,7 +54,7 @@ def test_series_that_have_a_use_keep_it_whole() -> None:
 
 def test_with_a_gate_alone_the_claim_comes_from_the_last_sixth() -> None:
     train, gate = record(), record(name="gate", use="gate")
-    found = share_out([train, gate], OPTIONS.split)
+    found = split_data([train, gate], OPTIONS.split)
     assert [s.measured.name for s in found.gate] == ["gate"]
     assert found.train[0].end == found.validate[0].first
     assert found.validate[0].end == len(train.t)
@@ -62,13 +62,13 @@ def test_with_a_gate_alone_the_claim_comes_from_the_last_sixth() -> None:
 
 def test_the_whole_of_the_train_series_leaves_out_what_is_held_back() -> None:
     m, gate = record(), record(name="gate", use="gate")
-    alone: Stretches = share_out([m], OPTIONS.split)
+    alone: DataSplit = split_data([m], OPTIONS.split)
     assert [(s.first, s.end) for s in alone.whole()] == [(0, alone.validate[0].first)]
-    assert {s.measured.name for s in share_out([m, gate], OPTIONS.split).whole()} == {"swing"}
+    assert {s.measured.name for s in split_data([m, gate], OPTIONS.split).whole()} == {"swing"}
 
 
 def test_windows_of_sections_never_cross_their_edges() -> None:
-    found = share_out([record()], OPTIONS.split)
+    found = split_data([record()], OPTIONS.split)
     windows = found.windows(model_of(), found.train, 40, ("x", "v"))
     np.testing.assert_array_equal(np.concatenate([w.rows for w in windows]), rows(found.train))
     assert found.longest == max(s.end - s.first for s in found.train)
@@ -78,4 +78,4 @@ def test_a_signal_that_no_train_series_measures_is_refused() -> None:
     m = record(name="other", use="validate")
     other = Measured("other", "validate", m.t, {"v": m.values["x"]})
     with pytest.raises(DataError, match="'other' measures 'v', which no train series measures"):
-        share_out([record(), other], OPTIONS.split)
+        split_data([record(), other], OPTIONS.split)
