@@ -287,9 +287,12 @@ def test_files_are_written_whole_in_one_place() -> None:
         ("library/load.py", "import_module('tracewire.blocks.friction')"),
         ("cellar/wine.py", ""),
         ("trace/cellar/wine.py", ""),
-        ("trace/found.py", "from tracewire.trace.screen.tangent import Tangent"),
-        ("trace/screen/tangent.py", "from ..search.search import Search"),
-        ("trace/screen/tangent.py", "from tracewire.trace import Found"),
+        (
+            "trace/found.py",
+            "from tracewire.trace.screen.torque_linearisation import TorqueLinearisation",
+        ),
+        ("trace/screen/torque_linearisation.py", "from ..search.search import Search"),
+        ("trace/screen/torque_linearisation.py", "from tracewire.trace import Found"),
         ("fit/fit.py", "from tracewire.trace import Found"),
     ],
 )
@@ -305,7 +308,10 @@ def test_an_import_against_the_order_is_found(file: str, source: str) -> None:
         ("compile/source.py", "from .tape import Tape\nimport compileall, trace, blocksworld"),
         ("__init__.py", "from tracewire.cli import main"),
         ("trace/__init__.py", "from tracewire.trace.trace import trace"),
-        ("trace/search/search.py", "from tracewire.trace.screen.tangent import Tangent"),
+        (
+            "trace/search/search.py",
+            "from tracewire.trace.screen.torque_linearisation import TorqueLinearisation",
+        ),
     ],
 )
 def test_an_import_in_the_order_passes(file: str, source: str) -> None:

@@ -38,7 +38,7 @@ FORMATS = {
     "check/outliers.py:ONWARD": "the coefficients of a filter",
     "screen/screening.py:QUADRATURE": "0 and a quarter of a turn",
     "trials/phase_fit.py:TURN": "the angles of a turn",
-    "screen/answers.py:ROWS": "how much is worked on at once: the answer is the same",
+    "screen/projection.py:ROWS": "how much is worked on at once: the answer is the same",
     "missing/dependence.py:TOGETHER": "the same",
     "missing/dependence.py:COLUMNS": "the same",
     "candidates/waves.py:TOGETHER": "the same",

@@ -17,7 +17,7 @@ from tracewire.trace.candidates.signal_scales import SignalScale, SignalScales
 from tracewire.trace.found import Missing
 from tracewire.trace.missing.table import add_table
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.screen.probe import probed
+from tracewire.trace.screen.probes import add_probes
 
 PARTS = """\
 subsystems:
@@ -114,7 +114,7 @@ def test_an_effect_in_an_included_subsystem_goes_into_the_definition_around_it(
     new = with_effects(diagram, [(known["viscous"], {"c": 0.25})])
     assert "blocks: {c: {type: own_cart, u: u, w: u}}" in new.text
     assert "body.c.viscous.c" in compile(new, backend="quick").flat.parameters
-    probe, ((name,),) = probed(diagram, [place], 1)
+    probe, ((name,),) = add_probes(diagram, [place], 1)
     push = {"probe_input_0": ([0, 1], [1, 1])}
     run = simulate(compile(probe), span=(0, 1), parameters={name: 1.0}, inputs=push)
     # x'' = 2 (-x + 1), from rest

@@ -15,7 +15,7 @@ from tracewire.trace.candidates.candidates import find_candidates
 from tracewire.trace.candidates.places import Place, describe_untried, find_places
 from tracewire.trace.candidates.signal_scales import SignalScale, SignalScales
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.screen.probe import probed
+from tracewire.trace.screen.probes import add_probes
 
 OPTIONS = TraceOptions()
 
@@ -165,7 +165,7 @@ def test_an_effect_at_an_element_is_written_with_a_gain_that_makes_a_vector_of_i
     w = np.sqrt(12.0 - 0.25)
     damped = np.exp(-0.5) * (np.cos(w) + 0.5 / w * np.sin(w))
     assert run["x[1]"][-1] == pytest.approx(damped, abs=1e-5)
-    probe, names = probed(diagram, found, 1)
+    probe, names = add_probes(diagram, found, 1)
     push = {"probe_input_0": ([0, 1], [1, 1])}
     run = simulate(compile(probe), span=(0, 1), parameters={names[1][0]: 1.0}, inputs=push)
     assert run["x[0]"][-1] == pytest.approx(np.cos(np.sqrt(6.0)), abs=1e-5)
@@ -350,7 +350,7 @@ def test_a_sum_two_levels_deep_is_a_place() -> None:
     new = with_effects(diagram, [(known["viscous"], {"c": 0.25})])
     assert "      viscous: {type: viscous, rate: v, c: {value: 0.25, fit:" in new.text
     assert "body.c.viscous.c" in compile(new, backend="quick").flat.parameters
-    probe, ((name,),) = probed(diagram, [place], 1)
+    probe, ((name,),) = add_probes(diagram, [place], 1)
     push = {"probe_input_0": ([0, 1], [1, 1])}
     run = simulate(compile(probe), span=(0, 1), parameters={name: 1.0}, inputs=push)
     # x'' = 2 (-x + 1), from rest

@@ -12,8 +12,8 @@ from tracewire.trace.candidates.candidates import find_candidates
 from tracewire.trace.candidates.places import find_places
 from tracewire.trace.candidates.signal_scales import signal_scales_of
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.screen.screening import Row, screened
-from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.screen.screening import ScreenRow, screen_candidates
+from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
 
 OPTIONS = TraceOptions()
 
@@ -52,18 +52,18 @@ def turned(teeth: float, amplitude: float, rubbing: float = 0.0) -> Measured:
     return Measured("run", "train", T, {"x": x}, start={"x": None, "w": None}, inputs=inputs)
 
 
-def best_row(record: Measured, effect: str, unit: str = "rad") -> Row:
+def best_row(record: Measured, effect: str, unit: str = "rad") -> ScreenRow:
     problem = problem_of(record, text=ROTOR.replace("UNIT", unit), sigma=5e-4)
     trial = trial_of(problem, length=40)
     places = find_places(problem.declared)
-    tangent = Tangent(trial.diagram, trial.windows, places, 1e-6, OPTIONS)
+    linearisation = TorqueLinearisation(trial.diagram, trial.windows, places, 1e-6, OPTIONS)
     known: list[Candidate] = find_candidates(
         problem.declared,
         places,
-        signal_scales_of(tangent.trajectories, OPTIONS.candidate),
+        signal_scales_of(linearisation.trajectories, OPTIONS.candidate),
         OPTIONS.candidate,
     )
-    screen = screened(tangent, trial, [c for c in known if c.effect == effect])
+    screen = screen_candidates(linearisation, trial, [c for c in known if c.effect == effect])
     return screen.best()[0]
 
 

@@ -77,11 +77,11 @@ def test_nothing_is_named_where_a_whole_run_is_at_the_noise(tmp_path: Path) -> N
 def test_a_term_that_is_left_out_does_not_come_back_as_an_effect() -> None:
     """Without the declared friction the same friction shows as an effect; another law may."""
 
-    def row(name: str, masked: float) -> Any:
-        return SimpleNamespace(candidate=name, masked=masked)
+    def row(name: str, absorbed: float) -> Any:
+        return SimpleNamespace(candidate=name, absorbed_fraction=absorbed)
 
     def screen(*rows: Any) -> Any:
-        return SimpleNamespace(visible=lambda: {row.candidate: row for row in rows})
+        return SimpleNamespace(observable=lambda: {row.candidate: row for row in rows})
 
     same, other = row("viscous @ force", 0.1), row("coulomb @ force", 0.2)
     before = screen(row("coulomb @ force", 0.9))  # the declared term hides the same completely

@@ -14,7 +14,7 @@ from tracewire.residual.windows import Section, cut_windows
 from tracewire.trace.candidates.candidates import find_candidates
 from tracewire.trace.candidates.places import find_places
 from tracewire.trace.candidates.signal_scales import Trajectory, signal_scales_of
-from tracewire.trace.experiment.experiment import separating
+from tracewire.trace.experiment.experiment import design_experiment
 from tracewire.trace.experiment.rig import main_frequency
 from tracewire.trace.found import Experiment
 from tracewire.trace.options import TraceOptions
@@ -69,7 +69,7 @@ def between(folder: Path, one: str, values: dict[str, float], other: str) -> Exp
     for name in (one, other):
         begun = values if name == one else {known[name].parameter: known[name].scale / 10}
         trials.append(problem.fit((PlacedEffect(known[name], begun),), windows, 150, {}))
-    return separating(problem, trials[0], trials[1], str(known[one]), str(known[other]))
+    return design_experiment(problem, trials[0], trials[1], str(known[one]), str(known[other]))
 
 
 def test_a_drag_that_was_seen_at_one_amplitude_shows_its_power_at_others(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.residual import Measured
 from tracewire.residual.windows import Section, cut_windows
-from tracewire.trace.experiment.rig import Rig, Setting, rig_of
+from tracewire.trace.experiment.rig import Design, Rig, rig_of
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.trials.trial import TraceProblem
 
@@ -49,29 +49,29 @@ def test_inputs_and_sine_blocks_are_drives_with_what_was_measured(rig: Rig) -> N
 
 
 def test_a_driven_experiment_leaves_the_other_drives_off(rig: Rig) -> None:
-    setting = Setting(0.0, "push", 0.25, 2.0)
+    setting = Design(0.0, "push", 0.25, 2.0)
     assert rig.parameters(setting) == {"A": 0.25, "pitch": pytest.approx(4 * math.pi)}
     assert not rig.inputs(setting)["u"][1].any()
-    setting = Setting(0.0, "u", 1.5, 2.0)
+    setting = Design(0.0, "u", 1.5, 2.0)
     assert rig.parameters(setting) == {"A": 0.0}
     assert rig.inputs(setting)["u"][1] == pytest.approx(1.5 * np.sin(4 * np.pi * rig.t))
-    assert rig.told(setting) == {"u amplitude": 1.5, "u frequency": 2.0}
+    assert rig.as_parameters(setting) == {"u amplitude": 1.5, "u frequency": 2.0}
 
 
 def test_a_release_is_from_rest_without_a_drive(rig: Rig) -> None:
-    setting = Setting(release=1.7)
+    setting = Design(release=1.7)
     assert rig.parameters(setting) == {"A": 0.0}
     assert not rig.inputs(setting)["u"][1].any()
     start = rig.start(setting)
     assert start["v"] == 0.0
     assert start["q"] == pytest.approx(rig.rest["q"] + 1.7 * rig.width["q"])
-    assert list(rig.told(setting)) == ["start.q"]
+    assert list(rig.as_parameters(setting)) == ["start.q"]
 
 
 def test_nothing_beyond_three_times_what_was_measured(rig: Rig) -> None:
-    assert all(rig.allowed(setting) for setting in rig.settings())
-    assert not rig.allowed(Setting(release=3.1))
-    assert not rig.allowed(Setting(release=0.1))
-    assert not rig.allowed(Setting(0.0, "push", 2.0, 1.0))
-    nearby = list(Setting(0.0, "push", 1.0, 1.0).near(OPTIONS.experiment))
+    assert all(rig.is_allowed(setting) for setting in rig.designs())
+    assert not rig.is_allowed(Design(release=3.1))
+    assert not rig.is_allowed(Design(release=0.1))
+    assert not rig.is_allowed(Design(0.0, "push", 2.0, 1.0))
+    nearby = list(Design(0.0, "push", 1.0, 1.0).near(OPTIONS.experiment))
     assert len({(s.amplitude, s.frequency) for s in nearby}) == 4

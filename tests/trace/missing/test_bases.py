@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.candidates.signal_scales import Trajectory
-from tracewire.trace.missing.bases import bases_of, drive_phase, lowpassed, stopped
+from tracewire.trace.missing.bases import apply_stop, bases_of, drive_phase, low_pass
 from tracewire.trace.options import TraceOptions
 
 OPTIONS = TraceOptions()
@@ -92,14 +92,14 @@ def test_a_drive_that_is_no_sine_has_no_phase() -> None:
 def test_a_low_pass_answers_a_step_exponentially() -> None:
     step = np.where(T > 1.0, 1.0, 0.0)
     expected = np.where(T > 1.0, 1 - np.exp(-(T - 1.0) / 0.25), 0.0)
-    assert np.allclose(lowpassed(T, step, 0.25), expected, atol=0.04)
+    assert np.allclose(low_pass(T, step, 0.25), expected, atol=0.04)
 
 
 @given(st.lists(st.floats(-5, 5), min_size=2, max_size=50), st.floats(0.01, 3))
 def test_a_stop_holds_no_more_than_its_width_and_follows_inside(
     q: list[float], width: float
 ) -> None:
-    held = stopped(np.array(q), width)
+    held = apply_stop(np.array(q), width)
     assert np.all(np.abs(held) <= width)
     steps, own = np.diff(q), np.diff(held)
     inside = np.abs(held[1:]) < width

@@ -17,14 +17,14 @@ from tracewire.residual.windows import Section, cut_windows
 from tracewire.trace.candidates.places import Place, find_places
 from tracewire.trace.found import Dependence, Missing
 from tracewire.trace.missing.bases import Basis, bases_of
-from tracewire.trace.missing.dependence import Scored, smallest, where_what
+from tracewire.trace.missing.dependence import ScoredBasis, choose_smallest, map_dependence
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
 from tracewire.trace.trials.trial import TraceProblem, Trial
 
 OPTIONS = TraceOptions()
 
-dependence = sys.modules[where_what.__module__]
+dependence = sys.modules[map_dependence.__module__]
 Law = Callable[[float, float, float], float]
 OSCILLATOR = """\
 span: [0, 6]
@@ -68,27 +68,29 @@ def record(number: int, law: Law, memory: Law) -> Measured:
 def mapped(
     law: Law, memory: Law = lambda q, v, z: 0.0
 ) -> tuple[tuple[Dependence, ...], Missing | None]:
-    return where_what(*tangent_of(law, memory))
+    return map_dependence(*linearisation_of(law, memory))
 
 
-def tangent_of(law: Law, memory: Law = lambda q, v, z: 0.0) -> tuple[Tangent, Trial, list[Place]]:
+def linearisation_of(
+    law: Law, memory: Law = lambda q, v, z: 0.0
+) -> tuple[TorqueLinearisation, Trial, list[Place]]:
     model = compile(read_text(OSCILLATOR), record=("q",))
     series = tuple(record(number, law, memory) for number in range(len(DRIVES)))
     problem = TraceProblem(model, series, {"q": NOISE}, 1e-6)
     windows = [w for m in series for w in cut_windows(model, Section(m, 0, len(T)), 40, ("q", "v"))]
     trial = problem.fit((), windows, 40, {})
     places = [*find_places(model), Place("sensor.q", "sensor", "q")]
-    return Tangent(trial.diagram, trial.windows, places, 1e-6, OPTIONS), trial, places
+    return TorqueLinearisation(trial.diagram, trial.windows, places, 1e-6, OPTIONS), trial, places
 
 
 def test_the_map_is_the_same_however_much_is_worked_on_at_once(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    given = tangent_of(lambda q, v, z: 0.8 * math.sin(12 * q))
-    shares, missing = where_what(*given)
+    given = linearisation_of(lambda q, v, z: 0.8 * math.sin(12 * q))
+    shares, missing = map_dependence(*given)
     monkeypatch.setattr(dependence, "TOGETHER", 10**9)
     monkeypatch.setattr(dependence, "COLUMNS", 10**9)
-    whole, same = where_what(*given)
+    whole, same = map_dependence(*given)
     known = {(s.place, s.variables): s.share for s in whole}
     found = {(s.place, s.variables): s.share for s in shares}
     assert found == pytest.approx(known, rel=1e-9, abs=1e-9)
@@ -97,17 +99,17 @@ def test_the_map_is_the_same_however_much_is_worked_on_at_once(
 
 
 def test_the_map_never_holds_the_columns_of_all_bases() -> None:
-    tangent, trial, places = tangent_of(lambda q, v, z: 0.8 * math.sin(12 * q))
+    linearisation, trial, places = linearisation_of(lambda q, v, z: 0.8 * math.sin(12 * q))
     sizes = [
         sum(
             basis.columns[0].shape[1]
-            for basis in bases_of(place, tangent.trajectories, OPTIONS.map)
+            for basis in bases_of(place, linearisation.trajectories, OPTIONS.map)
         )
         for place in places
     ]
-    all_columns = 8 * tangent.size * max(sizes)
+    all_columns = 8 * linearisation.size * max(sizes)
     tracemalloc.start()
-    where_what(tangent, trial, places)
+    map_dependence(linearisation, trial, places)
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert peak < 3 * all_columns, "with all of them at hand it was eight times as much"
@@ -161,16 +163,16 @@ def test_variables_of_other_effects(law: Law, memory: Law, variables: tuple[str,
 # --- the choice -----------------------------------------------------------------------------------
 
 
-def scored(place: Place, variables: tuple[str, ...], share: float) -> Scored:
-    return Scored(place, Basis(variables, ()), share, 1e4 * share, np.zeros(0))
+def scored(place: Place, variables: tuple[str, ...], share: float) -> ScoredBasis:
+    return ScoredBasis(place, Basis(variables, ()), share, 1e4 * share, np.zeros(0))
 
 
 SUM, OTHER = Place("torque", "sum", "torque"), Place("force", "sum", "force")
 DRIVE = Place("drive.u", "drive", "u")
 
 
-def chosen(*rows: Scored) -> tuple[str, tuple[str, ...]] | None:
-    best = smallest(rows, OPTIONS.map)
+def chosen(*rows: ScoredBasis) -> tuple[str, tuple[str, ...]] | None:
+    best = choose_smallest(rows, OPTIONS.map)
     return None if best is None else (best.place.name, best.basis.variables)
 
 

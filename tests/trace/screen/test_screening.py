@@ -9,8 +9,8 @@ import pytest
 from oracles.oscillator import candidates_of, problem_of, record, trial_of
 from tracewire.trace.candidates.places import find_places
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.screen.screening import Screen, screened
-from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.screen.screening import Screen, screen_candidates
+from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
 from tracewire.trace.trials.trial import PlacedEffect
 
 OPTIONS = TraceOptions()
@@ -25,8 +25,10 @@ def screen_of(law: Callable[[float, float], float] | None = None) -> Screen:
     problem = problem_of(record(law))
     trial = trial_of(problem, length=40)
     candidates = candidates_of(problem)
-    tangent = Tangent(trial.diagram, trial.windows, find_places(problem.declared), 1e-6, OPTIONS)
-    return screened(tangent, trial, [candidates[name] for name in NAMES])
+    linearisation = TorqueLinearisation(
+        trial.diagram, trial.windows, find_places(problem.declared), 1e-6, OPTIONS
+    )
+    return screen_candidates(linearisation, trial, [candidates[name] for name in NAMES])
 
 
 def best(screen: Screen) -> list[str]:
@@ -38,20 +40,20 @@ def test_a_small_effect_is_first_and_its_coefficient_nearly_known() -> None:
     first = screen.best()[0]
     assert str(first.candidate) == "coulomb @ force"
     assert first.gain > 20
-    assert screen.chance() < 1e-6
+    assert screen.p_value() < 1e-6
     assert first.values["level"] == pytest.approx(0.7 * 0.1, rel=0.25), "a refit begins below it"
 
 
 def test_on_noise_nothing_stands_out() -> None:
-    assert screen_of().chance() > 0.01
+    assert screen_of().p_value() > 0.01
 
 
 def test_what_a_declared_parameter_imitates_is_masked() -> None:
     screen = screen_of(lambda x, v: -0.1 * v)
     rows = {str(row.candidate): row for row in screen.rows}
-    assert rows["viscous @ force"].masked == pytest.approx(1.0, abs=1e-3)
+    assert rows["viscous @ force"].absorbed_fraction == pytest.approx(1.0, abs=1e-3)
     assert rows["viscous @ force"].gain <= 0
-    assert rows["bias @ force"].masked < 0.5
+    assert rows["bias @ force"].absorbed_fraction < 0.5
 
 
 def test_an_effect_with_the_wrong_sign_is_not_possible() -> None:
@@ -74,7 +76,7 @@ def test_two_effects_promise_more_together_than_each_alone() -> None:
     assert {str(row.candidate) for row in pair.rows} >= {"coulomb @ force"}
     assert {str(row.candidate) for row in pair.rows} & {"bias @ force", "sensor_offset @ sensor.x"}
     assert pair.gain > screen.best()[0].gain
-    assert [type(row.added) for row in pair.rows] == [PlacedEffect, PlacedEffect]
+    assert [type(row.placed_effect) for row in pair.rows] == [PlacedEffect, PlacedEffect]
 
 
 def test_the_best_at_each_number_of_numbers_are_known() -> None:
@@ -92,8 +94,10 @@ def test_a_free_phase_is_fitted_by_sine_and_cosine_together() -> None:
     problem = problem_of(record())
     waves = [c for name, c in candidates_of(problem).items() if name.startswith("harmonic @ force")]
     trial = trial_of(problem, length=40)
-    tangent = Tangent(trial.diagram, trial.windows, find_places(problem.declared), 1e-6, OPTIONS)
-    found = screened(tangent, trial, waves)
+    linearisation = TorqueLinearisation(
+        trial.diagram, trial.windows, find_places(problem.declared), 1e-6, OPTIONS
+    )
+    found = screen_candidates(linearisation, trial, waves)
     assert found.rows
     assert all(len(row.columns) == 2 for row in found.rows)
     for row in found.rows[:5]:
@@ -105,11 +109,11 @@ def test_a_free_phase_is_fitted_by_sine_and_cosine_together() -> None:
 def test_a_slim_screen_keeps_all_but_the_other_variants() -> None:
     """Best and visible effects, pairs, and what tells effects apart, in less memory."""
     screen = screen_of(lambda x, v: -0.1 * np.tanh(v / 1e-3) + 0.4)
-    slim = screen.slim()
+    slim = screen.best_rows_only()
     assert slim.columns.matrix.shape[1] < screen.columns.matrix.shape[1]
     for whole, part in ((screen.best(), slim.best()), (screen.pairs(), slim.pairs())):
         assert [row.gain for row in part] == pytest.approx([row.gain for row in whole])
-    assert list(slim.visible()) == list(screen.visible())
+    assert list(slim.observable()) == list(screen.observable())
     one, other = (slim.best()[n] for n in (0, 1))
     told = {str(row.candidate): row.columns for row in screen.best()}
     assert slim.columns.canonical_correlation(one.columns, other.columns) == pytest.approx(

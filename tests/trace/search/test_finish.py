@@ -11,8 +11,8 @@ import pytest
 from oracles.oscillator import candidates_of, problem_of, record, search_of
 from tracewire.trace.candidates.places import find_places
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.screen.screening import Proposal, screened
-from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.screen.screening import Proposal, screen_candidates
+from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
 from tracewire.trace.search.finish import Final, _without_trifles, finished
 from tracewire.trace.search.refits import Tried
 from tracewire.trace.search.search import Search, Step
@@ -46,8 +46,10 @@ def ended(
     search.first = now
     best = now
     for name in names:
-        tangent = Tangent(best.diagram, best.windows, find_places(problem.declared), 1e-6, OPTIONS)
-        shown = screened(tangent, best, [known[other] for other in screen])
+        linearisation = TorqueLinearisation(
+            best.diagram, best.windows, find_places(problem.declared), 1e-6, OPTIONS
+        )
+        shown = screen_candidates(linearisation, best, [known[other] for other in screen])
         rows = {str(row.candidate): row for row in shown.best()}
         tried = []
         for other in screen:
@@ -215,7 +217,7 @@ def test_a_slight_wave_beside_what_is_no_noise_is_a_part_of_that(
         options=OPTIONS,
         tell=lambda _: None,
         words=[],
-        screen=lambda _: SimpleNamespace(chance=lambda: chance),
+        screen=lambda _: SimpleNamespace(p_value=lambda: chance),
     )
     finish = import_module("tracewire.trace.search.finish")
     monkeypatch.setattr(

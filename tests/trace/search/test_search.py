@@ -11,7 +11,7 @@ from oracles.oscillator import candidates_of, problem_of, record, search_of
 from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.screen.screening import Row, Screen
+from tracewire.trace.screen.screening import Screen, ScreenRow
 from tracewire.trace.screen.shortlist import shortlist
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.data_split import shortest_window, split_data
@@ -40,7 +40,7 @@ def screen_of(truth: Mapping[str, float], sign: int = 0, count: int = 10) -> Scr
         possible = sign == 0 or values[0] * sign > 0
         start = {"size": float(values[0])}
         gain = columns.gain(fall, 1)
-        rows.append(Row(candidate, {}, (n,), fall, gain, start, 0.0, possible))
+        rows.append(ScreenRow(candidate, {}, (n,), fall, gain, start, 0.0, possible))
     return Screen(columns, tuple(rows), np.arange(len(columns.residual)))
 
 

@@ -152,7 +152,7 @@ class Pool:
         screen = self.search.along_data(self.at(parent, number))
         if screen is None:
             return []
-        return [screen.begun(p) for p in self.promising(number, screen, singles, pairs)]
+        return [screen.with_values(p) for p in self.promising(number, screen, singles, pairs)]
 
     def _extend_without(self, smaller: Finalist) -> None:
         """A model without a declared term with what imitates that term: it shows only where the
@@ -160,7 +160,7 @@ class Pool:
         options, number = self.options, len(self.horizons.each) - 1
         screen = self.screened(smaller, number)
         new = unmasked(screen, self.first[number], options.imitated)
-        others = self.first[number].visible()
+        others = self.first[number].observable()
         proposals = [
             proposal
             for proposal in self.promising(number, screen, 2 * options.beside, options.beside)
@@ -193,7 +193,7 @@ class Pool:
         search, trial = self.search, self.at(parent, number)
         beside = " and ".join(sorted(parent.names)) or "the declared model"
         search.tell(f"screening effects beside {beside}")
-        return search.screen(trial).slim()
+        return search.screen(trial).best_rows_only()
 
     def extend(self, parent: Finalist, number: int, proposals: Iterable[Proposal]) -> None:
         """Refit a model with each of some proposals in few steps, at the horizon whose screen made
@@ -209,7 +209,7 @@ class Pool:
                 continue
             self.search.tell(f"refitting with {' and '.join(sorted(names))}")
             target = options.hopeful * min((trial.rss for trial in begun), default=np.inf)
-            first = [row.added for row in proposal.rows]
+            first = [row.placed_effect for row in proposal.rows]
             trial = self._refitted(now, first, (), options.first_steps, target, proposal.values)
             if trial is not None:
                 begun.append(trial)
@@ -436,7 +436,7 @@ class Pool:
             return []
         count = self.options.alike
         proposals = self.promising(number, self.search.screen(bare), count + 1, 0)
-        found = [row.added for proposal in proposals for row in proposal.rows]
+        found = [row.placed_effect for proposal in proposals for row in proposal.rows]
         return [one for one in found if str(one) not in model.names][:count]
 
     def _replaced(self, model: Finalist, name: str, others: Sequence[PlacedEffect]) -> None:

@@ -79,7 +79,7 @@ class Prediction:
     def likeness(self, one: str, other: str) -> float:
         """The correlation of what two effects do to the declared model's residual; nan where the
         screen has no such effect."""
-        rows = self.screen.visible()
+        rows = self.screen.observable()
         if one not in rows or other not in rows:
             return float("nan")
         return self.screen.columns.canonical_correlation(rows[one].columns, rows[other].columns)

@@ -17,7 +17,7 @@ from itertools import chain, zip_longest
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.trace.screen.screening import Proposal, Row, Screen
+from tracewire.trace.screen.screening import Proposal, Screen, ScreenRow
 from tracewire.trace.screen.shortlist import distinct
 
 Vector = NDArray[np.float64]
@@ -29,7 +29,7 @@ def promising(screen: Screen, blocks: Ints, singles: int, pairs: int) -> list[Pr
 
     blocks: the block of each residual, (M,); negative where it belongs to none.
     """
-    alone = [Proposal((row,), row.gain) for row in screen.best() if row.fall > 0]
+    alone = [Proposal((row,), row.gain) for row in screen.best() if row.rss_reduction > 0]
     found = _alternately(_by_blocks(screen, blocks, alone)[:singles], alone[:singles])
     if pairs:
         together = [p for same in screen.by_count(pairs).values() for p in same if len(p.rows) == 2]
@@ -42,12 +42,12 @@ def promising(screen: Screen, blocks: Ints, singles: int, pairs: int) -> list[Pr
 def unmasked(screen: Screen, before: Screen, least: float) -> set[str]:
     """The effects that the unknowns imitate less than in another screen, by so much of the square:
     those that imitate what is not there any more."""
-    known = before.visible()
+    known = before.observable()
 
-    def fell(name: str, row: Row) -> bool:
-        return name not in known or known[name].masked - row.masked >= least
+    def fell(name: str, row: ScreenRow) -> bool:
+        return name not in known or known[name].absorbed_fraction - row.absorbed_fraction >= least
 
-    return {name for name, row in screen.visible().items() if fell(name, row)}
+    return {name for name, row in screen.observable().items() if fell(name, row)}
 
 
 def _alternately(*rankings: Sequence[Proposal]) -> list[Proposal]:

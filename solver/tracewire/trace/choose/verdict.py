@@ -28,7 +28,7 @@ from tracewire.trace.found import (
     Remainder,
     Verdict,
 )
-from tracewire.trace.missing.dependence import where_what
+from tracewire.trace.missing.dependence import map_dependence
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.search.finish import Final, Rival, ordered
 from tracewire.trace.search.search import Search
@@ -267,7 +267,7 @@ def _refined(prediction: Prediction) -> list[str]:
 
 def residual_map(search: Search, trial: Trial) -> tuple[tuple[Dependence, ...], Missing | None]:
     """Where and on what the residual of a trial depends, in its windows."""
-    return where_what(search.tangent(trial), trial, search.places)
+    return map_dependence(search.tangent(trial), trial, search.places)
 
 
 def _left(trial: Trial, shares: Sequence[Dependence]) -> float:

@@ -26,7 +26,7 @@ from tracewire.residual import (
     with_past,
 )
 from tracewire.solve import Limits, simulate
-from tracewire.trace.experiment.rig import Rig, Setting, rig_of
+from tracewire.trace.experiment.rig import Design, Rig, rig_of
 from tracewire.trace.found import Experiment
 from tracewire.trace.trials.trial import TraceProblem, Trial
 
@@ -44,7 +44,7 @@ ALIASES = {
 """What tells effects apart that are the same law on a rig."""
 
 
-def separating(
+def design_experiment(
     problem: TraceProblem, one: Trial, other: Trial, name: str, rival: str
 ) -> Experiment:
     """The experiment that best tells two fitted trials apart, and by how many sigma (rms).
@@ -59,37 +59,41 @@ def separating(
     # what the data at hand say of the rival's unknowns
     known, _ = project_out_initial_states(other.windows)
     information = known.T @ known
-    tried: dict[Setting, float] = {}
+    separations: dict[Design, float] = {}
 
-    def tell(setting: Setting) -> None:
-        if setting not in tried and rig.allowed(setting):
+    def tell(design: Design) -> None:
+        if design not in separations and rig.is_allowed(design):
             try:
-                tried[setting] = _separation(problem, rig, states, one, other, information, setting)
+                separations[design] = _separation(
+                    problem, rig, states, one, other, information, design
+                )
             except SimulationError:
-                tried[setting] = math.nan
+                separations[design] = math.nan
 
-    for setting in rig.settings():
-        tell(setting)
+    for design in rig.designs():
+        tell(design)
     options = problem.options.experiment
     for _ in range(options.rounds):
-        if any(math.isfinite(value) for value in tried.values()):
-            for setting in _best(tried).near(options):
-                tell(setting)
-    if not any(math.isfinite(value) for value in tried.values()):
+        if any(math.isfinite(value) for value in separations.values()):
+            for design in _best(separations).near(options):
+                tell(design)
+    if not any(math.isfinite(value) for value in separations.values()):
         what = f"no experiment for {name} and {rival} can be simulated"
         raise OptionError.one(what, hint="Simulate the diagram by itself first.")
-    best = _best(tried)
+    best = _best(separations)
     rows = tuple(
-        {**rig.told(setting), "separation": value}
-        for setting, value in tried.items()
+        {**rig.as_parameters(design), "separation": value}
+        for design, value in separations.items()
         if math.isfinite(value)
     )
-    words = _words(rig, best, tried[best], name, rival)
-    return Experiment(name, rival, rig.told(best), tried[best], words, rows)
+    words = _words(rig, best, separations[best], name, rival)
+    return Experiment(name, rival, rig.as_parameters(best), separations[best], words, rows)
 
 
-def _best(tried: Mapping[Setting, float]) -> Setting:
-    return max(tried, key=lambda setting: (math.isfinite(tried[setting]), tried[setting]))
+def _best(separations: Mapping[Design, float]) -> Design:
+    return max(
+        separations, key=lambda design: (math.isfinite(separations[design]), separations[design])
+    )
 
 
 def _separation(
@@ -99,13 +103,13 @@ def _separation(
     one: Trial,
     other: Trial,
     information: Matrix,
-    setting: Setting,
+    design: Design,
 ) -> float:
     """The residual of the rival on what the pick does, root mean square in sigma."""
     options = problem.options.experiment
     limits = Limits(options.steps, options.seconds, options.events)
-    set_here, inputs = rig.parameters(setting), rig.inputs(setting)
-    start = rig.start(setting)
+    set_here, inputs = rig.parameters(design), rig.inputs(design)
+    start = rig.start(design)
     blank = {signal: np.zeros(len(rig.t)) for signal in problem.signals}
     base = replace(rig.template, t=rig.t, values=blank, inputs=inputs, past={}, drift_from=0.0)
     whole = Segment(base, 0.0, np.arange(len(rig.t)), start)
@@ -170,10 +174,10 @@ def _count(one: Trial, rig: Rig, ends: tuple[int, int]) -> int:
 # --- words ----------------------------------------------------------------------------------------
 
 
-def _words(rig: Rig, setting: Setting, separation: float, one: str, other: str) -> str:
+def _words(rig: Rig, design: Design, separation: float, one: str, other: str) -> str:
     """The experiment as a sentence, or that there is none."""
-    settings = rig.told(setting)
-    if not setting.drive:
+    settings = rig.as_parameters(design)
+    if not design.drive:
         states = " and ".join(
             f"{name.removeprefix('start.')} = {value:g}" for name, value in settings.items()
         )
@@ -181,10 +185,10 @@ def _words(rig: Rig, setting: Setting, separation: float, one: str, other: str) 
         how = f"{off}released from rest at {states}" if states else f"{off}left at rest"
     else:
         amplitude, frequency = settings.values()
-        how = f"from rest, {setting.drive} a sine of amplitude {amplitude:g} and {frequency:g} Hz"
+        how = f"from rest, {design.drive} a sine of amplitude {amplitude:g} and {frequency:g} Hz"
     if separation >= rig.options.decides:
-        told = f"There they differ by {separation:.2g} sigma (rms)."
-        return f"To tell {one} from {other}: {how}. {told}"
+        difference = f"There they differ by {separation:.2g} sigma (rms)."
+        return f"To tell {one} from {other}: {how}. {difference}"
     words = (
         f"No experiment within reach tells {one} from {other}: "
         f"at best {separation:.2g} sigma (rms; {how})."

@@ -9,7 +9,7 @@ from tracewire.trace.screen.screening import Screen
 from tracewire.trace.trials.statistics import ABSORBED
 
 
-def powers(screen: Screen) -> tuple[Power, ...]:
+def detection_limits(screen: Screen) -> tuple[Power, ...]:
     """The smallest coefficient of each effect that these data would show, in SI.
 
     c = 5/|z|, with z the change of the residuals in sigma by a coefficient of 1, without what start

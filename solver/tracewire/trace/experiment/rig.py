@@ -19,7 +19,7 @@ Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Setting:
+class Design:
     """An experiment: a released body (in widths of the measured motion), or a driven one (drive,
     its amplitude in SI and its frequency in Hz)."""
 
@@ -28,8 +28,8 @@ class Setting:
     amplitude: float = 0.0
     frequency: float = 0.0
 
-    def near(self, options: ExperimentOptions) -> Iterator[Setting]:
-        """Four settings around this one, or two."""
+    def near(self, options: ExperimentOptions) -> Iterator[Design]:
+        """Four designs around this one, or two."""
         if not self.drive:
             yield from (replace(self, release=self.release * x) for x in options.near_sizes)
             return
@@ -46,64 +46,64 @@ class Rig:
     rest: Mapping[str, float]
     width: Mapping[str, float]
     drives: Mapping[str, float]
-    knobs: Mapping[str, tuple[str, str, float]]
+    drive_parameters: Mapping[str, tuple[str, str, float]]
     frequency: float
     template: Measured
     options: ExperimentOptions = field(default_factory=ExperimentOptions)
 
-    def settings(self) -> list[Setting]:
+    def designs(self) -> list[Design]:
         """The coarse grid: releases, and every drive at several amplitudes and frequencies."""
         highest = self.options.highest / float(self.t[1] - self.t[0])
-        found = [Setting(release=size) for size in self.options.sizes]
+        found = [Design(release=size) for size in self.options.sizes]
         for drive, largest in self.drives.items():
             for size in self.options.sizes:
                 for pitch in self.options.pitches:
                     frequency = min(pitch * self.frequency, highest)
-                    found.append(Setting(0.0, drive, size * largest, frequency))
+                    found.append(Design(0.0, drive, size * largest, frequency))
         return list(dict.fromkeys(found))
 
-    def allowed(self, setting: Setting) -> bool:
-        """Whether a setting is within reach."""
+    def is_allowed(self, design: Design) -> bool:
+        """Whether a design is within reach."""
         least, most = self.options.sizes[0], self.options.sizes[-1]
-        if not setting.drive:
-            return least <= setting.release <= most
-        part = setting.amplitude / self.drives[setting.drive]
+        if not design.drive:
+            return least <= design.release <= most
+        part = design.amplitude / self.drives[design.drive]
         return least <= part <= most
 
-    def told(self, setting: Setting) -> dict[str, float]:
-        """A setting by the names that a user knows, in SI and Hz."""
-        if not setting.drive:
+    def as_parameters(self, design: Design) -> dict[str, float]:
+        """A design by the names that a user knows, in SI and Hz."""
+        if not design.drive:
             return {
-                f"start.{state}": float(f"{self.rest[state] + setting.release * width:.4g}")
+                f"start.{state}": float(f"{self.rest[state] + design.release * width:.4g}")
                 for state, width in self.width.items()
             }
         return {
-            f"{setting.drive} amplitude": float(f"{setting.amplitude:.4g}"),
-            f"{setting.drive} frequency": float(f"{setting.frequency:.4g}"),
+            f"{design.drive} amplitude": float(f"{design.amplitude:.4g}"),
+            f"{design.drive} frequency": float(f"{design.frequency:.4g}"),
         }
 
-    def start(self, setting: Setting) -> dict[str, float]:
+    def start(self, design: Design) -> dict[str, float]:
         """The states where the experiment begins: at rest, released or not."""
         return {
-            state: value + setting.release * self.width.get(state, 0.0)
+            state: value + design.release * self.width.get(state, 0.0)
             for state, value in self.rest.items()
         }
 
-    def inputs(self, setting: Setting) -> dict[str, tuple[Vector, Vector]]:
+    def inputs(self, design: Design) -> dict[str, tuple[Vector, Vector]]:
         """The named inputs in the experiment."""
-        angle = 2 * np.pi * setting.frequency * self.t
-        sine, zero = setting.amplitude * np.sin(angle), np.zeros(len(self.t))
+        angle = 2 * np.pi * design.frequency * self.t
+        sine, zero = design.amplitude * np.sin(angle), np.zeros(len(self.t))
         names = self.template.inputs
-        return {name: (self.t, sine if name == setting.drive else zero) for name in names}
+        return {name: (self.t, sine if name == design.drive else zero) for name in names}
 
-    def parameters(self, setting: Setting) -> dict[str, float]:
+    def parameters(self, design: Design) -> dict[str, float]:
         """The parameters of drives that are blocks."""
         found = {}
-        for drive, (amplitude, frequency, factor) in self.knobs.items():
-            on = drive == setting.drive
-            found[amplitude] = setting.amplitude if on else 0.0
+        for drive, (amplitude, frequency, factor) in self.drive_parameters.items():
+            on = drive == design.drive
+            found[amplitude] = design.amplitude if on else 0.0
             if on:
-                found[frequency] = setting.frequency * factor
+                found[frequency] = design.frequency * factor
         return found
 
 
@@ -122,11 +122,11 @@ def rig_of(problem: TraceProblem, one: Trial) -> Rig:
     for m in train:
         for name, (_, u) in m.inputs.items():
             drives[name] = max(drives.get(name, 0.0), float(np.max(np.abs(u - np.mean(u)))))
-    knobs = _knobs(problem, one)
-    for drive, (amplitude, _, _) in knobs.items():
+    drive_parameters = _drive_parameters(problem, one)
+    for drive, (amplitude, _, _) in drive_parameters.items():
         drives[drive] = abs(problem.all_values(one).get(amplitude, _default(problem, amplitude)))
     drives = {name: size for name, size in drives.items() if size > 0}
-    return Rig(t, rest, width, drives, knobs, frequency, longest, options)
+    return Rig(t, rest, width, drives, drive_parameters, frequency, longest, options)
 
 
 def main_frequency(measured: Measured) -> float:
@@ -159,7 +159,7 @@ def _reach(
     return rest, {name: size for name, size in width.items() if size > 0}
 
 
-def _knobs(problem: TraceProblem, one: Trial) -> dict[str, tuple[str, str, float]]:
+def _drive_parameters(problem: TraceProblem, one: Trial) -> dict[str, tuple[str, str, float]]:
     """Drives that are blocks with a sine or square: parameters of amplitude and frequency."""
     diagram, flat = problem.declared.diagram, problem.declared.flat
     found = {}

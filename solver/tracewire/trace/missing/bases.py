@@ -66,7 +66,7 @@ def bases_of(place: Place, runs: Sequence[Trajectory], options: MapOptions) -> I
     """
     if place.kind == "sensor":
         yield from _smooth(options, "y", [run.signals[place.definition] for run in runs])
-        yield in_time(runs, options.in_time)
+        yield bumps_in_time(runs, options.in_time)
         return
     q, v, a = (_values(runs, name) for name in (place.q, place.v, place.a))
     yield from _smooth(options, "q", q)
@@ -75,7 +75,7 @@ def bases_of(place: Place, runs: Sequence[Trajectory], options: MapOptions) -> I
     if q and v:
         yield from _surfaces(options, ("q", "v"), q, v)
     yield from _smooth(options, "a", a)
-    yield in_time(runs, options.in_time)
+    yield bumps_in_time(runs, options.in_time)
     if q or v:
         yield _history(options, runs, q, v)
     for name in place.drive:
@@ -102,7 +102,7 @@ def drive_phase(t: Vector, u: Vector, tonal: float) -> Vector | None:
     return None if sine is None else np.asarray(2 * np.pi * t / sine.period + sine.phase)
 
 
-def in_time(runs: Sequence[Trajectory], count: int) -> Basis:
+def bumps_in_time(runs: Sequence[Trajectory], count: int) -> Basis:
     """Some bumps in time in each series: what happens at a time happens in one series only."""
     axes = [_axis([run.t], count) for run in runs]
     columns = []
@@ -199,9 +199,9 @@ def _history(
     columns = []
     for n, run in enumerate(runs):
         own = [x[n] for x in (q, v) if x]
-        parts = [*own, *(lowpassed(run.t, x, lag * period) for x in own for lag in options.lags)]
+        parts = [*own, *(low_pass(run.t, x, lag * period) for x in own for lag in options.lags)]
         if q:
-            parts += [stopped(q[n], part * size) for part in options.plays]
+            parts += [apply_stop(q[n], part * size) for part in options.plays]
         columns.append(np.stack(parts, axis=1))
     whole = np.concatenate(columns)
     sizes = np.maximum(np.sqrt(np.mean(whole**2, axis=0)), 1e-300)
@@ -218,7 +218,7 @@ def _period(runs: Sequence[Trajectory], values: Sequence[Vector]) -> float:
     return float(np.median(found))
 
 
-def lowpassed(t: Vector, x: Vector, lag: float) -> Vector:
+def low_pass(t: Vector, x: Vector, lag: float) -> Vector:
     """y with lag*y' = x - y, begun at the first value; even samples."""
     from scipy.signal import lfilter  # half a second that only the map of what is missing pays
 
@@ -227,7 +227,7 @@ def lowpassed(t: Vector, x: Vector, lag: float) -> Vector:
     return np.asarray(found)
 
 
-def stopped(q: Vector, width: float) -> Vector:
+def apply_stop(q: Vector, width: float) -> Vector:
     """What a stop of half width `width` holds of q: it follows q and slips at its ends."""
     found = np.zeros(len(q))
     for n, step in enumerate(np.diff(q).tolist()):

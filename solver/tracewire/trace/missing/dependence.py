@@ -1,9 +1,10 @@
 """Where something is missing and what it depends on: smooth torques at each place, cross-validated.
 
 At each place, for each set of variables, the missing torque is a smooth function: many bumps. The
-tangent says what each of them does to the residuals; a ridge fits them, together with what the
-unknowns of the declared model can still do; and the squared residual is taken on data that the fit
-did not see. What share of the excess goes says whether the torque depends on these variables.
+torque linearisation says what each of them does to the residuals; a ridge fits them, together with
+what the unknowns of the declared model can still do; and the squared residual is taken on data that
+the fit did not see. What share of the excess goes says whether the torque depends on these
+variables.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from tracewire.residual import Projection, project_out_initial_states
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.found import Dependence, Missing
 from tracewire.trace.missing.bases import Basis, bases_of
-from tracewire.trace.screen.tangent import Joined, Tangent
+from tracewire.trace.screen.torque_linearisation import TorqueLinearisation, WindowPieces
 from tracewire.trace.thresholds import MapOptions
 from tracewire.trace.trials.statistics import orthonormal
 from tracewire.trace.trials.trial import Trial
@@ -31,13 +32,13 @@ TOGETHER, COLUMNS = 2000, 200
 
 
 @dataclass(frozen=True, eq=False)
-class Scored:
+class ScoredBasis:
     """A basis at a place with its cross-validated share, ridge, and coefficients on all data."""
 
     place: Place
     basis: Basis
     share: float
-    fall: float
+    rss_reduction: float
     coefficients: Vector
 
     def size(self, history: int) -> int:
@@ -46,8 +47,8 @@ class Scored:
         return sum(history if name == "history" else 1 for name in names)
 
 
-def where_what(
-    tangent: Tangent, trial: Trial, places: Sequence[Place]
+def map_dependence(
+    linearisation: TorqueLinearisation, trial: Trial, places: Sequence[Place]
 ) -> tuple[tuple[Dependence, ...], Missing | None]:
     """The share of the excess that each set of variables explains at each place, the best first.
 
@@ -56,36 +57,36 @@ def where_what(
     None where nothing explains more than noise does. Its torque is what is missing beyond what the
     free parameters can still do. Variables are named as in `bases_of`.
     """
-    problem = _problem(tangent, trial)
+    problem = _problem(linearisation, trial)
     found = [
         scored
         for place in places
-        for scored in _scored(
-            problem, place, bases_of(place, tangent.trajectories, tangent.options.map)
+        for scored in _score_bases(
+            problem, place, bases_of(place, linearisation.trajectories, linearisation.options.map)
         )
     ]
-    best: dict[tuple[str, tuple[str, ...]], Scored] = {}
+    best: dict[tuple[str, tuple[str, ...]], ScoredBasis] = {}
     for scored in found:
         key = scored.place.name, scored.basis.variables
-        if key not in best or scored.fall > best[key].fall:
+        if key not in best or scored.rss_reduction > best[key].rss_reduction:
             best[key] = scored
-    ranked = sorted(best.values(), key=lambda scored: -scored.fall)
+    ranked = sorted(best.values(), key=lambda scored: -scored.rss_reduction)
     shares = tuple(Dependence(s.place.name, s.basis.variables, s.share) for s in ranked)
-    chosen = smallest(ranked, tangent.options.map)
+    chosen = choose_smallest(ranked, linearisation.options.map)
     return shares, None if chosen is None else _missing(problem, chosen)
 
 
-def smallest(ranked: Sequence[Scored], options: MapOptions) -> Scored | None:
+def choose_smallest(ranked: Sequence[ScoredBasis], options: MapOptions) -> ScoredBasis | None:
     """The one of fewest variables among those that are as good as the best; None: noise."""
     top = max(ranked, key=lambda scored: scored.share, default=None)
-    if top is None or top.share < options.least_share or top.fall < options.least_fall:
+    if top is None or top.share < options.least_share or top.rss_reduction < options.least_fall:
         return None
 
-    def is_good(scored: Scored) -> bool:
+    def is_good(scored: ScoredBasis) -> bool:
         near = options.near if scored.place == top.place else options.near_elsewhere
         return scored.share >= near * top.share
 
-    def rank(scored: Scored) -> tuple[int, bool, bool, float]:
+    def rank(scored: ScoredBasis) -> tuple[int, bool, bool, float]:
         driven = scored.basis.variables[0].startswith(("u", "drive"))
         elsewhere = scored.place != top.place and not driven
         size = scored.size(options.history_counts)
@@ -98,21 +99,21 @@ def smallest(ranked: Sequence[Scored], options: MapOptions) -> Scored | None:
 
 
 @dataclass(frozen=True, eq=False)
-class Problem:
+class MapProblem:
     """Residuals (M,) and the unknowns' derivatives (M, n) without window starts, folds (M,)."""
 
-    tangent: Tangent
-    views: Sequence[Projection]
+    linearisation: TorqueLinearisation
+    projections: Sequence[Projection]
     residual: Vector
     unknowns: Matrix
     folds: NDArray[np.intp]
-    freedom: int
+    degrees_of_freedom: int
 
     @property
     def excess(self) -> float:
         """The squared residual beyond the noise's; at least what noise makes it vary by."""
         rss = float(self.residual @ self.residual)
-        return max(rss - self.freedom, 3 * float(np.sqrt(2 * self.freedom)))
+        return max(rss - self.degrees_of_freedom, 3 * float(np.sqrt(2 * self.degrees_of_freedom)))
 
     def products(self, place: Place, bases: Sequence[Basis]) -> Matrix:
         """The scalar products by fold, (folds, n + K + 1, n + K + 1), of the unknowns, of what all
@@ -120,22 +121,24 @@ class Problem:
 
         They are added up a few windows at a time: the columns of a long record are much memory.
         """
-        series = range(len(self.tangent.trajectories))
+        series = range(len(self.linearisation.trajectories))
         given = [np.concatenate([b.columns[n] for b in bases], axis=1) for n in series]
         width = self.unknowns.shape[1] + given[0].shape[1] + 1
-        total = np.zeros((self.tangent.options.map.folds, width, width))
+        total = np.zeros((self.linearisation.options.map.folds, width, width))
         first, waiting, rows = 0, list[Matrix](), 0
-        for n, (joined, view) in enumerate(zip(self.tangent.joined, self.views, strict=True)):
+        for n, (window, view) in enumerate(
+            zip(self.linearisation.window_pieces, self.projections, strict=True)
+        ):
             if place.kind == "sensor":
-                columns = _sensed(self.tangent, place.definition, joined, given)
+                columns = _sensor_response(self.linearisation, place.definition, window, given)
             else:
-                columns = self.tangent.window_answer(joined, {place.name: given})
+                columns = self.linearisation.window_response(window, {place.name: given})
             last = first + rows + len(columns)
             here = slice(first + rows, last)
             known, left = self.unknowns[here], self.residual[here]
             waiting.append(np.column_stack((known, view.project_out(columns), left)))
             rows = last - first
-            if rows >= TOGETHER or n + 1 == len(self.views):
+            if rows >= TOGETHER or n + 1 == len(self.projections):
                 block, folds = np.concatenate(waiting), self.folds[first:last]
                 for fold in np.unique(folds).tolist():
                     rows_of = block[folds == fold]
@@ -144,25 +147,27 @@ class Problem:
         return total
 
 
-def _problem(tangent: Tangent, trial: Trial) -> Problem:
-    windows = tangent.windows
+def _problem(linearisation: TorqueLinearisation, trial: Trial) -> MapProblem:
+    windows = linearisation.windows
     views = windows.projections
     unknowns, residual = project_out_initial_states(windows)
     sizes = np.linalg.norm(unknowns, axis=0)
     seen = sizes > 1e-12 * max(float(sizes.max(initial=0.0)), 1e-300)
     basis = orthonormal(unknowns[:, seen])
-    return Problem(tangent, views, residual, basis, _folds(tangent), trial.degrees_of_freedom)
+    return MapProblem(
+        linearisation, views, residual, basis, _folds(linearisation), trial.degrees_of_freedom
+    )
 
 
-def _folds(tangent: Tangent) -> NDArray[np.intp]:
+def _folds(linearisation: TorqueLinearisation) -> NDArray[np.intp]:
     """The fold of each residual: neighbouring pieces of a series have different ones.
 
     Their order is shuffled, so that no fold is always the same phase of a drive.
     """
-    options = tangent.options.map
+    options = linearisation.options.map
     rng = np.random.default_rng(options.seed)
     order = np.concatenate([rng.permutation(options.folds) for _ in range(options.pieces)])
-    windows = tangent.windows
+    windows = linearisation.windows
     names = [s.measured.name for s in windows.criterion.segments]
     totals = dict.fromkeys(names, 0)
     for name, near in zip(names, windows.linearisations, strict=True):
@@ -179,62 +184,68 @@ def _folds(tangent: Tangent) -> NDArray[np.intp]:
     return np.concatenate(found)
 
 
-def _sensed(tangent: Tangent, signal: str, joined: Joined, given: Sequence[Matrix]) -> Matrix:
+def _sensor_response(
+    linearisation: TorqueLinearisation, signal: str, window: WindowPieces, given: Sequence[Matrix]
+) -> Matrix:
     """What a sensor's error of its signal (N, k) by series does to the residuals of a window."""
-    criterion = tangent.windows.criterion
-    name = criterion.segments[joined.window].measured.name
-    at = tangent.outputs.index(signal)
-    error = given[tangent.series[joined.window]][joined.samples[joined.counts]]
-    rows = np.zeros((len(error), len(tangent.outputs), error.shape[1]))
+    criterion = linearisation.windows.criterion
+    name = criterion.segments[window.index].measured.name
+    at = linearisation.outputs.index(signal)
+    error = given[linearisation.series[window.index]][window.samples[window.counts]]
+    rows = np.zeros((len(error), len(linearisation.outputs), error.shape[1]))
     rows[:, at] = error / criterion.sigma[name][at]
-    return criterion.whiten(joined.window, rows.reshape(-1, error.shape[1]))
+    return criterion.whiten(window.index, rows.reshape(-1, error.shape[1]))
 
 
-def _scored(problem: Problem, place: Place, bases: Iterator[Basis]) -> Iterator[Scored]:
+def _score_bases(
+    problem: MapProblem, place: Place, bases: Iterator[Basis]
+) -> Iterator[ScoredBasis]:
     """Each basis at a place, cross-validated."""
     some: list[Basis] = []
     for basis in bases:
         some.append(basis)
         if sum(b.columns[0].shape[1] for b in some) >= COLUMNS:
-            yield from _together(problem, place, some)
+            yield from _score_batch(problem, place, some)
             some = []
     if some:
-        yield from _together(problem, place, some)
+        yield from _score_batch(problem, place, some)
 
 
-def _together(problem: Problem, place: Place, bases: Sequence[Basis]) -> list[Scored]:
+def _score_batch(problem: MapProblem, place: Place, bases: Sequence[Basis]) -> list[ScoredBasis]:
     """Some bases at a place, each cross-validated: from scalar products of columns by fold."""
     products, excess = problem.products(place, bases), problem.excess
-    known, ridges = problem.unknowns.shape[1], np.array(problem.tangent.options.map.ridges)
+    known, ridges = problem.unknowns.shape[1], np.array(problem.linearisation.options.map.ridges)
     first, found = known, []
     for basis in bases:
         last = first + basis.columns[0].shape[1]
         chosen = [*range(known), *range(first, last), products.shape[1] - 1]
         own = products[:, chosen][:, :, chosen]
-        left = _left_out(own, known, ridges)
+        left = _held_out_squares(own, known, ridges)
         best = int(np.argmin(left))
         before = float(np.sum(own[:, -1, -1]))
-        fall = before - float(left[best])
-        share = min(max(fall / excess, 0.0), 1.0)
-        (values,) = _solved(np.sum(own, axis=0), known, ridges[best : best + 1])
+        rss_reduction = before - float(left[best])
+        share = min(max(rss_reduction / excess, 0.0), 1.0)
+        (values,) = _solve_ridge(np.sum(own, axis=0), known, ridges[best : best + 1])
         # what a basis is made of does not matter any more, and is much memory
-        found.append(Scored(place, replace(basis, columns=()), share, fall, values[known:]))
+        found.append(
+            ScoredBasis(place, replace(basis, columns=()), share, rss_reduction, values[known:])
+        )
         first = last
     return found
 
 
-def _left_out(products: Matrix, known: int, ridges: Vector) -> Vector:
+def _held_out_squares(products: Matrix, known: int, ridges: Vector) -> Vector:
     """The squared residual on the folds that were left out, for each ridge."""
     total = np.sum(products, axis=0)
     left = np.zeros(len(ridges))
     for own in products:
-        values = _solved(total - own, known, ridges)
+        values = _solve_ridge(total - own, known, ridges)
         full = np.column_stack((values, np.ones(len(values))))
         left += np.einsum("ri,ij,rj->r", full, own, full)
     return left
 
 
-def _solved(products: Matrix, known: int, ridges: Vector) -> Matrix:
+def _solve_ridge(products: Matrix, known: int, ridges: Vector) -> Matrix:
     """The coefficients for each ridge, (ridges, n), which minimise |r + A c|^2 + ridge |c|^2.
 
     The first `known` columns bear no ridge. The ridge is in units of the mean square of the rest.
@@ -253,14 +264,14 @@ def _solved(products: Matrix, known: int, ridges: Vector) -> Matrix:
 # --- the missing torque ---------------------------------------------------------------------------
 
 
-def _missing(problem: Problem, chosen: Scored) -> Missing:
+def _missing(problem: MapProblem, chosen: ScoredBasis) -> Missing:
     """The torque of the winner on a grid, with the number of samples near each point."""
     basis = chosen.basis
     names, share = basis.variables, chosen.share
     if not basis.axes or len(basis.axes) != len(names):
         nothing = np.zeros(0)
         return Missing(chosen.place.name, names, share, (), nothing, nothing)
-    count = problem.tangent.options.map.grid
+    count = problem.linearisation.options.map.grid
     grid = tuple(np.linspace(*axis.ends, count[len(names) - 1]) for axis in basis.axes)
     points = [x.ravel() for x in np.meshgrid(*grid, indexing="ij")]
     shape = tuple(len(x) for x in grid)

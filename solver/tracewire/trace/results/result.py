@@ -12,13 +12,13 @@ from tracewire.diagram import Diagram
 from tracewire.errors import TracewireError
 from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.choose.verdict import Judgement
-from tracewire.trace.experiment.experiment import separating
-from tracewire.trace.experiment.power import powers
+from tracewire.trace.experiment.experiment import design_experiment
+from tracewire.trace.experiment.power import detection_limits
 from tracewire.trace.found import Experiment, Force, Found
-from tracewire.trace.missing.force import forces
+from tracewire.trace.missing.restoring_force import restoring_forces
 from tracewire.trace.results.account import compared, met, moved, rmse
 from tracewire.trace.results.told import confusable, edited, told_effects, told_steps
-from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
 from tracewire.trace.search.finish import Final
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.bounds import at_bounds
@@ -55,7 +55,7 @@ def result_of(
         moved=tuple(moved(problem, declared, best, values)) if best.effects else (),
         errors=tuple(error for part in parts for error in part.errors(sigma, units)),
         steps=(*told_steps(search, interval), *([prediction.told()] if prediction else [])),
-        power=powers(search.steps[-1].screen) if search.steps else (),
+        power=detection_limits(search.steps[-1].screen) if search.steps else (),
         dependences=judgement.dependences,
         missing=judgement.missing,
         experiments=() if interrupted else _experiments(search, final),
@@ -97,7 +97,7 @@ def _experiments(search: Search, final: Final) -> tuple[Experiment, ...]:
             search.tell(f"an experiment to tell {effect} from {rival.added}")
             try:
                 found.append(
-                    separating(
+                    design_experiment(
                         search.problem, final.best, rival.trial, str(effect), str(rival.added)
                     )
                 )
@@ -112,6 +112,10 @@ def _forces(search: Search, best: Trial) -> tuple[Force, ...]:
         return ()
     problem = search.problem
     windows = problem.windows_on(best, search.windows(search.data_split.train, search.short))
-    tangent = Tangent(best.diagram, windows, search.places, problem.rtol, search.options)
-    fitted = Tangent(best.diagram, best.windows, search.places, problem.rtol, search.options)
-    return forces(tangent, best, problem.rtol, fitted)
+    linearisation = TorqueLinearisation(
+        best.diagram, windows, search.places, problem.rtol, search.options
+    )
+    fitted = TorqueLinearisation(
+        best.diagram, best.windows, search.places, problem.rtol, search.options
+    )
+    return restoring_forces(linearisation, best, problem.rtol, fitted)

@@ -78,7 +78,7 @@ def _standing(search: Search, effect: PlacedEffect) -> tuple[float, float, float
         for one in step.tried:
             if str(effect) in one.proposal.names and one.trial is step.after:
                 row = rows.get(str(effect))
-                return -one.rise / 2, row.masked if row else float("nan"), one.weight
+                return -one.rise / 2, row.absorbed_fraction if row else float("nan"), one.weight
     return (float("nan"),) * 3
 
 
@@ -94,7 +94,7 @@ def _told(step: Step, interval: float, shown: int) -> StepTold:
             one.proposal.gain,
             -one.rise / 2,
             one.weight,
-            max(row.masked for row in one.proposal.rows),
+            max(row.absorbed_fraction for row in one.proposal.rows),
             one.trial.reduced_chi2,
             one.remark,
         )
@@ -103,7 +103,7 @@ def _told(step: Step, interval: float, shown: int) -> StepTold:
     seen = {row.effects for row in rows}
     for row in step.screen.best()[:shown]:
         if str(row.candidate) not in seen:
-            rows.append(Ranked(str(row.candidate), row.gain, masked=row.masked))
+            rows.append(Ranked(str(row.candidate), row.gain, masked=row.absorbed_fraction))
     return StepTold(
         step.before.length * interval,
         step.before.reduced_chi2,

@@ -16,8 +16,8 @@ from tracewire.trace.candidates.effect_outputs import Variant, effect_outputs
 from tracewire.trace.candidates.lines import with_lines
 from tracewire.trace.candidates.signal_scales import Trajectory
 from tracewire.trace.candidates.waves import as_measured, scan_waves
-from tracewire.trace.screen.answers import without, without_starts
-from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.screen.projection import project_out, project_out_starts
+from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
 from tracewire.trace.thresholds import ScreenOptions
 from tracewire.trace.trials.statistics import (
     ABSORBED,
@@ -39,7 +39,7 @@ QUADRATURE = (0.0, math.pi / 2)
 
 
 @dataclass(frozen=True, eq=False)
-class Row:
+class ScreenRow:
     """A variant of a candidate in the screen: its columns (two where a phase is free), the fall of
     the sum of squares that it promises, that fall as half a fall of BIC, and the values to begin
     with."""
@@ -47,10 +47,10 @@ class Row:
     candidate: Candidate
     shapes: Mapping[str, float]
     columns: tuple[int, ...]
-    fall: float
+    rss_reduction: float
     gain: float
     values: Mapping[str, float]
-    masked: float
+    absorbed_fraction: float
     possible: bool
     series: tuple[str, ...] = ()
     """Those that have a phase of their own: there is a column for each, and each quadrature."""
@@ -62,7 +62,7 @@ class Row:
         return _count(self.candidate, self.shapes, self.series)
 
     @property
-    def added(self) -> PlacedEffect:
+    def placed_effect(self) -> PlacedEffect:
         """The effect as a refit begins it, within the bounds of its numbers: a coefficient of the
         wrong sign begins with a small one of the right sign."""
         values = dict(self.values)
@@ -79,7 +79,7 @@ class Row:
 class Proposal:
     """Effects to try together, and what they promise."""
 
-    rows: tuple[Row, ...]
+    rows: tuple[ScreenRow, ...]
     gain: float
     values: Mapping[str, float] = field(default_factory=dict)
     """Where the refit begins with other values of what is declared."""
@@ -101,12 +101,12 @@ class Screen:
     were looked at, by number among all of its windows."""
 
     columns: CandidateColumns
-    rows: tuple[Row, ...]
+    rows: tuple[ScreenRow, ...]
     kept: Ints
     unknowns: Mapping[str, float] = field(default_factory=dict)
     """The values of what is fitted beside the candidates."""
 
-    def begun(self, proposal: Proposal) -> Proposal:
+    def with_values(self, proposal: Proposal) -> Proposal:
         """A proposal with the values that what is declared has beside it."""
         columns = [number for row in proposal.rows for number in row.columns]
         moved = self.columns.unknown_changes(columns)
@@ -115,21 +115,21 @@ class Screen:
         values = np.array(list(self.unknowns.values())) + moved
         return replace(proposal, values=dict(zip(self.unknowns, values.tolist(), strict=True)))
 
-    def best(self) -> list[Row]:
+    def best(self) -> list[ScreenRow]:
         """The best possible variant of each candidate, the most promising first."""
         possible = (row for row in self.rows if row.possible)
         found = _best_of_each(possible, lambda row: row.gain)
         return sorted(found.values(), key=lambda row: -row.gain)
 
-    def visible(self) -> dict[str, Row]:
+    def observable(self) -> dict[str, ScreenRow]:
         """The best variant of each candidate that the unknowns do not imitate, of any sign, by its
         name."""
-        seen = (row for row in self.rows if row.masked < 1 - ABSORBED)
-        return _best_of_each(seen, lambda row: row.fall)
+        seen = (row for row in self.rows if row.absorbed_fraction < 1 - ABSORBED)
+        return _best_of_each(seen, lambda row: row.rss_reduction)
 
-    def slim(self) -> Screen:
+    def best_rows_only(self) -> Screen:
         """The same with the best variants of each candidate alone: all others are much memory."""
-        best = {*self.best(), *self.visible().values()}
+        best = {*self.best(), *self.observable().values()}
         rows = [row for row in self.rows if row in best]
         kept = [number for row in rows for number in row.columns]
         ends = np.cumsum([len(row.columns) for row in rows]).tolist()
@@ -139,12 +139,12 @@ class Screen:
         ]
         return replace(self, columns=self.columns.some(kept), rows=tuple(moved))
 
-    def chance(self) -> float:
+    def p_value(self) -> float:
         """The probability that noise alone looks as good as the best row does."""
         rows = [row for row in self.rows if row.possible]
         if not rows:
             return 1.0
-        best = max(row.fall for row in rows)
+        best = max(row.rss_reduction for row in rows)
         groups = [row.columns for row in self.rows]
         return self.columns.p_value(groups, [row.candidate.sign for row in self.rows], best)
 
@@ -155,17 +155,24 @@ class Screen:
         """
         options, best = self.columns.options, self.best()
         known = {str(row.candidate) for row in best}
-        hidden = [row for name, row in self.visible().items() if name not in known]
-        hidden.sort(key=lambda row: -row.fall)
+        hidden = [row for name, row in self.observable().items() if name not in known]
+        hidden.sort(key=lambda row: -row.rss_reduction)
         singles = [*best[: options.paired], *hidden[: options.paired_hidden]]
         found = []
         for one, other in combinations(singles, 2):
-            fall, values = self.columns.score((*one.columns, *other.columns))
+            rss_reduction, values = self.columns.score((*one.columns, *other.columns))
             split = len(one.columns)
             parts = (one, values[:split]), (other, values[split:])
-            if all(_possible(row.candidate, part) for row, part in parts):
-                rows = tuple(_scored(row, part) for row, part in parts)
-                found.append(Proposal(rows, self.columns.gain(fall, one.count + other.count)))
+            if all(
+                _has_possible_sign(row.candidate, effective_fraction)
+                for row, effective_fraction in parts
+            ):
+                rows = tuple(
+                    _with_first_values(row, effective_fraction) for row, effective_fraction in parts
+                )
+                found.append(
+                    Proposal(rows, self.columns.gain(rss_reduction, one.count + other.count))
+                )
         return sorted(found, key=lambda proposal: -proposal.gain)
 
     def by_count(self, each: int) -> dict[int, list[Proposal]]:
@@ -182,9 +189,11 @@ class Screen:
         return dict(sorted(found.items()))
 
 
-def _best_of_each(rows: Iterable[Row], worth: Callable[[Row], float]) -> dict[str, Row]:
+def _best_of_each(
+    rows: Iterable[ScreenRow], worth: Callable[[ScreenRow], float]
+) -> dict[str, ScreenRow]:
     """The row of each candidate that is worth most, by its name."""
-    found: dict[str, Row] = {}
+    found: dict[str, ScreenRow] = {}
     for row in rows:
         known = found.setdefault(str(row.candidate), row)
         if worth(row) > worth(known):
@@ -192,8 +201,8 @@ def _best_of_each(rows: Iterable[Row], worth: Callable[[Row], float]) -> dict[st
     return found
 
 
-def screened(
-    tangent: Tangent,
+def screen_candidates(
+    linearisation: TorqueLinearisation,
     trial: Trial,
     candidates: Sequence[Candidate],
     scan: bool = True,
@@ -206,11 +215,14 @@ def screened(
     `scan`: the lengths of waves are scanned, else they are those of the candidates' grids. Of more
     than `most` residuals only every second, third, ... one of a window is looked at.
     """
-    windows = tangent.windows
-    every = -(-tangent.size // most)
-    kept = _kept([near.residual.size for near in windows.linearisations], every)
-    unknowns, residual = (part[kept] * every**0.5 for part in project_out_initial_states(windows))
-    if not tangent.along_data:  # a value that sits on its bound cannot give way to an effect
+    windows = linearisation.windows
+    every = -(-linearisation.size // most)
+    kept = _thin([near.residual.size for near in windows.linearisations], every)
+    unknowns, residual = (
+        effective_fraction[kept] * every**0.5
+        for effective_fraction in project_out_initial_states(windows)
+    )
+    if not linearisation.along_data:  # a value that sits on its bound cannot give way to an effect
         unknowns = unknowns[
             :, [not _on_bound(u, windows.values[u.name]) for u in windows.criterion.unknowns]
         ]
@@ -218,38 +230,46 @@ def screened(
     residual = residual - basis @ (basis.T @ residual)
 
     def answer(place: str, torques: Sequence[Matrix]) -> Matrix:
-        rows, _ = without_starts(tangent, windows.projections, {place: torques}, every)
-        return without(rows, basis).T
+        rows, _ = project_out_starts(linearisation, windows.projections, {place: torques}, every)
+        return project_out(rows, basis).T
 
     model = windows.criterion.model
-    measured = as_measured(windows, tangent.trajectories)
-    options = tangent.options
+    measured = as_measured(windows, linearisation.trajectories)
+    options = linearisation.options
     candidates = with_lines(candidates, windows, measured, options.candidate)
     if scan:
         candidates = scan_waves(
-            model, candidates, measured, tangent.used, residual, answer, options.candidate
+            model,
+            candidates,
+            measured,
+            linearisation.used_samples,
+            residual,
+            answer,
+            options.candidate,
         )
-    reduced, whole, variants = _rows(tangent, candidates, measured, every, tell)
+    reduced, whole, variants = _rows(linearisation, candidates, measured, every, tell)
     with np.errstate(over="ignore", invalid="ignore"):  # answers that grow without bounds
-        judged = _squares(reduced) >= SEEN * whole
-    reduced[~(judged & np.isfinite(whole))] = 0.0
-    reduced, variants = _by_series(tangent, reduced, variants, kept)
+        is_seen = _squares(reduced) >= SEEN * whole
+    reduced[~(is_seen & np.isfinite(whole))] = 0.0
+    reduced, variants = _by_series(linearisation, reduced, variants, kept)
     seen = _squares(reduced)
-    both = reduced.T.copy() if tangent.along_data else None
-    left = without(reduced, basis)
-    masked = 1 - _squares(left) / np.maximum(seen, 1e-300)
-    masked = np.where(seen > 0, np.clip(masked, 0.0, 1.0), 1.0)
-    part = min(trial.effective_fraction * every, 1.0)
-    freedom = max(trial.degrees_of_freedom // every, 1)
-    columns = CandidateColumns(residual, left.T, masked, part, freedom, options.screen)
+    both = reduced.T.copy() if linearisation.along_data else None
+    left = project_out(reduced, basis)
+    absorbed = 1 - _squares(left) / np.maximum(seen, 1e-300)
+    absorbed = np.where(seen > 0, np.clip(absorbed, 0.0, 1.0), 1.0)
+    effective_fraction = min(trial.effective_fraction * every, 1.0)
+    degrees_of_freedom = max(trial.degrees_of_freedom // every, 1)
+    columns = CandidateColumns(
+        residual, left.T, absorbed, effective_fraction, degrees_of_freedom, options.screen
+    )
     if both is not None:
-        columns = _bounded(columns, both, unknowns, rest, windows)
-    names = tuple(run.series for run in tangent.trajectories)
+        columns = _with_bounds(columns, both, unknowns, rest, windows)
+    names = tuple(run.series for run in linearisation.trajectories)
     rows = [_row(columns, group, names) for group in _groups(variants)]
     return Screen(columns, tuple(rows), kept, windows.values)
 
 
-def _bounded(
+def _with_bounds(
     columns: CandidateColumns, both: Matrix, unknowns: Matrix, rest: Vector, windows: Windows
 ) -> CandidateColumns:
     """Columns beside unknowns that move as far as their bounds; promises are kept whole, as both
@@ -273,7 +293,7 @@ def _bounded(
     return replace(found, residual=found.left(()))
 
 
-def _kept(sizes: Sequence[int], every: int) -> Ints:
+def _thin(sizes: Sequence[int], every: int) -> Ints:
     """Every so many residuals of windows of these sizes, by number among all."""
     ends = np.cumsum(sizes)
     parts = [
@@ -283,7 +303,7 @@ def _kept(sizes: Sequence[int], every: int) -> Ints:
 
 
 def _rows(
-    tangent: Tangent,
+    linearisation: TorqueLinearisation,
     candidates: Sequence[Candidate],
     measured: Sequence[Trajectory],
     every: int,
@@ -295,12 +315,12 @@ def _rows(
     Waves are taken along what is measured: a part of their length matters, and a fit far from the
     noise is off by more than the noise.
     """
-    windows = tangent.windows
+    windows = linearisation.windows
     wired = [c for c in candidates if c.place.kind != "sensor"]
     sensors = [c for c in candidates if c.place.kind == "sensor"]
-    model, options = windows.criterion.model, tangent.options.candidate
+    model, options = windows.criterion.model, linearisation.options.candidate
     plain = [c for c in wired if not c.waves]
-    known = effect_outputs(model, plain, tangent.trajectories, options, tell)
+    known = effect_outputs(model, plain, linearisation.trajectories, options, tell)
     known |= effect_outputs(model, [c for c in wired if c.waves], measured, options, tell)
     by_place: dict[str, list[Variant]] = {}
     for variant in known:
@@ -311,37 +331,44 @@ def _rows(
     whole = np.empty(len(rows))
     for place, group in by_place.items():
         given = [
-            np.stack([known[v][n] for v in group], axis=1) for n in range(len(tangent.trajectories))
+            np.stack([known[v][n] for v in group], axis=1)
+            for n in range(len(linearisation.trajectories))
         ]
         for variant in group:  # all of them twice are much memory
             del known[variant]
         mine = slice(first, first + len(group))
-        rows[mine], whole[mine] = without_starts(
-            tangent, windows.projections, {place: given}, every
+        rows[mine], whole[mine] = project_out_starts(
+            linearisation, windows.projections, {place: given}, every
         )
         first += len(group)
     edges = np.cumsum([near.residual.size for near in windows.linearisations])[:-1]
     for row, candidate in enumerate(sensors, start=first):
-        shown = tangent.sensed(candidate.effect, candidate.place.definition)
+        shown = linearisation.sensor_response(candidate.effect, candidate.place.definition)
         whole[row] = shown @ shown
         parts = zip(windows.projections, np.split(shown, edges), strict=True)
         rows[row] = (
-            np.concatenate([view.project_out(part)[::every] for view, part in parts]) * every**0.5
+            np.concatenate(
+                [
+                    view.project_out(effective_fraction)[::every]
+                    for view, effective_fraction in parts
+                ]
+            )
+            * every**0.5
         )
     variants += [Variant(candidate, ()) for candidate in sensors]
     return rows, np.maximum(whole, 1e-300), variants
 
 
 def _by_series(
-    tangent: Tangent, rows: Matrix, variants: list[Variant], kept: Ints
+    linearisation: TorqueLinearisation, rows: Matrix, variants: list[Variant], kept: Ints
 ) -> tuple[Matrix, list[Variant]]:
     """What variants do to the residuals, (K, M), with a row for each series, zero in the others,
     where a phase is its own there."""
-    count = len(tangent.trajectories)
+    count = len(linearisation.trajectories)
     if count < 2 or not any(variant.candidate.each for variant in variants):
         return rows, variants
-    sizes = [near.residual.size for near in tangent.windows.linearisations]
-    of = np.repeat(tangent.series, sizes)[kept]
+    sizes = [near.residual.size for near in linearisation.windows.linearisations]
+    of = np.repeat(linearisation.series, sizes)[kept]
     parts = [count if variant.candidate.each else 1 for variant in variants]
     found, first = np.zeros((sum(parts), rows.shape[1])), 0
     for row, own in zip(rows, parts, strict=True):
@@ -365,29 +392,29 @@ def _groups(variants: Sequence[Variant]) -> Iterator[list[tuple[int, Variant]]]:
 
 def _row(
     columns: CandidateColumns, group: Sequence[tuple[int, Variant]], names: tuple[str, ...]
-) -> Row:
+) -> ScreenRow:
     """One row: the score of a variant."""
     indices = tuple(number for number, _ in group)
     candidate = group[0][1].candidate
-    fall, values = columns.score(indices)
+    rss_reduction, values = columns.score(indices)
     shapes = dict(group[0][1].shapes)
     series = names if candidate.each and len(names) > 1 else ()
-    row = Row(
+    row = ScreenRow(
         candidate=candidate,
         shapes=shapes,
         columns=indices,
-        fall=fall,
-        gain=columns.gain(fall, _count(candidate, shapes, series)),
+        rss_reduction=rss_reduction,
+        gain=columns.gain(rss_reduction, _count(candidate, shapes, series)),
         values={},
-        masked=float(np.max(columns.absorbed_fraction[list(indices)])),
-        possible=fall > 0 and _possible(candidate, values),
+        absorbed_fraction=float(np.max(columns.absorbed_fraction[list(indices)])),
+        possible=rss_reduction > 0 and _has_possible_sign(candidate, values),
         series=series,
         options=columns.options,
     )
-    return _scored(row, values)
+    return _with_first_values(row, values)
 
 
-def _scored(row: Row, values: Vector) -> Row:
+def _with_first_values(row: ScreenRow, values: Vector) -> ScreenRow:
     """The row with the values at which a refit begins."""
     shapes = dict(row.shapes)
     count = len(row.series)
@@ -401,8 +428,8 @@ def _scored(row: Row, values: Vector) -> Row:
         shapes[PHASE] = math.atan2(values[1], values[0]) + shapes.get(PHASE, 0.0)
     size = float(np.hypot(*values)) if len(values) == 2 else float(values[0])
     neutral = row.candidate.neutral
-    begun = {row.candidate.parameter: neutral + row.options.trust * size, **shapes}
-    return replace(row, values=begun)
+    values_to_begin = {row.candidate.parameter: neutral + row.options.trust * size, **shapes}
+    return replace(row, values=values_to_begin)
 
 
 def _on_bound(unknown: Unknown, value: float) -> bool:
@@ -411,7 +438,7 @@ def _on_bound(unknown: Unknown, value: float) -> bool:
     return value - unknown.low < near or unknown.high - value < near
 
 
-def _possible(candidate: Candidate, values: Vector) -> bool:
+def _has_possible_sign(candidate: Candidate, values: Vector) -> bool:
     """Whether a coefficient has a physical sign."""
     return candidate.sign == 0 or len(values) > 1 or float(values[0]) * candidate.sign > 0
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tracewire.trace.screen.screening import Proposal, Row, Screen
+from tracewire.trace.screen.screening import Proposal, Screen, ScreenRow
 
-COPY = 1 - 1e-6
-"""The likeness from which on two effects are one and the same on these data."""
+SAME = 1 - 1e-6
+"""The canonical correlation from which on two effects are one and the same on these data."""
 
 
 def shortlist(screen: Screen, room: int, count: int) -> list[Proposal]:
@@ -15,13 +15,13 @@ def shortlist(screen: Screen, room: int, count: int) -> list[Proposal]:
     than their parts and than any single effect, where there is room for two."""
     options = screen.columns.options
     least = options.least_gain
-    singles: list[Row] = []
+    singles: list[ScreenRow] = []
     for row in sorted(screen.best(), key=lambda row: (-round(row.gain, 3), not row.candidate.sign)):
         # an exact copy, as of what is more in one direction where there is no other, has its name
         same = (
             screen.columns.canonical_correlation(row.columns, other.columns) for other in singles
         )
-        if row.gain > least and (len(singles) >= options.many or all(x < COPY for x in same)):
+        if row.gain > least and (len(singles) >= options.many or all(x < SAME for x in same)):
             singles.append(row)
     found = [Proposal((row,), row.gain) for row in singles[:count]]
     if room < 2:

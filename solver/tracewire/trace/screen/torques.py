@@ -17,13 +17,13 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
 from tracewire.trace.candidates.places import Place
-from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
 
 Vector = NDArray[np.float64]
 
 
 def missing_torques(
-    tangent: Tangent,
+    linearisation: TorqueLinearisation,
     places: Sequence[Place],
     bend: Callable[[Vector], float],
     level: float,
@@ -34,19 +34,21 @@ def missing_torques(
     `bend` gives s_p, in the unit of the place, from the signal of the place along a series; `nodes`
     are those of a window, one at each sample where none are given.
     """
-    runs = tangent.trajectories
+    runs = linearisation.trajectories
     found = {place.name: [np.full(len(run.t), np.nan) for run in runs] for place in places}
-    for joined, number in zip(tangent.joined, tangent.series, strict=True):
-        samples = np.unique(joined.samples)
+    for window, number in zip(linearisation.window_pieces, linearisation.series, strict=True):
+        samples = np.unique(window.samples)
         count = len(samples) if nodes is None else min(nodes, len(samples))
         edges = np.linspace(samples[0], samples[-1], count) if nodes is not None else samples
         hats = np.stack([np.interp(samples, edges, one) for one in np.eye(count)], axis=1)
         given = [np.zeros((len(run.t), count)) for run in runs]
         given[number][samples] = hats
-        near = tangent.windows.linearisations[joined.window]
+        near = linearisation.windows.linearisations[window.index]
         view, answers, rows = near.projection, [], []
         for place in places:
-            answers.append(view.project_out(tangent.window_answer(joined, {place.name: given})))
+            answers.append(
+                view.project_out(linearisation.window_response(window, {place.name: given}))
+            )
             size = max(bend(runs[number].signals[place.name]), 1e-300)
             rows.append(
                 np.vstack((np.diff(np.eye(count), 2, axis=0), level * np.eye(count))) / size

@@ -188,7 +188,7 @@ def _known_rivals(search: Search, effect: PlacedEffect) -> list[tuple[PlacedEffe
                 continue
             likeness = step.screen.columns.canonical_correlation(mine.columns, row.columns)
             if likeness > least or name in tried:
-                found.append((row.added, likeness, tried.get(name, np.inf)))
+                found.append((row.placed_effect, likeness, tried.get(name, np.inf)))
         found.sort(key=lambda item: (item[2], -item[1]))
         return [(added, likeness) for added, likeness, _ in found]
     return []
@@ -324,7 +324,7 @@ def _is_part_of_a_rest(search: Search, best: Trial, effect: PlacedEffect, taken:
     if taken >= options.search.slight * best.rss:
         return False
     search.tell(f"looking for what is left beside {effect}")
-    return search.screen(best).chance() <= options.screen.chance
+    return search.screen(best).p_value() <= options.screen.chance
 
 
 def ordered(best: Trial) -> Trial:

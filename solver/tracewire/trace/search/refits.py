@@ -77,7 +77,7 @@ class Refits:
         first = [
             self.refit(
                 now,
-                (*now.effects, *(row.added for row in proposal.rows)),
+                (*now.effects, *(row.placed_effect for row in proposal.rows)),
                 few,
                 steps=self.options.first_steps,
                 values=proposal.values,
@@ -95,8 +95,8 @@ class Refits:
     def _from_small(self, now: Trial, proposal: Proposal, few: Sequence[Segment]) -> Refit:
         """A proposal refitted from a small part of what it promises."""
         small = [
-            row.added.with_value(
-                row.candidate.parameter, self.options.small * row.added.coefficient
+            row.placed_effect.with_value(
+                row.candidate.parameter, self.options.small * row.placed_effect.coefficient
             )
             for row in proposal.rows
         ]

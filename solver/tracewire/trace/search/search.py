@@ -16,10 +16,10 @@ from tracewire.trace.candidates.signal_scales import signal_scales_of
 from tracewire.trace.check.outlier_windows import fit_without_outliers
 from tracewire.trace.check.revisits import has_revisits, observable_candidates
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.screen.assimilated import assimilated, seen_along
-from tracewire.trace.screen.screening import Proposal, Screen, screened
+from tracewire.trace.screen.assimilation import assimilate, candidates_along_data
+from tracewire.trace.screen.screening import Proposal, Screen, screen_candidates
 from tracewire.trace.screen.shortlist import distinct, shortlist
-from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
 from tracewire.trace.search.refits import Refits, Tried, named
 from tracewire.trace.search.workers import Workers
 from tracewire.trace.trials.data_split import DataSplit
@@ -58,7 +58,7 @@ class Search:
     """The lengths of waves that were scanned last, by candidate and shape."""
     returns: bool = True
     """Whether a body comes back to where it was: else much looks the same."""
-    _last: tuple[Trial, Tangent] | None = None
+    _last: tuple[Trial, TorqueLinearisation] | None = None
 
     @property
     def options(self) -> TraceOptions:
@@ -181,13 +181,15 @@ class Search:
     def step(self, now: Trial) -> Trial | None:
         """One more effect, or a pair: screened, refitted, ranked, and passed by the gate."""
         self.tell("screening effects")
-        self.steps[-1:] = [replace(step, screen=step.screen.slim()) for step in self.steps[-1:]]
+        self.steps[-1:] = [
+            replace(step, screen=step.screen.best_rows_only()) for step in self.steps[-1:]
+        ]
         seen = now
         if now.reduced_chi2 > self.options.search.far and now.count > self.options.most_samples:
             most, together = self.options.most_samples, self.options.windows_together
             seen = self.problem.on_some_windows(now, _spread(now, most, together))
         screen = self.screen(seen)
-        chance = screen.chance()
+        chance = screen.p_value()
         proposals = self._proposals(seen, screen) if chance <= self.options.screen.chance else []
         if not proposals:
             words = f"nothing stands out (p = {chance:.2g})"
@@ -222,24 +224,28 @@ class Search:
         if along is None:
             near = now.reduced_chi2 < self.options.search.far
             return shortlist(screen, room, options.singles if near else options.many)
-        first = [along.begun(p) for p in shortlist(along, room, options.singles)]
+        first = [along.with_values(p) for p in shortlist(along, room, options.singles)]
         return distinct([*first, *shortlist(screen, room, options.singles)])
 
     def screen(self, trial: Trial) -> Screen:
         """The screen beside a model. Lengths of waves are scanned where there are few samples; else
         they are those that were found there last."""
         taken = [effect.candidate for effect in trial.effects]
-        tangent = self.tangent(trial)
-        return self._screened(tangent, trial, self.candidates(tangent, taken))
+        linearisation = self.tangent(trial)
+        return self._screened(linearisation, trial, self.candidates(linearisation, taken))
 
-    def _screened(self, tangent: Tangent, trial: Trial, candidates: Sequence[Candidate]) -> Screen:
+    def _screened(
+        self, linearisation: TorqueLinearisation, trial: Trial, candidates: Sequence[Candidate]
+    ) -> Screen:
         options = self.options
         scan = not self.waves or trial.count <= options.most_scanned
         if not scan:
             candidates = [
                 replace(c, shapes={**c.shapes, **self.waves.get(str(c), {})}) for c in candidates
             ]
-        screen = screened(tangent, trial, candidates, scan, options.most_residuals, self.note)
+        screen = screen_candidates(
+            linearisation, trial, candidates, scan, options.most_residuals, self.note
+        )
         for candidate in {str(row.candidate): row.candidate for row in screen.rows}.values():
             if candidate.waves:
                 shapes = {name: candidate.shapes[name] for name in candidate.waves}
@@ -255,23 +261,25 @@ class Search:
         )
         if near or not self.free:
             return None
-        along = assimilated(self.problem, trial, self.tangent(trial))
+        along = assimilate(self.problem, trial, self.tangent(trial))
         if along is None:
             return None
         taken = [effect.candidate for effect in trial.effects]
-        return self._screened(along, trial, seen_along(self.candidates(along, taken)))
+        return self._screened(along, trial, candidates_along_data(self.candidates(along, taken)))
 
-    def tangent(self, trial: Trial) -> Tangent:
+    def tangent(self, trial: Trial) -> TorqueLinearisation:
         """The windows of a model linearised in torques at the places; that of the last one is
         kept, as a screen and one along the data ask for the same."""
         if self._last is None or self._last[0] is not trial:
             args = trial.diagram, trial.windows, self.places, self.problem.rtol, self.options
-            self._last = trial, Tangent(*args)
+            self._last = trial, TorqueLinearisation(*args)
         return self._last[1]
 
-    def candidates(self, tangent: Tangent, taken: Sequence[Candidate]) -> list[Candidate]:
+    def candidates(
+        self, linearisation: TorqueLinearisation, taken: Sequence[Candidate]
+    ) -> list[Candidate]:
         """The effects at places that may be tried beside those that are there."""
-        options, runs = self.options, tangent.trajectories
+        options, runs = self.options, linearisation.trajectories
         signal_scales = signal_scales_of(runs, options.candidate)
         declared, sines = self.problem.declared, self.problem.drive_sines
         found = find_candidates(

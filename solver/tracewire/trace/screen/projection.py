@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.residual import Projection
-from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -16,8 +16,8 @@ ROWS = 64
 """Rows that are worked on at once."""
 
 
-def without_starts(
-    tangent: Tangent,
+def project_out_starts(
+    linearisation: TorqueLinearisation,
     views: Sequence[Projection],
     torques: Mapping[str, Sequence[Matrix]],
     every: int = 1,
@@ -30,8 +30,8 @@ def without_starts(
     count = sum(given[0].shape[1] for given in torques.values())
     size = sum(-(-len(view.basis) // every) for view in views)
     rows, whole, first = np.empty((count, size)), np.zeros(count), 0
-    for joined, view in zip(tangent.joined, views, strict=True):
-        columns = tangent.window_answer(joined, torques)
+    for window, view in zip(linearisation.window_pieces, views, strict=True):
+        columns = linearisation.window_response(window, torques)
         whole += np.einsum("ij,ij->j", columns, columns)
         shown = view.project_out(columns)[::every] * every**0.5
         last = first + len(shown)
@@ -40,7 +40,7 @@ def without_starts(
     return rows, whole
 
 
-def without(rows: Matrix, basis: Matrix) -> Matrix:
+def project_out(rows: Matrix, basis: Matrix) -> Matrix:
     """Rows (K, M) without their parts along an orthonormal basis (M, n); they are changed."""
     for first in range(0, len(rows), ROWS):
         some = rows[first : first + ROWS]

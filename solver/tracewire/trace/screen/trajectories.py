@@ -35,7 +35,7 @@ def nodes_of(segment: Segment) -> tuple[Vector, NDArray[np.intp], NDArray[np.boo
     return times, inside, counts
 
 
-def observed(model: Model, windows: Windows, rtol: float) -> list[Signals]:
+def simulate_signals(model: Model, windows: Windows, rtol: float) -> list[Signals]:
     """The recorded signals in fitted windows, at their nodes."""
     segments, numbers = windows.segments, series_of(windows)
     found: dict[int, Signals] = {}
@@ -45,14 +45,14 @@ def observed(model: Model, windows: Windows, rtol: float) -> list[Signals]:
         for n in mine:
             times = nodes_of(segments[n])[0]
             spans.append(Span(float(times[0]), float(times[-1]), times, segments[n].start))
-        runs = runs_of(model, windows, segments[mine[0]], spans, rtol)
+        runs = simulate_windows(model, windows, segments[mine[0]], spans, rtol)
         for row, n in enumerate(mine):
             rows = slice(int(runs.rows[row]), int(runs.rows[row + 1]))
             found[n] = {name: values[rows] for name, values in runs.signals.items()}
     return [found[n] for n in range(len(segments))]
 
 
-def stitched(windows: Windows, runs: Sequence[Signals]) -> list[Trajectory]:
+def join_windows(windows: Windows, runs: Sequence[Signals]) -> list[Trajectory]:
     """The signals of each series along its windows."""
     found: list[Trajectory] = []
     segments, numbers = windows.criterion.segments, series_of(windows)
@@ -71,7 +71,7 @@ def stitched(windows: Windows, runs: Sequence[Signals]) -> list[Trajectory]:
     return found
 
 
-def runs_of(
+def simulate_windows(
     model: Model,
     windows: Windows,
     segment: Segment,

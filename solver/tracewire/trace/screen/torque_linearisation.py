@@ -1,4 +1,5 @@
-"""The tangent: what a small torque at any place, at any time, does to what is measured.
+"""The torque linearisation: what a small torque at any place, at any time, does to what is
+measured.
 
 The fitted windows are run again in pieces of a few samples. In each, hat functions in time enter at
 every place, and the sensitivities of the run, events included, say what the states and the measured
@@ -23,15 +24,15 @@ from tracewire.solve import Span
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.candidates.signal_scales import signals_at
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.screen.observed import (
+from tracewire.trace.screen.probes import add_probes
+from tracewire.trace.screen.trajectories import (
     Signals,
+    join_windows,
     nodes_of,
-    observed,
-    runs_of,
     series_of,
-    stitched,
+    simulate_signals,
+    simulate_windows,
 )
-from tracewire.trace.screen.probe import probed
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -48,18 +49,18 @@ class Piece:
 
 
 @dataclass(frozen=True, eq=False)
-class Joined:
+class WindowPieces:
     """A window in pieces. `times` are its nodes, `samples` the rows of the series behind them,
     `counts` says which nodes are residuals."""
 
-    window: int
+    index: int
     times: Vector
     samples: NDArray[np.intp]
     counts: NDArray[np.bool_]
     pieces: tuple[Piece, ...]
 
 
-class Tangent:
+class TorqueLinearisation:
     """The windows of a fit, linearised in torques at places."""
 
     def __init__(
@@ -79,7 +80,7 @@ class Tangent:
         self.outputs = criterion.segments[0].signals
         self.states = criterion.model.states
         self.probes: tuple[tuple[str, ...], ...]
-        text, self.probes = probed(diagram, self.places, options.screen.nodes)
+        text, self.probes = add_probes(diagram, self.places, options.screen.nodes)
         self.hats = [name for name in text.inputs if name not in diagram.inputs]
         record = list(dict.fromkeys((*self.outputs, *self.states)))
         self.model = compile(text, record=record, backend="quick")
@@ -87,29 +88,33 @@ class Tangent:
         observer = compile(diagram, record=list(wanted), backend="quick")
         self.rtol = rtol
         self.series = series_of(windows)
-        runs = observed(observer, windows, rtol)
-        self.trajectories = stitched(windows, runs)
+        runs = simulate_signals(observer, windows, rtol)
+        self.trajectories = join_windows(windows, runs)
         groups: dict[tuple[int, float], list[int]] = {}
         for n, segment in enumerate(windows.segments):
             early = min(segment.begin, float(segment.measured.t[0]))
             groups.setdefault((self.series[n], early), []).append(n)
-        joined = [one for group in groups.values() for one in self._joined(group, runs)]
-        self.joined = sorted(joined, key=lambda one: one.window)
+        window_pieces = [
+            one for group in groups.values() for one in self._linearise_group(group, runs)
+        ]
+        self.window_pieces = sorted(window_pieces, key=lambda one: one.index)
 
-    def answer(self, torques: Mapping[str, Sequence[Matrix]]) -> Matrix:
+    def respond(self, torques: Mapping[str, Sequence[Matrix]]) -> Matrix:
         """What torques do to the residuals in sigma, shape (M, K), before anything is projected.
 
-        `histories` gives, for some places, for each series, (N, k) torques at its samples; the
+        `torques` gives, for some places, for each series, (N, k) torques at its samples; the
         columns stand in the order of the places given.
         """
-        return np.concatenate([self.window_answer(joined, torques) for joined in self.joined])
+        return np.concatenate(
+            [self.window_response(window, torques) for window in self.window_pieces]
+        )
 
-    def explaining(self, torques: Mapping[str, Sequence[Matrix]]) -> Tangent:
+    def along_torques(self, torques: Mapping[str, Sequence[Matrix]]) -> TorqueLinearisation:
         """The same windows along the data: the residual is what the torques given, (N, 1) for each
         series by place, did to bring them there."""
         near = []
-        for joined, one in zip(self.joined, self.windows.linearisations, strict=True):
-            done = self.window_answer(joined, torques).sum(axis=1)
+        for window, one in zip(self.window_pieces, self.windows.linearisations, strict=True):
+            done = self.window_response(window, torques).sum(axis=1)
             near.append(replace(one, residual=one.residual - np.reshape(done, one.residual.shape)))
         found = copy(self)
         found.windows = replace(self.windows, linearisations=tuple(near))
@@ -117,11 +122,11 @@ class Tangent:
         return found
 
     @property
-    def used(self) -> list[NDArray[np.intp]]:
+    def used_samples(self) -> list[NDArray[np.intp]]:
         """The samples of each series in its windows."""
         found: list[list[NDArray[np.intp]]] = [[] for _ in self.trajectories]
-        for joined, number in zip(self.joined, self.series, strict=True):
-            found[number].append(joined.samples)
+        for window, number in zip(self.window_pieces, self.series, strict=True):
+            found[number].append(window.samples)
         return [np.unique(np.concatenate(samples)) for samples in found]
 
     @property
@@ -129,13 +134,13 @@ class Tangent:
         """The number of residuals."""
         return sum(near.residual.size for near in self.windows.linearisations)
 
-    def sensed(self, effect: str, signal: str) -> Vector:
+    def sensor_response(self, effect: str, signal: str) -> Vector:
         """What a small coefficient of a sensor's effect does to the residuals, shape (M,)."""
         parts = []
-        for joined, number in zip(self.joined, self.series, strict=True):
+        for window, number in zip(self.window_pieces, self.series, strict=True):
             run = self.trajectories[number]
-            segment = self.windows.criterion.segments[joined.window]
-            rows = joined.samples[joined.counts]
+            segment = self.windows.criterion.segments[window.index]
+            rows = window.samples[window.counts]
             y, t = run.signals[signal], run.t
             term = SENSOR_TERMS[effect.removeprefix("sensor_")]
             slope = -np.gradient(y, t) if term.slope is None else term.slope(y, t - t[0])
@@ -144,20 +149,22 @@ class Tangent:
             at = self.outputs.index(signal)
             sigma = self.windows.criterion.sigma[segment.measured.name][at]
             column[:, at] = shown[rows] / sigma
-            parts.append(self.windows.criterion.whiten(joined.window, column.ravel()))
+            parts.append(self.windows.criterion.whiten(window.index, column.ravel()))
         return np.concatenate(parts)
 
-    def window_answer(self, joined: Joined, torques: Mapping[str, Sequence[Matrix]]) -> Matrix:
+    def window_response(
+        self, window: WindowPieces, torques: Mapping[str, Sequence[Matrix]]
+    ) -> Matrix:
         """The same for one window."""
         order = {place.name: n for n, place in enumerate(self.places)}
-        number = self.series[joined.window]
+        number = self.series[window.index]
         columns = sum(given[number].shape[1] for given in torques.values())
         m = len(self.outputs)
         state = np.zeros((len(self.states), columns))
-        rows = np.zeros((len(joined.times), m, columns))
-        for piece in joined.pieces:
+        rows = np.zeros((len(window.times), m, columns))
+        for piece in window.pieces:
             out = piece.start @ state
-            samples = joined.samples[piece.nodes]
+            samples = window.samples[piece.nodes]
             first = 0
             for name, given in torques.items():
                 last = first + given[number].shape[1]
@@ -166,12 +173,12 @@ class Tangent:
                 first = last
             rows[piece.nodes] = out[:, :m]
             state = out[-1, m:]
-        segment = self.windows.criterion.segments[joined.window]
-        scale = self._shown(segment)[:, None]
-        answer = (rows[joined.counts] * scale).reshape(-1, columns)
-        return self.windows.criterion.whiten(joined.window, answer)
+        segment = self.windows.criterion.segments[window.index]
+        scale = self._sensor_gains(segment)[:, None]
+        answer = (rows[window.counts] * scale).reshape(-1, columns)
+        return self.windows.criterion.whiten(window.index, answer)
 
-    def _shown(self, segment: Segment) -> Vector:
+    def _sensor_gains(self, segment: Segment) -> Vector:
         """By how many sigma the sensors show a change of each signal."""
         values = {**self.windows.criterion.parameters, **self.windows.values}
         sigma = self.windows.criterion.sigma[segment.measured.name]
@@ -181,7 +188,7 @@ class Tangent:
         ]
         return np.asarray(np.array(gains) / sigma)
 
-    def _joined(self, group: Sequence[int], runs: Sequence[Signals]) -> list[Joined]:
+    def _linearise_group(self, group: Sequence[int], runs: Sequence[Signals]) -> list[WindowPieces]:
         """Windows of one series, which have their nodes in common.
 
         Each hat is one every few nodes and zero between, so that in a piece all are different,
@@ -205,7 +212,7 @@ class Tangent:
         starts = [f"start.{name}" for name in self.states]
         probes = [name for names in self.probes for name in names]
         asked = [*starts, *probes]
-        found = runs_of(self.model, self.windows, first_one, spans, self.rtol, hats, asked)
+        found = simulate_windows(self.model, self.windows, first_one, spans, self.rtol, hats, asked)
         signals = found.sensitivities.signals
         rows = [signals.index(name) for name in (*self.outputs, *self.states)]
         answers = found.sensitivities.array[:, rows].transpose(2, 1, 0)
@@ -217,6 +224,6 @@ class Tangent:
             at_nodes = of_hats.reshape(shape)[:, :, :, order]
             pieces[n].append(Piece(here, of_starts, at_nodes))
         return [
-            Joined(n, times, samples, counts, tuple(pieces[n]))
+            WindowPieces(n, times, samples, counts, tuple(pieces[n]))
             for n, (times, samples, counts) in zip(group, nodes, strict=True)
         ]

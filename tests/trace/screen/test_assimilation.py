@@ -8,9 +8,9 @@ from oracles.oscillator import candidates_of, problem_of, record, trial_of
 from scipy.optimize import lsq_linear
 from tracewire.trace.candidates.places import find_places
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.screen.assimilated import assimilated, seen_along
-from tracewire.trace.screen.screening import Screen, screened
-from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.screen.assimilation import assimilate, candidates_along_data
+from tracewire.trace.screen.screening import Screen, screen_candidates
+from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
 from tracewire.trace.trials.statistics import BoundedColumns
 from tracewire.trace.trials.trial import TraceProblem, Trial
 
@@ -24,23 +24,23 @@ def far_trial() -> tuple[TraceProblem, Trial]:
     return problem, trial_of(problem, length=100)
 
 
-def along() -> tuple[Trial, Tangent, Screen]:
+def along() -> tuple[Trial, TorqueLinearisation, Screen]:
     problem, trial = far_trial()
     places = find_places(problem.declared)
-    tangent = Tangent(trial.diagram, trial.windows, places, 1e-6, OPTIONS)
-    found = assimilated(problem, trial, tangent)
+    linearisation = TorqueLinearisation(trial.diagram, trial.windows, places, 1e-6, OPTIONS)
+    found = assimilate(problem, trial, linearisation)
     assert found is not None
     names = ("bias @ force", "coulomb @ force", "cubic_stiffness @ force", "quad_drag @ force")
     candidates = [candidates_of(problem)[name] for name in names]
-    return trial, found, screened(found, trial, candidates)
+    return trial, found, screen_candidates(found, trial, candidates)
 
 
 def test_the_windows_follow_the_data() -> None:
-    trial, tangent, _ = along()
-    x = tangent.trajectories[0].signals["x"]
+    trial, linearisation, _ = along()
+    x = linearisation.trajectories[0].signals["x"]
     measured = trial.windows.segments[0].measured.values["x"]
     assert np.std(x - measured) < 5e-3, "the noise is 1e-3"
-    plain = Tangent(trial.diagram, trial.windows, tangent.places, 1e-6, OPTIONS)
+    plain = TorqueLinearisation(trial.diagram, trial.windows, linearisation.places, 1e-6, OPTIONS)
     assert np.std(plain.trajectories[0].signals["x"] - measured) > 0.03
 
 
@@ -51,14 +51,16 @@ def test_a_pair_is_promised_with_the_values_that_belong_to_it() -> None:
     promised = {str(row.candidate): row.values["level"] for row in best.rows}
     assert promised["coulomb @ force"] == pytest.approx(LEVEL, rel=0.2)
     assert promised["bias @ force"] == pytest.approx(BIAS, rel=0.1)
-    values = screen.begun(best).values
+    values = screen.with_values(best).values
     assert values["k"] == pytest.approx(25.0, rel=0.05)
     assert values["c"] == pytest.approx(0.2, abs=0.15)
 
 
 def test_what_drives_a_sum_is_not_judged_along_the_data() -> None:
     problem, _ = far_trial()
-    kept = {str(candidate) for candidate in seen_along(list(candidates_of(problem).values()))}
+    kept = {
+        str(candidate) for candidate in candidates_along_data(list(candidates_of(problem).values()))
+    }
     assert "coulomb @ force" in kept
     assert not any(name.endswith(("@ sensor.x", "@ drive.u")) for name in kept)
     assert "inertia @ force" not in kept and "load_friction @ force" not in kept

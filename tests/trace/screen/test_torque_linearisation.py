@@ -14,8 +14,8 @@ from tracewire.residual import Criterion, Measured
 from tracewire.residual.windows import Section, Windows, cut_windows, evaluate_windows
 from tracewire.trace.candidates.places import find_places
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.screen.observed import nodes_of
-from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
+from tracewire.trace.screen.trajectories import nodes_of
 
 OPTIONS = TraceOptions()
 
@@ -93,10 +93,12 @@ def test_the_answer_is_the_derivative_by_the_coefficient_of_the_same_torque(
 ) -> None:
     windows = opened_at(text, 0.0, np.zeros(len(T)), STARTS)
     places = [p for p in find_places(windows.criterion.model) if p.name == "torque"]
-    tangent = Tangent(windows.criterion.model.diagram, windows, places, 1e-8, OPTIONS)
-    histories = [np.stack(list(PUSHES.values()), axis=1)]
-    found = tangent.answer({"torque": histories})
-    assert found.shape == (tangent.size, len(PUSHES)) == (len(T), len(PUSHES))
+    linearisation = TorqueLinearisation(
+        windows.criterion.model.diagram, windows, places, 1e-8, OPTIONS
+    )
+    torques = [np.stack(list(PUSHES.values()), axis=1)]
+    found = linearisation.respond({"torque": torques})
+    assert found.shape == (linearisation.size, len(PUSHES)) == (len(T), len(PUSHES))
     for column, push in zip(found.T, PUSHES.values(), strict=True):
         up, down = (
             np.concatenate(
@@ -113,17 +115,19 @@ def test_while_it_sticks_no_torque_moves_it() -> None:
     at_rest: list[dict[str, float]] = [{"theta": 0.1, "omega": 0.0}] * 3
     windows = opened_at(STICK, 0.0, np.zeros(len(T)), at_rest)
     places = [p for p in find_places(windows.criterion.model) if p.name == "torque"]
-    tangent = Tangent(windows.criterion.model.diagram, windows, places, 1e-8, OPTIONS)
-    answer = tangent.answer({"torque": [np.ones((len(T), 1))]})
+    linearisation = TorqueLinearisation(
+        windows.criterion.model.diagram, windows, places, 1e-8, OPTIONS
+    )
+    answer = linearisation.respond({"torque": [np.ones((len(T), 1))]})
     np.testing.assert_allclose(answer, 0.0, atol=1e-9)
 
 
 def test_the_trajectories_are_the_fitted_run_at_every_sample() -> None:
     trial = trial_of(problem_of(record(), record(name="again", seed=1)))
     places = find_places(trial.model)
-    tangent = Tangent(trial.diagram, trial.windows, places, 1e-8, OPTIONS)
-    assert len(tangent.trajectories) == 2
-    first = tangent.trajectories[0]
+    linearisation = TorqueLinearisation(trial.diagram, trial.windows, places, 1e-8, OPTIONS)
+    assert len(linearisation.trajectories) == 2
+    first = linearisation.trajectories[0]
     m = trial.windows.criterion.segments[0].measured
     np.testing.assert_array_equal(first.t, m.t)
     inside = [s.rows for s in trial.windows.criterion.segments if s.measured is m]
@@ -141,8 +145,10 @@ def test_the_trajectories_are_the_fitted_run_at_every_sample() -> None:
 def test_a_sensor_is_told_by_what_it_shows() -> None:
     problem = problem_of(record(end=4.0))
     trial = trial_of(problem)
-    tangent = Tangent(trial.diagram, trial.windows, find_places(trial.model), 1e-8, OPTIONS)
-    run = tangent.trajectories[0]
+    linearisation = TorqueLinearisation(
+        trial.diagram, trial.windows, find_places(trial.model), 1e-8, OPTIONS
+    )
+    run = linearisation.trajectories[0]
     rows = np.concatenate([s.rows for s in trial.windows.criterion.segments])
     expected = {
         "sensor_offset": np.ones(len(rows)),
@@ -151,8 +157,10 @@ def test_a_sensor_is_told_by_what_it_shows() -> None:
         "sensor_drift": run.t[rows] - run.t[0],
     }
     for effect, column in expected.items():
-        np.testing.assert_allclose(tangent.sensed(effect, "x"), column / 1e-3, err_msg=effect)
-    delay = tangent.sensed("sensor_delay", "x") * 1e-3
+        np.testing.assert_allclose(
+            linearisation.sensor_response(effect, "x"), column / 1e-3, err_msg=effect
+        )
+    delay = linearisation.sensor_response("sensor_delay", "x") * 1e-3
     np.testing.assert_allclose(delay[1:-1], -run.signals["v"][rows][1:-1], atol=0.1)
 
 

@@ -8,7 +8,7 @@ from tracewire.compile import compile
 from tracewire.diagram import Diagram, read_text
 from tracewire.solve import simulate
 from tracewire.trace.candidates.places import find_places
-from tracewire.trace.screen.probe import probed
+from tracewire.trace.screen.probes import add_probes
 
 PENDULUM = """
 span: [0, 1]
@@ -61,7 +61,7 @@ events:
 def test_a_run_with_probes_is_the_run_without_them(text: str) -> None:
     diagram = read_text(text)
     places = find_places(compile(diagram))
-    with_probes, names = probed(diagram, places, 3)
+    with_probes, names = add_probes(diagram, places, 3)
     assert len(names) == len(places)
     assert len(set().union(*names)) == 3 * sum(place.kind != "sensor" for place in places)
     before, after = simulate(compile(diagram)), simulate(compile(with_probes))
@@ -71,7 +71,7 @@ def test_a_run_with_probes_is_the_run_without_them(text: str) -> None:
 
 def test_new_names_do_not_clash_and_inputs_come_last() -> None:
     diagram = read_text(DRIVEN)
-    with_probes, names = probed(diagram, find_places(compile(diagram)), 2)
+    with_probes, names = add_probes(diagram, find_places(compile(diagram)), 2)
     new = list(with_probes.inputs)[len(diagram.inputs) :]
     assert len(new) == 2
     old = {*diagram.inputs, *diagram.parameters, *diagram.blocks}
@@ -91,7 +91,7 @@ def by_hand(text: str, addend: str) -> Diagram:
 def test_the_sensitivity_to_a_probe_is_the_answer_to_its_signal() -> None:
     diagram = read_text(PENDULUM)
     model = compile(diagram)
-    with_probes, ((first, second),) = probed(diagram, find_places(model), 2)
+    with_probes, ((first, second),) = add_probes(diagram, find_places(model), 2)
     new = list(with_probes.inputs)
     hats = {
         new[0]: ([0, 0.2, 0.4], [0, 1, 0]),
@@ -112,7 +112,7 @@ def test_the_sensitivity_to_a_probe_is_the_answer_to_its_signal() -> None:
 def test_a_probe_at_a_drive_reaches_all_its_readers() -> None:
     diagram = read_text(DRIVEN)
     places = find_places(compile(diagram))
-    with_probes, names = probed(diagram, places, 1)
+    with_probes, names = add_probes(diagram, places, 1)
     hat = list(with_probes.inputs)[-1]
     at = {place.name: group[0] for place, group in zip(places, names, strict=True) if group}
     model = compile(with_probes)

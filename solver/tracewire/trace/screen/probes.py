@@ -10,7 +10,7 @@ from tracewire.formula import Call, Expression, Name, Number
 from tracewire.trace.candidates.places import Place
 
 
-def probed(
+def add_probes(
     diagram: Diagram, places: Sequence[Place], hats: int
 ) -> tuple[Diagram, tuple[tuple[str, ...], ...]]:
     """The diagram with sum_j p_j*h_j added at each sum and drive place, and the names p_j by place.
@@ -45,11 +45,11 @@ def probed(
             Call("*", (Name(parameter), Name(name)))
             for parameter, name in zip(parameters, inputs, strict=True)
         ]
-        diagram = _added(diagram, place, f"{prefix}_{number}", _total(terms))
+        diagram = _add_formula(diagram, place, f"{prefix}_{number}", _total(terms))
     return diagram, tuple(names)
 
 
-def _added(diagram: Diagram, place: Place, name: str, formula: Expression) -> Diagram:
+def _add_formula(diagram: Diagram, place: Place, name: str, formula: Expression) -> Diagram:
     """The diagram with a formula added at a place."""
     if place.kind == "drive":
         formula = Call("+", (Name(place.definition), formula))
@@ -61,12 +61,12 @@ def _added(diagram: Diagram, place: Place, name: str, formula: Expression) -> Di
             parts = (formula if n == number else nothing for n in range(count))
             formula = Call("stack", tuple(parts))
         within = place.within.split(".") if place.within else []
-        diagram = _led_in(diagram, within, place.definition.rpartition(".")[2], name)
+        diagram = _lead_in(diagram, within, place.definition.rpartition(".")[2], name)
     probe = BlockUse(name, "expression", {}, {"formula": formula})
     return replace(diagram, blocks={**diagram.blocks, name: probe})
 
 
-def _led_in(diagram: Diagram, within: Sequence[str], sum_name: str, signal: str) -> Diagram:
+def _lead_in(diagram: Diagram, within: Sequence[str], sum_name: str, signal: str) -> Diagram:
     """The diagram with one more signal in a sum, through an input of each subsystem around it."""
     if not within:
         return with_addend(diagram, sum_name, Wire(signal))
@@ -74,7 +74,7 @@ def _led_in(diagram: Diagram, within: Sequence[str], sum_name: str, signal: str)
     assert use.subsystem is not None
     port = InputPort(signal, default=Value(Number(0.0)))
     inside = replace(use.subsystem, inputs={**use.subsystem.inputs, signal: port})
-    inside = _led_in(inside, within[1:], sum_name, signal)
+    inside = _lead_in(inside, within[1:], sum_name, signal)
     use = replace(use, subsystem=inside, inputs={**use.inputs, signal: (Wire(signal),)})
     return replace(diagram, blocks={**diagram.blocks, within[0]: use})
 

@@ -10,41 +10,48 @@ from tracewire.diagram import effects_of
 from tracewire.residual import Windows
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.found import Force, Means
-from tracewire.trace.screen.observed import observed, stitched
-from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
 from tracewire.trace.screen.torques import missing_torques
+from tracewire.trace.screen.trajectories import join_windows, simulate_signals
 from tracewire.trace.thresholds import MapOptions
 from tracewire.trace.trials.trial import Trial
 
 Vector = NDArray[np.float64]
 
 
-def forces(
-    tangent: Tangent, best: Trial, rtol: float, fitted: Tangent | None = None
+def restoring_forces(
+    linearisation: TorqueLinearisation,
+    best: Trial,
+    rtol: float,
+    fitted: TorqueLinearisation | None = None,
 ) -> tuple[Force, ...]:
     """What is needed at each place to which an effect was added, and what the effects give there.
 
     `needed` is what the effects give, and beside it the torque that takes the rest of the residual
     away (partial residuals, at the values of the best model): in each window, the ridge solution
-    for a torque of free values at its samples. `fitted` is the tangent of the windows of the fit,
-    which are long enough to tell a small torque from noise: the means are estimated there.
+    for a torque of free values at its samples. `fitted` is the linearisation of the windows of the
+    fit, which are long enough to tell a small torque from noise: the means are estimated there.
     """
-    options = tangent.options
+    options = linearisation.options
 
     def bend(signal: Vector) -> float:
         return options.map.force_smooth * float(np.std(signal))
 
     found = []
-    names = {place.name: place for place in tangent.places if place.kind == "sum" and place.v}
+    names = {place.name: place for place in linearisation.places if place.kind == "sum" and place.v}
     for name in dict.fromkeys(effect.candidate.place.name for effect in best.effects):
         if name not in names:
             continue
         place = names[name]
-        needed = missing_torques(tangent, [place], bend, options.screen.torque_level)[place.name]
-        given_by_effects = _fitted(best, tangent.windows, place, rtol)
+        needed = missing_torques(linearisation, [place], bend, options.screen.torque_level)[
+            place.name
+        ]
+        given_by_effects = _effect_torques(best, linearisation.windows, place, rtol)
         means = () if fitted is None else _means(fitted, best, place, rtol)
         parts = []
-        for run, torque, given in zip(tangent.trajectories, needed, given_by_effects, strict=True):
+        for run, torque, given in zip(
+            linearisation.trajectories, needed, given_by_effects, strict=True
+        ):
             q = run.signals[place.q] if place.q else np.zeros(len(run.t))
             both = np.stack((q, run.signals[place.v], torque + given, given))
             parts.append(both[:, np.isfinite(torque)])
@@ -53,27 +60,29 @@ def forces(
     return tuple(found)
 
 
-def _means(tangent: Tangent, best: Trial, place: Place, rtol: float) -> tuple[Means, ...]:
+def _means(
+    linearisation: TorqueLinearisation, best: Trial, place: Place, rtol: float
+) -> tuple[Means, ...]:
     """The mean torque that is needed in bins of q and of v, all bins of a variable at once.
 
     A torque that is constant in each bin is fitted to the residual, with the window starts free and
     the parameters at the values of the best model; what the effects give is added.
     """
-    given = np.concatenate(_fitted(best, tangent.windows, place, rtol))
-    seen = [np.zeros(len(run.t), dtype=bool) for run in tangent.trajectories]
-    for joined, number in zip(tangent.joined, tangent.series, strict=True):
-        seen[number][joined.samples] = True
+    given = np.concatenate(_effect_torques(best, linearisation.windows, place, rtol))
+    seen = [np.zeros(len(run.t), dtype=bool) for run in linearisation.trajectories]
+    for window, number in zip(linearisation.window_pieces, linearisation.series, strict=True):
+        seen[number][window.samples] = True
     inside = np.concatenate(seen)
     found = []
     for signal in (place.q, place.v):
         runs = [run.signals[signal] if signal else np.zeros(len(run.t))
-                for run in tangent.trajectories]  # fmt: skip
+                for run in linearisation.trajectories]  # fmt: skip
         values = np.concatenate(runs)[inside]
-        edges = _edges(values, tangent.options.map)
+        edges = _edges(values, linearisation.options.map)
         count = len(edges) - 1
         bins = [np.clip(np.searchsorted(edges, x, "right") - 1, 0, count - 1) for x in runs]
         steps = [np.eye(count)[numbers] for numbers in bins]
-        extra, error = _least_squares(tangent, place, steps, best.reduced_chi2)
+        extra, error = _least_squares(linearisation, place, steps, best.reduced_chi2)
         numbers = np.concatenate(bins)[inside]
         members = np.maximum(np.bincount(numbers, minlength=count), 1)
         at = np.bincount(numbers, values, count) / members
@@ -98,28 +107,30 @@ def _edges(values: Vector, options: MapOptions) -> Vector:
 
 
 def _least_squares(
-    tangent: Tangent, place: Place, columns: list[Vector], s2: float
+    linearisation: TorqueLinearisation, place: Place, columns: list[Vector], reduced_chi2: float
 ) -> tuple[Vector, Vector]:
     """The coefficients of torques at a place, (N, K) by series, that take the residual away, and
     their standard errors (K,)."""
     count = columns[0].shape[1]
     matrix, right = np.zeros((count, count)), np.zeros(count)
-    for joined in tangent.joined:
-        view = tangent.windows.linearisations[joined.window].projection
-        answer = view.project_out(tangent.window_answer(joined, {place.name: columns}))
-        residual = view.project_out(tangent.windows.linearisations[joined.window].residual.ravel())
+    for window in linearisation.window_pieces:
+        view = linearisation.windows.linearisations[window.index].projection
+        answer = view.project_out(linearisation.window_response(window, {place.name: columns}))
+        residual = view.project_out(
+            linearisation.windows.linearisations[window.index].residual.ravel()
+        )
         matrix += answer.T @ answer
         right -= answer.T @ residual
     ridge = 1e-12 * max(float(np.trace(matrix)) / count, 1e-300)
     inverse = np.linalg.inv(matrix + ridge * np.eye(count))
-    return inverse @ right, np.sqrt(np.diag(inverse) * max(s2, 1.0))
+    return inverse @ right, np.sqrt(np.diag(inverse) * max(reduced_chi2, 1.0))
 
 
-def _fitted(best: Trial, windows: Windows, place: Place, rtol: float) -> list[Vector]:
+def _effect_torques(best: Trial, windows: Windows, place: Place, rtol: float) -> list[Vector]:
     """What the added effects give at a place, at the samples of each series."""
     outputs = {effect.name: effect.output for effect in effects_of(best.diagram)}
     added = [e.candidate for e in best.effects if e.candidate.place.name == place.name]
     signals = [c.block + outputs.get(c.effect, "") for c in added]
     model = compile(best.diagram, record=signals, backend="quick")
-    runs = stitched(windows, observed(model, windows, rtol))
+    runs = join_windows(windows, simulate_signals(model, windows, rtol))
     return [np.sum([run.signals[name] for name in signals], axis=0) for run in runs]

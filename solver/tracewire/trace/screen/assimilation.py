@@ -25,29 +25,33 @@ from tracewire.residual import evaluate_windows, fit_initial_states
 from tracewire.solve import Interrupted
 from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.places import Place
-from tracewire.trace.screen.probe import probed
-from tracewire.trace.screen.tangent import Tangent
+from tracewire.trace.screen.probes import add_probes
+from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
 from tracewire.trace.screen.torques import missing_torques
 from tracewire.trace.trials.trial import TraceProblem, Trial
 
 Vector = NDArray[np.float64]
 
 
-def assimilated(problem: TraceProblem, trial: Trial, tangent: Tangent) -> Tangent | None:
+def assimilate(
+    problem: TraceProblem, trial: Trial, linearisation: TorqueLinearisation
+) -> TorqueLinearisation | None:
     """The tangent along the data, with what torques at the sums do there as the residual.
 
     None where they do not take most of the residual away, as of a sensor, or where such a model
     does not run.
     """
-    places = [place for place in tangent.places if place.kind == "sum"]
+    places = [place for place in linearisation.places if place.kind == "sum"]
     if not places:
         return None
-    options = tangent.options.screen
+    options = linearisation.options.screen
 
     def bend(signal: Vector) -> float:
         return options.torque_bend * float(np.sqrt(np.mean(signal**2)))
 
-    needed = missing_torques(tangent, places, bend, options.torque_level, options.torque_nodes)
+    needed = missing_torques(
+        linearisation, places, bend, options.torque_level, options.torque_nodes
+    )
     torques = {name: [np.nan_to_num(w) for w in series] for name, series in needed.items()}
     diagram, inputs = _with_torques(trial.diagram, places)
     series = list(dict.fromkeys(s.measured.name for s in trial.windows.segments))
@@ -56,7 +60,7 @@ def assimilated(problem: TraceProblem, trial: Trial, tangent: Tangent) -> Tangen
             signal: (run.t, torques[place.name][number])
             for signal, place in zip(inputs, places, strict=True)
         }
-        for number, (name, run) in enumerate(zip(series, tangent.trajectories, strict=True))
+        for number, (name, run) in enumerate(zip(series, linearisation.trajectories, strict=True))
     }
     measured = {
         s.measured.name: replace(s.measured, inputs={**s.measured.inputs, **given[s.measured.name]})
@@ -69,16 +73,18 @@ def assimilated(problem: TraceProblem, trial: Trial, tangent: Tangent) -> Tangen
         windows = fit_initial_states(evaluate_windows(criterion, trial.windows.inlier_limit))
         if windows.rss > options.followed * trial.rss:
             return None
-        found = Tangent(diagram, windows, tangent.places, problem.rtol, tangent.options)
+        found = TorqueLinearisation(
+            diagram, windows, linearisation.places, problem.rtol, linearisation.options
+        )
     except Interrupted:
         raise
     except (FitError, SimulationError):
         return None
     given_torques = {place.name: [w[:, None] for w in torques[place.name]] for place in places}
-    return found.explaining(given_torques)
+    return found.along_torques(given_torques)
 
 
-def seen_along(candidates: Sequence[Candidate]) -> list[Candidate]:
+def candidates_along_data(candidates: Sequence[Candidate]) -> list[Candidate]:
     """The candidates that may be judged along data: those of sums that take nothing of what drives
     them. A drive that is a part of itself would look perfect: all forces may vanish together."""
     return [
@@ -91,7 +97,7 @@ def seen_along(candidates: Sequence[Candidate]) -> list[Candidate]:
 
 def _with_torques(diagram: Diagram, places: Sequence[Place]) -> tuple[Diagram, list[str]]:
     """The diagram with an input added at each of some sums, and the names of these."""
-    found, parameters = probed(diagram, places, len(places))
+    found, parameters = add_probes(diagram, places, len(places))
     inputs = [name for name in found.inputs if name not in diagram.inputs]
     own = {names[number]: Value(Number(1.0)) for number, names in enumerate(parameters)}
     return replace(found, parameters={**found.parameters, **own}), inputs
