@@ -10,16 +10,16 @@ from numpy.typing import NDArray
 from tracewire.diagram import read_text
 from tracewire.trace import Found, FoundEffect
 from tracewire.trace.found import (
+    CandidateScore,
     ChannelError,
     Curve,
     Dependence,
     Experiment,
     Force,
     Missing,
-    Moved,
+    ParameterChange,
     Power,
-    Ranked,
-    StepTold,
+    SearchStep,
     Tie,
 )
 
@@ -98,13 +98,13 @@ def missing_of_two() -> Missing:
 TIES = (Tie("bias", "torque", 0.991, {"level": -0.21}, 4.2), Tie("sensor_offset", "sensor.theta",
         0.987, {"offset": 0.012}, 11.8))  # fmt: skip
 TRIED = (
-    Ranked("coulomb @ torque", 812.0, 905.3, 0.97, 0.62, 1.01,
+    CandidateScore("coulomb @ torque", 812.0, 905.3, 0.97, 0.62, 1.01,
            "gate: squared error falls by 99 %, passed"),
-    Ranked("bias @ torque", 640.0, 640.5, 0.03, 0.21, 90.0, ""),
-    Ranked("stribeck @ torque", 510.0, 433.0, 0.0, 0.71, 310.0, ""),
-    Ranked("quad_drag @ torque", 120.0, 88.0, 0.0, 0.97, 900.0, ""),
-    Ranked("sensor_offset @ sensor.theta", 30.0, masked=0.12),
-    Ranked("cubic_stiffness @ torque", 12.0, masked=0.9),
+    CandidateScore("bias @ torque", 640.0, 640.5, 0.03, 0.21, 90.0, ""),
+    CandidateScore("stribeck @ torque", 510.0, 433.0, 0.0, 0.71, 310.0, ""),
+    CandidateScore("quad_drag @ torque", 120.0, 88.0, 0.0, 0.97, 900.0, ""),
+    CandidateScore("sensor_offset @ sensor.theta", 30.0, masked=0.12),
+    CandidateScore("cubic_stiffness @ torque", 12.0, masked=0.9),
 )  # fmt: skip
 
 
@@ -138,11 +138,14 @@ FOUND = Found(
     sigma={"theta": SIGMA},
     s2_before=81.0,
     s2_after=1.01,
-    moved=(Moved("k", "N m/rad", 4.01, 4.0, 0.01), Moved("c", "N m s/rad", 0.3, 0.051, 0.002)),
+    moved=(
+        ParameterChange("k", "N m/rad", 4.01, 4.0, 0.01),
+        ParameterChange("c", "N m s/rad", 0.3, 0.051, 0.002),
+    ),
     errors=errors(),
     steps=(
-        StepTold(0.5, 81.0, 0.0, TRIED, "accepted: coulomb @ torque"),
-        StepTold(1.5, 1.01, 0.4, (), "nothing stands out (p = 0.4)"),
+        SearchStep(0.5, 81.0, 0.0, TRIED, "accepted: coulomb @ torque"),
+        SearchStep(1.5, 1.01, 0.4, (), "nothing stands out (p = 0.4)"),
     ),
     power=(),
     dependences=(),
@@ -176,7 +179,7 @@ FOUND = Found(
 NULL = replace(
     FOUND, verdict="null", effects=(), s2_before=1.02, s2_after=1.02, moved=(), find_forces=tuple,
     values={"k": 4.0, "c": 0.05}, declared={"k": 4.0, "c": 0.05},
-    steps=(StepTold(0.5, 1.02, 0.4, (), "nothing stands out (p = 0.4)"),), experiments=(),
+    steps=(SearchStep(0.5, 1.02, 0.4, (), "nothing stands out (p = 0.4)"),), experiments=(),
     confusable=((), np.zeros((0, 0))), diagram=FOUND.original,
     power=(Power("bias", "torque", "bias.level", 0.0013),
            Power("coulomb", "torque", "coulomb.level", 0.0021),
@@ -187,7 +190,7 @@ NULL = replace(
 UNEXPLAINED = replace(
     FOUND, verdict="unexplained", effects=(), s2_before=81.0, s2_after=81.0, moved=(),
     find_forces=tuple, values=FOUND.declared,
-    steps=(StepTold(0.5, 81.0, 0.0, TRIED[1:4], "no effect passes"),),
+    steps=(SearchStep(0.5, 81.0, 0.0, TRIED[1:4], "no effect passes"),),
     experiments=(), diagram=FOUND.original, missing=missing_of_q(),
     dependences=(
         Dependence("torque", ("q",), 0.97), Dependence("torque", ("v",), 0.04),

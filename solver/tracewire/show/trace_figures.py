@@ -27,7 +27,7 @@ from tracewire.show.style import (
     shortened,
     styled,
 )
-from tracewire.trace import Curve, Found, Ranked, users_unit
+from tracewire.trace import CandidateScore, Curve, Found, users_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -131,7 +131,7 @@ def _draw_residual(panel: Axes, curve: Curve, changed: bool) -> None:
     panel.legend(loc="lower right", bbox_to_anchor=(1, 0.98), ncols=3, borderpad=0)
 
 
-def _draw_candidates(left: Axes, right: Axes, rows: Sequence[Ranked]) -> None:
+def _draw_candidates(left: Axes, right: Axes, rows: Sequence[CandidateScore]) -> None:
     places = np.arange(len(rows))[::-1]
     for at, row in zip(places, rows, strict=True):
         accepted = "accepted" in row.remark or "passed" in row.remark

@@ -15,9 +15,9 @@ from tracewire.show.trace_words import (
     to_its_interval,
 )
 from tracewire.trace import (
+    CandidateScore,
     Dependence,
     Found,
-    Ranked,
     coefficient_of,
     signal_of,
     unit_of,
@@ -185,7 +185,7 @@ def experiments_table(found: Found) -> Table:
     return Table("experiments that would separate them", header, rows, frozenset({2}))
 
 
-def _tried(step: str, row: Ranked) -> tuple[str, ...]:
+def _tried(step: str, row: CandidateScore) -> tuple[str, ...]:
     return (
         step,
         row.effects,

@@ -22,7 +22,7 @@ from tracewire.show.trace_words import (
     value_words,
     variables_words,
 )
-from tracewire.trace import Found, FoundEffect, StepTold, coefficient_of, signal_of, unit_of_power
+from tracewire.trace import Found, FoundEffect, SearchStep, coefficient_of, signal_of, unit_of_power
 
 MOST_CHANNELS = 4
 NONE = "no effect of the library explains it"
@@ -150,7 +150,7 @@ def _remainder_lines(found: Found) -> list[str]:
     return lines
 
 
-def _step(number: int, step: StepTold) -> list[str]:
+def _step(number: int, step: SearchStep) -> list[str]:
     head = f"step {number}"
     told = "p = " in step.words or math.isnan(step.chance)  # models that are compared have none
     chance = "" if told else f", {chance_words(step.chance)}"

@@ -13,7 +13,7 @@ from tracewire.trace import (
     Explained,
     Found,
     FoundEffect,
-    Moved,
+    ParameterChange,
     Power,
     Remainder,
     signal_of,
@@ -154,14 +154,14 @@ def remainder_numbers(found: Found, left: Remainder) -> tuple[str, str, str]:
     return f"{left.rms / factor:.3g}", floor, unit
 
 
-def stood_in(moved: Moved) -> bool:
+def stood_in(moved: ParameterChange) -> bool:
     """Whether a declared parameter had absorbed the missing effect: it moved by more than its
     uncertainty, and by more than a hundredth of itself."""
     change = abs(moved.after - moved.before)
     return moved.significant and change > WORTH_TELLING * max(abs(moved.before), abs(moved.after))
 
 
-def moved_words(moved: Moved) -> str:
+def moved_words(moved: ParameterChange) -> str:
     """How a declared parameter moved: `'c' moves from 0.3 to 0.051 N m s/rad`, and by
     how many standard errors where these are few."""
     unit = f" {moved.users_unit}" if moved.users_unit else ""

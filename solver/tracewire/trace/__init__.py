@@ -2,6 +2,7 @@
 
 from tracewire.trace.check.option_checks import check_options
 from tracewire.trace.found import (
+    CandidateScore,
     ChannelError,
     Curve,
     Dependence,
@@ -13,11 +14,10 @@ from tracewire.trace.found import (
     HeldOut,
     Means,
     Missing,
-    Moved,
+    ParameterChange,
     Power,
-    Ranked,
     Remainder,
-    StepTold,
+    SearchStep,
     Tie,
     data_of,
 )
@@ -45,6 +45,7 @@ from tracewire.trace.units import (
 
 __all__ = [
     "CandidateOptions",
+    "CandidateScore",
     "ChannelError",
     "CheckOptions",
     "Curve",
@@ -59,14 +60,13 @@ __all__ = [
     "MapOptions",
     "Means",
     "Missing",
-    "Moved",
+    "ParameterChange",
     "Power",
-    "Ranked",
     "Remainder",
     "ScreenOptions",
     "SearchOptions",
+    "SearchStep",
     "SplitOptions",
-    "StepTold",
     "Tie",
     "TraceOptions",
     "TrialOptions",

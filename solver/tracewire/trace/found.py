@@ -83,7 +83,7 @@ class FoundEffect:
 
 
 @dataclass(frozen=True)
-class Ranked:
+class CandidateScore:
     """Effects that were tried in a step: the half fall of BIC that the screen promised and that the
     refit gave (nan where there was none), their share of the weight, the part that declared
     parameters imitate, the squared residual per degree of freedom after, and what became of them.
@@ -99,19 +99,19 @@ class Ranked:
 
 
 @dataclass(frozen=True)
-class StepTold:
+class SearchStep:
     """A step of the search: window length in s, squared residual per degree of freedom before, the
     probability that noise alone promises as much, what was tried, and the outcome in words."""
 
     window: float
     s2: float
     chance: float
-    tried: tuple[Ranked, ...]
+    tried: tuple[CandidateScore, ...]
     words: str
 
 
 @dataclass(frozen=True)
-class Moved:
+class ParameterChange:
     """A declared parameter without and with the effects, in SI, and its standard error with.
 
     `written` is the unit in the file where that is not of SI; `factor` brings its numbers to SI.
@@ -322,9 +322,9 @@ class Found(Result):
     sigma: Mapping[str, float]
     s2_before: float
     s2_after: float
-    moved: tuple[Moved, ...]
+    moved: tuple[ParameterChange, ...]
     errors: tuple[ChannelError, ...]
-    steps: tuple[StepTold, ...]
+    steps: tuple[SearchStep, ...]
     power: tuple[Power, ...]
     dependences: tuple[Dependence, ...]
     missing: Missing | None
@@ -390,8 +390,8 @@ def data_of(found: Found) -> dict[str, Any]:
     """The result as plain data, without curves and diagrams."""
     data: dict[str, Any] = {name: plain(getattr(found, name)) for name in IN_JSON.split()}
     data |= {"parameters": plain(found.values), "where_what": plain(found.dependences)}
-    for told, effect in zip(data["effects"], found.effects, strict=True):
-        told |= {"ties": [str(tie) for tie in effect.ties], "tied": told["ties"]}
+    for entry, effect in zip(data["effects"], found.effects, strict=True):
+        entry |= {"ties": [str(tie) for tie in effect.ties], "tied": entry["ties"]}
     for experiment in data["experiments"]:
         del experiment["map"]
     return data

@@ -24,8 +24,8 @@ from tracewire.trace.choose.verdict import (
 from tracewire.trace.found import Found
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.results.result import result_of
-from tracewire.trace.search.begin import begun
-from tracewire.trace.search.finish import Final, finished
+from tracewire.trace.search.refinement import FinalModels, refine
+from tracewire.trace.search.setup import set_up_search
 
 
 def trace(
@@ -53,15 +53,17 @@ def trace(
     """
     options = options_of(TraceOptions, options, "a trace")
     tell = progress or (lambda text: None)
-    search = begun(subject, measured, rtol, within(options.budget, tell), options, executor)
+    search = set_up_search(
+        subject, measured, rtol, limit_time(options.budget, tell), options, executor
+    )
     interrupted = False
     prediction: Prediction | None = None
     try:
         declared = fit_declared(search)
         search.run(declared)
-        first, best = search.standing
+        first, best = search.declared_and_best
         if is_at_noise(search, best) or is_slow_noise(search, best):
-            judgement = judge_at_noise(search, finished(search, first, best))
+            judgement = judge_at_noise(search, refine(search, first, best))
         else:
             prediction = predict(search, first)
             judgement = judge_prediction(search, prediction)
@@ -75,7 +77,7 @@ def trace(
             search.words.append(f"the search ended after its budget of {options.budget:g} s")
     search.tell = tell
     if interrupted:
-        judgement = Judgement("unexplained", Final(*search.standing, {}, ()))
+        judgement = Judgement("unexplained", FinalModels(*search.declared_and_best, {}, ()))
     return result_of(search, judgement, prediction, interrupted)
 
 
@@ -83,14 +85,14 @@ class OutOfTime(FitError):
     """A search has taken longer than the user allows."""
 
 
-def within(seconds: float, tell: Callable[[str], None]) -> Callable[[str], None]:
+def limit_time(seconds: float, tell: Callable[[str], None]) -> Callable[[str], None]:
     """A `tell` that raises OutOfTime where it is called after so many seconds."""
     end = time.monotonic() + seconds
 
-    def told(text: str) -> None:
+    def tell_in_time(text: str) -> None:
         if time.monotonic() > end:
             what = f"the declared model was not fitted within the budget of {seconds:g} s"
             raise OutOfTime([Problem(what, hint="Give more with --budget.")])
         tell(text)
 
-    return told
+    return tell_in_time

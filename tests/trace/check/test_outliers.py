@@ -12,7 +12,7 @@ from oracles.oscillator import model_of, record
 from tracewire.residual import Measured
 from tracewire.trace.check.outliers import drop_outliers, find_outliers
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.search.begin import begun
+from tracewire.trace.search.setup import set_up_search
 
 OPTIONS = TraceOptions()
 
@@ -88,7 +88,7 @@ def test_a_trace_leaves_them_out_and_says_so() -> None:
     m = record()
     x = m.values["x"].copy()
     x[[150, 260]] -= 0.3
-    search = begun(model_of(), [replace(m, values={"x": x})], 1e-8, str, TraceOptions())
+    search = set_up_search(model_of(), [replace(m, values={"x": x})], 1e-8, str, TraceOptions())
     assert len(search.problem.measured[0].t) == len(m.t) - 2
     assert any("2 single samples left out" in words for words in search.words)
-    assert search.declared().reduced_chi2 == pytest.approx(1.0, abs=0.25)
+    assert search.fit_declared().reduced_chi2 == pytest.approx(1.0, abs=0.25)

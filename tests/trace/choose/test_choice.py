@@ -51,28 +51,28 @@ def test_channels_count_alike_whatever_their_noise() -> None:
 
 def test_of_models_within_five_percent_the_one_of_fewest_numbers_is_taken() -> None:
     entrants = [model(), model("a"), model("a", "b"), model("a", "b", "c")]
-    assert chosen(entrants, 1.0, 0.04, 0.0, -0.005).taken == 1
-    assert chosen(entrants, 1.0, 0.2, 0.0, -0.005).taken == 2
+    assert chosen(entrants, 1.0, 0.04, 0.0, -0.005).chosen == 1
+    assert chosen(entrants, 1.0, 0.2, 0.0, -0.005).chosen == 2
 
 
 def test_a_gain_within_one_standard_error_is_none() -> None:
     entrants = [model(), model("a"), model("b", "c")]
     steady, shaky = 0.12, 0.12 + wobble(0.6)
-    assert chosen(entrants, 1.0, steady, 0.0).taken == 2
-    assert chosen(entrants, 1.0, shaky, 0.0).taken == 1
+    assert chosen(entrants, 1.0, steady, 0.0).chosen == 2
+    assert chosen(entrants, 1.0, shaky, 0.0).chosen == 1
 
 
 def test_a_common_law_goes_before_a_wave_of_as_many_numbers() -> None:
     entrants = [model(), model("wave", uncommon=1), model("coulomb")]
-    assert chosen(entrants, 1.0, 0.0, 0.04).taken == 2
-    assert chosen(entrants, 1.0, 0.0, 0.2).taken == 1, "where it predicts better it is taken"
+    assert chosen(entrants, 1.0, 0.0, 0.04).chosen == 2
+    assert chosen(entrants, 1.0, 0.0, 0.2).chosen == 1, "where it predicts better it is taken"
 
 
 def test_an_effect_that_costs_less_than_two_standard_errors_is_dropped() -> None:
     entrants = [model(), model("a", "b", numbers=3), model("a", numbers=3)]
     # more than the tolerance and than one error, less than two
     choice = chosen(entrants, 1.0, 0.0, 0.1 + wobble(0.2))
-    assert choice.taken == 2
+    assert choice.chosen == 2
 
 
 def test_what_is_not_three_errors_better_than_the_declared_model_is_not_sure() -> None:
@@ -87,20 +87,20 @@ def test_a_model_that_is_sure_goes_before_a_better_one_that_is_not() -> None:
     entrants = [model(), model("a"), model("a", "b")]
     declared = 0.4 + wobble(0.05)
     choice = chosen(entrants, declared, 0.1, 0.0 + wobble(1.0))
-    assert choice.sure and choice.taken == 1
+    assert choice.sure and choice.chosen == 1
 
 
 def test_a_model_that_does_not_run_somewhere_is_never_taken() -> None:
     broken = np.zeros(BLOCKS)
     broken[3] = np.inf
     choice = chosen([model(), model("a"), model("b")], 1.0, broken, 0.5)
-    assert choice.taken == 2 and choice.sure
+    assert choice.chosen == 2 and choice.sure
 
 
 def test_models_as_near_with_at_most_one_number_more_are_ties() -> None:
     entrants = [model(), model("a"), model("b"), model("c"), model("a", "d", "e")]
     choice = chosen(entrants, 1.0, 0.0, 0.02, 0.4, -0.01)
-    assert choice.taken == 1
+    assert choice.chosen == 1
     assert [number for number, _ in choice.ties] == [2]
     assert choice.ties[0][1] == pytest.approx(0.02)
 
@@ -125,7 +125,7 @@ def test_an_exchange_that_leaves_little_more_is_a_tie() -> None:
 def test_the_tolerance_is_an_option() -> None:
     entrants = [model(), model("a"), model("a", "b")]
     strict = choose(entrants, scores(1.0, 0.04, 0.0), FOLDS, replace(OPTIONS, near=0.02))
-    assert strict.taken == 2
+    assert strict.chosen == 2
 
 
 def test_a_simpler_effect_takes_the_place_of_one_that_imitates_it() -> None:
@@ -133,20 +133,20 @@ def test_a_simpler_effect_takes_the_place_of_one_that_imitates_it() -> None:
     coulomb = Entrant(frozenset({"coulomb", "drag"}), 4)
     better = model("stribeck", "drag", "gain")
     # both are pruned one after the other, though the last is 6 % worse than the best
-    assert chosen([model(), better, stribeck, coulomb], 1.0, 0.0, 0.03, 0.06).taken == 3
+    assert chosen([model(), better, stribeck, coulomb], 1.0, 0.0, 0.03, 0.06).chosen == 3
     foreign = replace(stribeck, imitated=frozenset())
-    assert chosen([model(), better, foreign, coulomb], 1.0, 0.0, 0.03, 0.06).taken == 2
+    assert chosen([model(), better, foreign, coulomb], 1.0, 0.0, 0.03, 0.06).chosen == 2
 
 
 def test_an_effect_that_takes_next_to_nothing_of_the_squares_is_dropped() -> None:
     """The logarithm counts the last per cent as much as the first half."""
     small = [replace(model(), left=(1.0, 1.0))]
     small += [replace(model("a"), left=(0.03, 0.05)), replace(model("a", "b"), left=(0.01, 0.03))]
-    assert chosen(small, 2.0, 0.5, 0.0).taken == 1
+    assert chosen(small, 2.0, 0.5, 0.0).chosen == 1
     large = [*small[:1], replace(model("a"), left=(0.03, 0.1)), small[2]]
-    assert chosen(large, 2.0, 0.5, 0.0).taken == 2, "in the mean over horizons it takes a part"
+    assert chosen(large, 2.0, 0.5, 0.0).chosen == 2, "in the mean over horizons it takes a part"
     rest = [*small[:2], replace(model("a", "b"), left=(0.01, 0.004))]
-    assert chosen(rest, 2.0, 0.5, 0.0).taken == 2, "it takes nearly all of what is left without it"
+    assert chosen(rest, 2.0, 0.5, 0.0).chosen == 2, "it takes nearly all of what is left without it"
 
 
 def test_effects_that_take_a_part_together_are_not_dropped_one_after_the_other() -> None:
@@ -156,7 +156,7 @@ def test_effects_that_take_a_part_together_are_not_dropped_one_after_the_other()
         replace(model("a", "b"), left=(0.03,)),
         replace(model("a"), left=(0.05,)),
     ]
-    assert chosen(parts, 2.0, 0.0, 0.4, 0.8).taken == 2
+    assert chosen(parts, 2.0, 0.0, 0.4, 0.8).chosen == 2
 
 
 def test_a_wave_gives_way_to_the_common_law_that_it_imitates() -> None:
@@ -164,9 +164,9 @@ def test_a_wave_gives_way_to_the_common_law_that_it_imitates() -> None:
     wave = Entrant(frozenset({"wave"}), 5, 1, imitated=frozenset({"coulomb"}), left=(0.02,))
     coulomb = Entrant(frozenset({"coulomb"}), 3, left=(0.04,))
     declared = replace(model(), left=(1.0,))
-    assert chosen([declared, wave, coulomb], 2.0, 0.0, 0.3).taken == 2
+    assert chosen([declared, wave, coulomb], 2.0, 0.0, 0.3).chosen == 2
     far = replace(coulomb, left=(0.1,))
-    assert chosen([declared, wave, far], 2.0, 0.0, 0.3).taken == 1
+    assert chosen([declared, wave, far], 2.0, 0.0, 0.3).chosen == 1
 
 
 def test_common_effects_with_fewer_numbers_go_before_a_wave_that_takes_little_more() -> None:
@@ -175,12 +175,12 @@ def test_common_effects_with_fewer_numbers_go_before_a_wave_that_takes_little_mo
     wave = replace(model("a", "wave", numbers=8, uncommon=1), left=(0.04, 0.05))
     common = replace(model("b", "c", numbers=4), left=(0.06, 0.07))
     worse = replace(model("d", numbers=3), left=(0.065, 0.075))
-    assert chosen([declared, wave, common, worse], 2.0, 0.0, 0.2, 0.4).taken == 2
+    assert chosen([declared, wave, common, worse], 2.0, 0.0, 0.2, 0.4).chosen == 2
     far = replace(common, left=(0.08, 0.09))
-    assert chosen([declared, wave, far], 2.0, 0.0, 0.2).taken == 1, "it takes a part away"
+    assert chosen([declared, wave, far], 2.0, 0.0, 0.2).chosen == 1, "it takes a part away"
     decisive = replace(wave, left=(0.002, 0.002))
     few = replace(common, left=(0.03, 0.03))
-    assert chosen([declared, decisive, few], 2.0, 0.0, 1.0).taken == 1, "it takes all but a tenth"
+    assert chosen([declared, decisive, few], 2.0, 0.0, 1.0).chosen == 1, "it takes all but a tenth"
 
 
 def test_a_decay_that_shows_nearly_all_in_its_first_blocks_is_sure() -> None:

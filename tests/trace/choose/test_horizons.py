@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from oracles.oscillator import model_of
 from tracewire.residual import Measured
 from tracewire.residual.windows import Section
-from tracewire.trace.choose.horizons import REST, Horizons, dominant_period, horizons_of, restricted
+from tracewire.trace.choose.horizons import REST, Horizons, dominant_period, horizons_of, restrict
 from tracewire.trace.options import TraceOptions
 
 FREE = ("x", "v")
@@ -113,7 +113,7 @@ def test_the_user_sets_the_longer_horizon_in_seconds() -> None:
 
 def test_a_window_keeps_the_rows_that_count() -> None:
     (horizon,) = of(sine(), free=()).each
-    segment = restricted(horizon.segments[0], np.array([3, 5]))
+    segment = restrict(horizon.segments[0], np.array([3, 5]))
     assert segment.rows.tolist() == horizon.segments[0].rows[[3, 5]].tolist()
 
 

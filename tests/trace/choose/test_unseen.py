@@ -53,7 +53,7 @@ def search(left: dict[tuple[str, ...], float], other_runs: tuple[str, ...] = ("c
 def test_an_effect_that_lowers_the_unseen_error_stays() -> None:
     """Both effects lower the error, each beside the other."""
     before = prediction()
-    assert before.taken.names == {DRY, DRIFT}
+    assert before.chosen.names == {DRY, DRIFT}
     there = search({(DRY,): 1.5, (DRIFT,): 9.0, (DRY, DRIFT): 1.4})
     assert prune_by_other_runs(there, before) is before
     assert not there.words
@@ -64,7 +64,7 @@ def test_an_effect_that_does_not_is_left_out_and_told(left: float) -> None:
     """The drift fits the record and not another one; no model with it ties with the rest."""
     there = search({(DRY,): 1.6, (DRIFT,): 9.0, (DRY, DRIFT): left})
     found = prune_by_other_runs(there, prediction())
-    assert found.taken.names == {DRY}
+    assert found.chosen.names == {DRY}
     assert found.choice.sure
     assert not found.choice.ties
     (words,) = there.words
@@ -85,8 +85,8 @@ def test_the_end_of_the_same_run_does_not_decide() -> None:
 
 def test_the_declared_model_is_never_refused() -> None:
     """Not with a model of the same effects, that lacks a declared term."""
-    again = prediction().again([frozenset({DRY, DRIFT}), frozenset({DRY}), frozenset()])
-    assert again.taken.names == {DRIFT}
+    again = prediction().choose_again([frozenset({DRY, DRIFT}), frozenset({DRY}), frozenset()])
+    assert again.chosen.names == {DRIFT}
     assert np.isfinite(again.choice.gain)
 
 
@@ -124,7 +124,7 @@ def test_another_effect_that_does_better_on_unseen_runs_is_told(left: float, bet
     drag = ("quad_drag @ forces",)
     there, found = run_of({(DRY,): 50.0, drag: left}), prediction({(): 100, (DRY,): 4, drag: 16})
     there.words = []
-    assert found.taken.names == {DRY}
+    assert found.chosen.names == {DRY}
     assert better_unseen(there, found) == ([2] if better else [])
     words = (
         f"{drag[0]} predicts held-out blocks less well than {DRY}, but leaves 0.6 times its error"
@@ -181,7 +181,7 @@ def test_effects_that_hardly_help_on_whole_unseen_runs_are_an_approximation(
     after: float, verdict: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     there = run_of({(): 50.0, (DRY,): after})
-    there.words, there.short = [], WHOLE
+    there.words, there.short_length = [], WHOLE
     final: Any = SimpleNamespace(declared=(), best=Names((DRY,)))
     monkeypatch.setattr(safeguards, "is_loose", lambda problem, trial: False)
     monkeypatch.setattr(safeguards, "residual_map", lambda search, trial: ((), None))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import tracewire as tw
-from tracewire.trace.choose.finalists import Pool
+from tracewire.trace.choose.finalists import ModelPool
 from tracewire.trace.choose.remainder import error_left
 from tracewire.trace.choose.verdict import _only_uncommon
 from tracewire.trace.options import TraceOptions
@@ -44,7 +44,7 @@ def pool(best: Any, declared: tuple[float, ...]) -> Any:
     ],
 )
 def test_no_effect_is_looked_for_where_too_little_is_left(best: Any, all_taken: bool) -> None:
-    assert Pool._takes_all(pool(best, (1000.0, 10_000.0)), 1) is all_taken
+    assert ModelPool._takes_all(pool(best, (1000.0, 10_000.0)), 1) is all_taken
 
 
 def test_several_waves_or_drifts_and_nothing_else_are_no_effect() -> None:
@@ -60,7 +60,7 @@ def test_blocks_at_the_noise_do_not_count_in_what_an_effect_leaves() -> None:
     named = np.array([4.0, 1.0, 1.0, 1.0, 1.1, 0.9])
     errors = np.stack([declared, named]).reshape(2, 1, 1, -1, 1)
     prediction: Any = SimpleNamespace(
-        errors=errors, options=TraceOptions(), choice=SimpleNamespace(taken=1)
+        errors=errors, options=TraceOptions(), choice=SimpleNamespace(chosen=1)
     )
     assert error_left(prediction) == pytest.approx(0.1)
 
@@ -94,10 +94,10 @@ def test_a_term_that_is_left_out_does_not_come_back_as_an_effect() -> None:
         options=TraceOptions(),
         horizons=SimpleNamespace(each=[None]),
         first=[before],
-        screened=lambda smaller, number: screen(same, other),
-        promising=lambda *args: asked,
+        screen=lambda smaller, number: screen(same, other),
+        select_promising=lambda *args: asked,
         extend=lambda smaller, number, proposals: tried.extend(proposals),
     )
     smaller: Any = None
-    Pool._extend_without(there, smaller)
+    ModelPool._extend_without(there, smaller)
     assert tried == [asked[1]]

@@ -109,9 +109,9 @@ def rubbed(x: float, v: float) -> float:
 
 def test_a_model_that_is_right_climbs_to_whole_sections() -> None:
     search = search_of(problem_of(record(), record(use="gate", name="gate")))
-    declared = search.declared()
+    declared = search.fit_declared()
     assert declared.length == 20
-    climbed = search.climbed(declared)
+    climbed = search.lengthen_windows(declared)
     assert climbed.length == search.data_split.longest
     assert climbed.reduced_chi2 == pytest.approx(1.0, abs=0.2)
 
@@ -119,18 +119,18 @@ def test_a_model_that_is_right_climbs_to_whole_sections() -> None:
 def test_a_model_that_is_far_off_stays_on_short_windows() -> None:
     far = record(lambda x, v: -6.0 * float(np.tanh(v / 0.05)) - 30 * x**3)
     search = search_of(problem_of(far, record(use="gate", name="gate")))
-    climbed = search.climbed(search.declared())
+    climbed = search.lengthen_windows(search.fit_declared())
     assert climbed.length < search.data_split.longest
 
 
 def test_an_effect_that_cannot_be_run_is_left_out_with_a_reason() -> None:
     search = search_of(problem_of(record(end=6.0), record(use="gate", name="gate")))
-    now = search.declared()
+    now = search.fit_declared()
     coulomb = candidates_of(search.problem)["coulomb @ force"]
     nowhere = replace(coulomb, signals={"rate": "nowhere"})
     added = [PlacedEffect(nowhere, {"level": 0.1})]
-    refit = search.refits.refit(now, added, now.windows.segments)
-    assert search.refits.trials(now, [refit]) == [None]
+    refit = search.refits.prepare(now, added, now.windows.segments)
+    assert search.refits.run(now, [refit]) == [None]
     (told,) = search.words
     assert told.startswith("coulomb @ force was not tried: ") and "'nowhere'" in told
 
@@ -143,9 +143,9 @@ def step() -> tuple[Search, Trial | None]:
             record(rubbed, end=7.0), record(rubbed, end=7.0, use="gate", name="gate", seed=1)
         )
     )
-    declared = search.declared()
-    search.first = search.best = search.climbed(declared)
-    after = search.step(search.best)
+    declared = search.fit_declared()
+    search.first = search.best = search.lengthen_windows(declared)
+    after = search.add_effect(search.best)
     return search, after
 
 
@@ -155,16 +155,16 @@ def test_a_step_accepts_what_is_missing(step: tuple[Search, Trial]) -> None:
     (told,) = search.steps
     assert told.after is after
     assert told.words == "accepted: coulomb @ force"
-    assert told.chance < 1e-3
-    winner = next(one for one in told.tried if one.trial is after)
-    assert winner.rise < -10 and "passed" in winner.remark
-    assert sum(one.weight for one in told.tried) == pytest.approx(1.0)
-    rises = [one.rise for one in told.tried]
+    assert told.p_value < 1e-3
+    winner = next(one for one in told.refits if one.trial is after)
+    assert winner.delta_bic < -10 and "passed" in winner.remark
+    assert sum(one.weight for one in told.refits) == pytest.approx(1.0)
+    rises = [one.delta_bic for one in told.refits]
     assert rises == sorted(rises)
 
 
 def test_with_it_the_next_step_finds_nothing(step: tuple[Search, Trial]) -> None:
     search, after = step
-    assert search.step(search.climbed(after)) is None
+    assert search.add_effect(search.lengthen_windows(after)) is None
     words = search.steps[-1].words
     assert words == "no effect passes" or words.startswith("nothing stands out (p = ")

@@ -86,14 +86,14 @@ def refits(executor: Executor | None) -> list[Trial | None]:
     """Two refits of an oscillator, of which the first has an effect that no wire reaches."""
     search = search_of(problem_of(record(end=6.0), record(use="gate", name="gate")))
     search.workers = Workers(executor)
-    now = search.declared()
+    now = search.fit_declared()
     coulomb = candidates_of(search.problem)["coulomb @ force"]
     nowhere = replace(coulomb, signals={"rate": "nowhere"})
     asked = [
-        search.refits.refit(now, [PlacedEffect(c, {"level": 0.1})], now.windows.segments)
+        search.refits.prepare(now, [PlacedEffect(c, {"level": 0.1})], now.windows.segments)
         for c in (nowhere, coulomb)
     ]
-    trials = search.refits.trials(now, asked)
+    trials = search.refits.run(now, asked)
     assert [words.partition(":")[0] for words in search.words] == ["coulomb @ force was not tried"]
     return trials
 

@@ -8,7 +8,7 @@ import numpy as np
 from tracewire.compile import compile
 from tracewire.diagram import read
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.search.begin import begun
+from tracewire.trace.search.setup import set_up_search
 
 DEMO = Path(__file__).parents[3] / "diagrams/demo/pendulum.yaml"
 ADDED = {
@@ -36,7 +36,7 @@ def test_two_windows_that_hold_all_values_are_left_out_first(tmp_path: Path) -> 
         text = text.replace(old, new)
     file = tmp_path / "pendulum.yaml"
     file.write_text(text, encoding="utf-8")
-    search = begun(compile(read(file)), None, 1e-6, lambda _: None, TraceOptions())
+    search = set_up_search(compile(read(file)), None, 1e-6, lambda _: None, TraceOptions())
     train, problem = search.data_split.train, search.problem
     short = problem.fit((), search.windows(train, 25), 25, VALUES)
     longer = problem.refit(short, search.windows(train, 75), 75)

@@ -165,11 +165,11 @@ def test_a_sum_of_a_row_is_told_and_no_end_of_a_search() -> None:
     text = DIAGRAM.replace("of: [spring, damper]}", "of: [spring, damper], replicate: 1}")
     problem = problem_of(record(end=6.0), text=text.replace("of: force", "of: force_1"))
     search = search_of(problem)
-    now = search.declared()
+    now = search.fit_declared()
     assert "coulomb @ force_1" not in candidates_of(problem)
     plain = candidates_of(problem_of(record(end=6.0), text=DIAGRAM))["coulomb @ force"]
     place = replace(plain.place, name="force_1", definition="force_1")
     coulomb = PlacedEffect(replace(plain, place=place), {"level": 0.1})
-    refit = search.refits.refit(now, [coulomb], now.windows.segments)
-    assert search.refits.trials(now, [refit]) == [None]
+    refit = search.refits.prepare(now, [coulomb], now.windows.segments)
+    assert search.refits.run(now, [refit]) == [None]
     assert "coulomb @ force_1 was not tried: block 'force_1' is one of the row" in search.words[0]

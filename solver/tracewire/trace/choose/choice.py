@@ -5,7 +5,7 @@ For a model m, a horizon h, a fold f and a block b, with E/n the mean squared he
     S[m,h,f,b] = 1/2 ln(E/n + phi^2),   phi^2[h,f] = median over b of the least E/n of any model,
 
 and T[m,b] is the mean of S over h and f. Models compare by the differences of T over blocks, with
-their standard error. Taken is the model of fewest numbers that is as near the best as one standard
+their standard error. Chosen is the model of fewest numbers that is as near the best as one standard
 error or 5 %; where it has a wave, a drift or their kin, the best of common effects that leaves
 hardly more of the squared error with fewer numbers; then without each effect that costs as little,
 and with a simpler effect in the place of one that imitates it. The logarithm lets a decay be judged
@@ -91,12 +91,12 @@ class Entrant:
 
 @dataclass(frozen=True, eq=False)
 class Choice:
-    """The model that was taken, by its number, and how the declared model 0 compares to it: the
+    """The model that was chosen, by its number, and how the declared model 0 compares to it: the
     mean difference of T (0.05 is 5 % of the error), its z over blocks, and whether that is sure.
     `ties` are the models that these data cannot tell from it, the nearest first, each with its
     difference of T."""
 
-    taken: int
+    chosen: int
     gain: float
     z: float
     sure: bool
@@ -134,11 +134,11 @@ def choose(
     usable = _usable(totals)
     surer = [n for n in usable if n and is_sure(totals, 0, n, options)]
     among = surer or usable
-    taken = _simplest_near_best(entrants, totals, among, tolerance)
-    while commoner := _commoner(entrants, among, taken, options):
-        taken = _simplest_near_best(entrants, totals, commoner, tolerance)
-    taken = _pruned(entrants, totals, among, taken, options)
-    return choice_of(taken, entrants, scores, folds, options)
+    chosen = _simplest_near_best(entrants, totals, among, tolerance)
+    while commoner := _commoner_models(entrants, among, chosen, options):
+        chosen = _simplest_near_best(entrants, totals, commoner, tolerance)
+    chosen = _prune(entrants, totals, among, chosen, options)
+    return choice_of(chosen, entrants, scores, folds, options)
 
 
 def _simplest_near_best(
@@ -155,12 +155,12 @@ def _simplest_near_best(
     return min(near, key=simplicity)
 
 
-def _commoner(
-    entrants: Sequence[Entrant], among: Sequence[int], taken: int, options: TraceOptions
+def _commoner_models(
+    entrants: Sequence[Entrant], among: Sequence[int], chosen: int, options: TraceOptions
 ) -> list[int]:
     """The models with fewer uncommon effects and fewer numbers that leave hardly more of the
     squared error: waves and drifts follow whatever a law that is nearly right has left."""
-    mine = entrants[taken]
+    mine = entrants[chosen]
     return [
         n
         for n in among
@@ -171,18 +171,18 @@ def _commoner(
 
 
 def choice_of(
-    taken: int,
+    chosen: int,
     entrants: Sequence[Entrant],
     scores: Array,
     folds: Sequence[Sequence[Sequence[int]]],
     options: TraceOptions,
 ) -> Choice:
-    """A model taken, beside the declared one and those that predict as well; else as `choose`."""
+    """A model chosen, beside the declared one and those that predict as well; else as `choose`."""
     totals = scores.mean(axis=(1, 2))
-    gain, z = _cost(totals, 0, taken), _in_errors(totals[0] - totals[taken])
-    sure = taken > 0 and is_sure(totals, 0, taken, options)
-    ties = _ties(entrants, scores, folds, taken, options)
-    return Choice(taken, gain, z, sure, ties)
+    gain, z = _cost(totals, 0, chosen), _in_errors(totals[0] - totals[chosen])
+    sure = chosen > 0 and is_sure(totals, 0, chosen, options)
+    ties = _ties(entrants, scores, folds, chosen, options)
+    return Choice(chosen, gain, z, sure, ties)
 
 
 def _usable(totals: Array) -> list[int]:
@@ -204,22 +204,22 @@ def _in_errors(change: Vector) -> float:
     return mean / error if error > 0 else float(np.copysign(np.inf, mean)) if mean else 0.0
 
 
-def _pruned(
+def _prune(
     entrants: Sequence[Entrant],
     totals: Array,
     usable: Sequence[int],
-    taken: int,
+    chosen: int,
     options: TraceOptions,
 ) -> int:
     """The model without each effect that costs at most the tolerance or two standard errors, or
     that takes too small a part of the squared error away, and with a simpler effect where that
     costs at most the tolerance; an uncommon effect gives way where it takes such a small part."""
-    tolerance, first = float(np.log1p(options.near)), entrants[taken]
+    tolerance, first = float(np.log1p(options.near)), entrants[chosen]
     while True:
-        mine, costs = entrants[taken], []
+        mine, costs = entrants[chosen], []
         for n in usable:
             one = entrants[n]
-            cost, error = _cost(totals, n, taken), _error(totals, n, taken)
+            cost, error = _cost(totals, n, chosen), _error(totals, n, chosen)
             if one.effects < mine.effects:
                 accepted = cost <= max(tolerance, 2 * error) or one.is_as_good(first, options)
             else:
@@ -228,35 +228,35 @@ def _pruned(
             if accepted:
                 costs.append((one.numbers, cost, n))
         if not costs:
-            return taken
-        taken = min(costs)[2]
+            return chosen
+        chosen = min(costs)[2]
 
 
 def _ties(
     entrants: Sequence[Entrant],
     scores: Array,
     folds: Sequence[Sequence[Sequence[int]]],
-    taken: int,
+    chosen: int,
     options: TraceOptions,
 ) -> tuple[tuple[int, float], ...]:
     """Models as near as the tolerance or one standard error, with at most one number more. Here the
     spread of the folds counts, too: errors inside a fold are common to its blocks. A model with one
     effect exchanged is also a tie where it leaves too little more to exclude it."""
     totals, by_family = scores.mean(axis=(1, 2)), scores.mean(axis=1)
-    tolerance, mine, found = float(np.log1p(options.near)), entrants[taken], []
+    tolerance, mine, found = float(np.log1p(options.near)), entrants[chosen], []
     for n in _usable(totals):
         one = entrants[n]
-        if n == taken or one.numbers > mine.numbers + 1:
+        if n == chosen or one.numbers > mine.numbers + 1:
             continue
         if one.effects == mine.effects or not one.effects:
             continue
-        change = by_family[n] - by_family[taken]
+        change = by_family[n] - by_family[chosen]
         means = [
             float(np.mean(change[f][list(g)])) for f, groups in enumerate(folds) for g in groups
         ]
         spread = float(np.std(means, ddof=1)) / len(means) ** 0.5 if len(means) > 1 else 0.0
-        cost = _cost(totals, n, taken)
-        near = cost <= max(tolerance, _error(totals, n, taken), spread)
+        cost = _cost(totals, n, chosen)
+        near = cost <= max(tolerance, _error(totals, n, chosen), spread)
         if near or one.is_close(mine, scores.shape[-1], options):
             found.append((n, cost))
     return tuple(sorted(found, key=lambda tie: tie[1]))

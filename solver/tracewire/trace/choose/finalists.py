@@ -23,7 +23,7 @@ from tracewire.residual import Segment
 from tracewire.trace.choose.choice import log_scores
 from tracewire.trace.choose.heldout import Finalist, errors_by_block, errors_in_sample
 from tracewire.trace.choose.horizons import Horizons
-from tracewire.trace.choose.promising import promising, unmasked
+from tracewire.trace.choose.promising import no_longer_absorbed, select_promising
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal, Screen
 from tracewire.trace.screen.shortlist import distinct
@@ -35,7 +35,7 @@ Key = tuple[frozenset[str], tuple[str, ...]]
 
 
 @dataclass
-class Pool:
+class ModelPool:
     """The models that were fitted so far, by their effects and the terms that were left out."""
 
     search: Search
@@ -47,28 +47,28 @@ class Pool:
     first: list[Screen] = field(default_factory=list)
     """The screens beside the declared model, one for each horizon."""
 
-    def declared(self, begun: Trial) -> Finalist:
+    def fit_declared(self, declared_fit: Trial) -> Finalist:
         """The declared model at each horizon, from a fit of it."""
-        problem, trials, trial = self.search.problem, [], begun
+        problem, trials, trial = self.search.problem, [], declared_fit
         for horizon in self.horizons.each:
             trial = problem.fit((), list(horizon.segments), horizon.length, trial.values)
             trials.append(trial)
-        return self._kept(Finalist(tuple(trials)))
+        return self._keep(Finalist(tuple(trials)))
 
     def fill(self, declared: Finalist) -> None:
         """Models of one, two and three effects, and those without declared terms."""
         options = self.options
         numbers = range(len(self.horizons.each))
-        self.first = [self.screened(declared, number) for number in numbers]
+        self.first = [self.screen(declared, number) for number in numbers]
         for number in numbers:
-            singles, pairs = self.worth(options.singles) // len(numbers), options.pairs
-            proposals = self.promising(number, self.first[number], singles, pairs)
+            singles, pairs = self.worthwhile_count(options.singles) // len(numbers), options.pairs
+            proposals = self.select_promising(number, self.first[number], singles, pairs)
             along = self._along_data(declared, number, singles, pairs)
             self.extend(declared, number, distinct([*along, *proposals]))
-        for trial in self._tried_before():
-            climbed = self._climbed(trial)
-            if climbed is not None:
-                self._keep_better(climbed)
+        for trial in self._search_models():
+            refitted = self._fit_horizons(trial)
+            if refitted is not None:
+                self._keep_better(refitted)
         for smaller in self.without_terms(declared) if not self._takes_all(1) else ():
             self._extend_without(smaller)
         for size, parents in zip(range(1, options.effects), options.parents, strict=False):
@@ -98,21 +98,21 @@ class Pool:
             for model in self.best(size, 1)
         )
 
-    def worth(self, count: int) -> int:
+    def worthwhile_count(self, count: int) -> int:
         """How many refits are worth their time where a long record is worth `count` of them."""
         samples = sum(len(of) for of in self.horizons.each[-1].blocks)
         return max(count, self.options.cheap_samples // samples)
 
-    def _tried_before(self) -> list[Trial]:
+    def _search_models(self) -> list[Trial]:
         """The models that came through the refits on the shortest windows, the best first: there
         a screen promises what a refit keeps, where whole runs are far from what was measured."""
         first = [step for step in self.search.steps if not step.before.effects]
-        tried = [one.trial for step in first[:1] for one in step.tried]
+        trials = [one.trial for step in first[:1] for one in step.refits]
         best = self.search.best
-        found = [*tried[: self.options.tried_before], *([best] if best else [])]
+        found = [*trials[: self.options.tried_before], *([best] if best else [])]
         return [trial for trial in found if 0 < len(trial.effects) <= self.options.effects]
 
-    def _climbed(self, trial: Trial) -> Finalist | None:
+    def _fit_horizons(self, trial: Trial) -> Finalist | None:
         """A model that was fitted to shorter windows, refitted at each horizon, the shorter one
         first, from the values that it has: a fit to long windows from afar ends in the next
         minimum. None where it does not run."""
@@ -137,60 +137,68 @@ class Pool:
         """A model with the most promising effects and pairs: what shows in short windows is looked
         for in those of the declared model."""
         options, pairs = self.options, max(self.options.beside - 2, 0)
-        for number, screen in enumerate([*self.first[:-1], self.screened(parent, -1)]):
+        for number, screen in enumerate([*self.first[:-1], self.screen(parent, -1)]):
             along = self._along_data(parent, number, options.beside, pairs)
             if along and number < len(self.first) - 1:  # that screen is of the declared model
                 self.extend(parent, number, along)
                 continue
-            proposals = self.promising(number, screen, options.beside, pairs)
+            proposals = self.select_promising(number, screen, options.beside, pairs)
             self.extend(parent, number, distinct([*along, *proposals]))
 
     def _along_data(
         self, parent: Finalist, number: int, singles: int, pairs: int
     ) -> list[Proposal]:
         """What a model far from the data lacks at a horizon, judged along the data."""
-        screen = self.search.along_data(self.at(parent, number))
+        screen = self.search.screen_along_data(self.on_sparse_windows(parent, number))
         if screen is None:
             return []
-        return [screen.with_values(p) for p in self.promising(number, screen, singles, pairs)]
+        return [
+            screen.with_values(p) for p in self.select_promising(number, screen, singles, pairs)
+        ]
 
     def _extend_without(self, smaller: Finalist) -> None:
         """A model without a declared term with what imitates that term: it shows only where the
         term is not there. What imitates it completely is that term itself."""
         options, number = self.options, len(self.horizons.each) - 1
-        screen = self.screened(smaller, number)
-        new = unmasked(screen, self.first[number], options.imitated)
+        screen = self.screen(smaller, number)
+        new = no_longer_absorbed(screen, self.first[number], options.imitated)
         others = self.first[number].observable()
         proposals = [
             proposal
-            for proposal in self.promising(number, screen, 2 * options.beside, options.beside)
+            for proposal in self.select_promising(
+                number, screen, 2 * options.beside, options.beside
+            )
             if not new.isdisjoint(proposal.names) and others.keys() >= {*proposal.names}
         ]
         self.extend(smaller, number, proposals)
 
-    def promising(self, number: int, screen: Screen, singles: int, pairs: int) -> list[Proposal]:
+    def select_promising(
+        self, number: int, screen: Screen, singles: int, pairs: int
+    ) -> list[Proposal]:
         """What a screen at a horizon asks to refit."""
         horizon = self.horizons.each[number]
         count = len(horizon.segments[0].signals)
-        blocks = np.concatenate([horizon.blocks[n] for n in self.sparse[number]])
-        return promising(screen, np.repeat(blocks, count), singles, pairs)
+        blocks = np.concatenate([horizon.blocks[n] for n in self.sparse_windows[number]])
+        return select_promising(screen, np.repeat(blocks, count), singles, pairs)
 
     @cached_property
-    def sparse(self) -> list[list[int]]:
+    def sparse_windows(self) -> list[list[int]]:
         """The windows of each horizon on which effects are screened and refits begin."""
         options = self.options
         return [
-            horizon.sparse(options.most_samples, options.least_blocks)
+            horizon.sparse_windows(options.most_samples, options.least_blocks)
             for horizon in self.horizons.each
         ]
 
-    def at(self, parent: Finalist, number: int) -> Trial:
+    def on_sparse_windows(self, parent: Finalist, number: int) -> Trial:
         """A model on the windows of a horizon on which effects are screened."""
-        return self.search.problem.on_some_windows(parent.trials[number], self.sparse[number])
+        return self.search.problem.on_some_windows(
+            parent.trials[number], self.sparse_windows[number]
+        )
 
-    def screened(self, parent: Finalist, number: int) -> Screen:
+    def screen(self, parent: Finalist, number: int) -> Screen:
         """The screen beside a model at a horizon."""
-        search, trial = self.search, self.at(parent, number)
+        search, trial = self.search, self.on_sparse_windows(parent, number)
         beside = " and ".join(sorted(parent.names)) or "the declared model"
         search.tell(f"screening effects beside {beside}")
         return search.screen(trial).best_rows_only()
@@ -200,79 +208,85 @@ class Pool:
         them, and the best of them at each horizon."""
         options = self.options
         left = options.effects - len(parent.names)
-        now = self.at(parent, number)
-        begun: list[Trial] = []
+        now = self.on_sparse_windows(parent, number)
+        first_fits: list[Trial] = []
         for proposal in proposals:
             names = parent.names.union(proposal.names)
             known = (names, parent.dropped) in self.models or parent.names & {*proposal.names}
             if known or len(proposal.rows) > left or self.spent > options.most_steps:
                 continue
             self.search.tell(f"refitting with {' and '.join(sorted(names))}")
-            target = options.hopeful * min((trial.rss for trial in begun), default=np.inf)
+            target = options.hopeful * min((trial.rss for trial in first_fits), default=np.inf)
             first = [row.placed_effect for row in proposal.rows]
-            trial = self._refitted(now, first, (), options.first_steps, target, proposal.values)
+            trial = self._refit(now, first, (), options.first_steps, target, proposal.values)
             if trial is not None:
-                begun.append(trial)
-        for trial in self._hopeful(now, begun, number):
+                first_fits.append(trial)
+        for trial in self._select_first_fits(now, first_fits, number):
             new = trial.effects[len(parent.names) :]
-            fitted = self.fitted(parent, new, begun=(number, trial))
+            fitted = self.fit(parent, new, first_fit=(number, trial))
             if fitted is not None:
-                self._kept(fitted)
+                self._keep(fitted)
 
-    def _hopeful(self, now: Trial, begun: Sequence[Trial], number: int) -> list[Trial]:
-        """The best of what was begun at a horizon beside a model, by the scores of blocks, and what
+    def _select_first_fits(
+        self, now: Trial, first_fits: Sequence[Trial], number: int
+    ) -> list[Trial]:
+        """The best first fits at a horizon beside a model, by the scores of blocks, and what
         leaves too little more of that model's squared error to be told from the best."""
-        if not begun:
+        if not first_fits:
             return []
-        blocks = [self.horizons.each[number].blocks[n] for n in self.sparse[number]]
+        blocks = [self.horizons.each[number].blocks[n] for n in self.sparse_windows[number]]
         errors = np.stack([
             errors_by_block(
                 self.horizons.fitted, list(zip(blocks, trial.windows.residuals, strict=True))
             )
-            for trial in begun
+            for trial in first_fits
         ])  # fmt: skip
         seen = np.unique(np.concatenate(blocks))
         errors = errors[:, None, None, seen[seen >= 0]]
         scores = log_scores(errors).mean(axis=(1, 2, 3))
-        scores = scores + self._price * np.array([len(trial.windows.values) for trial in begun])
-        most = self.worth(self.options.begun) // len(self.horizons.each)
+        scores = scores + self._price * np.array(
+            [len(trial.windows.values) for trial in first_fits]
+        )
+        most = self.worthwhile_count(self.options.begun) // len(self.horizons.each)
         best = np.argsort(scores, kind="stable")[:most]
         near = scores[best[0]] + 0.5 * np.log(self.options.hopeful)
-        close = min(trial.rss for trial in begun) + self.options.material * now.rss
-        return [begun[n] for n in best.tolist() if scores[n] <= near or begun[n].rss <= close]
+        close = min(trial.rss for trial in first_fits) + self.options.material * now.rss
+        return [
+            first_fits[n] for n in best.tolist() if scores[n] <= near or first_fits[n].rss <= close
+        ]
 
-    def fitted(
+    def fit(
         self,
         parent: Finalist,
         added: Sequence[PlacedEffect],
         dropped: Sequence[str] = (),
-        begun: tuple[int, Trial] | None = None,
+        first_fit: tuple[int, Trial] | None = None,
     ) -> Finalist | None:
         """A model with more effects, or without declared terms, refitted at each horizon; None
         where it does not run.
 
-        begun: a horizon, and a fit on some of its windows, from which the refits begin. Else they
-        begin where the parent stands, and with the longer horizon, which determines more.
+        first_fit: a horizon, and a fit on some of its windows, from which the refits begin. Else
+        they begin where the parent stands, and with the longer horizon, which determines more.
         """
         trials: dict[int, Trial] = {}
-        effects, values = list(added), begun[1].values if begun else None
+        effects, values = list(added), first_fit[1].values if first_fit else None
         numbers = range(len(parent.trials))[::-1]
-        for number in sorted(numbers, key=lambda n: begun is not None and n != begun[0]):
+        for number in sorted(numbers, key=lambda n: first_fit is not None and n != first_fit[0]):
             now = parent.trials[number]
             segments = now.windows.segments
-            if begun and number == begun[0]:
-                segments = with_starts_of(segments, begun[1], self.sparse[number])
+            if first_fit and number == first_fit[0]:
+                segments = with_starts_of(segments, first_fit[1], self.sparse_windows[number])
             target = self._target(now.length, len(parent.names) + len(effects))
             steps = self.options.steps
-            trial = self._refitted(now, effects, dropped, steps, target, values, segments)
+            trial = self._refit(now, effects, dropped, steps, target, values, segments)
             if trial is None:
                 return None
             trials[number] = trial
             effects = list(trial.effects[len(parent.names) :])
-            values = trial.values if begun else None
+            values = trial.values if first_fit else None
         return Finalist(tuple(trials[n] for n in sorted(trials)), (*parent.dropped, *dropped))
 
-    def settled(self, model: Finalist) -> Finalist:
+    def converge(self, model: Finalist) -> Finalist:
         """The model refitted until it converges."""
         if all(trial.converged for trial in model.trials):
             return model
@@ -310,7 +324,7 @@ class Pool:
             of_names[self.models[key].names] = key
         mine = [key for names, key in of_names.items() if len(names) == size]
         return [
-            self.settled(self.models[key])
+            self.converge(self.models[key])
             for key in sorted(mine, key=lambda key: ranks[key])[:count]
         ]
 
@@ -333,12 +347,12 @@ class Pool:
         for trial in model.trials:
             effects = [e for e in trial.effects if str(e) != name]
             fixed = dict(trial.windows.criterion.parameters)
-            fewer = self._fit(trial, effects, fixed, self.options.steps, np.inf)
+            fewer = self._run_refit(trial, effects, fixed, self.options.steps, np.inf)
             if fewer is None:
-                return self.settled(self.models[key]) if key in self.models else None
+                return self.converge(self.models[key]) if key in self.models else None
             trials.append(fewer)
         self._keep_better(Finalist(tuple(trials), model.dropped))
-        return self.settled(self.models[key])
+        return self.converge(self.models[key])
 
     def without_terms(self, model: Finalist) -> list[Finalist]:
         """The model without each declared term that may be zero and is not."""
@@ -347,15 +361,15 @@ class Pool:
             if unknown.low != 0.0 or unknown.name not in own or unknown.name in model.vanished:
                 continue
             self.search.tell(f"refitting without {unknown.name}")
-            smaller = self.fitted(model, (), [unknown.name])
+            smaller = self.fit(model, (), [unknown.name])
             if smaller is not None:
-                found.append(self._kept(smaller))
+                found.append(self._keep(smaller))
         return found
 
-    def _kept(self, finalist: Finalist) -> Finalist:
+    def _keep(self, finalist: Finalist) -> Finalist:
         return self.models.setdefault(finalist.key, finalist)
 
-    def _refitted(
+    def _refit(
         self,
         now: Trial,
         added: Sequence[PlacedEffect],
@@ -367,17 +381,17 @@ class Pool:
     ) -> Trial | None:
         fixed = {**now.windows.criterion.parameters, **dict.fromkeys(dropped, 0.0)}
         effects = (*now.effects, *added)
-        trial = self._fit(now, effects, fixed, steps, target, values, segments)
+        trial = self._run_refit(now, effects, fixed, steps, target, values, segments)
         if added and (trial is None or trial.rss > now.rss):  # the promised size led it astray
             part = self.options.restart
             small = [
                 one.with_value(one.candidate.parameter, part * one.coefficient) for one in added
             ]
-            again = self._fit(now, (*now.effects, *small), fixed, steps, target)
+            again = self._run_refit(now, (*now.effects, *small), fixed, steps, target)
             trial = min((t for t in (trial, again) if t), key=lambda t: t.rss, default=None)
         return trial
 
-    def _fit(
+    def _run_refit(
         self,
         now: Trial,
         effects: Sequence[PlacedEffect],
@@ -388,7 +402,7 @@ class Pool:
         segments: Sequence[Segment] | None = None,
     ) -> Trial | None:
         windows = now.windows
-        refit = self.search.refits.refit(
+        refit = self.search.refits.prepare(
             now,
             effects,
             windows.segments if segments is None else segments,
@@ -399,7 +413,7 @@ class Pool:
             initial_state_steps=1,
             values=values,
         )
-        (fitted,) = self.search.refits.trials(now, [refit])
+        (fitted,) = self.search.refits.run(now, [refit])
         self.spent += (fitted or now).windows.criterion.steps
         return fitted
 
@@ -418,13 +432,13 @@ class Pool:
         """The best models of a size with each effect exchanged for those that may stand there."""
         for model in self.best(size, self.options.exchanged):
             for name in sorted(model.names):
-                self._replaced(model, name, self._instead_of(model, name))
+                self._replace_effect(model, name, self._alternatives(model, name))
 
-    def _instead_of(self, model: Finalist, name: str) -> list[PlacedEffect]:
+    def _alternatives(self, model: Finalist, name: str) -> list[PlacedEffect]:
         """The effects that promise the most in the place of one, at the values that the model has
         with it: refitted without it these may be far away, and others look alike there."""
         number = len(self.horizons.each) - 1
-        now = self.at(model, number)
+        now = self.on_sparse_windows(model, number)
         kept = [effect for effect in now.effects if str(effect) != name]
         fixed = now.windows.criterion.parameters
         self.search.tell(f"screening effects in the place of {name}")
@@ -435,11 +449,11 @@ class Pool:
         except FitError:
             return []
         count = self.options.alike
-        proposals = self.promising(number, self.search.screen(bare), count + 1, 0)
+        proposals = self.select_promising(number, self.search.screen(bare), count + 1, 0)
         found = [row.placed_effect for proposal in proposals for row in proposal.rows]
         return [one for one in found if str(one) not in model.names][:count]
 
-    def _replaced(self, model: Finalist, name: str, others: Sequence[PlacedEffect]) -> None:
+    def _replace_effect(self, model: Finalist, name: str, others: Sequence[PlacedEffect]) -> None:
         """Refit a model with others in the place of an effect, from its values: also one that is
         known and far behind, as its fit may have ended in another minimum."""
         for other in others:
@@ -450,17 +464,17 @@ class Pool:
                 continue
             self.search.tell(f"refitting with {' and '.join(sorted(names))}")
             trials: list[Trial] = []
-            begun = other
+            replacement = other
             for trial in reversed(model.trials):
                 kept = [effect for effect in trial.effects if str(effect) != name]
                 fixed = dict(trial.windows.criterion.parameters)
                 target = self._target(trial.length, len(kept) + 1)
                 steps = self.options.steps
-                fitted = self._fit(trial, (*kept, begun), fixed, steps, target)
+                fitted = self._run_refit(trial, (*kept, replacement), fixed, steps, target)
                 if fitted is None:
                     break
                 trials.append(fitted)
-                begun = fitted.effects[-1]
+                replacement = fitted.effects[-1]
             else:
                 self._keep_better(Finalist(tuple(reversed(trials)), model.dropped))
 

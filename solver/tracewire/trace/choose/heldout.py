@@ -19,7 +19,7 @@ from tracewire.residual import (
     project_out_initial_states,
 )
 from tracewire.solve import release
-from tracewire.trace.choose.horizons import REST, Horizon, Horizons, restricted
+from tracewire.trace.choose.horizons import REST, Horizon, Horizons, restrict
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.trials.bounds import at_bounds
 from tracewire.trace.trials.trial import TraceProblem, Trial
@@ -108,7 +108,7 @@ def errors_held_out(
         for number, family in enumerate(horizons.folds):
             steps = options.fold_steps if number else 0
             parts = [
-                _predicted(problem, trial, horizon, newton, group, steps, options.coarse)
+                _predict_fold(problem, trial, horizon, newton, group, steps, options.coarse)
                 for group in family
             ]
             families.append(
@@ -116,14 +116,16 @@ def errors_held_out(
             )
         predicted = np.stack(families)
         if horizons.gate:
-            judged = _judged(problem, trial, horizons.gate[at], horizons.count - horizons.fitted)
-            predicted = np.concatenate((predicted, np.stack([judged] * len(families))), axis=1)
+            gate_errors = _gate_errors(
+                problem, trial, horizons.gate[at], horizons.count - horizons.fitted
+            )
+            predicted = np.concatenate((predicted, np.stack([gate_errors] * len(families))), axis=1)
         release(trial.model)
         found.append(predicted)
     return np.stack(found)
 
 
-def _judged(problem: TraceProblem, trial: Trial, horizon: Horizon, count: int) -> Array:
+def _gate_errors(problem: TraceProblem, trial: Trial, horizon: Horizon, count: int) -> Array:
     """The mean squared residual of blocks of series that no fit sees, (blocks, channels)."""
     try:
         windows = fit_initial_states(
@@ -173,7 +175,7 @@ class _Newton:
         return dict(zip((u.name for u in unknowns), moved.tolist(), strict=True))
 
 
-def _predicted(
+def _predict_fold(
     problem: TraceProblem,
     trial: Trial,
     horizon: Horizon,
@@ -193,20 +195,20 @@ def _predicted(
     starts: dict[int, Mapping[str, float]] = {}
     try:
         if steps or not newton.exact:
-            segments = [restricted(known[n], rows) for n, rows in kept]
-            begun = evaluate_windows(
+            segments = [restrict(known[n], rows) for n, rows in kept]
+            first = evaluate_windows(
                 problem.free_criterion(trial, segments, values), trial.windows.inlier_limit
             )
-            fitted, _ = fit_windows(begun, max(steps, 1), ftol=ftol, initial_state_steps=1)
+            fitted, _ = fit_windows(first, max(steps, 1), ftol=ftol, initial_state_steps=1)
             values = fitted.values
             starts = {n: start for (n, _), start in zip(kept, fitted.starts, strict=True)}
-        residuals = _residuals(problem, trial, held, starts, values)
+        residuals = _fold_residuals(problem, trial, held, starts, values)
     except FitError:
         return failed
     return [(horizon.blocks[n][rows], r) for (n, rows), r in zip(held, residuals, strict=True)]
 
 
-def _residuals(
+def _fold_residuals(
     problem: TraceProblem,
     trial: Trial,
     held: Sequence[tuple[int, Ints]],
@@ -216,14 +218,14 @@ def _residuals(
     """The residuals of left out rows with the values of a fold."""
     segments, known = [], trial.windows.segments
     for n, rows in held:
-        segment = restricted(known[n], rows)
+        segment = restrict(known[n], rows)
         if n in starts:  # its other rows were fitted, and with them its start
             segment = replace(segment, start={**segment.start, **starts[n]}, free=())
         segments.append(segment)
-    begun = evaluate_windows(
+    first = evaluate_windows(
         problem.fixed_criterion(trial, segments, values), trial.windows.inlier_limit
     )
-    return fit_initial_states(begun).residuals
+    return fit_initial_states(first).residuals
 
 
 def errors_by_block(count: int, parts: Sequence[tuple[Ints, Vector]]) -> Array:

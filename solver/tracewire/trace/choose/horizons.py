@@ -45,7 +45,7 @@ class Horizon:
         """The windows that have rows in some blocks: number and these rows."""
         return self._where(blocks, inside=True)
 
-    def sparse(self, most: int, least_blocks: int) -> list[int]:
+    def sparse_windows(self, most: int, least_blocks: int) -> list[int]:
         """The numbers of windows that have about `most` samples together, of all blocks where that
         can be: the first windows of each, or every so many blocks where windows are as long as
         they are. All windows where there are no more samples, or where one has several blocks."""
@@ -68,13 +68,13 @@ class Horizon:
             found += mine[: max(round(wanted * len(mine)), 1)]
         return sorted(found)
 
-    def thinned(self, most: int) -> Horizon:
+    def thin(self, most: int) -> Horizon:
         """The horizon with about `most` samples of all blocks, and that part of those at rest."""
         size, rests = sum(len(of) for of in self.blocks), self.within([REST])
         if size <= most:
             return self
         some = rests[: math.ceil(len(rests) * most / size)]
-        chosen = sorted({*self.sparse(most, self.count), *(number for number, _ in some)})
+        chosen = sorted({*self.sparse_windows(most, self.count), *(number for number, _ in some)})
         return Horizon(
             self.length,
             tuple(self.segments[n] for n in chosen),
@@ -160,7 +160,7 @@ def horizons_of(
             if moving.end < one.end
         ]
         each = (
-            _cut(model, pieces, rests, short, free).thinned(options.most_short),
+            _cut(model, pieces, rests, short, free).thin(options.most_short),
             _cut(model, pieces, rests, block, free),
         )
         unseen = (
@@ -286,6 +286,6 @@ def _folds(
     )
 
 
-def restricted(segment: Segment, rows: Ints) -> Segment:
+def restrict(segment: Segment, rows: Ints) -> Segment:
     """A window of which some rows count, by their place among those that count."""
     return segment if len(rows) == len(segment.rows) else replace(segment, rows=segment.rows[rows])

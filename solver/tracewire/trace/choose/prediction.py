@@ -16,10 +16,10 @@ from tracewire.trace.choose.choice import (
     floor_of,
     log_scores,
 )
-from tracewire.trace.choose.finalists import Key, Pool
+from tracewire.trace.choose.finalists import Key, ModelPool
 from tracewire.trace.choose.heldout import Finalist, errors_held_out, errors_in_sample
 from tracewire.trace.choose.horizons import Horizons, horizons_of
-from tracewire.trace.found import Ranked, StepTold
+from tracewire.trace.found import CandidateScore, SearchStep
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Screen
 from tracewire.trace.search.search import Search
@@ -42,11 +42,11 @@ class Prediction:
     options: TraceOptions
 
     @property
-    def taken(self) -> Finalist:
+    def chosen(self) -> Finalist:
         """The model that was chosen."""
-        return self.models[self.choice.taken]
+        return self.models[self.choice.chosen]
 
-    def again(self, refused: Collection[frozenset[str]]) -> Prediction:
+    def choose_again(self, refused: Collection[frozenset[str]]) -> Prediction:
         """The same with another choice, of models that have none of some sets of effects; the
         declared model is always one of them."""
         scores = log_scores(self.errors)
@@ -56,27 +56,27 @@ class Prediction:
         choice = choose(self.entrants, scores, self.horizons.groups, self.options)
         return replace(self, choice=choice)
 
-    def taking(self, number: int) -> Prediction:
-        """The same with another model taken, by number; none ties with it that has an effect of the
-        one before which this one lacks."""
+    def choosing(self, number: int) -> Prediction:
+        """The same with another model chosen, by number; none ties with it that has an effect of
+        the one before which this one lacks."""
         scores, groups = log_scores(self.errors), self.horizons.groups
         choice = choice_of(number, self.entrants, scores, groups, self.options)
-        left_out = self.taken.names - self.models[number].names
+        left_out = self.chosen.names - self.models[number].names
         ties = tuple(tie for tie in choice.ties if not self.models[tie[0]].names & left_out)
         return replace(self, choice=replace(choice, ties=ties))
 
     def smaller(self) -> list[int]:
         """The numbers of the models that have some of the effects of the one that was chosen, the
         largest first."""
-        mine = self.entrants[self.choice.taken].effects
+        mine = self.entrants[self.choice.chosen].effects
         found = [n for n, one in enumerate(self.entrants) if one.effects and one.effects < mine]
         return sorted(found, key=lambda n: -self.entrants[n].numbers)
 
     def without_effects(self) -> Prediction:
-        """The same with the declared model taken."""
-        return replace(self, choice=replace(self.choice, taken=0, ties=()))
+        """The same with the declared model chosen."""
+        return replace(self, choice=replace(self.choice, chosen=0, ties=()))
 
-    def likeness(self, one: str, other: str) -> float:
+    def correlation(self, one: str, other: str) -> float:
         """The correlation of what two effects do to the declared model's residual; nan where the
         screen has no such effect."""
         rows = self.screen.observable()
@@ -84,7 +84,7 @@ class Prediction:
             return float("nan")
         return self.screen.columns.canonical_correlation(rows[one].columns, rows[other].columns)
 
-    def told(self) -> StepTold:
+    def as_step(self) -> SearchStep:
         """The comparison as a step of the search."""
         scores = log_scores(self.errors).mean(axis=(1, 2, 3))
         order = np.argsort(scores)[: self.options.shown]
@@ -93,7 +93,7 @@ class Prediction:
             model, change = self.models[n], float(np.expm1(scores[n] - scores[0]))
             without = f", without {' and '.join(model.dropped)}" if model.dropped else ""
             rows.append(
-                Ranked(
+                CandidateScore(
                     f"{model.title}{without}",
                     float("nan"),
                     float(scores[0] - scores[n]) * self.horizons.count,
@@ -103,14 +103,14 @@ class Prediction:
             )
         longest = self.horizons.each[-1].length * self.horizons.interval
         declared = self.models[0].trials[-1].reduced_chi2
-        words = f"held-out blocks choose {self.taken.title} (z = {self.choice.z:.3g})"
-        return StepTold(longest, declared, float("nan"), tuple(rows), words)
+        words = f"held-out blocks choose {self.chosen.title} (z = {self.choice.z:.3g})"
+        return SearchStep(longest, declared, float("nan"), tuple(rows), words)
 
 
-def predict(search: Search, begun: Trial) -> Prediction:
+def predict(search: Search, declared_fit: Trial) -> Prediction:
     """Compare the declared model and the best extended ones by what they predict."""
     options, data_split = search.options, search.data_split
-    if not search.returns:  # what adds to an effect along one way is not to be told from it
+    if not search.has_revisits:  # what adds to an effect along one way is not to be told from it
         options = replace(options, effects=1)
     gate = [section for section in data_split.gate if section.measured.use == "gate"]
     declared_model = search.problem.declared
@@ -118,27 +118,30 @@ def predict(search: Search, begun: Trial) -> Prediction:
         declared_model, data_split.whole(), gate, search.free, search.problem.sigma, options
     )
     search.tell("fitting the declared model at both horizons")
-    pool = Pool(search, horizons, options)
-    declared = pool.declared(begun)
+    pool = ModelPool(search, horizons, options)
+    declared = pool.fit_declared(declared_fit)
     pool.fill(declared)
     errors: dict[Key, Array] = {}
     _compare(pool, declared, errors)
     pruned: set[Key] = set()
     while True:
-        prediction = _chosen(pool, errors)
-        taken = prediction.taken
-        if taken.key in pruned:
+        prediction = _choose(pool, errors)
+        chosen = prediction.chosen
+        if chosen.key in pruned:
             return prediction
-        pruned.add(taken.key)
+        pruned.add(chosen.key)
         known = dict(pool.models)
-        parts = _parts(pool, taken)
-        whole, others = _with_all_terms(pool, [*parts, taken]), _exchanged(pool, taken, errors)
-        for other in (*parts, *whole, *_simpler(pool, taken), *others):
+        parts = _parts(pool, chosen)
+        whole, others = (
+            _with_all_terms(pool, [*parts, chosen]),
+            _close_exchanges(pool, chosen, errors),
+        )
+        for other in (*parts, *whole, *_simpler(pool, chosen), *others):
             if other.key not in errors or other is not known[other.key]:
-                errors[other.key] = _errors(pool, other)
+                errors[other.key] = _predict_errors(pool, other)
 
 
-def _parts(pool: Pool, model: Finalist) -> list[Finalist]:
+def _parts(pool: ModelPool, model: Finalist) -> list[Finalist]:
     """The models without one effect of a model, and without two, and so on: each refitted once."""
     found: dict[Key, Finalist] = {}
     for name in sorted(model.names):
@@ -151,13 +154,13 @@ def _parts(pool: Pool, model: Finalist) -> list[Finalist]:
     return list(found.values())
 
 
-def _with_all_terms(pool: Pool, models: Sequence[Finalist]) -> list[Finalist]:
+def _with_all_terms(pool: ModelPool, models: Sequence[Finalist]) -> list[Finalist]:
     """The fitted models with the effects of some that lack declared terms, but with all terms."""
     keys = {(model.names, ()) for model in models if model.dropped and model.names}
-    return [pool.settled(model) for key, model in list(pool.models.items()) if key in keys]
+    return [pool.converge(model) for key, model in list(pool.models.items()) if key in keys]
 
 
-def _simpler(pool: Pool, model: Finalist) -> list[Finalist]:
+def _simpler(pool: ModelPool, model: Finalist) -> list[Finalist]:
     """The fitted models with one effect of a model exchanged for one that it imitates, as Coulomb
     friction for a friction that waves along the way."""
     found = []
@@ -166,11 +169,11 @@ def _simpler(pool: Pool, model: Finalist) -> list[Finalist]:
         for name in effect.candidate.imitated - model.names:
             key = others | {name}, model.dropped
             if key in pool.models:
-                found.append(pool.settled(pool.models[key]))
+                found.append(pool.converge(pool.models[key]))
     return found
 
 
-def _exchanged(pool: Pool, model: Finalist, known: Collection[Key]) -> list[Finalist]:
+def _close_exchanges(pool: ModelPool, model: Finalist, known: Collection[Key]) -> list[Finalist]:
     """Further models with one effect of a model exchanged that are close to it in their fits, and
     so may be ties."""
 
@@ -190,23 +193,23 @@ def _exchanged(pool: Pool, model: Finalist, known: Collection[Key]) -> list[Fina
         if new and other.is_close(mine, pool.horizons.count, pool.options):
             found.append((other.leaves_more(mine), one))
     nearest = sorted(found, key=lambda pair: pair[0])[: pool.options.alike]
-    return [pool.settled(one) for _, one in nearest]
+    return [pool.converge(one) for _, one in nearest]
 
 
-def _compare(pool: Pool, declared: Finalist, errors: dict[Key, Array]) -> None:
+def _compare(pool: ModelPool, declared: Finalist, errors: dict[Key, Array]) -> None:
     """The held-out errors of the models that may be chosen, the best fits first.
 
     A model whose fit is worse than what another one predicts, by more than the tolerance, predicts
     worse still and is passed over.
     """
     margin = 2 * np.log1p(pool.options.near)
-    errors[declared.key] = _errors(pool, declared)
+    errors[declared.key] = _predict_errors(pool, declared)
     fits = {key: errors_in_sample(model, pool.horizons) for key, model in pool.models.items()}
     floor = floor_of(np.stack(list(fits.values())))
     scores = {key: float(log_scores(fit[None], floor).mean()) for key, fit in fits.items()}
     best = float(log_scores(errors[declared.key][None], floor).mean())
     compared: dict[int, int] = {}
-    finalists = pool.worth(pool.options.finalists)
+    finalists = pool.worthwhile_count(pool.options.finalists)
     ranks = pool.ranks()
     for key in sorted(ranks, key=lambda key: ranks[key]):
         numbers = pool.models[key].numbers
@@ -214,26 +217,26 @@ def _compare(pool: Pool, declared: Finalist, errors: dict[Key, Array]) -> None:
         if key in errors or behind or compared.get(numbers, 0) >= finalists:
             continue
         compared[numbers] = compared.get(numbers, 0) + 1
-        errors[key] = _errors(pool, pool.settled(pool.models[key]))
-        _stand(pool, errors)
+        errors[key] = _predict_errors(pool, pool.converge(pool.models[key]))
+        _record_best(pool, errors)
         best = min(best, float(log_scores(errors[key][None], floor).mean()))
 
 
-def _stand(pool: Pool, errors: dict[Key, Array]) -> None:
+def _record_best(pool: ModelPool, errors: dict[Key, Array]) -> None:
     """Let the search stand at the best model so far: it is kept where the comparison is ended."""
-    prediction = _chosen(pool, errors)
+    prediction = _choose(pool, errors)
     if prediction.choice.sure:
-        declared, taken = prediction.models[0], prediction.taken
-        pool.search.first, pool.search.best = declared.trials[-1], taken.trials[-1]
+        declared, chosen = prediction.models[0], prediction.chosen
+        pool.search.first, pool.search.best = declared.trials[-1], chosen.trials[-1]
 
 
-def _errors(pool: Pool, model: Finalist) -> Array:
+def _predict_errors(pool: ModelPool, model: Finalist) -> Array:
     search = pool.search
     search.tell(f"predicting with {' and '.join(sorted(model.names)) or 'the declared model'}")
     return errors_held_out(search.problem, model, pool.horizons, pool.options)
 
 
-def _chosen(pool: Pool, errors: dict[Key, Array]) -> Prediction:
+def _choose(pool: ModelPool, errors: dict[Key, Array]) -> Prediction:
     options = pool.options
     models = tuple(pool.models[key] for key in errors)
     stacked = np.stack([errors[key] for key in errors])

@@ -24,7 +24,7 @@ Vector = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 
-def promising(screen: Screen, blocks: Ints, singles: int, pairs: int) -> list[Proposal]:
+def select_promising(screen: Screen, blocks: Ints, singles: int, pairs: int) -> list[Proposal]:
     """The most promising single effects of a screen, and then pairs, so many of each measure.
 
     blocks: the block of each residual, (M,); negative where it belongs to none.
@@ -39,7 +39,7 @@ def promising(screen: Screen, blocks: Ints, singles: int, pairs: int) -> list[Pr
     return found
 
 
-def unmasked(screen: Screen, before: Screen, least: float) -> set[str]:
+def no_longer_absorbed(screen: Screen, before: Screen, least: float) -> set[str]:
     """The effects that the unknowns imitate less than in another screen, by so much of the square:
     those that imitate what is not there any more."""
     known = before.observable()

@@ -14,7 +14,7 @@ from tracewire.trace.found import Explained, HeldOut, Remainder
 Array = NDArray[np.float64]
 
 
-def explained(prediction: Prediction, floors: Sequence[float]) -> tuple[Explained, float]:
+def explained_share(prediction: Prediction, floors: Sequence[float]) -> tuple[Explained, float]:
     """The share of the excess squared error that the chosen model explains, and its standard error.
 
     share = 1 - sum(E_named - E_floor)/sum(E_declared - E_floor), sums over blocks, and over
@@ -22,7 +22,7 @@ def explained(prediction: Prediction, floors: Sequence[float]) -> tuple[Explaine
     model's error that a smooth map still leaves, by horizon. The standard error is that of a
     jackknife over blocks of time (Efron and Stein 1981).
     """
-    declared, named = (_by_block(prediction, n) for n in (0, prediction.choice.taken))
+    declared, named = (_by_block(prediction, n) for n in (0, prediction.choice.chosen))
     part = np.asarray(floors)
     count = declared.shape[1]
     whole = _share(declared, named, part, np.arange(count))
@@ -53,17 +53,17 @@ def error_left(prediction: Prediction) -> float:
     """The part of the error on held-out blocks that the named effects leave, the geometric mean
     over horizons and blocks: a block that is far off counts as much as one that is near. Blocks
     where the declared model is at the noise, as late in a decay, say nothing."""
-    declared, named = (_by_block(prediction, n) for n in (0, prediction.choice.taken))
-    told = declared > prediction.options.informative
-    if not told.any():
-        told = np.ones_like(told)
-    return float(np.exp(0.5 * np.mean(np.log(np.maximum(named, 1e-300) / declared)[told])))
+    declared, named = (_by_block(prediction, n) for n in (0, prediction.choice.chosen))
+    informative = declared > prediction.options.informative
+    if not informative.any():
+        informative = np.ones_like(informative)
+    return float(np.exp(0.5 * np.mean(np.log(np.maximum(named, 1e-300) / declared)[informative])))
 
 
 def held_out(prediction: Prediction, floors: Sequence[float]) -> tuple[HeldOut, ...]:
     """The errors on held-out blocks at each horizon."""
     horizons = prediction.horizons
-    declared, named = (_by_block(prediction, n) for n in (0, prediction.choice.taken))
+    declared, named = (_by_block(prediction, n) for n in (0, prediction.choice.chosen))
     return tuple(
         HeldOut(
             horizon.length * horizons.interval,
@@ -87,7 +87,7 @@ def remainders(
 ) -> tuple[Remainder, ...]:
     """What is left of each signal on held-out blocks at the longer horizon."""
     before, after = (
-        np.sqrt(prediction.errors[n][-1, 0].mean(axis=0)) for n in (0, prediction.choice.taken)
+        np.sqrt(prediction.errors[n][-1, 0].mean(axis=0)) for n in (0, prediction.choice.chosen)
     )
     signals = prediction.horizons.each[-1].segments[0].signals
     return tuple(

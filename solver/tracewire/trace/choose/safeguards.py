@@ -7,25 +7,25 @@ from dataclasses import replace
 from tracewire.trace.check.mistakes import refuse_mistakes
 from tracewire.trace.check.tolerance import is_loose, tighten_tolerance
 from tracewire.trace.choose.unseen import (
-    joined,
+    join_names,
     raises_unseen,
     raises_whole_runs,
     share_of_whole_runs,
 )
 from tracewire.trace.choose.verdict import Judgement, residual_map
-from tracewire.trace.search.finish import Final
+from tracewire.trace.search.refinement import FinalModels
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.trial import Trial
 
 
 def fit_declared(search: Search) -> Trial:
     """The declared fit, with a tolerance at which the solver's error does not count."""
-    declared = search.declared()
+    declared = search.fit_declared()
     for _ in range(search.options.check.tightened):
         if not is_loose(search.problem, declared):
             break
         _tighten(search)
-        declared = search.declared()
+        declared = search.fit_declared()
     return declared
 
 
@@ -51,30 +51,30 @@ def safeguard(search: Search, judgement: Judgement) -> Judgement:
         )
         final = replace(final, declared=declared, best=best)
     if final.best.effects:
-        lengths = sorted({min(search.short, final.best.length), final.best.length})
+        lengths = sorted({min(search.short_length, final.best.length), final.best.length})
         harm = raises_unseen(search, final.declared, final.best, lengths)
         if not harm and judgement.verdict == "effect":
             judgement = _of_whole_runs(search, judgement, final)
         if not harm and judgement.verdict == "unexplained":
             harm = raises_whole_runs(search, final.declared, final.best)
         if harm:
-            names = joined(map(str, final.best.effects))
+            names = join_names(map(str, final.best.effects))
             search.words.append(f"{names} is not named: it {harm}")
-            final = Final(final.declared, final.declared, {}, ())
+            final = FinalModels(final.declared, final.declared, {}, ())
             dependences, missing = residual_map(search, final.declared)
             return Judgement("unexplained", final, dependences, missing)
     return replace(judgement, final=final)
 
 
-def _of_whole_runs(search: Search, judgement: Judgement, final: Final) -> Judgement:
+def _of_whole_runs(search: Search, judgement: Judgement, final: FinalModels) -> Judgement:
     """The judgement, or `unexplained` where the effects hardly lower the error of whole unseen
     runs: what follows a rest of no block's form on windows does not carry over to them."""
     share = share_of_whole_runs(search, final.declared, final.best)
     if share >= search.options.whole_runs:
         return judgement
     search.words.append(
-        f"{joined(map(str, final.best.effects))} takes {max(share, 0):.0%} of the excess squared"
-        " error of whole unseen runs away, which is too little"
+        f"{join_names(map(str, final.best.effects))} takes {max(share, 0):.0%} of the excess"
+        " squared error of whole unseen runs away, which is too little"
     )
     dependences, missing = residual_map(search, final.declared)
     return replace(judgement, verdict="unexplained", dependences=dependences, missing=missing)

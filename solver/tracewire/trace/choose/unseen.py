@@ -85,8 +85,8 @@ def better_unseen(search: Search, prediction: Prediction) -> list[int]:
 
     What the fitted run prefers, another run may not: then neither names the effect alone.
     """
-    options, taken = search.options, prediction.choice.taken
-    mine, totals = prediction.entrants[taken], log_scores(prediction.errors).mean(axis=(1, 2))
+    options, chosen = search.options, prediction.choice.chosen
+    mine, totals = prediction.entrants[chosen], log_scores(prediction.errors).mean(axis=(1, 2))
     rivals = [
         n
         for n, one in enumerate(prediction.entrants)
@@ -105,16 +105,16 @@ def better_unseen(search: Search, prediction: Prediction) -> list[int]:
         trial = prediction.models[number].trials[-1]
         return float(np.sqrt(squares_on(search, unseen, trial, length).sum()))
 
-    found, most = [], error(taken, whole)
+    found, most = [], error(chosen, whole)
     for n in rivals:
         left = error(n, whole) / most
-        no_worse = all(error(n, length) <= error(taken, length) for length in lengths)
+        no_worse = all(error(n, length) <= error(chosen, length) for length in lengths)
         if no_worse and left < 1 / (1 + options.harm_few):
             found.append(n)
             search.words.append(
-                f"{joined(prediction.models[n].names)} predicts held-out blocks less well than"
-                f" {joined(prediction.taken.names)}, but leaves {left:.2g} times its error in whole"
-                " unseen runs: these data do not decide between them"
+                f"{join_names(prediction.models[n].names)} predicts held-out blocks less well than"
+                f" {join_names(prediction.chosen.names)}, but leaves {left:.2g} times its error in"
+                " whole unseen runs: these data do not decide between them"
             )
     return found
 
@@ -129,13 +129,13 @@ def prune_by_other_runs(search: Search, prediction: Prediction) -> Prediction:
     if not others:
         return prediction
     length = prediction.horizons.each[-1].length
-    taken = prediction.taken
-    after = float(squares_on(search, others, taken.trials[-1], length).sum())
+    chosen = prediction.chosen
+    after = float(squares_on(search, others, chosen.trials[-1], length).sum())
     for number in prediction.smaller():
-        one = prediction.taking(number)
-        before = float(squares_on(search, others, one.taken.trials[-1], length).sum())
+        one = prediction.choosing(number)
+        before = float(squares_on(search, others, one.chosen.trials[-1], length).sum())
         if one.choice.sure and 0 < before < np.inf and not after < before:
-            more, known = joined(taken.names - one.taken.names), joined(one.taken.names)
+            more, known = join_names(chosen.names - one.chosen.names), join_names(one.chosen.names)
             search.words.append(
                 f"{more} is not named beside {known}: on another run, in windows of {length}"
                 f" samples, that multiplies the error by {(after / before) ** 0.5:.3g}"
@@ -162,6 +162,6 @@ def _spread(search: Search, sections: Sequence[Section]) -> float:
     )  # fmt: skip
 
 
-def joined(names: Iterable[str]) -> str:
+def join_names(names: Iterable[str]) -> str:
     """Effects in words."""
     return " and ".join(sorted(names))

@@ -12,10 +12,10 @@ from tracewire.trace.choose.choice import is_sure, log_scores
 from tracewire.trace.choose.heldout import Finalist
 from tracewire.trace.choose.noisy_inputs import noisy_inputs
 from tracewire.trace.choose.prediction import Prediction
-from tracewire.trace.choose.remainder import error_left, explained, held_out, remainders
+from tracewire.trace.choose.remainder import error_left, explained_share, held_out, remainders
 from tracewire.trace.choose.unseen import (
     better_unseen,
-    joined,
+    join_names,
     prune_by_other_runs,
     raises_unseen,
 )
@@ -30,7 +30,7 @@ from tracewire.trace.found import (
 )
 from tracewire.trace.missing.dependence import map_dependence
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.search.finish import Final, Rival, ordered
+from tracewire.trace.search.refinement import FinalModels, Rival, order_effects
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.trial import Trial
 
@@ -40,7 +40,7 @@ class Judgement:
     """The verdict, the models that it is about, and what it rests on."""
 
     verdict: Verdict
-    final: Final
+    final: FinalModels
     dependences: tuple[Dependence, ...] = ()
     missing: Missing | None = None
     explained: Explained | None = None
@@ -65,26 +65,28 @@ def is_at_noise(search: Search, trial: Trial) -> bool:
     limit = noise_limit(search, trial)
     if not trial.reduced_chi2 < limit:
         return False
-    if trial.length < search.short:  # the shortest windows alone see little
-        windows = search.windows(search.data_split.train, search.short)
+    if trial.length < search.short_length:  # the shortest windows alone see little
+        windows = search.windows(search.data_split.train, search.short_length)
         try:
-            longer = search.problem.refit(trial, windows, search.short)
+            longer = search.problem.refit(trial, windows, search.short_length)
         except FitError:
             return True
         if longer.reduced_chi2 > search.options.lost:
             return False
-    return not trial.effects or _gate(search, trial) < limit**2
+    return not trial.effects or _gate_mean_square(search, trial) < limit**2
 
 
 def is_slow_noise(search: Search, trial: Trial) -> bool:
     """Whether what is left without effects may be slow noise of a sensor: where no body comes back
     to where it was, that is not to be told from a force."""
     return (
-        not trial.effects and not search.returns and trial.reduced_chi2 < search.options.slow_noise
+        not trial.effects
+        and not search.has_revisits
+        and trial.reduced_chi2 < search.options.slow_noise
     )
 
 
-def judge_at_noise(search: Search, final: Final) -> Judgement:
+def judge_at_noise(search: Search, final: FinalModels) -> Judgement:
     """`null` where the declared model is at the noise, else `effect`."""
     return Judgement("effect" if final.best.effects else "null", final)
 
@@ -101,23 +103,23 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
     prediction, harmed = _harmless(search, prediction)
     declared = prediction.models[0].trials
     above = any(trial.reduced_chi2 > noise_limit(search, trial) for trial in declared)
-    names = bool(prediction.taken.names)  # not by dropped terms alone
+    names = bool(prediction.chosen.names)  # not by dropped terms alone
     named = above and prediction.choice.sure and names
     if not named:
         prediction = prediction.without_effects()
     final = final_of(search, prediction)
-    taken = prediction.taken
+    chosen = prediction.chosen
     search.tell("where and on what the rest depends")
     spread = [
-        horizon.sparse(options.most_samples, options.least_blocks)
+        horizon.sparse_windows(options.most_samples, options.least_blocks)
         for horizon in prediction.horizons.each
     ]
     maps = [
         residual_map(search, search.problem.on_some_windows(trial, numbers))
-        for trial, numbers in zip(taken.trials, spread, strict=True)
+        for trial, numbers in zip(chosen.trials, spread, strict=True)
     ]
-    floors = [_left(trial, shares) for trial, (shares, _) in zip(taken.trials, maps, strict=True)]
-    share, error = explained(prediction, floors)
+    floors = [_left(trial, shares) for trial, (shares, _) in zip(chosen.trials, maps, strict=True)]
+    share, error = explained_share(prediction, floors)
     if not named:
         gain = 0.5 * float(np.mean(-np.log(floors)))
         missed = harmed or gain >= max(np.log1p(options.near), options.map_gain)
@@ -131,14 +133,16 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
             )
     else:
         enough = _is_enough(prediction, share.share, share.share - error)
-        if _only_uncommon(taken, options):
-            search.words.append(f"{joined(taken.names)} together stand for a law of another form")
+        if _only_uncommon(chosen, options):
+            search.words.append(
+                f"{join_names(chosen.names)} together stand for a law of another form"
+            )
             enough = False
         law = ""
-        if search.returns:  # else all that is left is a function of the one way
-            law = _law_left(taken.trials[0], maps[0][0], share.share, options)
+        if search.has_revisits:  # else all that is left is a function of the one way
+            law = _describe_law_left(chosen.trials[0], maps[0][0], share.share, options)
         if law:
-            search.words.append(f"{joined(taken.names)} cannot be all: {law}")
+            search.words.append(f"{join_names(chosen.names)} cannot be all: {law}")
         verdict = "effect" if enough and not law else "unexplained"
         dependences, missing = (
             residual_map(
@@ -168,7 +172,7 @@ def _is_enough(prediction: Prediction, share: float, surely: float) -> bool:
     """Whether the named effects explain enough of the excess error, and leave little enough of the
     error on held-out blocks; at the noise no model leaves less."""
     options = prediction.options
-    at_noise = prediction.taken.trials[-1].reduced_chi2 <= options.at_noise
+    at_noise = prediction.chosen.trials[-1].reduced_chi2 <= options.at_noise
     little = at_noise or error_left(prediction) <= options.error_left
     return share >= options.explained and surely >= options.explained_surely and little
 
@@ -186,78 +190,80 @@ def _harmless(search: Search, prediction: Prediction) -> tuple[Prediction, bool]
     refused: list[frozenset[str]] = []
     lengths = [horizon.length for horizon in prediction.horizons.each]
     while prediction.choice.sure and len(refused) < search.options.refused:
-        declared, taken = (model.trials[-1] for model in (prediction.models[0], prediction.taken))
-        harm = raises_unseen(search, declared, taken, lengths)
+        declared, chosen = (model.trials[-1] for model in (prediction.models[0], prediction.chosen))
+        harm = raises_unseen(search, declared, chosen, lengths)
         if not harm:
             return prune_by_other_runs(search, prediction), bool(refused)
-        left_out = joined(prediction.taken.dropped)
-        what = joined(prediction.taken.names) or f"the model without {left_out}"
+        left_out = join_names(prediction.chosen.dropped)
+        what = join_names(prediction.chosen.names) or f"the model without {left_out}"
         search.words.append(f"{what} is not named: it {harm}")
-        refused.append(prediction.taken.names)
-        prediction = prediction.again(refused)
+        refused.append(prediction.chosen.names)
+        prediction = prediction.choose_again(refused)
     if refused and len(refused) == search.options.refused:
         prediction = replace(prediction, choice=replace(prediction.choice, sure=False))
     return prediction, bool(refused)
 
 
-def final_of(search: Search, prediction: Prediction) -> Final:
+def final_of(search: Search, prediction: Prediction) -> FinalModels:
     """The models of a prediction at the longer horizon, and the ties of each effect; other models
     that predict as well go into the search's words."""
-    taken = prediction.taken
-    best, declared = taken.trials[-1], prediction.models[0].trials[-1]
+    chosen = prediction.chosen
+    best, declared = chosen.trials[-1], prediction.models[0].trials[-1]
     rivals: dict[str, list[Rival]] = {str(effect): [] for effect in best.effects}
     blocks = prediction.horizons.count
     totals = log_scores(prediction.errors).mean(axis=(1, 2, 3))
     known = {number for number, _ in prediction.choice.ties}
     unseen = [
-        (number, float(totals[number] - totals[prediction.choice.taken]))
+        (number, float(totals[number] - totals[prediction.choice.chosen]))
         for number in better_unseen(search, prediction)
         if number not in known
     ]
     for number, cost in (*prediction.choice.ties, *unseen):
         other = prediction.models[number]
-        if taken.names < other.names:
+        if chosen.names < other.names:
             continue  # a refinement, if it is sure
         trial = other.trials[-1]
-        here, there = taken.names - other.names, other.names - taken.names
-        more = other.numbers - taken.numbers
-        rise = 2 * blocks * cost + more * float(np.log(blocks))
+        here, there = chosen.names - other.names, other.names - chosen.names
+        more = other.numbers - chosen.numbers
+        delta_bic = 2 * blocks * cost + more * float(np.log(blocks))
         if len(here) == len(there) == 1:
             (name,), (rival,) = here, there
-            if any(str(known.added) == rival for known in rivals[name]):
+            if any(str(known.effect) == rival for known in rivals[name]):
                 continue  # the same without a declared term
             added = next(e for e in trial.effects if str(e) == rival)
-            likeness = prediction.likeness(name, rival)
-            rivals[name].append(Rival(added, likeness, trial, rise, tied=True))
+            correlation = prediction.correlation(name, rival)
+            rivals[name].append(Rival(added, correlation, trial, delta_bic, tied=True))
         else:
             search.words.append(
-                f"{joined(other.names)} predicts as well: {_change(cost)} error,"
+                f"{join_names(other.names)} predicts as well: {_change(cost)} error,"
                 f" {abs(more)} fitted number(s) {'more' if more > 0 else 'less'}"
             )
-    search.words += _refined(prediction)
+    search.words += _describe_refinement(prediction)
     own = search.problem.declared.flat.parameters
-    dropped = (*taken.dropped, *(name for name in taken.vanished if name in own))
-    return Final(declared, ordered(best), {k: tuple(v) for k, v in rivals.items()}, dropped)
+    dropped = (*chosen.dropped, *(name for name in chosen.vanished if name in own))
+    return FinalModels(
+        declared, order_effects(best), {k: tuple(v) for k, v in rivals.items()}, dropped
+    )
 
 
-def _refined(prediction: Prediction) -> list[str]:
+def _describe_refinement(prediction: Prediction) -> list[str]:
     """In words, the model that predicts surely better with more effects, none of which takes enough
     of what was missing to be named."""
-    taken, mine = prediction.taken, prediction.entrants[prediction.choice.taken]
+    chosen, mine = prediction.chosen, prediction.entrants[prediction.choice.chosen]
     totals = log_scores(prediction.errors).mean(axis=(1, 2))
     finer = [
         n
         for n, one in enumerate(prediction.entrants)
-        if taken.names and taken.names < one.effects and np.isfinite(totals[n]).all()
-        and is_sure(totals, prediction.choice.taken, n, prediction.options)
+        if chosen.names and chosen.names < one.effects and np.isfinite(totals[n]).all()
+        and is_sure(totals, prediction.choice.chosen, n, prediction.options)
         and mine.is_as_good(one, prediction.options)
     ]  # fmt: skip
     if not finer:
         return []
     best = min(finer, key=lambda n: float(totals[n].mean()))
-    less = -np.expm1(float(np.mean(totals[best] - totals[prediction.choice.taken])))
+    less = -np.expm1(float(np.mean(totals[best] - totals[prediction.choice.chosen])))
     part = max(mine.leaves_more(prediction.entrants[best]), 0.0)
-    more = joined(prediction.models[best].names - taken.names)
+    more = join_names(prediction.models[best].names - chosen.names)
     return [
         f"{more} would be a refinement: it lowers the error on held-out blocks by {less:.0%}, but"
         f" takes only {100 * part:.2g} % of the squared error that was missing, so it may stand for"
@@ -267,7 +273,7 @@ def _refined(prediction: Prediction) -> list[str]:
 
 def residual_map(search: Search, trial: Trial) -> tuple[tuple[Dependence, ...], Missing | None]:
     """Where and on what the residual of a trial depends, in its windows."""
-    return map_dependence(search.tangent(trial), trial, search.places)
+    return map_dependence(search.linearise(trial), trial, search.places)
 
 
 def _left(trial: Trial, shares: Sequence[Dependence]) -> float:
@@ -277,7 +283,7 @@ def _left(trial: Trial, shares: Sequence[Dependence]) -> float:
     return float(np.clip(1 - best * excess / trial.rss, 1e-6, 1.0)) if trial.rss > 0 else 1.0
 
 
-def _law_left(
+def _describe_law_left(
     trial: Trial, shares: Sequence[Dependence], explained: float, options: TraceOptions
 ) -> str:
     """In words, the law that the named effects leave behind where they explain too little: a smooth
@@ -294,9 +300,9 @@ def _law_left(
     return f"{best.share:.1%} of the rest is a function of {of} at {best.place}, of no block's form"
 
 
-def _gate(search: Search, best: Trial) -> float:
+def _gate_mean_square(search: Search, best: Trial) -> float:
     """The squared residual per residual on windows that no fit saw, their starts counted."""
-    windows = search.windows(search.data_split.gate, search.short)
+    windows = search.windows(search.data_split.gate, search.short_length)
     residuals = search.problem.residuals_on(best, windows)
     count = sum(r.size for r in residuals) - sum(len(w.free) for w in windows)
     return sum(float(np.sum(r**2)) for r in residuals) / max(count, 1)

@@ -16,10 +16,20 @@ from tracewire.trace.experiment.experiment import design_experiment
 from tracewire.trace.experiment.power import detection_limits
 from tracewire.trace.found import Experiment, Force, Found
 from tracewire.trace.missing.restoring_force import restoring_forces
-from tracewire.trace.results.account import compared, met, moved, rmse
-from tracewire.trace.results.told import confusable, edited, told_effects, told_steps
+from tracewire.trace.results.build import (
+    build_effects,
+    build_steps,
+    candidate_correlations,
+    edit_diagram,
+)
+from tracewire.trace.results.comparison import (
+    compare_models,
+    parameter_changes,
+    rmse,
+    with_unseen_phases,
+)
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
-from tracewire.trace.search.finish import Final
+from tracewire.trace.search.refinement import FinalModels
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.bounds import at_bounds
 from tracewire.trace.trials.trial import Trial
@@ -31,10 +41,10 @@ def result_of(
     """The result of a search."""
     search.tell("checking on what played no part")
     final = judgement.final
-    final = replace(final, best=met(search, final.best))
+    final = replace(final, best=with_unseen_phases(search, final.best))
     problem, declared, best = search.problem, final.declared, final.best
     search.words += dict.fromkeys(one.words for t in (declared, best) for one in at_bounds(t))
-    parts = compared(search, declared, best)
+    parts = compare_models(search, declared, best)
     claimed = [part for part in parts if part.use == "validate"]
     values = {**best.values, **dict.fromkeys(final.dropped, 0.0)}
     sigma = dict(problem.sigma)
@@ -43,7 +53,7 @@ def result_of(
     interval = float(np.median([np.median(np.diff(m.t)) for m in problem.measured]))
     return Found(
         verdict=judgement.verdict,
-        effects=told_effects(search, final),
+        effects=build_effects(search, final),
         dropped=final.dropped,
         values=values,
         declared=declared.values,
@@ -52,19 +62,19 @@ def result_of(
         sigma=sigma,
         s2_before=declared.reduced_chi2,
         s2_after=best.reduced_chi2,
-        moved=tuple(moved(problem, declared, best, values)) if best.effects else (),
+        moved=tuple(parameter_changes(problem, declared, best, values)) if best.effects else (),
         errors=tuple(error for part in parts for error in part.errors(sigma, units)),
-        steps=(*told_steps(search, interval), *([prediction.told()] if prediction else [])),
+        steps=(*build_steps(search, interval), *([prediction.as_step()] if prediction else [])),
         power=detection_limits(search.steps[-1].screen) if search.steps else (),
         dependences=judgement.dependences,
         missing=judgement.missing,
-        experiments=() if interrupted else _experiments(search, final),
-        confusable=confusable(search),
+        experiments=() if interrupted else _find_experiments(search, final),
+        confusable=candidate_correlations(search),
         curves=tuple(curve for part in parts for curve in part.curves(sigma, units)),
-        find_forces=partial(_forces, search, best),
+        find_forces=partial(_find_forces, search, best),
         words=tuple(search.words),
         original=problem.declared.diagram,
-        diagram=edited(problem.declared, best.effects, values),
+        diagram=edit_diagram(problem.declared, best.effects, values),
         units=units,
         interrupted=interrupted,
         options=search.options,
@@ -73,32 +83,32 @@ def result_of(
         remainder_depends=judgement.remainder_depends,
         held_out=judgement.held_out,
         noisy_inputs=judgement.noisy_inputs,
-        find_diagram=partial(_with_some, search, final, values),
+        find_diagram=partial(_apply_some, search, final, values),
     )
 
 
-def _with_some(
-    search: Search, final: Final, values: Mapping[str, float], effects: Collection[str]
+def _apply_some(
+    search: Search, final: FinalModels, values: Mapping[str, float], effects: Collection[str]
 ) -> Diagram:
     """The diagram with some of the effects, by their texts. A parameter that was dropped has its
     declared value: the effect that stands for it may be among those left out."""
-    told = zip(final.best.effects, told_effects(search, final), strict=True)
-    kept = [added for added, effect in told if str(effect) in effects]
+    pairs = zip(final.best.effects, build_effects(search, final), strict=True)
+    kept = [added for added, effect in pairs if str(effect) in effects]
     restored = {name: final.declared.values[name] for name in final.dropped}
-    return edited(search.problem.declared, kept, {**values, **restored})
+    return edit_diagram(search.problem.declared, kept, {**values, **restored})
 
 
-def _experiments(search: Search, final: Final) -> tuple[Experiment, ...]:
+def _find_experiments(search: Search, final: FinalModels) -> tuple[Experiment, ...]:
     """What would separate the effects from their closest ties."""
     found = []
     for effect in final.best.effects:
         tied = [rival for rival in final.rivals.get(str(effect), ()) if rival.tied]
         for rival in tied[: search.options.experiment.tied]:
-            search.tell(f"an experiment to tell {effect} from {rival.added}")
+            search.tell(f"an experiment to tell {effect} from {rival.effect}")
             try:
                 found.append(
                     design_experiment(
-                        search.problem, final.best, rival.trial, str(effect), str(rival.added)
+                        search.problem, final.best, rival.trial, str(effect), str(rival.effect)
                     )
                 )
             except TracewireError as error:
@@ -106,12 +116,12 @@ def _experiments(search: Search, final: Final) -> tuple[Experiment, ...]:
     return tuple(found)
 
 
-def _forces(search: Search, best: Trial) -> tuple[Force, ...]:
+def _find_forces(search: Search, best: Trial) -> tuple[Force, ...]:
     """The restoring-force picture of the places that got an effect."""
     if not any(effect.candidate.block for effect in best.effects) or not search.steps:
         return ()
     problem = search.problem
-    windows = problem.windows_on(best, search.windows(search.data_split.train, search.short))
+    windows = problem.windows_on(best, search.windows(search.data_split.train, search.short_length))
     linearisation = TorqueLinearisation(
         best.diagram, windows, search.places, problem.rtol, search.options
     )

@@ -36,7 +36,7 @@ Vector = NDArray[np.float64]
 def assimilate(
     problem: TraceProblem, trial: Trial, linearisation: TorqueLinearisation
 ) -> TorqueLinearisation | None:
-    """The tangent along the data, with what torques at the sums do there as the residual.
+    """The linearisation along the data, with what torques at the sums do there as the residual.
 
     None where they do not take most of the residual away, as of a sensor, or where such a model
     does not run.

@@ -11,19 +11,19 @@ from tracewire.errors import TracewireError
 from tracewire.residual import FTOL, INITIAL_STATE_STEPS, Segment
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal
-from tracewire.trace.search.workers import Refit, Workers
+from tracewire.trace.search.workers import RefitTask, Workers
 from tracewire.trace.thresholds import SearchOptions
 from tracewire.trace.trials.trial import PlacedEffect, TraceProblem, Trial, with_starts_of
 
 
 @dataclass(frozen=True, eq=False)
-class Tried:
+class RefitResult:
     """Effects that were refitted, at first in a few steps on few windows: how much BIC rose, their
     weight among those that were ranked with them, and what became of them."""
 
     trial: Trial
     proposal: Proposal
-    rise: float = 0.0
+    delta_bic: float = 0.0
     weight: float = 0.0
     remark: str = ""
 
@@ -48,34 +48,34 @@ class Refits:
         """The thresholds of refits."""
         return self.problem.options.search
 
-    def tried(
+    def refit_best(
         self, now: Trial, singles: Sequence[Proposal], pairs: Sequence[Proposal]
-    ) -> list[Tried]:
+    ) -> list[RefitResult]:
         """The best of the proposals, refitted on all windows and ranked.
 
         Where a single effect comes near the noise, pairs are for later: if it reaches it, only
         those of as few numbers can say more. Elsewhere they all begin together, and what a pair
         leaves far behind is not refitted on all windows.
         """
-        begun = self.begun(now, singles)
-        near = any(one.trial.reduced_chi2 < self.options.near for one in begun)
-        tried = self.whole(now, begun) if near else []
+        first_fits = self.begin_refits(now, singles)
+        near = any(one.trial.reduced_chi2 < self.options.near for one in first_fits)
+        results = self.refit_on_all(now, first_fits) if near else []
         at_noise = self.problem.options.at_noise
-        if any(one.trial.reduced_chi2 < at_noise for one in tried):
-            pairs = [pair for pair in pairs if pair.count <= tried[0].proposal.count]
+        if any(one.trial.reduced_chi2 < at_noise for one in results):
+            pairs = [pair for pair in pairs if pair.count <= results[0].proposal.count]
             if not pairs:
-                return tried
-        begun = [*([] if near else begun), *self.begun(now, pairs)]
-        target = min((one.trial.rss for one in tried), default=np.inf)
-        return self.ranked(now, [*tried, *self.whole(now, begun, target)])
+                return results
+        first_fits = [*([] if near else first_fits), *self.begin_refits(now, pairs)]
+        target = min((one.trial.rss for one in results), default=np.inf)
+        return self.rank(now, [*results, *self.refit_on_all(now, first_fits, target)])
 
-    def begun(self, now: Trial, proposals: Sequence[Proposal]) -> list[Tried]:
+    def begin_refits(self, now: Trial, proposals: Sequence[Proposal]) -> list[RefitResult]:
         """The proposals after a few steps on few windows."""
         segments = now.windows.segments
         rows = few_of(segments, self.options.few)
         few, least = [segments[n] for n in rows], float(now.windows.squares[rows].sum())
         first = [
-            self.refit(
+            self.prepare(
                 now,
                 (*now.effects, *(row.placed_effect for row in proposal.rows)),
                 few,
@@ -85,14 +85,14 @@ class Refits:
             )
             for proposal in proposals
         ]
-        trials = self.trials(now, first)
+        trials = self.run(now, first)
         astray = [n for n, trial in enumerate(trials) if trial is not None and trial.rss > least]
-        again = self.trials(now, [self._from_small(now, proposals[n], few) for n in astray])
+        again = self.run(now, [self._from_small(now, proposals[n], few) for n in astray])
         for n, other in zip(astray, again, strict=True):  # the promised size led it astray
             trials[n] = min((t for t in (trials[n], other) if t), key=lambda trial: trial.rss)
-        return [Tried(t, p) for t, p in zip(trials, proposals, strict=True) if t is not None]
+        return [RefitResult(t, p) for t, p in zip(trials, proposals, strict=True) if t is not None]
 
-    def _from_small(self, now: Trial, proposal: Proposal, few: Sequence[Segment]) -> Refit:
+    def _from_small(self, now: Trial, proposal: Proposal, few: Sequence[Segment]) -> RefitTask:
         """A proposal refitted from a small part of what it promises."""
         small = [
             row.placed_effect.with_value(
@@ -101,17 +101,19 @@ class Refits:
             for row in proposal.rows
         ]
         effects = (*now.effects, *small)
-        return self.refit(now, effects, few, steps=self.options.first_steps)
+        return self.prepare(now, effects, few, steps=self.options.first_steps)
 
-    def whole(self, now: Trial, begun: Sequence[Tried], target: float = np.inf) -> list[Tried]:
-        """The best of what was begun, refitted on all windows and ranked.
+    def refit_on_all(
+        self, now: Trial, first_fits: Sequence[RefitResult], target: float = np.inf
+    ) -> list[RefitResult]:
+        """The best of the first fits, refitted on all windows and ranked.
 
         Those that are too slow to come near the best, or below `target`, are given up on the way.
         """
         most = self.options.kept if now.reduced_chi2 < self.options.far else self.options.kept_far
-        kept: list[Tried] = []
-        by_sum = sorted(begun, key=lambda one: one.trial.rss)
-        by_windows = sorted(begun, key=lambda one: one.by_windows)
+        kept: list[RefitResult] = []
+        by_sum = sorted(first_fits, key=lambda one: one.trial.rss)
+        by_windows = sorted(first_fits, key=lambda one: one.by_windows)
         for one, other in zip(by_sum, by_windows, strict=True):
             near = one.trial.rss < self.options.within * by_sum[0].trial.rss
             near_too = other.by_windows - by_windows[0].by_windows < np.log(self.options.within)
@@ -120,34 +122,38 @@ class Refits:
                 alike = sum(len(known.proposal.rows) == size for known in kept)
                 if is_near and chosen not in kept and alike < most:
                     kept.append(chosen)
-        segments, tried = now.windows.segments, []
+        segments, results = now.windows.segments, []
         rows = few_of(segments, self.options.few)
         for number, one in enumerate(kept, start=1):
-            names = named(one.trial, now)
+            names = new_effects(one.trial, now)
             self.tell(f"refitting {names} on all windows ({number} of {len(kept)})")
             there = with_starts_of(segments, one.trial, rows)
-            refit = self.refit(one.trial, one.trial.effects, there, target=target)
-            (trial,) = self.trials(one.trial, [refit])
+            refit = self.prepare(one.trial, one.trial.effects, there, target=target)
+            (trial,) = self.run(one.trial, [refit])
             if trial is not None:
-                tried.append(Tried(trial, one.proposal))
+                results.append(RefitResult(trial, one.proposal))
                 target = min(target, target_of(trial, self.problem.options))
-        return self.ranked(now, tried)
+        return self.rank(now, results)
 
-    def ranked(self, now: Trial, tried: Sequence[Tried]) -> list[Tried]:
+    def rank(self, now: Trial, results: Sequence[RefitResult]) -> list[RefitResult]:
         """Trials on the same windows by BIC, the best first, with their weights."""
-        if not tried:
+        if not results:
             return []
-        part = min((one.trial for one in tried), key=lambda trial: trial.rss).effective_fraction
-        rises = np.array([one.trial.bic(part) - now.bic(part) for one in tried])
-        weights = np.exp(-0.5 * (rises - rises.min()))
+        effective_fraction = min(
+            (one.trial for one in results), key=lambda trial: trial.rss
+        ).effective_fraction
+        delta_bics = np.array(
+            [one.trial.bic(effective_fraction) - now.bic(effective_fraction) for one in results]
+        )
+        weights = np.exp(-0.5 * (delta_bics - delta_bics.min()))
         weights = weights / weights.sum()
         rows = [
-            replace(one, rise=float(rise), weight=float(weight))
-            for one, rise, weight in zip(tried, rises, weights, strict=True)
+            replace(one, delta_bic=float(delta_bic), weight=float(weight))
+            for one, delta_bic, weight in zip(results, delta_bics, weights, strict=True)
         ]
-        return sorted(rows, key=lambda one: one.rise)
+        return sorted(rows, key=lambda one: one.delta_bic)
 
-    def refit(
+    def prepare(
         self,
         now: Trial,
         effects: Sequence[PlacedEffect],
@@ -160,11 +166,11 @@ class Refits:
         initial_state_steps: int = INITIAL_STATE_STEPS,
         values: Mapping[str, float] | None = None,
         words: str = "",
-    ) -> Refit:
+    ) -> RefitTask:
         """The model with other effects, to be refitted from where it stood, or from other values of
         what is declared; `words` are told with its number among others."""
         steps = self.options.steps if steps is None else steps
-        return Refit(
+        return RefitTask(
             tuple(effects),
             tuple(segments),
             now.length,
@@ -181,12 +187,12 @@ class Refits:
             words,
         )
 
-    def trials(self, now: Trial, refits: Sequence[Refit]) -> list[Trial | None]:
+    def run(self, now: Trial, refits: Sequence[RefitTask]) -> list[Trial | None]:
         """The trial of each refit, side by side where there are workers; None where a model does
         not run."""
         there = {str(effect) for effect in now.effects}
         trials: list[Trial | None] = []
-        ended = self.workers.fitted(self.problem, refits, self.tell, self.words.append)
+        ended = self.workers.run(self.problem, refits, self.tell, self.words.append)
         for refit, result in zip(refits, ended, strict=True):
             if isinstance(result, TracewireError):
                 names = " and ".join(str(e) for e in refit.effects if str(e) not in there)
@@ -213,6 +219,6 @@ def target_of(trial: Trial, options: TraceOptions) -> float:
     return (search.within_noise if at_noise else search.within) * trial.rss
 
 
-def named(trial: Trial, now: Trial) -> str:
+def new_effects(trial: Trial, now: Trial) -> str:
     """The effects that a trial has more than another one."""
     return " and ".join(str(e) for e in trial.effects[len(now.effects) :])

@@ -20,7 +20,7 @@ from tracewire.trace.screen.assimilation import assimilate, candidates_along_dat
 from tracewire.trace.screen.screening import Proposal, Screen, screen_candidates
 from tracewire.trace.screen.shortlist import distinct, shortlist
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
-from tracewire.trace.search.refits import Refits, Tried, named
+from tracewire.trace.search.refits import RefitResult, Refits, new_effects
 from tracewire.trace.search.workers import Workers
 from tracewire.trace.trials.data_split import DataSplit
 from tracewire.trace.trials.judge import GateResult, judge_on_gate
@@ -33,8 +33,8 @@ class Step:
 
     before: Trial
     screen: Screen
-    chance: float
-    tried: tuple[Tried, ...]
+    p_value: float
+    refits: tuple[RefitResult, ...]
     after: Trial | None
     words: str
 
@@ -56,7 +56,7 @@ class Search:
     best: Trial | None = None
     waves: dict[str, dict[str, tuple[float, ...]]] = field(default_factory=dict)
     """The lengths of waves that were scanned last, by candidate and shape."""
-    returns: bool = True
+    has_revisits: bool = True
     """Whether a body comes back to where it was: else much looks the same."""
     _last: tuple[Trial, TorqueLinearisation] | None = None
 
@@ -66,7 +66,7 @@ class Search:
         return self.problem.options
 
     @property
-    def standing(self) -> tuple[Trial, Trial]:
+    def declared_and_best(self) -> tuple[Trial, Trial]:
         """The declared fit, and the best that was found so far."""
         if self.first is None or self.best is None:
             raise AssertionError("the declared model comes first")
@@ -103,7 +103,7 @@ class Search:
         return lengths if lengths[-1] == longest else [*lengths, longest]
 
     @property
-    def short(self) -> int:
+    def short_length(self) -> int:
         """The second of the window lengths: short, and not many windows."""
         return self.lengths[min(1, len(self.lengths) - 1)]
 
@@ -111,7 +111,7 @@ class Search:
         """The windows of some sections."""
         return self.data_split.windows(self.problem.declared, sections, length, self.free)
 
-    def declared(self) -> Trial:
+    def fit_declared(self) -> Trial:
         """The diagram as it is, fitted to the shortest windows."""
         self.tell("fitting the declared model")
         options, length = self.options.search, self.lengths[0]
@@ -124,13 +124,13 @@ class Search:
             return trial
         return self.problem.fit((), trial.windows.segments, length, trial.values)
 
-    def is_part(self, trial: Trial) -> bool:
+    def omits_windows(self, trial: Trial) -> bool:
         """Whether a trial leaves out windows that it does not bear."""
         return len(trial.windows.segments) < len(self.windows(self.data_split.train, trial.length))
 
-    def completed(self, trial: Trial) -> Trial:
+    def refit_on_all(self, trial: Trial) -> Trial:
         """A trial on all windows, where it bears those that were left out."""
-        if not self.is_part(trial):
+        if not self.omits_windows(trial):
             return trial
         windows = self.windows(self.data_split.train, trial.length)
         try:
@@ -139,7 +139,7 @@ class Search:
             return trial
         return whole if whole.reduced_chi2 < self.options.search.far else trial
 
-    def climbed(
+    def lengthen_windows(
         self, trial: Trial, sections: Sequence[Section] | None = None, far: float | None = None
     ) -> Trial:
         """A trial refitted on longer and longer windows, as far as its residual stays small."""
@@ -164,21 +164,26 @@ class Search:
 
     def run(self, declared: Trial) -> None:
         """One effect after the other, from the declared fit, until none passes the gate."""
-        self.first = self.best = declared if self.is_part(declared) else self.climbed(declared)
-        self._onward()
+        self.first = self.best = (
+            declared if self.omits_windows(declared) else self.lengthen_windows(declared)
+        )
+        self._add_effects()
 
-    def _onward(self) -> None:
+    def _add_effects(self) -> None:
         """Effects from the best model on, until none passes."""
         while self.best is not None and len(self.best.effects) < self.options.effects:
-            found = self.step(self.best)
+            found = self.add_effect(self.best)
             if found is None:
                 break
-            before, self.best = self.best.reduced_chi2, self.climbed(self.completed(found))
+            before, self.best = (
+                self.best.reduced_chi2,
+                self.lengthen_windows(self.refit_on_all(found)),
+            )
             options = self.options.search
             if self.best.reduced_chi2 > max(options.far, before / options.nearer):
                 break  # the noise is out of reach: models are compared otherwise
 
-    def step(self, now: Trial) -> Trial | None:
+    def add_effect(self, now: Trial) -> Trial | None:
         """One more effect, or a pair: screened, refitted, ranked, and passed by the gate."""
         self.tell("screening effects")
         self.steps[-1:] = [
@@ -189,30 +194,33 @@ class Search:
             most, together = self.options.most_samples, self.options.windows_together
             seen = self.problem.on_some_windows(now, _spread(now, most, together))
         screen = self.screen(seen)
-        chance = screen.p_value()
-        proposals = self._proposals(seen, screen) if chance <= self.options.screen.chance else []
+        p_value = screen.p_value()
+        proposals = self._proposals(seen, screen) if p_value <= self.options.screen.chance else []
         if not proposals:
-            words = f"nothing stands out (p = {chance:.2g})"
-            self.steps.append(Step(now, screen, chance, (), None, words))
+            words = f"nothing stands out (p = {p_value:.2g})"
+            self.steps.append(Step(now, screen, p_value, (), None, words))
             return None
         singles = [p for p in proposals if len(p.rows) == 1]
         pairs = [p for p in proposals if len(p.rows) > 1]
-        tried = self.refits.tried(now, singles, pairs)
+        results = self.refits.refit_best(now, singles, pairs)
         winner = None
-        queue = _worth_judging(tried, now, self.options.screen.least_gain)
-        judged: set[int] = set()
+        queue = _worth_judging(results, now, self.options.screen.least_gain)
+        numbers_judged: set[int] = set()
         while queue and winner is None:
             number = queue.pop(0)
-            judged.add(number)
-            verdict, simpler = self.judged(now, tried[number], tried)
-            tried[number] = replace(tried[number], remark=verdict.words)
+            numbers_judged.add(number)
+            verdict, simpler = self.judge(now, results[number], results)
+            results[number] = replace(results[number], remark=verdict.words)
             if verdict.passed:
-                winner = tried[number]
-            elif simpler is not None and simpler not in judged:  # its part stands in its place
+                winner = results[number]
+            elif simpler is not None and simpler not in numbers_judged:
+                # its part stands in its place
                 queue = [simpler, *(n for n in queue if n != simpler)]
-        words = "no effect passes" if winner is None else f"accepted: {named(winner.trial, now)}"
+        words = (
+            "no effect passes" if winner is None else f"accepted: {new_effects(winner.trial, now)}"
+        )
         after = None if winner is None else winner.trial
-        self.steps.append(Step(now, screen, chance, tuple(tried), after, words))
+        self.steps.append(Step(now, screen, p_value, tuple(results), after, words))
         return after
 
     def _proposals(self, now: Trial, screen: Screen) -> list[Proposal]:
@@ -220,7 +228,7 @@ class Search:
         data."""
         options = self.options.screen
         room = self.options.effects - len(now.effects)
-        along = self.along_data(now)
+        along = self.screen_along_data(now)
         if along is None:
             near = now.reduced_chi2 < self.options.search.far
             return shortlist(screen, room, options.singles if near else options.many)
@@ -231,10 +239,10 @@ class Search:
         """The screen beside a model. Lengths of waves are scanned where there are few samples; else
         they are those that were found there last."""
         taken = [effect.candidate for effect in trial.effects]
-        linearisation = self.tangent(trial)
-        return self._screened(linearisation, trial, self.candidates(linearisation, taken))
+        linearisation = self.linearise(trial)
+        return self._screen_along(linearisation, trial, self.candidates(linearisation, taken))
 
-    def _screened(
+    def _screen_along(
         self, linearisation: TorqueLinearisation, trial: Trial, candidates: Sequence[Candidate]
     ) -> Screen:
         options = self.options
@@ -252,7 +260,7 @@ class Search:
                 self.waves[str(candidate)] = shapes
         return screen
 
-    def along_data(self, trial: Trial) -> Screen | None:
+    def screen_along_data(self, trial: Trial) -> Screen | None:
         """The screen beside a model far from the data, along these; None where it is near them, or
         where none can be."""
         options = self.options
@@ -261,13 +269,15 @@ class Search:
         )
         if near or not self.free:
             return None
-        along = assimilate(self.problem, trial, self.tangent(trial))
+        along = assimilate(self.problem, trial, self.linearise(trial))
         if along is None:
             return None
         taken = [effect.candidate for effect in trial.effects]
-        return self._screened(along, trial, candidates_along_data(self.candidates(along, taken)))
+        return self._screen_along(
+            along, trial, candidates_along_data(self.candidates(along, taken))
+        )
 
-    def tangent(self, trial: Trial) -> TorqueLinearisation:
+    def linearise(self, trial: Trial) -> TorqueLinearisation:
         """The windows of a model linearised in torques at the places; that of the last one is
         kept, as a screen and one along the data ask for the same."""
         if self._last is None or self._last[0] is not trial:
@@ -285,8 +295,8 @@ class Search:
         found = find_candidates(
             declared, self.places, signal_scales, options.candidate, taken, sines
         )
-        self.returns = has_revisits(self.places, runs, options.check.again)
-        if not self.returns:
+        self.has_revisits = has_revisits(self.places, runs, options.check.again)
+        if not self.has_revisits:
             found = observable_candidates(declared, found, runs)
         only, without = self.options.only, self.options.without
         return [
@@ -297,18 +307,20 @@ class Search:
             and str(c) not in without
         ]
 
-    def judged(
-        self, now: Trial, one: Tried, tried: Sequence[Tried]
+    def judge(
+        self, now: Trial, one: RefitResult, results: Sequence[RefitResult]
     ) -> tuple[GateResult, int | None]:
         """What the gate says of a trial, also beside each simpler one that was tried, and the
         number of the one that it does not improve on."""
         length = one.trial.length
         windows = self.windows(self.data_split.gate, length)
-        verdict = judge_on_gate(self.problem, now, one.trial, windows, -one.rise)
-        for number, other in enumerate(tried):
+        verdict = judge_on_gate(self.problem, now, one.trial, windows, -one.delta_bic)
+        for number, other in enumerate(results):
             if verdict.passed and _is_simpler(other, one):
-                fall = other.rise - one.rise
-                verdict = judge_on_gate(self.problem, other.trial, one.trial, windows, fall)
+                bic_reduction = other.delta_bic - one.delta_bic
+                verdict = judge_on_gate(
+                    self.problem, other.trial, one.trial, windows, bic_reduction
+                )
                 if not verdict.passed:
                     return verdict, number
         return verdict, None
@@ -325,7 +337,7 @@ def misfit(trial: Trial) -> float:
     return float(np.max(left / np.maximum(np.std(samples, axis=0), 1e-300)))
 
 
-def _is_simpler(other: Tried, one: Tried) -> bool:
+def _is_simpler(other: RefitResult, one: RefitResult) -> bool:
     """Whether a trial is a part of another one, or has an effect that one of the other's imitates,
     as Coulomb friction and a Stribeck curve, and fewer numbers."""
     theirs, mine = ({str(e): e.candidate for e in each.trial.effects} for each in (other, one))
@@ -343,9 +355,9 @@ def _spread(trial: Trial, most: int, together: int) -> list[int]:
     return [n for n in range(len(sizes)) if n // together % every == 0]
 
 
-def _worth_judging(tried: Sequence[Tried], now: Trial, least_gain: float) -> list[int]:
+def _worth_judging(results: Sequence[RefitResult], now: Trial, least_gain: float) -> list[int]:
     """The two best, and the best single effect: where no pair is more than its parts."""
-    gains = [n for n, one in enumerate(tried) if one.rise < -2 * least_gain]
-    gains = [n for n in gains if len(tried[n].trial.effects) > len(now.effects)]
-    singles = [n for n in gains if len(tried[n].trial.effects) == len(now.effects) + 1]
+    gains = [n for n, one in enumerate(results) if one.delta_bic < -2 * least_gain]
+    gains = [n for n in gains if len(results[n].trial.effects) > len(now.effects)]
+    singles = [n for n in gains if len(results[n].trial.effects) == len(now.effects) + 1]
     return sorted({*gains[:2], *singles[:1]})

@@ -17,7 +17,7 @@ REFUSED = (FitError, DiagramError, OptionError)
 
 
 @dataclass(frozen=True, eq=False)
-class Refit:
+class RefitTask:
     """One refit: what `TraceProblem.fit` takes, and what is told of it."""
 
     effects: tuple[PlacedEffect, ...]
@@ -29,12 +29,12 @@ class Refit:
 
 
 @dataclass(frozen=True, eq=False)
-class Fitting:
+class RefitJob:
     """The job of the workers: refits of the trials of a trace. It is sent to them once."""
 
     problem: TraceProblem
 
-    def run(self, number: int, refit: Refit, halt: Halt) -> Trial:
+    def run(self, number: int, refit: RefitTask, halt: Halt) -> Trial:
         """The trial of a refit. Raises what `TraceProblem.fit` raises."""
         return self.problem.fit(
             refit.effects, refit.segments, refit.length, refit.values, **refit.options
@@ -51,10 +51,10 @@ class Workers:
 
     executor: Executor | None = None
 
-    def fitted(
+    def run(
         self,
         problem: TraceProblem,
-        refits: Sequence[Refit],
+        refits: Sequence[RefitTask],
         tell: Callable[[str], None],
         note: Callable[[str], None],
     ) -> list[Trial | TracewireError]:
@@ -63,7 +63,7 @@ class Workers:
         found: dict[int, Trial | TracewireError] = {}
         if self.executor is not None and len(refits) > 1:
             try:
-                self._sent(self.executor, problem, refits, found, tell)
+                self._send(self.executor, problem, refits, found, tell)
             except WorkerEnded as error:
                 self.executor = None
                 note(f"{error.problems[0].what}: what was left was done without the executor")
@@ -71,16 +71,16 @@ class Workers:
             if number not in found:
                 _tell(refit, len(found) + 1, len(refits), tell)
                 try:
-                    found[number] = Fitting(problem).run(number, refit, Halt())
+                    found[number] = RefitJob(problem).run(number, refit, Halt())
                 except REFUSED as error:
                     found[number] = error
         return [found[number] for number in range(len(refits))]
 
-    def _sent(
+    def _send(
         self,
         executor: Executor,
         problem: TraceProblem,
-        refits: Sequence[Refit],
+        refits: Sequence[RefitTask],
         found: dict[int, Trial | TracewireError],
         tell: Callable[[str], None],
     ) -> None:
@@ -92,10 +92,10 @@ class Workers:
             found[task[0]] = result
             _tell(task[1], len(found), len(refits), tell)
 
-        if carry_out(Fitting(problem).run, list(enumerate(refits)), take, executor=executor):
+        if carry_out(RefitJob(problem).run, list(enumerate(refits)), take, executor=executor):
             raise KeyboardInterrupt
 
 
-def _tell(refit: Refit, number: int, count: int, tell: Callable[[str], None]) -> None:
+def _tell(refit: RefitTask, number: int, count: int, tell: Callable[[str], None]) -> None:
     if refit.words:
         tell(f"{refit.words} ({number} of {count})")

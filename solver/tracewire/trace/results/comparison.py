@@ -1,4 +1,5 @@
-"""The account of a search: errors before and after, curves, and what declared parameters did."""
+"""The models of a search compared: errors before and after, curves, and what declared parameters
+did."""
 
 from __future__ import annotations
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.special import stdtrit
 
 from tracewire.residual import Section, Segment, evaluate_windows
-from tracewire.trace.found import ChannelError, Curve, Moved, RunKind
+from tracewire.trace.found import ChannelError, Curve, ParameterChange, RunKind
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.trial import TraceProblem, Trial
 
@@ -18,7 +19,7 @@ Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Compared:
+class ModelComparison:
     """A section with the residuals of both models in SI, in windows and in one free run, by the
     rows of `segment`, shape (N, signals); `edges` are times where windows begin."""
 
@@ -57,7 +58,7 @@ class Compared:
             )
 
 
-def compared(search: Search, declared: Trial, best: Trial) -> list[Compared]:
+def compare_models(search: Search, declared: Trial, best: Trial) -> list[ModelComparison]:
     """Both models on every section: what was fitted, the gate, and what played no part."""
     data_split = search.data_split
     uses = (
@@ -66,21 +67,23 @@ def compared(search: Search, declared: Trial, best: Trial) -> list[Compared]:
         ("validate", data_split.validate),
     )
     return [
-        _compared(search, use, section, declared, best)
+        _compare(search, use, section, declared, best)
         for use, sections in uses
         for section in sections
     ]
 
 
-def _compared(search: Search, use: str, section: Section, declared: Trial, best: Trial) -> Compared:
+def _compare(
+    search: Search, use: str, section: Section, declared: Trial, best: Trial
+) -> ModelComparison:
     problem = replace(search.problem, inputs=None)  # residuals as they are, and not as they count
-    windows = search.windows([section], search.short)
+    windows = search.windows([section], search.short_length)
     (whole,) = search.windows([section], section.end - section.first)
     sigma = np.array([problem.sigma[name] for name in whole.signals])
     trials = (declared, best) if best is not declared else (declared,)
     inside = [np.concatenate(problem.residuals_on(trial, windows)) * sigma for trial in trials]
     free = [free_run(problem, trial, whole, search.shortest) * sigma for trial in trials]
-    return Compared(
+    return ModelComparison(
         use,
         whole,
         (inside[0], inside[-1]),
@@ -96,12 +99,12 @@ def free_run(problem: TraceProblem, trial: Trial, whole: Segment, shortest: int)
     """
     if whole.free:
         first = _first_part(whole, shortest, problem.options.split.first_part)
-        (begun,) = problem.windows_on(trial, [first]).segments
-        whole = replace(begun, rows=whole.rows)
+        (fitted,) = problem.windows_on(trial, [first]).segments
+        whole = replace(fitted, rows=whole.rows)
     return evaluate_windows(problem.criterion_on(trial, [whole])).residuals[0]
 
 
-def met(search: Search, trial: Trial) -> Trial:
+def with_unseen_phases(search: Search, trial: Trial) -> Trial:
     """The trial whose effects have what series of their own need that no fit saw: the phase of a
     wave, from the first part of each such series alone."""
     if not any(effect.own_series for effect in trial.effects):
@@ -119,7 +122,7 @@ def _first_part(whole: Segment, shortest: int, part: float) -> Segment:
     return replace(whole, rows=whole.rows[:count])
 
 
-def rmse(parts: Sequence[Compared], which: int) -> float:
+def rmse(parts: Sequence[ModelComparison], which: int) -> float:
     """The root mean square of free-run residuals over all signals, in SI."""
     return float(np.sqrt(np.mean(np.concatenate([p.free[which].ravel() for p in parts]) ** 2)))
 
@@ -136,14 +139,14 @@ def intervals(trial: Trial, confidence: float) -> dict[str, tuple[float, float]]
     }
 
 
-def moved(
+def parameter_changes(
     problem: TraceProblem, declared: Trial, best: Trial, values: dict[str, float]
-) -> list[Moved]:
+) -> list[ParameterChange]:
     """The declared parameters without and with the effects."""
     errors, flat = best.standard_errors, problem.declared.flat
     known = flat.parameters
     return [
-        Moved(
+        ParameterChange(
             name,
             known[name].unit if name in known else "",
             value,

@@ -1,4 +1,5 @@
-"""The end of a search: on the longest windows, rivals once more, shapes, what is superfluous."""
+"""The refinement of what a search found: on the longest windows, rivals once more, shapes, what is
+superfluous."""
 
 from __future__ import annotations
 
@@ -11,7 +12,7 @@ from tracewire.errors import FitError
 from tracewire.trace.candidates.candidate import is_default
 from tracewire.trace.search.refits import few_of, target_of
 from tracewire.trace.search.search import Search
-from tracewire.trace.search.workers import Refit
+from tracewire.trace.search.workers import RefitTask
 from tracewire.trace.trials.trial import PlacedEffect, Trial
 
 
@@ -21,15 +22,15 @@ class Rival:
     when it takes that place, and the trial where it does. `tied`: it predicts as well, or BIC puts
     it next to nothing behind: these data cannot tell it from what was found."""
 
-    added: PlacedEffect
-    likeness: float
+    effect: PlacedEffect
+    correlation: float
     trial: Trial
-    rise: float
+    delta_bic: float
     tied: bool
 
 
 @dataclass(frozen=True, eq=False)
-class Final:
+class FinalModels:
     """The declared model and the best one on the longest windows that they bear, the rivals of each
     effect by its name, and the declared parameters that went to zero."""
 
@@ -39,26 +40,28 @@ class Final:
     dropped: tuple[str, ...]
 
 
-def finished(search: Search, declared: Trial, best: Trial) -> Final:
+def refine(search: Search, declared: Trial, best: Trial) -> FinalModels:
     """The best model on long windows, without what is superfluous, effects beside their rivals."""
     sections = search.data_split.whole()
-    declared = search.climbed(_over(search, declared), sections, np.inf)  # its best free run
+    declared = search.lengthen_windows(
+        _refit_on_all_data(search, declared), sections, np.inf
+    )  # its best free run
     if not best.effects:
-        return Final(declared, declared, {}, ())
-    best = search.climbed(_over(search, best), sections)
-    best = _pruned(search, best)
+        return FinalModels(declared, declared, {}, ())
+    best = search.lengthen_windows(_refit_on_all_data(search, best), sections)
+    best = _prune(search, best)
     rivals: dict[str, tuple[Rival, ...]] = {}
     for number in range(len(best.effects)):
-        best, found = _exchanged(search, best, number)
+        best, found = _exchange_effect(search, best, number)
         rivals[str(best.effects[number])] = found
-    best = _opened_shapes(search, best)
-    best = _common_phases(search, best)
-    best = _without_trifles(search, _pruned(search, best), declared, rivals)
-    best, dropped = _dropped(search, best)
-    return Final(declared, ordered(best), rivals, dropped)
+    best = _free_shapes(search, best)
+    best = _share_phases(search, best)
+    best = _drop_trifles(search, _prune(search, best), declared, rivals)
+    best, dropped = _drop_terms(search, best)
+    return FinalModels(declared, order_effects(best), rivals, dropped)
 
 
-def _over(search: Search, trial: Trial) -> Trial:
+def _refit_on_all_data(search: Search, trial: Trial) -> Trial:
     """The trial over all that is not held back for the final claim, on windows as they are; where
     it does not run on some of them, as it was."""
     windows = search.windows(search.data_split.whole(), trial.length)
@@ -68,51 +71,51 @@ def _over(search: Search, trial: Trial) -> Trial:
         return trial
 
 
-def _refitted(
+def _run_refit(
     search: Search,
     trial: Trial,
     effects: Sequence[PlacedEffect],
     fixed: dict[str, float] | None = None,
 ) -> Trial | None:
     """The trial with other effects on the same windows; None where that does not run."""
-    (smaller,) = search.refits.trials(trial, [_refit(search, trial, effects, fixed)])
+    (smaller,) = search.refits.run(trial, [_prepare_refit(search, trial, effects, fixed)])
     return smaller
 
 
-def _refit(
+def _prepare_refit(
     search: Search,
     trial: Trial,
     effects: Sequence[PlacedEffect],
     fixed: dict[str, float] | None = None,
     words: str = "",
-) -> Refit:
+) -> RefitTask:
     """The trial with other effects on the same windows, to be refitted."""
     segments, target = trial.windows.segments, target_of(trial, search.options)
-    return search.refits.refit(trial, effects, segments, fixed=fixed, target=target, words=words)
+    return search.refits.prepare(trial, effects, segments, fixed=fixed, target=target, words=words)
 
 
-def _exchanged(search: Search, best: Trial, number: int) -> tuple[Trial, tuple[Rival, ...]]:
+def _exchange_effect(search: Search, best: Trial, number: int) -> tuple[Trial, tuple[Rival, ...]]:
     """The best model with the best of the rivals of one effect, and the other rivals."""
     effect = best.effects[number]
     search.tell(f"comparing {effect} with its rivals")
     others = [e for e in best.effects if e is not effect]
-    part = best.effective_fraction
+    effective_fraction = best.effective_fraction
     results: list[tuple[float, Trial, PlacedEffect]] = []
     known = _known_rivals(search, effect)
     kept = {str(e) for e in others}
-    few = _few_short(search, best)
+    few = _fit_few_short_windows(search, best)
     options = search.options
-    most = options.search.rivals if search.returns else options.screen.many
+    most = options.search.rivals if search.has_revisits else options.screen.many
     each = [
         [*best.effects[:number], added, *best.effects[number + 1 :]]
         for added, _ in known[:most]
         if str(added) not in kept
     ]
-    near = [_refit(search, best, effects) for effects in _not_far_behind(search, few, each)]
-    for trial in search.refits.trials(best, near):
+    near = [_prepare_refit(search, best, effects) for effects in _not_far_behind(search, few, each)]
+    for trial in search.refits.run(best, near):
         if trial is not None:
-            results.append((trial.bic(part), trial, trial.effects[number]))
-    results.append((best.bic(part), best, effect))
+            results.append((trial.bic(effective_fraction), trial, trial.effects[number]))
+    results.append((best.bic(effective_fraction), best, effect))
     # where BIC is the same, a law with a physical sign goes before others, and a sensor comes last
     results.sort(
         key=lambda result: (
@@ -122,23 +125,23 @@ def _exchanged(search: Search, best: Trial, number: int) -> tuple[Trial, tuple[R
         )
     )
     quality, winner, chosen = results[0]
-    likeness = {str(added): value for added, value in known} | {str(effect): 1.0}
+    correlation = {str(added): value for added, value in known} | {str(effect): 1.0}
     if str(chosen) != str(effect):
-        likeness = {str(added): value for added, value in _known_rivals(search, chosen)}
+        correlation = {str(added): value for added, value in _known_rivals(search, chosen)}
     found = [
         Rival(
             added,
-            likeness.get(str(added), 0.0),
+            correlation.get(str(added), 0.0),
             trial,
-            rise - quality,
-            rise - quality < options.search.tied,
+            delta_bic - quality,
+            delta_bic - quality < options.search.tied,
         )
-        for rise, trial, added in results[1:]
+        for delta_bic, trial, added in results[1:]
     ]
     return winner, tuple(found)
 
 
-def _few_short(search: Search, best: Trial) -> Trial | None:
+def _fit_few_short_windows(search: Search, best: Trial) -> Trial | None:
     """The best model on few of the shortest windows; None where those it stands on are as short, or
     where it is far from the noise on these."""
     length = search.lengths[0]
@@ -162,8 +165,8 @@ def _not_far_behind(
         return list(each)
     target, refits = search.options.search.behind * few.rss, search.refits
     segments = few.windows.segments
-    tried = [refits.refit(few, effects, segments, target=target) for effects in each]
-    trials = refits.trials(few, tried)
+    tasks = [refits.prepare(few, effects, segments, target=target) for effects in each]
+    trials = refits.run(few, tasks)
     return [e for e, t in zip(each, trials, strict=True) if t is not None and t.rss <= target]
 
 
@@ -175,9 +178,9 @@ def _known_rivals(search: Search, effect: PlacedEffect) -> list[tuple[PlacedEffe
         mine = rows.get(str(effect))
         if mine is None or step.after is None:
             continue
-        tried = {
-            str(one.trial.effects[-1]): one.rise
-            for one in step.tried
+        delta_bics = {
+            str(one.trial.effects[-1]): one.delta_bic
+            for one in step.refits
             if len(one.proposal.rows) == 1
         }
         together = len(step.after.effects) > len(step.before.effects) + 1
@@ -186,15 +189,15 @@ def _known_rivals(search: Search, effect: PlacedEffect) -> list[tuple[PlacedEffe
         for name, row in rows.items():
             if name == str(effect):
                 continue
-            likeness = step.screen.columns.canonical_correlation(mine.columns, row.columns)
-            if likeness > least or name in tried:
-                found.append((row.placed_effect, likeness, tried.get(name, np.inf)))
+            correlation = step.screen.columns.canonical_correlation(mine.columns, row.columns)
+            if correlation > least or name in delta_bics:
+                found.append((row.placed_effect, correlation, delta_bics.get(name, np.inf)))
         found.sort(key=lambda item: (item[2], -item[1]))
-        return [(added, likeness) for added, likeness, _ in found]
+        return [(added, correlation) for added, correlation, _ in found]
     return []
 
 
-def _opened_shapes(search: Search, best: Trial) -> Trial:
+def _free_shapes(search: Search, best: Trial) -> Trial:
     """The best model with shapes free that had kept their default, where that is worth it."""
     for number, effect in enumerate(best.effects):
         candidate = effect.candidate
@@ -207,7 +210,7 @@ def _opened_shapes(search: Search, best: Trial) -> Trial:
                 continue
             wider = replace(effect, values={**effect.values, shape: first})
             effects = [*best.effects[:number], wider, *best.effects[number + 1 :]]
-            trial = _refitted(search, best, effects)
+            trial = _run_refit(search, best, effects)
             worth = search.options.search.cheap
             if (
                 trial is not None
@@ -218,7 +221,7 @@ def _opened_shapes(search: Search, best: Trial) -> Trial:
     return best
 
 
-def _common_phases(search: Search, best: Trial) -> Trial:
+def _share_phases(search: Search, best: Trial) -> Trial:
     """The best model with one phase for all series where that is no worse: a clock of the rig, not
     of the record."""
     for number, effect in enumerate(best.effects):
@@ -230,7 +233,7 @@ def _common_phases(search: Search, best: Trial) -> Trial:
             own = [x for name, x in effect.values.items() if name.startswith(f"{shape}@")]
             values[shape] = float(np.angle(np.mean(np.exp(1j * np.array(own)))))
         effects = [*best.effects[:number], replace(effect, values=values)]
-        trial = _refitted(search, best, [*effects, *best.effects[number + 1 :]])
+        trial = _run_refit(search, best, [*effects, *best.effects[number + 1 :]])
         if trial is not None and trial.bic(best.effective_fraction) < best.bic(
             best.effective_fraction
         ):
@@ -238,7 +241,7 @@ def _common_phases(search: Search, best: Trial) -> Trial:
     return best
 
 
-def _pruned(search: Search, best: Trial) -> Trial:
+def _prune(search: Search, best: Trial) -> Trial:
     """The best model without effects that the others make superfluous.
 
     At the noise BIC decides, and what is many standard errors from nothing is not tried without;
@@ -248,8 +251,8 @@ def _pruned(search: Search, best: Trial) -> Trial:
     while len(best.effects) > 1:
         costs = []
         at_noise = best.reduced_chi2 < options.trial.gate_noise
-        tried = [
-            _refit(
+        tasks = [
+            _prepare_refit(
                 search,
                 best,
                 [e for e in best.effects if e is not effect],
@@ -258,7 +261,7 @@ def _pruned(search: Search, best: Trial) -> Trial:
             for effect in best.effects
             if not at_noise or _errors_from_nothing(best, effect) <= options.search.certain
         ]
-        for smaller in search.refits.trials(best, tried):
+        for smaller in search.refits.run(best, tasks):
             if smaller is None:
                 continue
             loss = smaller.bic(best.effective_fraction) - best.bic(best.effective_fraction)
@@ -278,7 +281,7 @@ def _errors_from_nothing(best: Trial, effect: PlacedEffect) -> float:
     return float(abs(effect.coefficient - effect.candidate.neutral) / max(error, 1e-300))
 
 
-def _without_trifles(
+def _drop_trifles(
     search: Search, best: Trial, declared: Trial, rivals: Mapping[str, Sequence[Rival]]
 ) -> Trial:
     """The best model without effects that explain next to nothing of what was missing and may stand
@@ -290,21 +293,25 @@ def _without_trifles(
         excess = (declared.reduced_chi2 - best.reduced_chi2) * best.count
         for effect in best.effects:
             taken = _errors_from_nothing(best, effect) ** 2 * best.reduced_chi2
-            ties = [str(rival.added) for rival in rivals.get(str(effect), ()) if rival.tied]
+            ties = [str(rival.effect) for rival in rivals.get(str(effect), ()) if rival.tied]
             unsure = effect.candidate.effect in options.uncommon or ties
             if unsure and taken < options.search.trifle * excess:
-                part = f"{100 * taken / excess:.2g} % of the squared error that was missing"
+                effective_fraction = (
+                    f"{100 * taken / excess:.2g} % of the squared error that was missing"
+                )
                 as_well = f", as {' and '.join(ties)} would" if ties else ""
-                words = f"it takes only {part}{as_well}, so it may stand for anything"
+                words = f"it takes only {effective_fraction}{as_well}, so it may stand for anything"
                 break
-            if _is_part_of_a_rest(search, best, effect, taken):
-                part = f"{100 * taken / best.rss:.2g} % of the squared error of the noise"
-                words = f"it takes {part}, and more is left that no effect takes"
+            if _is_part_of_remainder(search, best, effect, taken):
+                effective_fraction = (
+                    f"{100 * taken / best.rss:.2g} % of the squared error of the noise"
+                )
+                words = f"it takes {effective_fraction}, and more is left that no effect takes"
                 break
         else:
             return best
         search.tell(f"trying without {effect}")
-        smaller = _refitted(search, best, [e for e in best.effects if e is not effect])
+        smaller = _run_refit(search, best, [e for e in best.effects if e is not effect])
         if smaller is None:
             return best
         best = smaller
@@ -312,7 +319,7 @@ def _without_trifles(
     return best
 
 
-def _is_part_of_a_rest(search: Search, best: Trial, effect: PlacedEffect, taken: float) -> bool:
+def _is_part_of_remainder(search: Search, best: Trial, effect: PlacedEffect, taken: float) -> bool:
     """Whether a wave or a drift takes little beside the noise and leaves what is no noise: it is
     the part with its shape of a small law that no block has."""
     options = search.options
@@ -327,13 +334,13 @@ def _is_part_of_a_rest(search: Search, best: Trial, effect: PlacedEffect, taken:
     return search.screen(best).p_value() <= options.screen.chance
 
 
-def ordered(best: Trial) -> Trial:
+def order_effects(best: Trial) -> Trial:
     """The best model with the effects that are surest first."""
     effects = sorted(best.effects, key=lambda effect: -_errors_from_nothing(best, effect))
     return replace(best, effects=tuple(effects))
 
 
-def _dropped(search: Search, best: Trial) -> tuple[Trial, tuple[str, ...]]:
+def _drop_terms(search: Search, best: Trial) -> tuple[Trial, tuple[str, ...]]:
     """The best model without declared terms that the effects make superfluous, and their names."""
     names = []
     options = search.options.search
@@ -346,7 +353,7 @@ def _dropped(search: Search, best: Trial) -> tuple[Trial, tuple[str, ...]]:
         if at_noise and best.values[unknown.name] > options.certain * error:
             continue
         fixed = {**best.windows.criterion.parameters, unknown.name: 0.0}
-        smaller = _refitted(search, best, best.effects, fixed)
+        smaller = _run_refit(search, best, best.effects, fixed)
         if smaller is None:
             continue
         loss = smaller.bic(best.effective_fraction) - best.bic(best.effective_fraction)

@@ -10,7 +10,13 @@ from oracles.oscillator import NOISE, later, problem_of, record, search_of, tria
 from tracewire.residual import Measured, Segment
 from tracewire.residual.windows import Section, cut_windows
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.results.account import compared, free_run, intervals, moved, rmse
+from tracewire.trace.results.comparison import (
+    compare_models,
+    free_run,
+    intervals,
+    parameter_changes,
+    rmse,
+)
 from tracewire.trace.trials.trial import TraceProblem
 
 OPTIONS = TraceOptions()
@@ -50,7 +56,7 @@ def test_each_stretch_is_compared_by_use_and_told_in_si() -> None:
     search = search_of(problem)
     good = trial_of(problem)
     poor = problem.fit((), good.windows.segments, 60, {}, fixed={"c": 0.0})
-    parts = compared(search, poor, good)
+    parts = compare_models(search, poor, good)
     assert [part.use for part in parts] == ["train", "gate", "validate"]
     assert rmse(parts, 1) == pytest.approx(NOISE, rel=0.2) and rmse(parts, 0) > 5 * NOISE
     for part in parts:
@@ -97,6 +103,6 @@ def test_a_slow_residual_widens_the_intervals() -> None:
 def test_what_the_declared_parameters_did_is_told_with_units() -> None:
     problem = problem_of(record(end=6.0))
     declared = trial_of(problem)
-    (k, c) = moved(problem, declared, declared, {"k": 25.5})
+    (k, c) = parameter_changes(problem, declared, declared, {"k": 25.5})
     assert (k.name, k.unit, k.before, k.after) == ("k", "1/s^2", declared.values["k"], 25.5)
     assert (c.name, c.after) == ("c", 0.0), "what was dropped is zero"

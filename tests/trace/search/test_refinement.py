@@ -13,8 +13,8 @@ from tracewire.trace.candidates.places import find_places
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal, screen_candidates
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
-from tracewire.trace.search.finish import Final, _without_trifles, finished
-from tracewire.trace.search.refits import Tried
+from tracewire.trace.search.refinement import FinalModels, _drop_trifles, refine
+from tracewire.trace.search.refits import RefitResult
 from tracewire.trace.search.search import Search, Step
 from tracewire.trace.trials.trial import PlacedEffect, Trial
 
@@ -34,7 +34,7 @@ def dragged(x: float, v: float) -> float:
 
 def ended(
     law: Law, names: Sequence[str], screen: Sequence[str], damping: float = 0.2
-) -> tuple[Search, Final]:
+) -> tuple[Search, FinalModels]:
     """The end of a search that has accepted `names`, after a screen of `screen`."""
     problem = problem_of(
         record(law, damping=damping, end=7.0),
@@ -42,7 +42,7 @@ def ended(
     )
     search = search_of(problem)
     known = candidates_of(problem)
-    now = search.declared()
+    now = search.fit_declared()
     search.first = now
     best = now
     for name in names:
@@ -54,16 +54,16 @@ def ended(
         tried = []
         for other in screen:
             added = PlacedEffect(known[other], {known[other].parameter: 0.02})
-            refit = search.refits.refit(best, [*best.effects, added], now.windows.segments)
-            (trial,) = search.refits.trials(best, [refit])
+            refit = search.refits.prepare(best, [*best.effects, added], now.windows.segments)
+            (trial,) = search.refits.run(best, [refit])
             if trial is not None and other in rows:
-                tried.append(Tried(trial, Proposal((rows[other],), 1.0), 0.0, 0.0))
-        ranked = search.refits.ranked(best, tried)
+                tried.append(RefitResult(trial, Proposal((rows[other],), 1.0), 0.0, 0.0))
+        ranked = search.refits.rank(best, tried)
         after: Trial = next(one.trial for one in ranked if str(one.trial.effects[-1]) == name)
         search.steps.append(Step(best, shown, 0.0, tuple(ranked), after, ""))
         best = after
     search.best = best
-    return search, finished(search, now, best)
+    return search, refine(search, now, best)
 
 
 def names_of(trial: Trial) -> list[str]:
@@ -75,8 +75,8 @@ def test_a_wrong_effect_is_exchanged_for_its_better_rival() -> None:
     assert names_of(final.best) == [DRAG]
     assert final.best.effects[0].coefficient == pytest.approx(0.1, rel=0.03)
     (rival,) = final.rivals[DRAG]
-    assert str(rival.added) == CUBIC and not rival.tied
-    assert 0.9 < rival.likeness < 1.0
+    assert str(rival.effect) == CUBIC and not rival.tied
+    assert 0.9 < rival.correlation < 1.0
 
 
 def test_the_right_effect_stays_on_long_windows() -> None:
@@ -108,8 +108,8 @@ def test_a_declared_term_that_is_there_is_kept() -> None:
 def test_without_effects_the_declared_model_is_the_end() -> None:
     problem = problem_of(record(end=7.0), record(end=6.0, use="gate", name="gate", seed=1))
     search = search_of(problem)
-    now = search.declared()
-    final = finished(search, now, now)
+    now = search.fit_declared()
+    final = refine(search, now, now)
     assert final.best is final.declared and final.best.effects == ()
     assert final.rivals == {} and final.dropped == ()
     assert final.best.length == search.data_split.longest
@@ -166,13 +166,13 @@ def test_what_explains_next_to_nothing_and_may_be_another_law_is_a_refinement(
         standard_errors={"coulomb": 1.0, second: 1.0},
     )
     search = SimpleNamespace(options=OPTIONS, tell=lambda _: None, words=[])
-    finish = import_module("tracewire.trace.search.finish")
+    refinement = import_module("tracewire.trace.search.refinement")
     monkeypatch.setattr(
-        finish, "_refitted", lambda search, best, kept: SimpleNamespace(effects=kept)
+        refinement, "_run_refit", lambda search, best, kept: SimpleNamespace(effects=kept)
     )
-    rivals = {second: [SimpleNamespace(added=name, tied=True) for name in ties]}
+    rivals = {second: [SimpleNamespace(effect=name, tied=True) for name in ties]}
     declared = SimpleNamespace(reduced_chi2=1001.0)
-    found = _without_trifles(search, best, declared, rivals)  # type: ignore[arg-type]
+    found = _drop_trifles(search, best, declared, rivals)  # type: ignore[arg-type]
     assert [str(e) for e in found.effects] == ["coulomb", second][: 1 if told is not None else 2]
     words = (
         f"{second} would be a refinement: it takes only 0.01 % of the squared error that was"
@@ -219,11 +219,11 @@ def test_a_slight_wave_beside_what_is_no_noise_is_a_part_of_that(
         words=[],
         screen=lambda _: SimpleNamespace(p_value=lambda: chance),
     )
-    finish = import_module("tracewire.trace.search.finish")
+    refinement = import_module("tracewire.trace.search.refinement")
     monkeypatch.setattr(
-        finish, "_refitted", lambda search, best, kept: SimpleNamespace(effects=kept)
+        refinement, "_run_refit", lambda search, best, kept: SimpleNamespace(effects=kept)
     )
     declared = SimpleNamespace(reduced_chi2=2.0 + s2)
-    found = _without_trifles(search, best, declared, {})  # type: ignore[arg-type]
+    found = _drop_trifles(search, best, declared, {})  # type: ignore[arg-type]
     assert len(found.effects) == 1 + stays
     assert len(search.words) == 1 - stays

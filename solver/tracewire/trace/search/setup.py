@@ -27,7 +27,7 @@ from tracewire.trace.trials.data_split import shortest_window, split_data
 from tracewire.trace.trials.trial import TraceProblem
 
 
-def begun(
+def set_up_search(
     subject: Model | Fit,
     measured: Sequence[Measured] | None,
     rtol: float,
