@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
 from tracewire.show.sticking import Interval, joined, stick_intervals
-from tracewire.show.style import MARK, QUIET, STICK, cut
+from tracewire.show.style import EDGE, MARK, QUIET, STICK, cut
 from tracewire.solve import Event, Run
 
 if TYPE_CHECKING:
@@ -17,9 +17,8 @@ STRONG = ("impact", "reset", "rest")
 """Events that change a state, or end a motion."""
 WEAK = ("crossing", "scheduled", "transition")
 WIDTH = 700
-"""Marks nearer to each other than this part of the span cannot be told apart: they are a bar."""
-SHORTEST = 0.006
-"""Of the span: a bar that is shorter is drawn so long, or it would look like a mark."""
+"""Marks nearer to each other than this part of the span cannot be told apart: they are a bar, from
+the first mark to the last one, which are drawn, as a bar can be thinner than a pixel."""
 DENSE = 0.45
 """The opacity of such a bar, which would be the loudest part of the figure."""
 
@@ -49,8 +48,8 @@ def draw_events(panel: Axes, run: Run, rows: Sequence[str], shaded: bool = False
     last = len(rows) - 1
     for block, intervals in stick_intervals(run).items():
         at = position.get(block, last)
-        seen = [(begin, max(end, begin + SHORTEST * _span(run))) for begin, end in intervals]
-        _draw_bars(panel, seen, at, 0.3, facecolor=STICK, edgecolor=QUIET, linewidth=0.8)
+        # as long as it sticks; the edge is seen where a bar is thinner than a pixel
+        _draw_bars(panel, intervals, at, 0.3, facecolor=STICK, edgecolor=EDGE, linewidth=0.9)
     counts = [0] * len(rows)
     for event in run.events:
         counts[position.get(event.block, last)] += 1
@@ -63,10 +62,10 @@ def draw_events(panel: Axes, run: Run, rows: Sequence[str], shaded: bool = False
                 if event.kind in kinds and position.get(event.block, last) == row
             ]
             groups = joined(((time, time) for time in times), apart)
-            single = [begin for begin, end in groups if begin == end]
-            panel.vlines(single, row - half, row + half, color=color, linewidth=0.9)
             many = [(begin, end) for begin, end in groups if end > begin]
             _draw_bars(panel, many, row, half, facecolor=color, alpha=DENSE, linewidth=0)
+            marks = list(dict.fromkeys(time for ends in groups for time in ends))
+            panel.vlines(marks, row - half, row + half, color=color, linewidth=0.9)
     labels = (f"{cut(name)} ({count})" for name, count in zip(rows, counts, strict=True))
     panel.set_yticks(range(len(rows)), list(labels))
     panel.set_ylim(last + 0.6, -0.6)
