@@ -164,10 +164,10 @@ def _errors(found: Found) -> Section | None:
     windowed = any(len(c.windowed_before) == len(c.t) for c in found.curves)
     figures = (
         *_figure(bool(found.curves), found, plot_free_runs, "free_runs.png",
-                 "Free runs before and after, against the measurement"),
+                 "Free runs before and after, against the measurement; the band is ±2 σ"),
         *_figure(windowed, found, plot_residuals, "residuals.png",
-                 "The residual within windows in units of the noise; a white line is where a "
-                 "window begins"),
+                 "The residual within windows in units of the noise, on linear scales; a white "
+                 "line is where a window begins, the dotted lines are ±2 σ"),
     )  # fmt: skip
     return Section("How well it predicts", (ERRORS,), (errors_table(found),), figures=figures)
 
