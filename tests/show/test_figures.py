@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 import xml.etree.ElementTree as ElementTree
 import zlib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.errors import OptionError
 from tracewire.show import plot_fit, plot_residual, plot_run
-from tracewire.show.event_rows import draw_events, jump_times
+from tracewire.show.event_rows import draw_events, event_rows, is_tick, jump_times
 from tracewire.show.figures import group_signals
 from tracewire.show.sticking import held_intervals, joined, stick_intervals
 from tracewire.show.style import panels, styled
@@ -236,6 +237,32 @@ def test_a_short_stick_is_a_bar_of_its_own_length_that_is_seen(
     assert bars == [(1.0, pytest.approx(1e-4))]
     columns = dark_columns(panel)
     assert 1 <= len(columns) <= 3
+
+
+SAMPLED = """
+title: A sampled block
+span: [0, 1]
+record: [held]
+blocks:
+  wave: {type: sine, amplitude: 1, omega: 20}
+  held: {type: zero_order_hold, of: wave, period: {value: 10, unit: ms}}
+  x: {type: integrator, of: held}
+events: [{every: {value: 0.5, unit: s}, set: {x: 0}}]
+"""
+
+
+def test_ticks_of_a_sampled_block_are_short_and_grey(tmp_path: Path) -> None:
+    run = simulate(compile(read_text(SAMPLED)))
+    ticks = [event for event in run.events if is_tick(run, event)]
+    assert len(ticks) == 101
+    assert {event.block for event in ticks} == {"held"}
+    declared = [event for event in run.events if event not in ticks]
+    assert declared  # a reset that the diagram declares is none
+    panel = Figure().subplots()
+    draw_events(panel, replace(run, events=tuple(ticks)), ["held"])
+    assert panel.get_title(loc="left") == "events   short, grey: tick"
+    draw_events(panel, replace(run, events=tuple(declared)), event_rows(run))
+    assert panel.get_title(loc="left") == "events   long, red: reset"
 
 
 def test_a_long_curve_has_no_hole() -> None:

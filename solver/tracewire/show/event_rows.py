@@ -15,7 +15,11 @@ if TYPE_CHECKING:
 MOST_ROWS = 8
 STRONG = ("impact", "reset", "rest")
 """Events that change a state, or end a motion."""
-WEAK = ("crossing", "scheduled", "transition")
+TICK = "tick"
+"""A reset by the clock of a sampled block: what that block does all the time."""
+WEAK = ("crossing", "scheduled", "transition", TICK)
+CLOCK = "clock of "
+"""How the guard of a clock begins."""
 WIDTH = 700
 """Marks nearer to each other than this part of the span cannot be told apart: they are a bar, from
 the first mark to the last one, which are drawn, as a bar can be thinner than a pixel."""
@@ -29,6 +33,12 @@ def event_rows(run: Run) -> list[str]:
     if len(names) <= MOST_ROWS:
         return names
     return [*names[: MOST_ROWS - 1], f"{len(names) - MOST_ROWS + 1} others"]
+
+
+def is_tick(run: Run, event: Event) -> bool:
+    """Whether an event is a tick of the clock of a block, and not one that the diagram declares."""
+    known = run.model is None or event.block in run.model.flat.blocks
+    return event.kind == "reset" and event.guard.startswith(CLOCK) and known
 
 
 def jump_times(run: Run, signals: Collection[str]) -> list[float]:
@@ -50,6 +60,7 @@ def draw_events(panel: Axes, run: Run, rows: Sequence[str], shaded: bool = False
         at = position.get(block, last)
         # as long as it sticks; the edge is seen where a bar is thinner than a pixel
         _draw_bars(panel, intervals, at, 0.3, facecolor=STICK, edgecolor=EDGE, linewidth=0.9)
+    kinds_of = [TICK if is_tick(run, event) else event.kind for event in run.events]
     counts = [0] * len(rows)
     for event in run.events:
         counts[position.get(event.block, last)] += 1
@@ -58,8 +69,8 @@ def draw_events(panel: Axes, run: Run, rows: Sequence[str], shaded: bool = False
         for row in range(len(rows)):
             times = [
                 event.time
-                for event in run.events
-                if event.kind in kinds and position.get(event.block, last) == row
+                for event, kind in zip(run.events, kinds_of, strict=True)
+                if kind in kinds and position.get(event.block, last) == row
             ]
             groups = joined(((time, time) for time in times), apart)
             many = [(begin, end) for begin, end in groups if end > begin]
@@ -72,7 +83,7 @@ def draw_events(panel: Axes, run: Run, rows: Sequence[str], shaded: bool = False
     panel.grid(False)
     panel.spines["left"].set_visible(False)
     panel.tick_params(axis="y", length=0)
-    legend = _legend(run.events, shaded)
+    legend = _legend(set(kinds_of), shaded)
     panel.set_title(legend, fontsize=8.5, color="#555555", loc="left", pad=3)
 
 
@@ -88,10 +99,9 @@ def _draw_bars(
     panel.broken_barh(spans, (row - half, 2 * half), **look)  # type: ignore[arg-type]
 
 
-def _legend(events: Sequence[Event], shaded: bool) -> str:
-    kinds = {event.kind for event in events}
+def _legend(kinds: Collection[str], shaded: bool) -> str:
     parts = []
-    if kinds & {"stick", "slip"}:
+    if "stick" in kinds or "slip" in kinds:
         parts.append("bar and shade: sticks" if shaded else "bar: sticks")
     if strong := [kind for kind in STRONG if kind in kinds]:
         parts.append(f"long, red: {', '.join(strong)}")
