@@ -27,6 +27,7 @@ from tracewire.show.style import (
     shortened,
     styled,
 )
+from tracewire.show.trace_steps import compares
 from tracewire.trace import Curve, Found, Ranked, users_unit
 
 if TYPE_CHECKING:
@@ -99,11 +100,16 @@ def plot_candidates(found: Found, path: Path) -> Path:
         )
         for (left, right), (number, step) in zip(grid, steps, strict=True):
             _draw_candidates(left, right, step.tried[:MOST_CANDIDATES])
+            if compares(step):
+                left.set_xlabel("gain of prediction on held-out blocks")
+                right.set_visible(False)  # no part of a model is masked
             text = f"step {number}: {step.words}"
             left.set_title(cut(text, 100), loc="left", fontsize=9.5)
         _explain_candidates(grid[0, 0])
-        grid[-1, 0].set_xlabel("gain: half the fall of BIC")
-        grid[-1, 1].set_xlabel("masked [%]")
+        searched = [n for n, (_, step) in enumerate(steps) if not compares(step)]
+        if searched:
+            grid[searched[-1], 0].set_xlabel("gain: half the fall of BIC")
+            grid[searched[-1], 1].set_xlabel("masked [%]")
         return save(figure, path)
 
 

@@ -33,7 +33,8 @@ def result_of(
     final = judgement.final
     final = replace(final, best=met(search, final.best))
     bench, declared, best = search.bench, final.declared, final.best
-    search.words += dict.fromkeys(one.words for t in (declared, best) for one in at_bounds(t))
+    bounds = (one for t in (declared, best) for one in at_bounds(t))
+    search.words += dict.fromkeys(one.words for one in bounds if not one.exact)
     parts = compared(search, declared, best)
     claimed = [part for part in parts if part.use == "validate"]
     values = {**best.values, **dict.fromkeys(final.dropped, 0.0)}
