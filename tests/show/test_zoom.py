@@ -14,8 +14,11 @@ from typing import Any
 import numpy as np
 import pytest
 from show.test_figures import SWING, event, run_of
+from tracewire.fit import Comparison
 from tracewire.npm import integrity
-from tracewire.show import plot_fit, plot_run, report
+from tracewire.show import Report, plot_comparisons, plot_fit, plot_run, report
+from tracewire.show.document import Figure as DrawnFigure
+from tracewire.show.document import Section
 from tracewire.show.plane_figures import plot_portrait
 from tracewire.show.style import panels, saved_figures
 from tracewire.show.uplot import HERE, scripts
@@ -221,6 +224,31 @@ def test_marks_stand_on_the_grid(tmp_path: Path) -> None:
     first, second = told_on(page, tmp_path)
     assert first == pytest.approx(second, rel=0.05)
     assert first > 100
+
+
+TICKS = """<pre id="told"></pre><script>
+window.addEventListener("load", function () { setTimeout(function () {
+  var plots = document.querySelector("figure.curves").plots;
+  document.getElementById("told").textContent = JSON.stringify(plots.map(function (one) {
+    return one.plot.axes[1]._values.filter(Boolean);
+  }));
+}, 50); });
+</script></body>
+"""
+
+
+@pytest.mark.skipif(not BROWSER, reason="no Chromium here")
+def test_a_low_panel_has_numbers_that_show_its_scale(tmp_path: Path) -> None:
+    compared = Comparison(
+        "run", "train", "x", "m", T, np.cos(T), np.cos(T) + 0.013 * np.sin(9 * T),
+        np.cos(T) + 2e-4 * np.sin(9 * T), np.ones(len(T), dtype=bool), 0.0, 2e-4,
+    )  # fmt: skip
+    figure = DrawnFigure("a.png", "a", lambda path: plot_comparisons(path, [compared]))
+    page = tmp_path / "a.html"
+    text = Report("A", (Section("B", figures=(figure,)),)).html()
+    page.write_text(text.replace("</body>", TICKS), encoding="utf-8")
+    for numbers in told_on(page, tmp_path):
+        assert len(numbers) >= 3
 
 
 def seen(run: Run, folder: Path) -> Any:

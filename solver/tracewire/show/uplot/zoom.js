@@ -2,6 +2,7 @@
 (function () {
   "use strict";
   var LABEL = 22;  // pixels
+  var APART = 18;  // pixels between two numbers at an upright axis: a low panel has some, too
   var HINT = "Drag over a panel to zoom, double-click to see all. Click on a name to hide its curve.";
 
   function numbers(text) {
@@ -96,7 +97,7 @@
       return uPlot.rangeNum(least, most, 0.1, true);
     };
     var yScale = {range: range, dir: panel.down ? -1 : 1};
-    var yAxis = {size: gutter, values: plain, stroke: "#444", grid: {stroke: "#e6e6e6", width: 1, show: !rows}};
+    var yAxis = {size: gutter, space: APART, values: plain, stroke: "#444", grid: {stroke: "#e6e6e6", width: 1, show: !rows}};
     if (rows) {
       yAxis.size = gutter + LABEL;
       yAxis.splits = function () { return rows.map(function (_, n) { return n; }); };
@@ -145,7 +146,7 @@
     data.panels.forEach(function (panel) {
       (panel.rows || []).forEach(function (row) { longest = Math.max(longest, row.length); });
     });
-    var gutter = Math.max(58, Math.min(200, 7 * longest + 12));
+    var gutter = Math.max(68, Math.min(200, 7 * longest + 12));
     var plots = [], moving = false;
     figure.insertBefore(holder, figure.firstChild);
     try {
