@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 import xml.etree.ElementTree as ElementTree
 import zlib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,14 +13,16 @@ import matplotlib
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.errors import OptionError
 from tracewire.show import plot_fit, plot_residual, plot_run
-from tracewire.show.event_rows import draw_events, jump_times
+from tracewire.show.event_rows import draw_events, event_rows, is_tick, jump_times
 from tracewire.show.figures import group_signals
 from tracewire.show.sticking import held_intervals, joined, stick_intervals
+from tracewire.show.style import panels, styled
 from tracewire.show.summary import run_table
 from tracewire.solve import Event, Run, Statistics, simulate
 
@@ -190,14 +193,104 @@ def test_an_event_strikes_the_panels_of_the_states_that_it_sets() -> None:
     assert jump_times(run, ["x"]) == []
 
 
-def test_a_short_stick_is_a_bar_that_can_be_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+def dark_columns(panel: Axes) -> list[int]:
+    """The columns of pixels of a panel with something that is nearly as dark as a mark."""
+    figure = panel.figure
+    assert isinstance(figure, Figure)
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    box = panel.get_window_extent()
+    image = np.asarray(canvas.buffer_rgba())[::-1, :, :3].astype(int)
+    inside = image[int(box.y0) + 3 : int(box.y1) - 3, int(box.x0) + 3 : int(box.x1) - 3]
+    dark = (inside.min(axis=2) < 185).sum(axis=0) > 5
+    return list(np.flatnonzero(dark))
+
+
+def test_marks_in_close_pairs_are_all_seen() -> None:
+    pairs = [0.0123 + 0.2 * n for n in range(1, 20)]
+    times = [t for pair in pairs for t in (pair, pair + 0.0003)]
+    panel = Figure().subplots()
+    draw_events(
+        panel, run_of({"x": ("m", T)}, tuple(event(t, "crossing", "y") for t in times)), ["y"]
+    )
+    panel.set_xlim(0, 4)
+    columns = dark_columns(panel)
+    apart = [n for n, at in enumerate(columns) if n == 0 or at > columns[n - 1] + 1]
+    assert len(apart) == len(pairs)
+
+
+def test_a_short_stick_is_a_bar_of_its_own_length_that_is_seen(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     bars: list[tuple[float, float]] = []
-    monkeypatch.setattr(Axes, "broken_barh", lambda self, spans, *given, **look: bars.extend(spans))
+    draw = Axes.broken_barh
+
+    def note(self: Axes, spans: Any, *given: Any, **look: Any) -> Any:
+        bars.extend(spans)
+        return draw(self, spans, *given, **look)
+
+    monkeypatch.setattr(Axes, "broken_barh", note)
     short = (event(1.0, "stick", "rub"), event(1.0001, "slip", "rub"))
-    draw_events(Figure().subplots(), run_of({"x": ("m", T)}, short), ["rub"])
-    ((begin, length),) = bars
-    assert begin == 1.0
-    assert length > 0.005 * (T[-1] - T[0])
+    panel = Figure().subplots()
+    draw_events(panel, run_of({"x": ("m", T)}, short), ["rub"])
+    panel.set_xlim(0, 4)
+    assert bars == [(1.0, pytest.approx(1e-4))]
+    columns = dark_columns(panel)
+    assert 1 <= len(columns) <= 3
+
+
+SAMPLED = """
+title: A sampled block
+span: [0, 1]
+record: [held]
+blocks:
+  wave: {type: sine, amplitude: 1, omega: 20}
+  held: {type: zero_order_hold, of: wave, period: {value: 10, unit: ms}}
+  x: {type: integrator, of: held}
+events: [{every: {value: 0.5, unit: s}, set: {x: 0}}]
+"""
+
+
+def test_ticks_of_a_sampled_block_are_short_and_grey(tmp_path: Path) -> None:
+    run = simulate(compile(read_text(SAMPLED)))
+    ticks = [event for event in run.events if is_tick(run, event)]
+    assert len(ticks) == 101
+    assert {event.block for event in ticks} == {"held"}
+    declared = [event for event in run.events if event not in ticks]
+    assert declared  # a reset that the diagram declares is none
+    panel = Figure().subplots()
+    draw_events(panel, replace(run, events=tuple(ticks)), ["held"])
+    assert panel.get_title(loc="left") == "events   short, grey: tick"
+    draw_events(panel, replace(run, events=tuple(declared)), event_rows(run))
+    assert panel.get_title(loc="left") == "events   long, red: reset"
+
+
+def test_a_long_curve_has_no_hole() -> None:
+    steps = np.arange(10_001)
+    with styled():
+        figure, (panel,) = panels([2.4])
+        panel.plot(steps, np.clip((steps - 4997) / 6, 0, 1))  # it rises where pieces would meet
+        panel.set_axis_off()
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+    image = np.asarray(canvas.buffer_rgba())[:, :, :3].min(axis=2)
+    seen = np.flatnonzero((image < 150).any(axis=1))
+    assert len(seen) > 100
+    assert (np.diff(seen) == 1).all()
+
+
+def test_a_curve_too_long_for_the_renderer_is_drawn_in_pieces(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    draw = Figure.savefig
+
+    def fail_once(self: Figure, *given: Any, **options: Any) -> None:
+        if not matplotlib.rcParams["agg.path.chunksize"]:
+            raise OverflowError("Exceeded cell block limit in Agg")
+        draw(self, *given, **options)
+
+    monkeypatch.setattr(Figure, "savefig", fail_once)
+    assert pixels(plot_run(SWING, tmp_path / "run.png"))[0] > 500
 
 
 def test_hundreds_of_events_are_counted_and_take_few_marks(tmp_path: Path) -> None:

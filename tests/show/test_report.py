@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import base64
 import html.parser
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from show.fits import MODEL
+from show.test_figures import SAMPLED
 from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.errors import OptionError
 from tracewire.show import Report, report
+from tracewire.show.diagram_picture import diagram_figure
 from tracewire.show.document import Figure, Section
 from tracewire.show.summary import Table
+from tracewire.show.tidy import tidied
 from tracewire.solve import simulate
 
 
@@ -193,6 +197,39 @@ def test_a_run_as_a_report(tmp_path: Path) -> None:
     assert (tmp_path / "run_diagram.svg").read_text(encoding="utf-8").startswith("<svg")
 
 
+def test_ticks_of_clocks_are_counted_in_a_report_and_not_listed() -> None:
+    run = simulate(compile(read_text(SAMPLED)))
+    page = report(run).markdown()
+    assert "101 ticks of the clocks of sampled blocks are left out." in page
+    assert page.count("clock of held") == 0
+    assert page.count("clock of events") == 3
+    alone = replace(run, events=tuple(e for e in run.events if "held" in e.guard))
+    assert "The first 40 of 101." in report(alone).markdown()
+    assert "left out" not in report(alone).markdown()
+
+
+def test_the_caption_tells_blue_names_only_where_something_is_measured() -> None:
+    plain = read_text(SAMPLED)
+    assert "blue" not in diagram_figure(plain).caption
+    measured = SAMPLED + "measured: {run: {file: a.csv, time: t, signals: {held: {column: x}}}}"
+    assert "blue names are measured" in diagram_figure(read_text(measured)).caption
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("rotor.angle/1 - load.angle - -shaft.gap/2", "rotor.angle - load.angle + shaft.gap/2"),
+        ("1*a + -2*b", "a - 2*b"),
+        ("a - -(b - c)", "a + (b - c)"),
+        ("-(-a)", "a"),
+        ("a/2 - b", "a/2 - b"),
+        ("clock of voltage", "clock of voltage"),
+    ],
+)
+def test_a_guard_has_no_double_signs(text: str, told: str) -> None:
+    assert tidied(text) == told
+
+
 def test_the_report_of_a_run_has_its_values_and_its_first_events() -> None:
     text = """\
 span: [0, 6]
@@ -204,7 +241,7 @@ events: [{when: x - limit, set: {x: x}}]
 """
     run = simulate(compile(read_text(text)))
     page = report(run).markdown()
-    assert "| limit | 0.01 | m |" in page
+    assert "| limit | 1 | cm |" in page  # as it is written in the file
     assert "| start of x | 0 | m |" in page
     assert f"The first 40 of {len(run.events)}." in page
     assert page.count("| reset |") <= 40 < len(run.events)

@@ -187,11 +187,17 @@ def test_residuals_are_those_of_the_windows_before_and_after(drawn: Any) -> None
     assert f"train: swing_1, theta: rms {rms:.3g} σ before" in panel.get_title(loc="left")
 
 
-def test_residuals_far_apart_are_both_seen(drawn: Any) -> None:
+def test_residuals_far_apart_are_on_one_linear_scale_and_the_small_one_enlarged(
+    drawn: Any,
+) -> None:
     far = replace(FOUND.curves[0], windowed_before=300 * FOUND.curves[0].windowed_before)
-    assert drawn(plot_residuals, FOUND).axes[0].get_yscale() == "linear"
-    figure = drawn(plot_residuals, replace(FOUND, curves=(far,)))
-    assert figure.axes[0].get_yscale() == "symlog"
+    assert len(drawn(plot_residuals, replace(FOUND, curves=(FOUND.curves[0],))).axes) == 1
+    both, alone = drawn(plot_residuals, replace(FOUND, curves=(far,))).axes
+    assert both.get_yscale() == alone.get_yscale() == "linear"
+    assert both.get_ylim()[1] > far.windowed_before.max()
+    assert far.windowed_after.max() < alone.get_ylim()[1] < 0.1 * both.get_ylim()[1]
+    assert [text.get_text() for text in alone.get_legend().texts] == ["after", "±2 σ"]
+    assert "enlarged" in alone.get_title(loc="left")
 
 
 def test_residuals_with_gaps_and_several_uses_are_drawn(drawn: Any) -> None:
@@ -230,10 +236,17 @@ def test_free_runs_have_the_residual_before_and_after_on_one_scale(drawn: Any) -
     low, high = strip.get_ylim()
     assert low < before.min()
     assert before.max() < high
-    assert strip.get_yscale() == "symlog"  # they differ by a factor of 40
-    ticks = strip.get_yticks()
-    assert len(ticks) == 5
-    assert 0 < ticks[3] < ticks[4] / 2  # an axis that is bent shows where
+    assert strip.get_yscale() == "linear"
+
+
+def test_a_much_smaller_residual_after_is_enlarged_below(drawn: Any) -> None:
+    strip, enlarged = drawn(plot_free_runs, FOUND).axes[1:3]  # they differ by a factor of 40
+    curve = FOUND.curves[2]
+    (after,) = (line.get_ydata() for line in enlarged.lines if len(line.get_ydata()) > 2)
+    np.testing.assert_allclose(after, curve.measured - curve.after)
+    assert enlarged.get_ylim()[1] < 0.2 * strip.get_ylim()[1]
+    assert [text.get_text() for text in enlarged.get_legend().texts] == ["±2 σ"]
+    assert "enlarged" in enlarged.get_title(loc="left")
 
 
 def test_free_runs_are_in_the_unit_of_the_users_file(drawn: Any) -> None:

@@ -13,11 +13,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from show.test_figures import SWING, run_of
+from show.test_figures import SWING, event, run_of
+from tracewire.fit import Comparison
 from tracewire.npm import integrity
-from tracewire.show import plot_fit, plot_run, report
+from tracewire.show import Report, plot_comparisons, plot_fit, plot_run, report
+from tracewire.show.document import Figure as DrawnFigure
+from tracewire.show.document import Section
 from tracewire.show.plane_figures import plot_portrait
-from tracewire.show.style import saved_figures
+from tracewire.show.style import panels, saved_figures
 from tracewire.show.uplot import HERE, scripts
 from tracewire.show.zoom import MOST_POINTS, curves_of, thinned
 from tracewire.solve import Run
@@ -73,6 +76,18 @@ def test_measured_points_levels_and_labels_of_a_fit(tmp_path: Path) -> None:
     assert [line["label"] for line in lower["lines"]] == ["before", "after"]
     assert lower["levels"][0]["at"] == 0.0
     assert lower["title"].startswith("rms of the residual")
+
+
+def test_named_levels_are_told_above_a_panel(tmp_path: Path) -> None:
+    figure, (panel,) = panels([2.0])
+    panel.plot(T, T)
+    for level, label in ((2, "±2 σ"), (-2, None)):
+        panel.axhline(level, linestyle=":", label=label)
+    panel.set_xlabel("t [s]")
+    (only,) = json.loads(curves_of(figure) or "")["panels"]
+    assert only["title"] == "dotted: ±2 σ"
+    panel.set_yscale("symlog")
+    assert curves_of(figure) is None
 
 
 def test_what_is_not_over_time_stays_a_picture(tmp_path: Path) -> None:
@@ -167,6 +182,21 @@ window.addEventListener("load", function () { setTimeout(function () {
 """
 
 
+REDNESS = """<pre id="told"></pre><script>
+window.addEventListener("load", function () { setTimeout(function () {
+  var u = document.querySelector("figure.curves").plots[1].plot;
+  document.getElementById("told").textContent = JSON.stringify([2.0, 2.3].map(function (t) {
+    var at = Math.round(u.valToPos(t, "x", true)), y = Math.round(u.valToPos(0, "y", true));
+    return [-2, -1, 0, 1, 2].map(function (n) {
+      var p = u.ctx.getImageData(at + n, y, 1, 1).data;
+      return (p[0] - p[1]) * p[3] / 255;
+    }).reduce(function (a, b) { return a + b; });
+  }));
+}, 50); });
+</script></body>
+"""
+
+
 @pytest.mark.skipif(not BROWSER, reason="no Chromium here")
 def test_a_browser_draws_the_curves_and_zooms_all_panels(tmp_path: Path) -> None:
     run = run_of(
@@ -186,20 +216,39 @@ def test_a_browser_draws_the_curves_and_zooms_all_panels(tmp_path: Path) -> None
 
 
 @pytest.mark.skipif(not BROWSER, reason="no Chromium here")
-def test_numbers_at_a_bent_axis_do_not_cover_each_other(tmp_path: Path) -> None:
-    panel = {"ticks": [-1.0, -0.03, 0.0, 0.03, 1.0], "at": [90, 52, 50, 48, 10]}
-    script = scripts()
-    begin = script.index("  function apart(")
-    apart = script[begin : script.index("  // without the commas", begin)]
-    page = tmp_path / "apart.html"
-    page.write_text(
-        f'<pre id="told"></pre><script>var ROOM = 12; {apart}; var panel = {json.dumps(panel)};'
-        "var u = {valToPos: function (v) { return panel.at[panel.ticks.indexOf(v)]; }};"
-        "document.getElementById('told').textContent ="
-        " JSON.stringify(apart(u, panel.ticks));</script>",
-        encoding="utf-8",
-    )
-    assert told_on(page, tmp_path) == [-1, None, 0, None, 1]
+def test_marks_stand_on_the_grid(tmp_path: Path) -> None:
+    # the first mark is where a line of the grid stands
+    run = run_of({"x": ("m", T)}, (event(2.0, "impact", "stop"), event(2.3, "impact", "stop")))
+    page = tmp_path / "run.html"
+    page.write_text(report(run).html().replace("</body>", REDNESS), encoding="utf-8")
+    first, second = told_on(page, tmp_path)
+    assert first == pytest.approx(second, rel=0.05)
+    assert first > 100
+
+
+TICKS = """<pre id="told"></pre><script>
+window.addEventListener("load", function () { setTimeout(function () {
+  var plots = document.querySelector("figure.curves").plots;
+  document.getElementById("told").textContent = JSON.stringify(plots.map(function (one) {
+    return one.plot.axes[1]._values.filter(Boolean);
+  }));
+}, 50); });
+</script></body>
+"""
+
+
+@pytest.mark.skipif(not BROWSER, reason="no Chromium here")
+def test_a_low_panel_has_numbers_that_show_its_scale(tmp_path: Path) -> None:
+    compared = Comparison(
+        "run", "train", "x", "m", T, np.cos(T), np.cos(T) + 0.013 * np.sin(9 * T),
+        np.cos(T) + 2e-4 * np.sin(9 * T), np.ones(len(T), dtype=bool), 0.0, 2e-4,
+    )  # fmt: skip
+    figure = DrawnFigure("a.png", "a", lambda path: plot_comparisons(path, [compared]))
+    page = tmp_path / "a.html"
+    text = Report("A", (Section("B", figures=(figure,)),)).html()
+    page.write_text(text.replace("</body>", TICKS), encoding="utf-8")
+    for numbers in told_on(page, tmp_path):
+        assert len(numbers) >= 3
 
 
 def seen(run: Run, folder: Path) -> Any:

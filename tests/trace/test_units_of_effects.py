@@ -72,6 +72,13 @@ def test_sensors_and_drives_have_the_unit_of_their_signal() -> None:
     assert (unit_at(found, "sensor.theta"), unit_at(found, "drive.F")) == ("rad", "N")
 
 
+@pytest.mark.parametrize("effect", ["drive_lag", "drive_delay"])
+def test_a_lag_and_a_delay_of_a_drive_are_in_seconds(effect: str) -> None:
+    driven = "inputs: {F: {unit: N}}\n" + CART.replace("[spring]", "[spring, F]")
+    found = replace(FOUND, original=read_text(driven), units=CART_UNITS | {"F": "N"})
+    assert unit_of_effect(found, effect, "drive.F", "tau") == "s"
+
+
 @pytest.mark.parametrize(
     ("term", "unit"), [("offset", "rad"), ("drift", "rad/s"), ("delay", "s"), ("gain", "")]
 )

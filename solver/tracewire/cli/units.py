@@ -73,5 +73,5 @@ def units(
     for what, group in known.items():
         base, *others = group
         told = [base, *(f"{name} = {group[name].factor:.6g} {base}" for name in others)]
-        print_text(f"{what + ':':13}{', '.join(told)}")
+        print_text(f"{what + ':':14}{', '.join(told)}")
     print_text("Products, quotients and powers of them: kg m^2, N m s/rad, 1/s, m/s^2.")

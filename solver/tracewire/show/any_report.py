@@ -9,6 +9,7 @@ from tracewire.fit import Fit, Profile
 from tracewire.residual import Measured
 from tracewire.show.diagram_picture import diagram_figure
 from tracewire.show.document import Figure, Report, Section
+from tracewire.show.event_rows import is_tick
 from tracewire.show.figures import plot_run
 from tracewire.show.fit_report import fit_report
 from tracewire.show.summary import event_counts, events_table, run_table
@@ -49,18 +50,30 @@ def _of_run(run: Run, measured: Measured | None) -> Report:
     if run.parameters:
         sections.append(Section("The values", tables=(_values_table(run),)))
     if run.events:
-        table = events_table(run)
-        more = len(table.rows) - MOST_EVENTS
-        texts = (f"The first {MOST_EVENTS} of {len(table.rows)}.",) if more > 0 else ()
-        table = replace(table, title="", rows=table.rows[:MOST_EVENTS])
-        sections.append(Section("The events", texts, (table,)))
+        sections.append(_events(run))
     return Report(run.title or "A run", tuple(sections))
 
 
+def _events(run: Run) -> Section:
+    """The first events, without the ticks of clocks where there are others."""
+    told = [event for event in run.events if not is_tick(run, event)] or list(run.events)
+    ticks = len(run.events) - len(told)
+    texts = []
+    if len(told) > MOST_EVENTS:
+        texts.append(f"The first {MOST_EVENTS} of {len(told)}.")
+    if ticks:
+        texts.append(f"{ticks} ticks of the clocks of sampled blocks are left out.")
+    table = replace(events_table(run, told[:MOST_EVENTS]), title="")
+    return Section("The events", (" ".join(texts),) if texts else (), (table,))
+
+
 def _values_table(run: Run) -> Table:
-    """The values of parameters and start states in SI that a run was made with."""
+    """The values that a run was made with, parameters in the units of the file, starts in SI."""
     known = run.model.flat.parameters if run.model is not None else {}
     units = run.model.flat.units if run.model is not None else run.units
-    rows = [(n, shown(v), known[n].unit if n in known else "") for n, v in run.parameters.items()]
+    rows = []
+    for name, value in run.parameters.items():
+        unit, factor = known[name].users_unit if name in known else ("", 1.0)
+        rows.append((name, shown(value / factor), unit))
     rows += [(f"start of {n}", shown(value), units.get(n, "")) for n, value in run.start.items()]
-    return Table("parameters and start, in SI", ("name", "value", "unit"), tuple(rows), NUMERIC)
+    return Table("parameters and start", ("name", "value", "unit"), tuple(rows), NUMERIC)

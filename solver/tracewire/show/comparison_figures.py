@@ -39,11 +39,12 @@ MOST_COMPARISONS = 12
 MANY_POINTS = 5000
 """A vector picture holds more points than this as pixels: its file would be slow to open."""
 FAR = 4.0
-"""A model before the fit that is this many times as far away is left out of the axis' limits."""
-LEAST_LINEAR = 0.01
-"""Of the larger residual: up to this, at least, a bent axis is linear."""
+"""A model before the fit that is this many times as far away is left out of the axis' limits, and
+the residual after the fit has a strip of its own."""
 RESOLVED = 1e-9
 """What changes by less than this part of its size is drawn as constant."""
+
+ENLARGED = "the residual after, enlarged"
 
 Vector = NDArray[np.float64]
 
@@ -53,8 +54,8 @@ def plot_comparisons(path: str | Path, comparisons: Sequence[Comparison], title:
 
     Samples that do not count are pale and their time is shaded; a signal that is compared modulo a
     period is drawn on the branch of the measurement. The strip below is measured - simulated before
-    and after the fit on one scale, with +-2 sigma where sigma is known; the scale is logarithmic
-    far from 0 where the two differ much.
+    and after the fit on one linear scale, with +-2 sigma where sigma is known; where the residual
+    after the fit is much smaller, another strip shows it alone, enlarged.
     Raises OptionError: no comparison, another ending of the file; OSError.
     """
     if not comparisons:
@@ -63,12 +64,23 @@ def plot_comparisons(path: str | Path, comparisons: Sequence[Comparison], title:
     title = shortened(title, len(comparisons), MOST_COMPARISONS, "signals")
     chosen = comparisons[:MOST_COMPARISONS]
     with styled():
-        figure, axes = panels([2.3, 1.0] * len(chosen), title, sharex=False)
-        for n, compared in enumerate(chosen):
-            draw_comparison(axes[2 * n], axes[2 * n + 1], compared)
+        heights = [[2.3, 1.0, *([1.0] if differ_much(c) else [])] for c in chosen]
+        figure, axes = panels([h for each in heights for h in each], title, sharex=False)
+        left = iter(axes)
+        for compared, own in zip(chosen, heights, strict=True):
+            draw_comparison(next(left), next(left), compared)
+            if len(own) > 2:
+                _draw_enlarged(next(left), compared)
         axes[-1].set_xlabel("t [s]")
         align_ylabels(axes)
         return save(figure, path)
+
+
+def differ_much(compared: Comparison) -> bool:
+    """Whether the residual after the fit would be flat on the scale of the one before."""
+    before, after = compared.residual_before, compared.residual_after
+    old, new = (root_mean_square(x, compared.counts) for x in (before, after))
+    return bool(np.isfinite(old) and old > FAR * new > 0)
 
 
 def draw_comparison(upper: Axes, lower: Axes, compared: Comparison, now: str = "after") -> None:
@@ -133,36 +145,47 @@ def root_mean_square(values: Vector, counts: NDArray[np.bool_]) -> float:
 def _draw_strip(
     panel: Axes, compared: Comparison, before: Vector, after: Vector, many: bool
 ) -> None:
-    sigma = compared.sigma
-    if sigma is not None:
-        panel.axhspan(-2 * sigma, 2 * sigma, color=BAND, linewidth=0, zorder=0.2, label="±2 σ")
+    _draw_noise(panel, compared.sigma)
     panel.plot(compared.t, before, color=BEFORE, linewidth=0.7, rasterized=many)
     panel.plot(compared.t, after, color=AFTER, linewidth=0.8, rasterized=many)
-    panel.axhline(0.0, color=QUIET, linewidth=0.7)
-    for edge in () if sigma is None else (-2 * sigma, 2 * sigma):
-        panel.axhline(edge, color=MEASURED, linewidth=0.7, linestyle=":", zorder=3)
-    edges = (0.0,) if sigma is None else (-2.5 * sigma, 2.5 * sigma)
-    counted = after[compared.counts] if compared.counts.any() else after
-    old, new = (root_mean_square(x, compared.counts) for x in (before, after))
-    if np.isfinite(old) and old > FAR * new > 0:
-        _bend(panel, max(3 * new, 2 * (sigma or 0.0), LEAST_LINEAR * old), before)
-    else:
-        limit(panel, (counted, np.array(edges)), before)
+    shown = [_counted(after, compared), _edges(compared.sigma)]
+    if differ_much(compared):
+        shown.append(_counted(before, compared))
+    limit(panel, shown, before)
     panel.set_ylabel(with_unit("residual", compared.unit).replace(" ", "\n", 1))
-    if sigma is not None:
-        panel.legend(loc="lower right", bbox_to_anchor=(1, 0.98), borderpad=0, handlelength=1.2)
 
 
-def _bend(panel: Axes, linear: float, largest: Vector) -> None:
-    """Make y linear up to a size, and logarithmic from there to the largest value."""
-    top = max(float(np.nanmax(np.abs(largest[np.isfinite(largest)]), initial=0.0)), 2 * linear)
-    panel.set_yscale("symlog", linthresh=linear, linscale=1.0)
-    decade = 10.0 ** np.floor(np.log10(top))
-    tick = next(decade * n for n in (5, 2, 1) if decade * n <= top)
-    near = float(f"{linear:.0e}")  # what shows that the axis is bent
-    ticks = [near, tick] if near < tick / 2 else [tick]
-    panel.set_yticks([*(-at for at in reversed(ticks)), 0.0, *ticks])
-    panel.set_ylim(-1.3 * top, 1.3 * top)
+def _draw_enlarged(panel: Axes, compared: Comparison) -> None:
+    """Draw the residual after the fit alone, with a scale of its own."""
+    after = compared.residual_after
+    _draw_noise(panel, compared.sigma)
+    many = len(after) > MANY_POINTS
+    panel.plot(compared.t, after, color=AFTER, linewidth=0.8, rasterized=many)
+    limit(panel, (_counted(after, compared), _edges(compared.sigma)), np.array([]))
+    panel.set_ylabel(with_unit("after", compared.unit).replace(" ", "\n", 1))
+    panel.set_title(ENLARGED, fontsize=8.5, color="#555555", loc="left", pad=3)
+    fit_time(panel, compared.t)
+    plain_numbers(panel.yaxis)
+
+
+def _draw_noise(panel: Axes, sigma: float | None) -> None:
+    """Draw zero, and the band of +-2 sigma with its name."""
+    panel.axhline(0.0, color=QUIET, linewidth=0.7)
+    if sigma is None:
+        return
+    panel.axhspan(-2 * sigma, 2 * sigma, color=BAND, linewidth=0, zorder=0.2, label="±2 σ")
+    for edge in (-2 * sigma, 2 * sigma):
+        panel.axhline(edge, color=MEASURED, linewidth=0.7, linestyle=":", zorder=3)
+    panel.legend(loc="lower right", bbox_to_anchor=(1, 0.98), borderpad=0, handlelength=1.2)
+
+
+def _edges(sigma: float | None) -> Vector:
+    """What a strip shows at least."""
+    return np.array([0.0] if sigma is None else [-2.5 * sigma, 2.5 * sigma])
+
+
+def _counted(values: Vector, compared: Comparison) -> Vector:
+    return values[compared.counts] if compared.counts.any() else values
 
 
 def _write_titles(upper: Axes, lower: Axes, compared: Comparison, now: str) -> None:

@@ -14,7 +14,8 @@ from tracewire.show.document import Figure
 from tracewire.show.trace_law import along, depends_on, has_law, is_function, is_sure, means_over
 from tracewire.trace import Force, Found, Missing, signal_of, unit_at
 
-PLAIN = "The blocks and wires of the diagram; blue names are measured"
+PLAIN = "The blocks and wires of the diagram"
+MEASURED = "blue names are measured"
 ADDED = "green is what the trace added"
 LACKING = "amber is where something is missing that no effect explains"
 NEEDED = "the plot below a sum is what the data need there"
@@ -28,7 +29,8 @@ Vector = NDArray[np.float64]
 
 def diagram_figure(diagram: Diagram) -> Figure:
     """The figure that shows a diagram."""
-    return Figure("diagram.svg", PLAIN, lambda path: draw(diagram, measured=True).write(path))
+    caption = f"{PLAIN}; {MEASURED}" if diagram.measured else PLAIN
+    return Figure("diagram.svg", caption, lambda path: draw(diagram, measured=True).write(path))
 
 
 def traced_figure(found: Found) -> Figure:
@@ -44,7 +46,7 @@ def caption_of(found: Found) -> str:
     """What the marks in the picture of a trace mean, those alone that it has."""
     plots = has_law(found) or (found.missing is not None and len(found.missing.grid) in (1, 2))
     marks = ((bool(found.effects), ADDED), (found.missing is not None, LACKING), (plots, NEEDED))
-    *first, last = [PLAIN, *(words for there, words in marks if there)]
+    *first, last = [f"{PLAIN}; {MEASURED}", *(words for there, words in marks if there)]
     return f"{', '.join(first)}, and {last}" if first else last
 
 

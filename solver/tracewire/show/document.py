@@ -28,7 +28,8 @@ caption{text-align:left;font-weight:bold;padding:.25rem 0}
 table{font-size:.94rem}td.number{white-space:nowrap}
 td.number,th.number{text-align:right;font-variant-numeric:tabular-nums}
 li{margin:.25rem 0}
-pre{background:#f5f5f5;padding:.8rem;overflow-x:auto}"""
+pre{background:#f5f5f5;padding:.8rem;overflow-x:auto;white-space:pre-wrap;overflow-wrap:anywhere}
+@media(max-width:56rem){table{font-size:.82rem}td,th{padding:.2rem .35rem}}"""
 
 MARKS = re.compile(r"([\\`*]|<(?=[\w/!?])|(?<!\w)_|_(?!\w))")
 """What Markdown would take for emphasis, code or HTML."""

@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
 from tracewire.show.sticking import Interval, joined, stick_intervals
-from tracewire.show.style import MARK, QUIET, STICK, cut
+from tracewire.show.style import EDGE, MARK, QUIET, STICK, cut
 from tracewire.solve import Event, Run
 
 if TYPE_CHECKING:
@@ -15,11 +15,14 @@ if TYPE_CHECKING:
 MOST_ROWS = 8
 STRONG = ("impact", "reset", "rest")
 """Events that change a state, or end a motion."""
-WEAK = ("crossing", "scheduled", "transition")
+TICK = "tick"
+"""A reset by the clock of a sampled block: what that block does all the time."""
+WEAK = ("crossing", "scheduled", "transition", TICK)
+CLOCK = "clock of "
+"""How the guard of a clock begins."""
 WIDTH = 700
-"""Marks nearer to each other than this part of the span cannot be told apart: they are a bar."""
-SHORTEST = 0.006
-"""Of the span: a bar that is shorter is drawn so long, or it would look like a mark."""
+"""Marks nearer to each other than this part of the span cannot be told apart: they are a bar, from
+the first mark to the last one, which are drawn, as a bar can be thinner than a pixel."""
 DENSE = 0.45
 """The opacity of such a bar, which would be the loudest part of the figure."""
 
@@ -30,6 +33,12 @@ def event_rows(run: Run) -> list[str]:
     if len(names) <= MOST_ROWS:
         return names
     return [*names[: MOST_ROWS - 1], f"{len(names) - MOST_ROWS + 1} others"]
+
+
+def is_tick(run: Run, event: Event) -> bool:
+    """Whether an event is a tick of the clock of a block, and not one that the diagram declares."""
+    known = run.model is None or event.block in run.model.flat.blocks
+    return event.kind == "reset" and event.guard.startswith(CLOCK) and known
 
 
 def jump_times(run: Run, signals: Collection[str]) -> list[float]:
@@ -49,8 +58,9 @@ def draw_events(panel: Axes, run: Run, rows: Sequence[str], shaded: bool = False
     last = len(rows) - 1
     for block, intervals in stick_intervals(run).items():
         at = position.get(block, last)
-        seen = [(begin, max(end, begin + SHORTEST * _span(run))) for begin, end in intervals]
-        _draw_bars(panel, seen, at, 0.3, facecolor=STICK, edgecolor=QUIET, linewidth=0.8)
+        # as long as it sticks; the edge is seen where a bar is thinner than a pixel
+        _draw_bars(panel, intervals, at, 0.3, facecolor=STICK, edgecolor=EDGE, linewidth=0.9)
+    kinds_of = [TICK if is_tick(run, event) else event.kind for event in run.events]
     counts = [0] * len(rows)
     for event in run.events:
         counts[position.get(event.block, last)] += 1
@@ -59,21 +69,21 @@ def draw_events(panel: Axes, run: Run, rows: Sequence[str], shaded: bool = False
         for row in range(len(rows)):
             times = [
                 event.time
-                for event in run.events
-                if event.kind in kinds and position.get(event.block, last) == row
+                for event, kind in zip(run.events, kinds_of, strict=True)
+                if kind in kinds and position.get(event.block, last) == row
             ]
             groups = joined(((time, time) for time in times), apart)
-            single = [begin for begin, end in groups if begin == end]
-            panel.vlines(single, row - half, row + half, color=color, linewidth=0.9)
             many = [(begin, end) for begin, end in groups if end > begin]
             _draw_bars(panel, many, row, half, facecolor=color, alpha=DENSE, linewidth=0)
+            marks = list(dict.fromkeys(time for ends in groups for time in ends))
+            panel.vlines(marks, row - half, row + half, color=color, linewidth=0.9)
     labels = (f"{cut(name)} ({count})" for name, count in zip(rows, counts, strict=True))
     panel.set_yticks(range(len(rows)), list(labels))
     panel.set_ylim(last + 0.6, -0.6)
     panel.grid(False)
     panel.spines["left"].set_visible(False)
     panel.tick_params(axis="y", length=0)
-    legend = _legend(run.events, shaded)
+    legend = _legend(set(kinds_of), shaded)
     panel.set_title(legend, fontsize=8.5, color="#555555", loc="left", pad=3)
 
 
@@ -89,10 +99,9 @@ def _draw_bars(
     panel.broken_barh(spans, (row - half, 2 * half), **look)  # type: ignore[arg-type]
 
 
-def _legend(events: Sequence[Event], shaded: bool) -> str:
-    kinds = {event.kind for event in events}
+def _legend(kinds: Collection[str], shaded: bool) -> str:
     parts = []
-    if kinds & {"stick", "slip"}:
+    if "stick" in kinds or "slip" in kinds:
         parts.append("bar and shade: sticks" if shaded else "bar: sticks")
     if strong := [kind for kind in STRONG if kind in kinds]:
         parts.append(f"long, red: {', '.join(strong)}")

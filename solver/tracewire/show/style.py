@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,12 +24,14 @@ ENDINGS = (".png", ".svg", ".pdf")
 WIDTH = 9.0
 NOTHING = 1e-6
 """An error of less than this part of the noise is 0."""
+PIECE = 10_000
+"""Points of a curve: a piece of one that is too long to be drawn as a whole."""
 
 # told apart with every kind of colour vision (Okabe and Ito, 2008)
 LINES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
 MEASURED, BEFORE, AFTER = "#4D4D4D", "#E69F00", "#0072B2"
 MARK, QUIET = "#B22222", "#8C8C8C"
-STICK = "#D9D4C7"
+STICK, EDGE = "#D9D4C7", "#A39A7E"
 BAND, UNCOUNTED = "#E3EEF6", "#F1F1F1"
 USES = {"train": "#CFE3F2", "gate": "#E4DAF0", "validate": "#D5EBDD"}
 
@@ -55,7 +57,7 @@ STYLE: dict[Any, Any] = {
     "axes.formatter.limits": (-3, 4),
     "text.parse_math": False,  # a `$` in a user's title is a `$`
     "svg.hashsalt": "tracewire",  # the same run gives the same file
-    "agg.path.chunksize": 10_000,
+    "agg.path.chunksize": 0,  # a curve in pieces has a hole between each two
 }
 
 _SAVED: ContextVar[list[Figure] | None] = ContextVar("_SAVED", default=None)
@@ -107,11 +109,22 @@ def save(figure: Figure, path: str | Path) -> Path:
     dated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
     if _WRITING.get():
         with replacing(path) as file:
-            figure.savefig(file, format=path.suffix[1:], metadata=dated.get(path.suffix))
+            _write(figure, file, format=path.suffix[1:], metadata=dated.get(path.suffix))
     saved = _SAVED.get()
     if saved is not None:
         saved.append(figure)
     return path
+
+
+def _write(figure: Figure, file: IO[bytes], **given: Any) -> None:
+    """Write a figure to a file, its curves in pieces where one is too long for the renderer."""
+    import matplotlib
+
+    try:
+        figure.savefig(file, **given)
+    except OverflowError:
+        with matplotlib.rc_context({"agg.path.chunksize": PIECE}):
+            figure.savefig(file, **given)
 
 
 def drawn(draw: Callable[[Path], object]) -> Figure:

@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 from tracewire.compile import Model
 from tracewire.diagram import Diagram
 from tracewire.show.table import Table, shown
+from tracewire.show.tidy import tidied
 
 if TYPE_CHECKING:
     from tracewire.residual import Measured
-    from tracewire.solve import Run
+    from tracewire.solve import Event, Run
 
 
 RUNAWAY = 1e9
@@ -226,17 +227,17 @@ def run_table(run: Run) -> Table:
     return Table(run.title, header, rows, frozenset({2, 3, 4, 5}))
 
 
-def events_table(run: Run) -> Table:
-    """The log of events, with the states that jumped."""
+def events_table(run: Run, events: Sequence[Event] | None = None) -> Table:
+    """The log of events, all unless some are given, with the states that jumped."""
     rows = []
-    for event in run.events:
+    for event in run.events if events is None else events:
         jumps = [
             f"{name}: {shown(event.before[name] / run.look(name).factor)}"
             f" -> {shown(after / run.look(name).factor)}"
             for name, after in event.after.items()
             if after != event.before[name]
         ]
-        where = f"{event.guard} {event.direction}".strip()
+        where = f"{tidied(event.guard)} {event.direction}".strip()
         rows.append((f"{event.time:.9g}", event.kind, event.block, where, ", ".join(jumps)))
     return Table(
         "events", ("t [s]", "kind", "block", "guard", "jumps"), tuple(rows), frozenset({0})

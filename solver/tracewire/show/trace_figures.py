@@ -27,6 +27,7 @@ from tracewire.show.style import (
     shortened,
     styled,
 )
+from tracewire.show.trace_steps import compares
 from tracewire.trace import CandidateScore, Curve, Found, users_unit
 
 if TYPE_CHECKING:
@@ -37,20 +38,29 @@ Vector = NDArray[np.float64]
 MOST_CURVES = 8
 MOST_CANDIDATES = 10
 UNLIKE = 8.0
-"""Residuals that differ by more than this are drawn on an axis that is logarithmic far from 0."""
-LINEAR = 3.0
-"""Up to this many sigma that axis is linear."""
+"""Where the largest residuals differ by more than this, that after has a panel of its own below."""
 
 
 def plot_residuals(found: Found, path: Path) -> Path:
-    """Residuals in units of the noise within windows, before and after, with the windows' edges."""
+    """Residuals in units of the noise within windows, before and after, with the windows' edges.
+
+    Both are on one linear scale. Where that after is much smaller, it is drawn once more below,
+    enlarged.
+    """
     chosen = [c for c in found.curves if len(c.windowed_before) == len(c.t)]
     title = shortened("Residual within windows", len(chosen), MOST_CURVES, "signals")
     chosen = chosen[:MOST_CURVES]
     with styled():
-        figure, axes = panels([1.9] * len(chosen), title, sharex=False)
-        for panel, curve in zip(axes, chosen, strict=True):
-            _draw_residual(panel, curve, bool(found.effects))
+        changed = bool(found.effects)
+        drawn = [
+            (curve, alone)
+            for curve in chosen
+            for alone in ((False, True) if changed and _unlike(curve) else (False,))
+        ]
+        heights = [1.4 if alone else 1.9 for _, alone in drawn]
+        figure, axes = panels(heights, title, sharex=False)
+        for panel, (curve, alone) in zip(axes, drawn, strict=True):
+            _draw_residual(panel, curve, changed, alone)
         axes[-1].set_xlabel("t [s]")
         align_ylabels(axes)
         return save(figure, path)
@@ -90,15 +100,30 @@ def plot_candidates(found: Found, path: Path) -> Path:
         )
         for (left, right), (number, step) in zip(grid, steps, strict=True):
             _draw_candidates(left, right, step.tried[:MOST_CANDIDATES])
+            if compares(step):
+                left.set_xlabel("gain of prediction on held-out blocks")
+                right.set_visible(False)  # no part of a model is masked
             text = f"step {number}: {step.words}"
             left.set_title(cut(text, 100), loc="left", fontsize=9.5)
         _explain_candidates(grid[0, 0])
-        grid[-1, 0].set_xlabel("gain: half the fall of BIC")
-        grid[-1, 1].set_xlabel("masked [%]")
+        searched = [n for n, (_, step) in enumerate(steps) if not compares(step)]
+        if searched:
+            grid[searched[-1], 0].set_xlabel("gain: half the fall of BIC")
+            grid[searched[-1], 1].set_xlabel("masked [%]")
         return save(figure, path)
 
 
-def _draw_residual(panel: Axes, curve: Curve, changed: bool) -> None:
+def _unlike(curve: Curve) -> bool:
+    """Whether the residual after would be flat on the scale of the one before."""
+    before, after = (
+        float(np.nanmax(np.abs(x), initial=0.0))
+        for x in (curve.windowed_before, curve.windowed_after)
+    )
+    return before > UNLIKE * max(after, 1.0)
+
+
+def _draw_residual(panel: Axes, curve: Curve, changed: bool, alone: bool) -> None:
+    """Draw the residual within windows; `alone`: that after, without the one before."""
     before, after = curve.windowed_before, curve.windowed_after
     for begin, end, use in curve.spans or ((float(curve.t[0]), float(curve.t[-1]), curve.use),):
         color = USES.get(use, UNCOUNTED)
@@ -107,7 +132,8 @@ def _draw_residual(panel: Axes, curve: Curve, changed: bool) -> None:
         panel.axvline(edge, color="white", linewidth=1.3, zorder=0.5)
     panel.axhspan(-2, 2, color="white", alpha=0.75, linewidth=0, zorder=0.3)
     if changed:
-        panel.plot(curve.t, before, color=BEFORE, linewidth=0.9, label="before")
+        if not alone:
+            panel.plot(curve.t, before, color=BEFORE, linewidth=0.9, label="before")
         panel.plot(curve.t, after, color=AFTER, linewidth=0.8, label="after")
     else:
         panel.plot(curve.t, after, color=AFTER, linewidth=0.8, label="declared model")
@@ -115,17 +141,11 @@ def _draw_residual(panel: Axes, curve: Curve, changed: bool) -> None:
     for level in (-2, 2):
         label = "±2 σ" if level > 0 else None
         panel.axhline(level, color=MEASURED, linewidth=0.7, linestyle=":", zorder=3, label=label)
-    largest = [float(np.nanmax(np.abs(x), initial=0.0)) for x in (before, after)]
-    if changed and largest[0] > UNLIKE * max(largest[1], 1.0):
-        panel.set_yscale("symlog", linthresh=LINEAR, linscale=1.2)
-        panel.yaxis.set_major_formatter(lambda y, _: f"{y:g}".replace("-", "−"))
     panel.set_ylabel("residual [σ]")
     words = f"rms {_rms(before):.3g} σ before, {_rms(after):.3g} σ after"
     told = words if changed else f"rms {_rms(after):.3g} σ"
-    panel.set_title(
-        f"{curve.use}: {cut(curve.series, 40)}, {cut(curve.signal)}: {told}",
-        loc="left", fontsize=9.5,
-    )  # fmt: skip
+    title = f"{curve.use}: {cut(curve.series, 40)}, {cut(curve.signal)}: {told}"
+    panel.set_title("the residual after, enlarged" if alone else title, loc="left", fontsize=9.5)
     fit_time(panel, curve.t)
     panel.grid(False, axis="x")
     panel.legend(loc="lower right", bbox_to_anchor=(1, 0.98), ncols=3, borderpad=0)

@@ -21,8 +21,10 @@ from tracewire.show.trace_maps import (
     plot_where,
 )
 from tracewire.show.trace_shares import plot_held_out
+from tracewire.show.trace_steps import compares, decided_words
 from tracewire.show.trace_summary import details_of, headline_of
 from tracewire.show.trace_tables import (
+    compared_table,
     effects_table,
     errors_table,
     experiments_table,
@@ -35,7 +37,7 @@ from tracewire.show.trace_tables import (
     where_table,
 )
 from tracewire.show.trace_text import answer_lines, remarks_of, step_lines
-from tracewire.show.trace_words import stood_in
+from tracewire.show.trace_words import both_of, stood_in, untried
 from tracewire.trace import Found
 
 ERRORS = (
@@ -47,7 +49,9 @@ ERRORS = (
 EFFECTS = (
     "The interval holds the value with 95 % probability if the noise is white. 'masked' is the "
     "part of the effect that the declared parameters imitate when they are fitted. 'gain' is half "
-    "the fall of BIC, a measure of the fit that charges for each further number; 5 is strong."
+    "the fall of BIC, a measure of the fit that charges for each further number; 5 is strong. It "
+    "is that of the step that found the effect, and is left out where the effect was found beside "
+    "one that is not named in the end."
 )
 SHARES = (
     "Held-out blocks of time were predicted by models that were fitted without them. The excess "
@@ -57,24 +61,32 @@ SHARES = (
     "them."
 )
 REMAINDER = (
-    "This is what the diagram with its effects still misses on data that no fit saw. The floor is "
-    "what a smooth function of position, rate and direction would leave."
+    "This is what the diagram with its effects still misses on held-out blocks of time, each of "
+    "which was predicted by a model that was fitted without it. The errors of free runs over whole "
+    "series are below. The floor is what a smooth function of position, rate and direction would "
+    "leave."
 )
 STEPS = (
     "In each step the screen estimates, from one linearisation, the gain of every effect of the "
     "library at every place of the diagram. A place is a sum of forces, a drive or a sensor. The "
     "best effects are put into the diagram and all free parameters are fitted again. An effect is "
-    "accepted only if it reduces the error on windows that the fit did not see: the gate."
+    "accepted only if it reduces the error on windows that the fit did not see: the gate. "
+    "A step that compares models decides in the end: it fits them to longer windows, and takes the "
+    "one of fewest numbers that predicts held-out blocks of time as well as the best. Its gain is "
+    "another one than that of the steps before."
 )
 MOVED = (
     "A declared parameter that moves by more than two standard errors had absorbed part of the "
     "missing effect: without the effect its value is biased."
 )
 TIES = (
-    "Two effects whose outputs on these data are nearly the same cannot be told apart by any "
-    "analysis of these data. Only another experiment can. The likeness is their correlation in "
-    "the screen: 1 is the same. A pair that is outlined in the map is no tie where a refit on "
-    "longer windows tells the two apart."
+    "The map shows how alike the outputs of two effects are on these data. The likeness is their "
+    "correlation in the screen: 1 is the same. A pair that is outlined is no tie where a refit on "
+    "longer windows tells the two apart. Of a tie only another experiment can tell which it is."
+)
+TOGETHER = (
+    "The effects that are named together may be alike, too: they are named because both together "
+    "predict held-out blocks better than each of them alone."
 )
 POWER = (
     "A coefficient of this size is five standard errors: these data would have shown it. A "
@@ -95,6 +107,8 @@ GLOSSARY = (
     "s2: squared residual per degree of freedom in units of the noise; 1 is at the noise.",
     "gain: half the fall of BIC, a measure of the fit that charges for each further parameter; 5 "
     "is strong, 0 is nothing.",
+    "gain of prediction: the mean fall of the logarithm of the error on held-out blocks, times the "
+    "number of blocks; 0 is the declared model.",
     "weight: the share of an effect among those that were tried beside it, from their BIC.",
     "masked: the part of an effect's signature that the declared parameters imitate when they are "
     "fitted; at 100 % it could not be seen at all.",
@@ -164,10 +178,10 @@ def _errors(found: Found) -> Section | None:
     windowed = any(len(c.windowed_before) == len(c.t) for c in found.curves)
     figures = (
         *_figure(bool(found.curves), found, plot_free_runs, "free_runs.png",
-                 "Free runs before and after, against the measurement"),
+                 "Free runs before and after, against the measurement; the band is ±2 σ"),
         *_figure(windowed, found, plot_residuals, "residuals.png",
-                 "The residual within windows in units of the noise; a white line is where a "
-                 "window begins"),
+                 "The residual within windows in units of the noise, on linear scales; a white "
+                 "line is where a window begins, the dotted lines are ±2 σ"),
     )  # fmt: skip
     return Section("How well it predicts", (ERRORS,), (errors_table(found),), figures=figures)
 
@@ -205,8 +219,13 @@ def _open(found: Found) -> Section | None:
     )  # fmt: skip
     if not tables and not figures:
         return None
+    left = untried(found) & {f"{p.name} @ {p.place}" for p in found.power}
+    were = "was" if len(left) == 1 else "were"
     words = [TIES] if figures or any(e.ties for e in found.effects) else []
+    if len(found.effects) > 1 and any(map(compares, found.steps)):
+        words += [TOGETHER]
     words += [POWER] if found.power else []
+    words += [f"Not among them: {both_of(sorted(left))}, which {were} not tried."] if left else []
     points = tuple(experiment_words(found, e) for e in found.experiments)
     return Section("What these data leave open", tuple(words), tables, "", figures, points)
 
@@ -217,8 +236,9 @@ def _way(found: Found) -> Section:
         bool(table.rows), found, plot_candidates, "candidates.png",
         "What each effect promised and gave, and how much of it the declared parameters imitate",
     )  # fmt: skip
-    tables = (table,) if table.rows else ()
-    return Section("How it was found", (STEPS,), tables, "\n".join(step_lines(found)), figures)
+    tables = tuple(t for t in (table, compared_table(found)) if t.rows)
+    words = tuple(text for text in (STEPS, decided_words(found)) if text)
+    return Section("How it was found", words, tables, "\n".join(step_lines(found)), figures)
 
 
 def _change(found: Found) -> Section | None:

@@ -250,7 +250,10 @@ def _remains(found: Found) -> list[str]:
         parts.append(f"{size} of {left.signal} ({share})")
     if not parts:
         return []
-    text = f"On data that no fit saw, these residuals remain: {both_of(parts)}."
+    text = (
+        "On held-out blocks of time, each predicted by a model that was fitted without it, these "
+        f"residuals remain: {both_of(parts)}."
+    )
     most = max(found.remainder_depends, key=lambda d: d.share, default=None)
     if most is not None and most.share > 0:
         variables = variables_words(found, most.place, most.variables)

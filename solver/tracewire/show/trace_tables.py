@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from tracewire.show.table import Table, shown
 from tracewire.show.trace_experiments import settings_words
+from tracewire.show.trace_steps import compares, own_gain
 from tracewire.show.trace_words import (
     common_powers,
     percent,
@@ -45,6 +46,7 @@ def trace_tables(found: Found) -> tuple[Table, ...]:
         remainder_where_table(found, MOST_WHERE),
         experiments_table(found),
         tried_table(found, screened=False),
+        compared_table(found),
         *([power_table(found, MOST_POWERS)] if found.verdict == "null" else []),
     )
     return tuple(table for table in tables if table.rows)
@@ -55,7 +57,7 @@ def effects_table(found: Found) -> Table:
     rows = []
     for effect in found.effects:
         first = effect.name, effect.place
-        last = percent(effect.masked), _number(effect.gain, ".4g")
+        last = percent(effect.masked), _number(own_gain(found, effect), ".4g")
         for name, value in effect.params.items():
             low, high = effect.intervals.get(name, (math.nan, math.nan))
             known = math.isfinite(low) and math.isfinite(high)
@@ -70,14 +72,14 @@ def effects_table(found: Found) -> Table:
 
 
 def remainder_table(found: Found) -> Table:
-    """What is left of each signal on data that no fit saw, in its unit, in sigma, as a share."""
+    """What is left of each signal on held-out blocks, in its unit, in sigma, as a share."""
     rows = tuple(
         (left.signal, size, unit, _number(left.in_sigma, ".3g"), percent(left.share), floor)
         for left in found.remainder
         for size, floor, unit in [remainder_numbers(found, left)]
     )
     header = ("signal", "rms left", "unit", "in σ", "share of the error before", "floor")
-    return Table("what is left on unseen data", header, rows, frozenset({1, 3, 4, 5}))
+    return Table("what is left on held-out blocks", header, rows, frozenset({1, 3, 4, 5}))
 
 
 def ties_table(found: Found) -> Table:
@@ -136,20 +138,35 @@ def tried_table(found: Found, screened: bool = True) -> Table:
     """What was tried in each step, the best first; `screened`: also what was not refitted."""
     rows = []
     for number, step in enumerate(found.steps, start=1):
+        if compares(step):
+            continue
         refitted = [row for row in step.tried if math.isfinite(row.gain)]
         rows += [_tried(str(number), row) for row in (step.tried if screened else refitted)]
     header = ("step", "effect", "promised", "gain", "weight", "masked", "s2", "")
     return Table("what was tried", header, tuple(rows), frozenset({0, 2, 3, 4, 5, 6}))
 
 
+def compared_table(found: Found) -> Table:
+    """The models that were compared by what they predict, the best first."""
+    rows = tuple(
+        (str(number), row.effects, _number(row.gain, ".4g"), _number(row.s2, ".4g"), row.remark)
+        for number, step in enumerate(found.steps, start=1)
+        if compares(step)
+        for row in step.tried
+    )
+    header = ("step", "model", "gain of prediction", "s2", "")
+    return Table("models compared by what they predict", header, rows, frozenset({0, 2, 3}))
+
+
 def power_table(found: Found, most: int = ALL) -> Table:
     """The smallest coefficient of each effect that these data would have shown."""
+    powers = common_powers(found)
     rows = [
         (p.name, p.place, coefficient_of(p), _number(p.smallest, ".3g"), unit_of_power(found, p))
-        for p in common_powers(found)[:most]
+        for p in powers[:most]
     ]
-    if len(found.power) > most:
-        rows.append((f"and {len(found.power) - most} more", "", "", "", ""))
+    if len(powers) > most:
+        rows.append((f"and {len(powers) - most} more", "", "", "", ""))
     header = ("effect", "place", "coefficient", "smallest that these data would show", "unit")
     return Table("what would have been seen", header, tuple(rows), frozenset({3}))
 

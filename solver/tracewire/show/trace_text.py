@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from tracewire.show.trace_experiments import experiment_words
+from tracewire.show.trace_steps import decided_words
 from tracewire.show.trace_summary import noisy_words, ties_words
 from tracewire.show.trace_words import (
     chance_words,
@@ -72,7 +73,8 @@ def step_lines(found: Found) -> tuple[str, ...]:
     )
     for number, step in enumerate(found.steps, start=1):
         lines += _step(number, step)
-    return tuple(lines)
+    decided = decided_words(found)
+    return (*lines, decided) if decided else tuple(lines)
 
 
 def _verdict(found: Found) -> str:
@@ -143,7 +145,7 @@ def _remainder_lines(found: Found) -> list[str]:
         size, floor, unit = remainder_numbers(found, left)
         least = f"; a smooth map would leave {floor} {unit}".rstrip() if floor else ""
         lines.append(
-            f"  left on unseen data: {size} {unit}".rstrip()
+            f"  left on held-out blocks: {size} {unit}".rstrip()
             + f" of {left.signal} ({left.in_sigma:.3g} σ, {percent(left.share)} of the error "
             f"before{least})"
         )

@@ -37,6 +37,7 @@ NEARLY_ALL = 0.995
 """From here on a share would round to 100 %, which it is not."""
 WORTH_TELLING = 0.01
 """A parameter that moved by less than this part of itself is not worth a word."""
+UNTRIED = re.compile(r"(\S+ @ \S+) was not tried: ")
 MOST_DIGITS = 10
 PLAIN = 1e-4, 1e6
 """Numbers between these are written without an exponent."""
@@ -100,6 +101,8 @@ def share_words(explained: Explained) -> str:
     low, high = (f"{100 * end:.0f}" for end in (explained.low, explained.high))
     if low == high:
         low, high = (f"{100 * end:.2f}" for end in (explained.low, explained.high))
+    if low == high:
+        return "> 99.99 %" if low == "100.00" else f"{low} %"
     return f"{percent(explained.share)} (95 % interval: {low} to {high} %)"
 
 
@@ -190,9 +193,19 @@ def variables_words(found: Found, place: str, variables: Sequence[str]) -> str:
 
 
 def common_powers(found: Found) -> list[Power]:
-    """What these data would have shown, the effects first that a reader is most likely to know."""
+    """What these data would have shown, the effects first that a reader is most likely to know.
+
+    What was not tried is left out.
+    """
     order = {name: n for n, name in enumerate(COMMON)}
-    return sorted(found.power, key=lambda p: order.get(p.name, len(order)))
+    left_out = untried(found)
+    tried = (p for p in found.power if f"{p.name} @ {p.place}" not in left_out)
+    return sorted(tried, key=lambda p: order.get(p.name, len(order)))
+
+
+def untried(found: Found) -> set[str]:
+    """The effects that were not tried by themselves, as their models do not run."""
+    return {hit[1] for text in found.words if (hit := UNTRIED.match(text))}
 
 
 def few_of(texts: Sequence[str], word: str = "and", most: int = MOST_TOLD) -> str:

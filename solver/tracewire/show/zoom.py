@@ -74,12 +74,14 @@ class NotOverTime(Exception):
 
 
 def _panel(axes: Axes, keep: Any) -> dict[str, Any]:
-    if axes.images or axes.get_xscale() != "linear":
+    if axes.images or {axes.get_xscale(), axes.get_yscale()} != {"linear"}:
         raise NotOverTime
     lines = [line for line in axes.lines if _placed(line, axes) == WHOLE]
     texts = [*(text.get_text() for text in axes.texts), axes.get_title(loc="left")]
     shades = [str(patch.get_label()) for patch in axes.patches]
     texts += [f"shade: {label}" for label in shades if label and not label.startswith("_")]
+    across = {str(line.get_label()) for line in axes.lines if _placed(line, axes) == ACROSS}
+    texts += [f"dotted: {label}" for label in sorted(across) if not label.startswith("_")]
     bottom, top = axes.get_ylim()
     data: dict[str, Any] = {
         "title": "   ".join(text.strip() for text in texts if text.strip()),
@@ -102,11 +104,6 @@ def _panel(axes: Axes, keep: Any) -> dict[str, Any]:
         "bands": _bands(axes),
         **_marks(axes),
     }
-    if axes.get_yscale() == "symlog":
-        data["bend"] = float(axes.yaxis.get_transform().linthresh)  # type: ignore[attr-defined]
-        data["ticks"] = [float(tick) for tick in axes.get_yticks()]
-    elif axes.get_yscale() != "linear":
-        raise NotOverTime
     if not lines:  # rows with names
         data["rows"] = [text.get_text() for text in axes.get_yticklabels()]
     return data

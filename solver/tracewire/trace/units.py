@@ -59,6 +59,9 @@ def unit_of_effect(found: Found, effect: str, place: str, parameter: str) -> str
     kinds = {kind.name: kind for kind in effects_of(found.original)}
     if known is None or effect not in kinds:
         return ""
+    block = kinds[effect].block
+    if any(p.name == parameter and p.unit == "s" for p in (block.parameters if block else ())):
+        return "s"  # as of a lag or a delay
     exponents = _exponents(kinds[effect]).get(parameter)
     units = _units_of(found, known)
     if exponents is None or any(e and not u for e, u in zip(exponents, units, strict=True)):

@@ -73,6 +73,13 @@ def test_a_shape_on_its_bound_says_that_the_record_ends_there() -> None:
     )
 
 
+def test_the_smoothing_of_a_law_at_zero_is_the_exact_law() -> None:
+    low = AtBound("stribeck.width", "shape", 0.0, 0.0, 1.0, False, "m/s", "stribeck @ net")
+    assert low.exact
+    assert not replace(low, name="stribeck.speed").exact
+    assert not replace(low, value=1.0, upper=True).exact
+
+
 def test_a_coefficient_at_zero_is_an_effect_that_is_not_used() -> None:
     one = AtBound("coulomb.level", "coefficient", 0.0, 0.0, 10.0, False, "", "coulomb @ force")
     assert one.absent

@@ -2,7 +2,7 @@
 (function () {
   "use strict";
   var LABEL = 22;  // pixels
-  var ROOM = 12;   // pixels of a number at an axis
+  var APART = 18;  // pixels between two numbers at an upright axis: a low panel has some, too
   var HINT = "Drag over a panel to zoom, double-click to see all. Click on a name to hide its curve.";
 
   function numbers(text) {
@@ -15,32 +15,9 @@
     return found;
   }
 
-  // round numbers from the least to the most, three to seven of them
-  function round(least, most) {
-    var unit = Math.pow(10, Math.floor(Math.log10((most - least) / 3)));
-    var step = [1, 2, 5].map(function (n) { return n * unit; }).filter(function (wide) {
-      return (most - least) / wide <= 7;
-    })[0] || 10 * unit;
-    var found = [];
-    for (var n = Math.ceil(least / step); n * step <= most; n++) found.push(n * step);
-    return found;
-  }
-
-  // the numbers at an axis that have room, zero and then the outer ones before the others
-  function apart(u, splits) {
-    var shown = [];
-    splits.slice().sort(function (a, b) {
-      return a === 0 ? -1 : b === 0 ? 1 : Math.abs(b) - Math.abs(a);
-    }).forEach(function (v) {
-      var at = u.valToPos(v, "y");
-      if (shown.every(function (w) { return Math.abs(at - u.valToPos(w, "y")) >= ROOM; })) shown.push(v);
-    });
-    return splits.map(function (v) { return shown.indexOf(v) < 0 ? null : v; });
-  }
-
   // without the commas of a locale
   function plain(u, splits) {
-    return splits.map(function (v) { return v === null ? "" : String(+v.toPrecision(10)); });
+    return splits.map(function (v) { return String(+v.toPrecision(10)); });
   }
 
   function faded(color, alpha) {
@@ -66,21 +43,34 @@
     context.setLineDash([]);
   }
 
-  // bands, levels, instants, marks and bars: what stands behind the curves
-  function backdrop(panel) {
+  // draws inside of the box of a panel; `paint` gets the places of a time and of a value in pixels
+  function inside(paint) {
     return function (u) {
-      var c = u.ctx, box = u.bbox, right = box.left + box.width, low = box.top + box.height;
-      var x = function (v) { return u.valToPos(v, "x", true); };
-      var y = function (v) { return u.valToPos(v, "y", true); };
-      c.save();
-      c.beginPath();
-      c.rect(box.left, box.top, box.width, box.height);
-      c.clip();
+      u.ctx.save();
+      u.ctx.beginPath();
+      u.ctx.rect(u.bbox.left, u.bbox.top, u.bbox.width, u.bbox.height);
+      u.ctx.clip();
+      paint(u.ctx, u.bbox, function (v) { return u.valToPos(v, "x", true); },
+            function (v) { return u.valToPos(v, "y", true); });
+      u.ctx.restore();
+    };
+  }
+
+  // what stands behind the grid
+  function bands(panel) {
+    return inside(function (c, box, x, y) {
       panel.bands.forEach(function (b) {
         c.fillStyle = faded(b.color, b.alpha);
         if (b.upright) c.fillRect(x(b.from), box.top, Math.max(x(b.to) - x(b.from), 1), box.height);
         else c.fillRect(box.left, y(b.to), box.width, y(b.from) - y(b.to));
       });
+    });
+  }
+
+  // what stands on the grid, behind the curves
+  function marks(panel) {
+    return inside(function (c, box, x, y) {
+      var right = box.left + box.width, low = box.top + box.height;
       panel.levels.forEach(function (l) { line(c, l, box.left, y(l.at), right, y(l.at)); });
       panel.instants.forEach(function (i) { line(c, i, x(i.at), box.top, x(i.at), low); });
       panel.bars.forEach(function (group) {
@@ -93,8 +83,7 @@
       panel.marks.forEach(function (group) {
         group.at.forEach(function (m) { line(c, group, x(m[0]), y(m[1]), x(m[0]), y(m[2])); });
       });
-      c.restore();
-    };
+    });
   }
 
   function options(panel, last, gutter, key) {
@@ -108,15 +97,7 @@
       return uPlot.rangeNum(least, most, 0.1, true);
     };
     var yScale = {range: range, dir: panel.down ? -1 : 1};
-    if (panel.bend) { yScale.distr = 4; yScale.asinh = panel.bend; }
-    var yAxis = {size: gutter, values: plain, stroke: "#444", grid: {stroke: "#e6e6e6", width: 1, show: !rows}};
-    if (panel.ticks) {
-      yAxis.splits = function (u, axis, least, most) {
-        return whole(u) ? panel.ticks : round(least, most);
-      };
-      yAxis.grid.filter = function (u, splits) { return splits; };
-      yAxis.filter = apart;
-    }
+    var yAxis = {size: gutter, space: APART, values: plain, stroke: "#444", grid: {stroke: "#e6e6e6", width: 1, show: !rows}};
     if (rows) {
       yAxis.size = gutter + LABEL;
       yAxis.splits = function () { return rows.map(function (_, n) { return n; }); };
@@ -140,7 +121,7 @@
         yAxis
       ],
       series: [{label: "t", value: function (u, v) { return v === null ? "" : v.toPrecision(6); }}],
-      hooks: {drawClear: [backdrop(panel)]}
+      hooks: {drawClear: [bands(panel)], drawAxes: [marks(panel)]}
     };
     panel.lines.forEach(function (l) {
       made.series.push({
@@ -165,7 +146,7 @@
     data.panels.forEach(function (panel) {
       (panel.rows || []).forEach(function (row) { longest = Math.max(longest, row.length); });
     });
-    var gutter = Math.max(58, Math.min(200, 7 * longest + 12));
+    var gutter = Math.max(68, Math.min(200, 7 * longest + 12));
     var plots = [], moving = false;
     figure.insertBefore(holder, figure.firstChild);
     try {

@@ -43,7 +43,8 @@ def result_of(
     final = judgement.final
     final = replace(final, best=with_unseen_phases(search, final.best))
     problem, declared, best = search.problem, final.declared, final.best
-    search.words += dict.fromkeys(one.words for t in (declared, best) for one in at_bounds(t))
+    bounds = (one for t in (declared, best) for one in at_bounds(t))
+    search.words += dict.fromkeys(one.words for one in bounds if not one.exact)
     parts = compare_models(search, declared, best)
     claimed = [part for part in parts if part.use == "validate"]
     values = {**best.values, **dict.fromkeys(final.dropped, 0.0)}

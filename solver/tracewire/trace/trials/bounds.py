@@ -41,6 +41,11 @@ class AtBound:
         return self.kind in ("parameter", "coefficient") and not self.upper and self.low == 0.0
 
     @property
+    def exact(self) -> bool:
+        """Whether it is the smoothing of a law at 0, where the law is exact."""
+        return self.kind == "shape" and self.bound == 0.0 and self.name.endswith(".width")
+
+    @property
     def words(self) -> str:
         """What sits where, and what to do."""
         known = f"{self.bound:.4g} {self.unit}".strip()

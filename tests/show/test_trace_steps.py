@@ -1,0 +1,91 @@
+"""Which step of a trace decides, and which of its numbers belong to the result."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from show.traces import FOUND, NULL
+from tracewire.show import report
+from tracewire.show.style import saved_figures
+from tracewire.show.trace_figures import plot_candidates
+from tracewire.show.trace_steps import compares, decided_words, own_gain
+from tracewire.show.trace_tables import compared_table, effects_table, power_table, tried_table
+from tracewire.show.trace_text import step_lines
+from tracewire.trace import Ranked, StepTold
+
+BOTH = "coulomb @ torque + cogging @ torque"
+SEARCHED = (
+    StepTold(
+        0.5, 81.0, 0.0, (Ranked(BOTH, 90.0, 120.0), Ranked("bias @ torque", 3.0)),
+        "accepted: coulomb @ torque and cogging @ torque",
+    ),
+    StepTold(1.5, 7.0, 0.0, (Ranked("stribeck @ torque", 50.0, 60.0),), "no effect passes"),
+)  # fmt: skip
+COMPARED = StepTold(
+    3.0, 900.0, math.nan,
+    (Ranked("coulomb @ torque + stribeck @ torque", math.nan, 15.6, remark="6 numbers"),
+     Ranked("the declared model", math.nan, 0.0, remark="3 numbers")),
+    "held-out blocks choose coulomb @ torque + stribeck @ torque (z = 32.2)",
+)  # fmt: skip
+COULOMB = replace(FOUND.effects[0], gain=120.0)
+STRIBECK = replace(COULOMB, name="stribeck", gain=math.nan, ties=())
+TWO = replace(FOUND, steps=(*SEARCHED, COMPARED), effects=(COULOMB, STRIBECK))
+DECIDED = (
+    "Step 3 decides, whatever the steps before accepted or refused. It fits models to longer "
+    "windows, and takes the one of fewest numbers that predicts held-out blocks as well as the "
+    "best. It leaves out cogging @ torque, which step 1 accepted, and takes stribeck @ torque, "
+    "which no step before accepted."
+)
+
+
+def test_the_step_that_decides_says_what_it_overrides() -> None:
+    assert [compares(step) for step in TWO.steps] == [False, False, True]
+    assert decided_words(TWO) == DECIDED
+    assert step_lines(TWO)[-1] == DECIDED
+    assert DECIDED in report(TWO).markdown().replace("\\_", "_")
+
+
+def test_where_the_steps_agree_nothing_is_overridden() -> None:
+    accepted = replace(
+        SEARCHED[0], tried=(Ranked("coulomb @ torque", 90.0, 120.0),),
+        words="accepted: coulomb @ torque",
+    )  # fmt: skip
+    assert decided_words(replace(FOUND, steps=(accepted, COMPARED))) == ""
+    assert decided_words(replace(FOUND, steps=SEARCHED)) == ""  # nothing was compared
+
+
+def test_the_gain_of_another_combination_is_not_that_of_an_effect() -> None:
+    assert math.isnan(own_gain(TWO, COULOMB))
+    assert effects_table(TWO).rows[0][-1] == ""
+    cogging = replace(COULOMB, name="cogging")
+    assert own_gain(replace(TWO, effects=(COULOMB, cogging)), COULOMB) == 120.0
+
+
+def test_the_gain_of_a_prediction_has_a_name_of_its_own(tmp_path: Path) -> None:
+    assert {row[0] for row in tried_table(TWO).rows} == {"1", "2"}
+    table = compared_table(TWO)
+    assert table.header[2] == "gain of prediction"
+    assert [row[2] for row in table.rows] == ["15.6", "0"]
+    with saved_figures() as figures:
+        plot_candidates(TWO, tmp_path / "a.png")
+    labels = [panel.get_xlabel() for panel in figures[0].axes if panel.get_visible()]
+    assert "gain: half the fall of BIC" in labels
+    assert "gain of prediction on held-out blocks" in labels
+
+
+@pytest.mark.parametrize(("found", "told"), [(TWO, True), (replace(TWO, steps=SEARCHED), False)])
+def test_effects_named_together_are_said_to_do_better_together(found: object, told: bool) -> None:
+    page = report(found).markdown()  # type: ignore[arg-type]
+    assert "cannot be told apart by any analysis" not in page
+    assert ("The effects that are named together may be alike, too" in page) is told
+
+
+def test_what_was_not_tried_would_not_have_been_shown() -> None:
+    skipped = replace(NULL, words=("coulomb @ torque was not tried: the run stops",))
+    assert {row[0] for row in power_table(skipped).rows} == {"bias", "sensor_offset"}
+    assert "Not among them: coulomb @ torque, which was not tried." in report(skipped).markdown()
+    pair = replace(NULL, words=("play @ torque and coulomb @ torque was not tried: it stops",))
+    assert len(power_table(pair).rows) == len(NULL.power)
