@@ -14,20 +14,22 @@ from tracewire.show.trace_figures import plot_candidates
 from tracewire.show.trace_steps import compares, decided_words, own_gain
 from tracewire.show.trace_tables import compared_table, effects_table, power_table, tried_table
 from tracewire.show.trace_text import step_lines
-from tracewire.trace import Ranked, StepTold
+from tracewire.trace import CandidateScore, SearchStep
 
 BOTH = "coulomb @ torque + cogging @ torque"
 SEARCHED = (
-    StepTold(
-        0.5, 81.0, 0.0, (Ranked(BOTH, 90.0, 120.0), Ranked("bias @ torque", 3.0)),
+    SearchStep(
+        0.5, 81.0, 0.0, (CandidateScore(BOTH, 90.0, 120.0), CandidateScore("bias @ torque", 3.0)),
         "accepted: coulomb @ torque and cogging @ torque",
     ),
-    StepTold(1.5, 7.0, 0.0, (Ranked("stribeck @ torque", 50.0, 60.0),), "no effect passes"),
+    SearchStep(
+        1.5, 7.0, 0.0, (CandidateScore("stribeck @ torque", 50.0, 60.0),), "no effect passes",
+    ),
 )  # fmt: skip
-COMPARED = StepTold(
+COMPARED = SearchStep(
     3.0, 900.0, math.nan,
-    (Ranked("coulomb @ torque + stribeck @ torque", math.nan, 15.6, remark="6 numbers"),
-     Ranked("the declared model", math.nan, 0.0, remark="3 numbers")),
+    (CandidateScore("coulomb @ torque + stribeck @ torque", math.nan, 15.6, remark="6 numbers"),
+     CandidateScore("the declared model", math.nan, 0.0, remark="3 numbers")),
     "held-out blocks choose coulomb @ torque + stribeck @ torque (z = 32.2)",
 )  # fmt: skip
 COULOMB = replace(FOUND.effects[0], gain=120.0)
@@ -50,7 +52,7 @@ def test_the_step_that_decides_says_what_it_overrides() -> None:
 
 def test_where_the_steps_agree_nothing_is_overridden() -> None:
     accepted = replace(
-        SEARCHED[0], tried=(Ranked("coulomb @ torque", 90.0, 120.0),),
+        SEARCHED[0], tried=(CandidateScore("coulomb @ torque", 90.0, 120.0),),
         words="accepted: coulomb @ torque",
     )  # fmt: skip
     assert decided_words(replace(FOUND, steps=(accepted, COMPARED))) == ""
