@@ -59,8 +59,8 @@ def test_fit_prints_values_and_errors(call: Any, decay: Path) -> None:
         rows.setdefault(words[0] if words else "", words)
     assert rows["rate"][1] == "1"
     assert float(rows["rate"][2]) == pytest.approx(1.7, rel=1e-6)
-    assert rows["x0"][1] == "0.1"
-    assert float(rows["x0"][2]) == pytest.approx(0.15, rel=1e-6)
+    assert rows["x0"][1] == "100"  # in the unit of the file, mm
+    assert float(rows["x0"][2]) == pytest.approx(150.0, rel=1e-6)
     assert rows["run"][1:5] == ["train", "x", "41", "m"]
     assert float(rows["check"][-1]) == pytest.approx(
         np.sqrt(np.mean((0.03 * np.exp(-1.7 * T)) ** 2)), rel=1e-3
