@@ -289,7 +289,7 @@ def test_the_signal_of_a_sensor_is_found_from_what_it_shows(
     sensor = Sensor(offset=offset, gain=gain, quad=quad, drift=drift)
     signal = np.linspace(-2, 2, 50)
     since = np.linspace(0, 3, 50)
-    assert sensor.signal(sensor.shown(signal, since), since) == pytest.approx(signal, abs=1e-9)
+    assert sensor.signal(sensor.observe(signal, since), since) == pytest.approx(signal, abs=1e-9)
 
 
 def test_what_no_signal_can_show_is_the_nearest_that_one_can() -> None:

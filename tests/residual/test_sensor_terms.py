@@ -19,7 +19,7 @@ def test_a_sensor_and_a_channel_have_each_term_and_a_plain_sensor_does_nothing()
     neutral = {name: term.neutral for name, term in SENSOR_TERMS.items()}
     assert {f.name: f.default for f in fields(Sensor) if f.name != "free"} == neutral
     assert neutral.keys() < {f.name for f in fields(Channel)}
-    assert np.array_equal(Sensor().shown(Z, SINCE), Z)
+    assert np.array_equal(Sensor().observe(Z, SINCE), Z)
 
 
 @pytest.mark.parametrize("name", [name for name, term in SENSOR_TERMS.items() if term.slope])
@@ -28,7 +28,7 @@ def test_a_slope_is_the_derivative_of_what_is_shown(name: str) -> None:
     assert slope is not None
     sensor = Sensor(offset=0.2, gain=1.1, quad=0.3, drift=0.4)
     moved: dict[str, Any] = {name: getattr(sensor, name) + 1.0}  # each number enters linearly
-    change = replace(sensor, **moved).shown(Z, SINCE) - sensor.shown(Z, SINCE)
+    change = replace(sensor, **moved).observe(Z, SINCE) - sensor.observe(Z, SINCE)
     np.testing.assert_allclose(change, np.broadcast_to(slope(Z, SINCE), 3), rtol=1e-12, atol=1e-15)
 
 

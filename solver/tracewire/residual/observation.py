@@ -74,7 +74,7 @@ class ObservationModel:
     def observe(self, run: SpanRuns) -> Vector:
         """What the sensors show, shape (N, signals)."""
         columns = [
-            sensor.shown(run[signal][at], self.since)
+            sensor.observe(run[signal][at], self.since)
             for signal, sensor, at in zip(self.signals, self.sensors, self.at, strict=False)
         ]
         return np.stack(columns, axis=1)

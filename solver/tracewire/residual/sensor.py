@@ -31,7 +31,7 @@ class Sensor:
     drift: float = 0.0
     free: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
-    def shown(self, delayed: Vector, since: Vector) -> Vector:
+    def observe(self, delayed: Vector, since: Vector) -> Vector:
         """What the sensor shows (N,) of a signal y(t - delay), at the times t - t0."""
         return (self.gain + self.quad * delayed) * delayed + self.offset + self.drift * since
 
