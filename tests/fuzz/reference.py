@@ -21,6 +21,7 @@ from scipy.integrate import DOP853
 Vector = NDArray[np.float64]
 CLOSE = 1e-7  # guards are of the size 1: what is nearer to zero is not told from it
 SAMPLES = 12  # of the guards, in a step
+BESIDE = 1e-3  # of the way to the next sample: where a guard is looked at beside either end
 MOST_EVENTS = 200
 SOON = 1e-5  # after a reset: it may be one of a sequence without end
 SLOWEST = 1e-3  # after a wall: what is slower may be about to come to rest
@@ -143,20 +144,23 @@ class Reference:
             line, low = solver.dense_output(), solver.t_old
             self.pieces.append((low, line))
             grid = np.linspace(low, solver.t, SAMPLES)
+            beside = BESIDE * (grid[1] - grid[0])  # a dip between the last two samples is seen, too
+            grid = np.r_[low, low + beside, grid[1:-1], grid[-1] - beside, grid[-1]]
             rows = np.array([self.margins(t, line(t)) for t in grid])
-            for k in range(1, SAMPLES):
-                if np.any((rows[k] < -CLOSE) & ~armed):
-                    raise Unclear("a guard turns where a piece begins")
-                if np.any(armed & (rows[k] < 0)):
-                    self._happen(line, grid[k - 1], grid[k], armed)
-                    return
-                armed |= rows[k] > CLOSE
             inner = rows[1:-1]
             turns = (inner < rows[:-2]) & (inner < rows[2:])
             with np.errstate(invalid="ignore"):
                 dips = inner - np.abs(rows[2:] - rows[:-2]) < 1e-4
-            if np.any(turns & dips & armed & (inner < 1e-2)):
-                raise Unclear("a guard is nearly touched")
+            near = turns & dips & (inner < 1e-2)
+            for k in range(1, len(grid)):
+                if np.any((rows[k] < -CLOSE) & ~armed):
+                    raise Unclear("a guard turns where a piece begins")
+                if k > 1 and np.any(near[k - 2] & armed):
+                    raise Unclear("a guard is nearly touched")
+                if np.any(armed & (rows[k] < 0)):
+                    self._happen(line, grid[k - 1], grid[k], armed)
+                    return
+                armed |= rows[k] > CLOSE
             self.t, self.z = float(solver.t), solver.y.copy()
 
     def _happen(self, line: Any, low: float, high: float, armed: NDArray[np.bool_]) -> None:
