@@ -130,7 +130,7 @@ def test_a_program_is_told_the_same() -> None:
     assert isinstance(effect, dict)
     assert effect["shapes"]["gap"] == {
         "at": (0.1, 0.25, 0.5), "of": "Q", "low": 0.0, "least": 0.01, "most": 1.0, "wave": False,
-        "line": False, "fixed": False,
+        "line": False, "modulates": "", "fixed": False,
     }  # fmt: skip
     effect = describe_json(library(), "drive_lag")["effect"]
     assert isinstance(effect, dict)
