@@ -189,3 +189,29 @@ def test_files_are_found_from_the_folder_of_the_file_that_names_them(tmp_path: P
     new = patch(diagram, changes)
     assert "force: {of: [spring, u, drag, more]}" in new.text
     assert said(new) == said(apply(diagram, changes))
+
+
+def test_files_that_each_extend_the_last_one_twice_are_refused_before_they_fill_the_memory(
+    tmp_path: Path,
+) -> None:
+    """Each file doubles what it has: a hundred of them would have no end."""
+    (tmp_path / "f0.yaml").write_text(
+        "subsystems:\n"
+        "  s0: {inputs: [u], outputs: {y: g}, blocks: {g: {type: gain, of: u, k: 1}}}\n",
+        encoding="utf-8",
+    )
+    for n in range(1, 15):
+        (tmp_path / f"f{n}.yaml").write_text(
+            f"include: f{n - 1}.yaml\n"
+            f"subsystems:\n"
+            f"  s{n}:\n"
+            f"    inputs: [u]\n"
+            f"    outputs: {{y: g}}\n"
+            f"    subsystems: {{a{n}: {{extends: s{n - 1}}}, b{n}: {{extends: s{n - 1}}}}}\n"
+            f"    blocks: {{g: {{type: gain, of: u, k: 1}}}}\n",
+            encoding="utf-8",
+        )
+    with pytest.raises(DiagramError) as refused:
+        read_text("include: f14.yaml\nblocks: {u: {type: time}}\n", tmp_path / "top.yaml")
+    first = str(refused.value.problems[0])
+    assert "which this one extends, has more than 20000 parts. Write the blocks that are" in first

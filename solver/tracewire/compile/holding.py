@@ -83,7 +83,7 @@ def may_rest(low: Lowered, reset: Reset, rates: Sequence[int]) -> bool:
     trigger = reset.trigger
     if trigger < 0 or low.modes[trigger].kind != "sign":
         return False
-    written = {low.states[state] for state in reset.values}
+    written = _pushed(low, reset)
     turns = not written.isdisjoint(low.tape.needed([rates[trigger]]))
     return turns and written.isdisjoint(low.tape.needed([low.modes[trigger].guard]))
 

@@ -10,6 +10,9 @@ from tracewire.diagram.problems import Problems
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 
 CHANGING = ("extends", "remove")
+MOST_NODES = 20_000
+"""Values and lists of a subsystem that may be extended: those of 2000 blocks. A file that extends
+twice what another one does doubles with each file."""
 
 
 def with_bases(entries: Entries, bases: Mapping[str, Node], problems: Problems) -> Entries:
@@ -53,11 +56,28 @@ def _extended(own: Entries, bases: Mapping[str, Node], problems: Problems) -> En
         hint = "Of a subsystem of this file write variants."
         problems.unknown("subsystem of an included file", name.text, bases, name.place, hint)
         return changes
+    if not _has_at_most(base, MOST_NODES):
+        what = f"'{name.text}', which this one extends, has more than {MOST_NODES} parts"
+        problems.add(what, name.place, (), "Write the blocks that are needed, or a smaller base.")
+        return changes
     given = own.values.get("remove")
     names = given.items if isinstance(given, Items) else () if given is None else (given,)
     removed = [item for item in names if isinstance(item, Scalar)]
     both = merged(without(_copied(base), removed, problems), changes)
     return replace(both, place=own.place, start=own.start, end=own.end, flow=own.flow)
+
+
+def _has_at_most(node: Node, most: int) -> bool:
+    """Whether a node has at most so many nodes inside of it."""
+    due, count = [node], 0
+    while due and count <= most:
+        one = due.pop()
+        count += 1
+        if isinstance(one, Entries):
+            due += one.values.values()
+        elif isinstance(one, Items):
+            due += one.items
+    return count <= most
 
 
 def _copied(entries: Entries) -> Entries:
