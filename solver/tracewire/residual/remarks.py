@@ -16,6 +16,7 @@ from tracewire.errors import DataError, Problem
 from tracewire.formula import evaluate, quantity_hint, read_unit
 from tracewire.residual.endings import alike
 from tracewire.residual.inputs import line_error, looks_held, spline_if_smooth
+from tracewire.residual.noise_estimate import noise_of_signal
 
 LARGEST_ANGLE = 20.0
 MUCH_LONGER = 100.0
@@ -23,6 +24,9 @@ FAR = 10.0
 NEAR_PI = 0.3
 RESTING = 5
 """Samples of exactly zero that are no passage through zero."""
+NOISIER = 10.0
+"""Samples that scatter by so many times the declared sigma are told: a wrong unit is a factor of 57
+(degrees for radians) or 1000, and the estimate was wrong by 7 on one record of 230."""
 LOST = 5e-3
 """The part of an input's amplitude that straight lines lose, from which on it is told."""
 
@@ -43,6 +47,11 @@ def check_quantities(model: Model, series: Series, record: Record) -> None:
             problems.append(Problem(what, channel.place, hint=hint))
     if problems:
         raise DataError(problems)
+
+
+def factor_of_column(record: Record, name: str, channel: Channel) -> float:
+    """The factor to SI of the numbers that are said of a column."""
+    return record.unit(name).factor if channel.declared is None else 1.0
 
 
 def remarks_of(
@@ -80,6 +89,7 @@ def remarks_of(
                     f"{name} begins at {column[0]:.4g} rad, about pi from the diagram's start at "
                     f"{start:.4g} rad: is the angle measured from another line?"
                 )
+    found += _on_sigma(model, series, read)
     found += _on_rest(model, series, read)
     found += _on_hold(series, read)
     return tuple(found)
@@ -120,6 +130,31 @@ def _on_hold(series: Series, read: Record) -> list[str]:
                 f"{100 * lost:.2g} % of its amplitude; say hold: smooth where it is smooth between "
                 "samples, hold: previous where each value acts until the next"
             )
+    return found
+
+
+def _on_sigma(model: Model, series: Series, read: Record) -> list[str]:
+    """Signals whose declared noise is not that of their samples."""
+    found = []
+    for name, channel in series.channels.items():
+        column = read.columns.get(name)
+        if channel.sigma is None or column is None:
+            continue
+        sigma = channel.sigma * factor_of_column(read, name, channel)
+        unit = read.unit(name).text or model.flat.units.get(name, "")
+        seen, spread = noise_of_signal(column, read.t), float(np.std(column))
+        if seen.is_sure and seen.low > NOISIER * sigma:
+            what = f"its samples scatter by {seen.level:.3g} {unit}".rstrip()
+            what += f", {seen.level / sigma:.2g} times that"
+        elif 0 < spread < sigma:
+            what = f"the whole signal varies by {spread:.3g} {unit}".rstrip() + " (rms)"
+        else:
+            continue
+        declared = f"{sigma:.3g} {unit}".rstrip()
+        found.append(
+            f"{name} is declared with a noise of sigma = {declared}, and {what}: "
+            "sigma is in the unit of the column; correct it, or leave it out to have it estimated"
+        )
     return found
 
 
