@@ -79,6 +79,16 @@ def test_a_model_that_has_more_squared_error_is_not_taken() -> None:
     assert chosen([model(), replace(worse, left=(3.0, 0.9))], 1.0, 0.0).chosen == 1
 
 
+def test_a_part_that_predicts_as_well_as_a_sure_model_is_as_sure() -> None:
+    """Alone it is 2.9 standard errors from the declared model, with another one 3.1."""
+    entrants = [model(), model("drag"), model("drag", "friction")]
+    rest = 0.3 * (1 + wobble(3.1**-1 * BLOCKS**0.5))
+    alone = rest - 0.02
+    assert not chosen(entrants[:2], alone, 0.0).sure
+    found = choose(entrants, scores(rest, 0.02 + 0 * rest, 0.0), FOLDS, OPTIONS)
+    assert (found.chosen, found.sure) == (1, True)
+
+
 def test_a_gain_within_one_standard_error_is_none() -> None:
     entrants = [model(), model("a"), model("b", "c")]
     steady, shaky = 0.12, 0.12 + wobble(0.6)

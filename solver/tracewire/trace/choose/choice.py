@@ -24,7 +24,7 @@ Hastie et al., Elements of Statistical Learning, section 7.10).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -144,8 +144,12 @@ def choose(
     chosen = _simplest_near_best(entrants, totals, among, tolerance)
     while commoner := _commoner_models(entrants, among, chosen, options):
         chosen = _simplest_near_best(entrants, totals, commoner, tolerance)
-    chosen = _prune(entrants, totals, among, chosen, options)
-    return choice_of(chosen, entrants, scores, folds, options)
+    # what predicts as well as a sure model with more effects is as sure
+    parts = [n for n in usable if n not in among and entrants[n].effects < entrants[chosen].effects]
+    near = [n for n in parts if n and _cost(totals, n, chosen) <= tolerance]
+    pruned = _prune(entrants, totals, [*among, *near], chosen, options)
+    found = choice_of(pruned, entrants, scores, folds, options)
+    return replace(found, sure=found.sure or (pruned in near and bool(surer)))
 
 
 def _simplest_near_best(

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
+from tracewire.errors import FitError
 from tracewire.trace.check.mistakes import refuse_mistakes
 from tracewire.trace.check.tolerance import is_loose, tighten_tolerance
 from tracewire.trace.choose.unseen import (
     join_names,
     lowers_no_claim,
+    lowers_unseen,
     raises_unseen,
     raises_whole_runs,
     share_of_whole_runs,
@@ -18,7 +21,7 @@ from tracewire.trace.found import Verdict
 from tracewire.trace.search.refinement import FinalModels
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.intervals import undetermined_effects
-from tracewire.trace.trials.trial import Trial
+from tracewire.trace.trials.trial import PlacedEffect, Trial
 
 
 def fit_declared(search: Search) -> Trial:
@@ -54,6 +57,7 @@ def safeguard(search: Search, judgement: Judgement) -> Judgement:
         )
         final = replace(final, declared=declared, best=best)
     judgement, final = _without_undetermined(search, judgement, final)
+    final = _without_harmful(search, final)
     if final.best.effects:
         lengths = sorted({min(search.short_length, final.best.length), final.best.length})
         harm = raises_unseen(search, final.declared, final.best, lengths)
@@ -87,16 +91,38 @@ def _without_undetermined(
         verdict: Verdict = "null" if at_noise else "unexplained"
         alone = FinalModels(final.declared, final.declared, {}, ())
         return replace(judgement, verdict=verdict, final=alone), alone
-    best = search.problem.fit(
-        kept,
-        final.best.windows.segments,
-        final.best.length,
-        final.best.values,
-        fixed=final.best.windows.criterion.parameters,
-    )
-    rivals = {str(effect): final.rivals.get(str(effect), ()) for effect in kept}
-    final = replace(final, best=best, rivals=rivals)
+    final = _with_effects(final, _refitted_with(search, final.best, kept))
     return replace(judgement, final=final), final
+
+
+def _without_harmful(search: Search, final: FinalModels) -> FinalModels:
+    """The models without an effect beside others that raises the error of whole unseen runs, and
+    does not lower that of windows there."""
+    best, short = final.best, search.short_length
+    for effect in best.effects if len(best.effects) > 1 else ():
+        kept = [one for one in best.effects if one is not effect]
+        try:
+            fewer = _refitted_with(search, best, kept)
+        except FitError:
+            continue
+        harm = raises_whole_runs(search, fewer, best)
+        if harm and not lowers_unseen(search, fewer, best, short):
+            known = join_names(map(str, kept))
+            search.words.append(f"{effect} is not named beside {known}: it {harm}")
+            return _without_harmful(search, _with_effects(final, fewer))
+    return final
+
+
+def _refitted_with(search: Search, best: Trial, kept: Sequence[PlacedEffect]) -> Trial:
+    """A trial with some of its effects, fitted to its windows."""
+    windows, fixed = best.windows.segments, best.windows.criterion.parameters
+    return search.problem.fit(kept, windows, best.length, best.values, fixed=fixed)
+
+
+def _with_effects(final: FinalModels, best: Trial) -> FinalModels:
+    """The models with another best one, and the rivals of its effects."""
+    rivals = {str(effect): final.rivals.get(str(effect), ()) for effect in best.effects}
+    return replace(final, best=best, rivals=rivals)
 
 
 def _confirmed(search: Search, judgement: Judgement, final: FinalModels) -> Judgement:

@@ -67,6 +67,14 @@ def share_of_whole_runs(search: Search, fewer: Trial, more: Trial) -> float:
     return 1 - (after - count) / (before - count)
 
 
+def lowers_unseen(search: Search, fewer: Trial, more: Trial, length: int) -> bool:
+    """Whether a model lowers the error of one with fewer effects on unseen windows of a length, by
+    more than chance."""
+    unseen = search.data_split.unseen
+    before, after = (float(squares_on(search, unseen, t, length).sum()) for t in (fewer, more))
+    return (1 + search.options.harm) ** 2 * after < before
+
+
 def lowers_no_claim(search: Search, fewer: Trial, more: Trial) -> bool:
     """Whether a model has no less error than one with fewer effects in the part of the data that is
     kept for the claim, neither in windows nor in free runs; false where the latter are at the
