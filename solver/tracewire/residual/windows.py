@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.residual.criterion import Criterion
+from tracewire.residual.limits import WINDOW
 from tracewire.residual.linearisation import Linearisation, Projection
 from tracewire.residual.measured import Measured
 from tracewire.residual.past import longest_delay
@@ -24,9 +25,6 @@ from tracewire.residual.starts import start_from_data, whole_segment
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-AHEAD = 2.0
-"""How many delays of a sensor a window's run begins ahead of its first sample: a fit may find a
-longer delay than it began with."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +75,7 @@ def with_lead_in(model: Model, segment: Segment, delays: Mapping[str, float]) ->
     measured, first = segment.measured, float(segment.t[0])
     signals = segment.signals
     delay = max(delays.get(f"delay.{name}", measured.sensor(name).delay) for name in signals)
-    begin = first - AHEAD * delay
+    begin = first - WINDOW.ahead * delay
     if not segment.free or segment.begin <= begin:
         return segment
     row = int(np.searchsorted(measured.t, begin, side="right")) - 1
