@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tracewire.errors import OptionError, Problem
 from tracewire.fit import Diagnosis, Fit, Profile, diagnose
-from tracewire.fit.diagnostics import DOUBT
+from tracewire.fit.limits import DIAGNOSIS
 from tracewire.show.style import (
     AFTER,
     BAND,
@@ -121,7 +121,7 @@ def _draw_autocorrelation(panel: Axes, one: Diagnosis) -> None:
     panel.set_ylabel("autocorrelation")
     plain_numbers(panel.xaxis, panel.yaxis)
     word = "white" if one.is_white else f"correlated over {one.memory:.2g} s"
-    if one.is_white and one.whiteness < DOUBT:
+    if one.is_white and one.whiteness < DIAGNOSIS.doubt:
         word = "correlated, too little to matter"
     panel.set_title(word, loc="left", fontsize=8.5, color=color, pad=5)
 
@@ -157,7 +157,7 @@ def _draw_cross_correlation(panel: Axes, one: Diagnosis, inputs: dict[str, Vecto
         if size > 0:
             cross = correlate(x, y)[count - 1 :][: len(one.lags)] / size
             panel.plot(one.lags * one.step, cross, color=LINES[n % len(LINES)], label=cut(name, 14))
-        if one.independence.get(name, 1.0) < DOUBT:
+        if one.independence.get(name, 1.0) < DIAGNOSIS.doubt:
             words.append(cut(name, 14))
     panel.axhline(0.0, color=QUIET, linewidth=0.7)
     low, high = panel.get_ylim()
