@@ -10,7 +10,8 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-from tracewire.diagram import MOST_BYTES, complete, load_text, set_values, word_before
+from tracewire.diagram import complete, load_text, set_values, word_before
+from tracewire.diagram.limits import LIMITS
 from tracewire.draw import draw
 from tracewire.errors import DiagramError, OptionError, Problem, TracewireError, unknown
 from tracewire.files import write_file, writing
@@ -361,7 +362,7 @@ def _is_text(value: object) -> bool:
 
 def _text_in(request: Request) -> str:
     text = request.get("text")
-    if not isinstance(text, str) or len(text.encode(errors="replace")) > MOST_BYTES:
-        what = f"a text of at most {MOST_BYTES // 1_000_000} MB is needed"
+    if not isinstance(text, str) or len(text.encode(errors="replace")) > LIMITS.most_bytes:
+        what = f"a text of at most {LIMITS.most_bytes // 1_000_000} MB is needed"
         raise OptionError.one(what, hint="Put subsystems into files of their own.")
     return text
