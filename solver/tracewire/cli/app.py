@@ -11,8 +11,7 @@ from typing import Annotated
 import typer
 from typer.main import get_command
 
-from tracewire.cli import INTERRUPTED
-from tracewire.cli.output import Cut, print_problems
+from tracewire.cli.output import INTERRUPTED, Cut, print_problems
 from tracewire.cli.records import with_fields
 from tracewire.cli.several import Several
 from tracewire.cli.streams import close_streams, open_streams

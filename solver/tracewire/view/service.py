@@ -10,8 +10,7 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-from tracewire.diagram import complete, load_text, set_values, word_before
-from tracewire.diagram.limits import LIMITS
+from tracewire.diagram import LIMITS, complete, load_text, set_values, word_before
 from tracewire.draw import draw
 from tracewire.errors import DiagramError, OptionError, Problem, TracewireError, unknown
 from tracewire.files import write_file, writing
