@@ -140,7 +140,8 @@ ROOM_OF = {
 def __getattr__(name: str) -> object:
     for room, names in ROOM_OF.items():
         if name in names.split():
-            return getattr(import_module(f"tracewire.{room}"), name)
+            found = globals()[name] = getattr(import_module(f"tracewire.{room}"), name)
+            return found
     raise AttributeError(f"module 'tracewire' has no attribute '{name}'")
 
 

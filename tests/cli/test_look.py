@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 BLOCK = """\
@@ -94,6 +95,15 @@ def test_check_tells_what_is_done_to_the_data_and_what_is_odd(call: Any, swing: 
     (series,) = call("check", swing, "--json").data["measured"]
     assert series["steps"] == ["time: from ms to s, as the header says"]
     assert series["remarks"][0].startswith("the time step is not regular: 0.4 to 1 s, median 0.5 s")
+
+
+def test_check_tells_the_noise_that_is_declared_in_si(call: Any, swing: Path) -> None:
+    """A sigma is in the unit of the column, which the header alone may say."""
+    replaced(swing, "column: angle}", "column: angle, sigma: 0.1}")
+    (swing.parent / "run_1.csv").write_text("t,angle [deg]\n0,1\n1,2\n1.5,3\n2,2\n")
+    assert "- theta: noise of σ = 0.001745 rad" in call("check", swing).out
+    (series,) = call("check", swing, "--json").data["measured"]
+    assert series["sigma"]["theta"] == pytest.approx(np.radians(0.1))
 
 
 def test_check_tells_the_windows_of_a_series(call: Any, swing: Path) -> None:

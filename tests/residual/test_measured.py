@@ -396,6 +396,33 @@ def test_a_record_in_order_has_no_remarks(file: Path) -> None:
     assert one(file, "time: t").remarks == ()
 
 
+def noisy(file: Path, header: str) -> None:
+    """A file with a swing in degrees whose sensor has a noise of 0.2 degrees."""
+    t = np.arange(1000) * 0.01
+    angle = 30 * np.cos(2 * np.pi * t) + np.random.default_rng(3).normal(0, 0.2, len(t))
+    written(file, "\n".join([header, *(f"{x:.6g},{y:.6f}" for x, y in zip(t, angle, strict=True))]))
+
+
+def test_a_noise_far_below_the_scatter_of_the_samples_is_remarked(file: Path) -> None:
+    """The header alone says that the column is in degrees: the 0.0035 rad were meant in rad."""
+    noisy(file, "t,angle [deg]")
+    (remark,) = one(file, "time: t", "{column: angle, sigma: 0.0035}").remarks
+    start, _, rest = remark.partition("rad, and its samples scatter by ")
+    assert start == "theta is declared with a noise of sigma = 6.11e-05 "
+    assert float(rest.split()[0]) == pytest.approx(np.radians(0.2), rel=0.2)
+    assert remark.endswith(
+        "sigma is in the unit of the column; correct it, or leave it out to have it estimated"
+    )
+    assert one(file, "time: t", "{column: angle, sigma: 0.1}").remarks == ()
+
+
+def test_a_noise_above_the_whole_signal_is_remarked(file: Path) -> None:
+    noisy(file, "t,angle [deg]")
+    (remark,) = one(file, "time: t", "{column: angle, sigma: 60}").remarks
+    assert "and the whole signal varies by 0.37 rad (rms): sigma is in the unit" in remark
+    assert one(file, "time: t", "{column: angle, sigma: 10}").remarks == ()
+
+
 def test_degrees_that_were_taken_for_radians_are_remarked(file: Path) -> None:
     wave(file)
     assert one(file, "time: t", "angle").remarks == (

@@ -14,7 +14,8 @@ from residual.made_noise import autoregression
 from scipy.interpolate import CubicSpline
 from scipy.signal import butter, filtfilt, lfilter, resample
 from tracewire.residual import Measured
-from tracewire.residual.noise_estimate import channel_noise, estimate_noise, noise_of_signal
+from tracewire.residual.channel_noise import channel_noise, estimate_noise
+from tracewire.residual.noise_estimate import noise_of_signal
 from tracewire.residual.readings import interpolation, rounding_step
 
 Vector = NDArray[np.float64]

@@ -45,6 +45,17 @@ def test_a_hidden_coulomb_friction_is_named_with_its_size(found: Found) -> None:
     assert found.rmse_after < 1.2e-3 < found.rmse_before
 
 
+def test_free_parameters_that_the_record_cannot_separate_are_told(swing: Path) -> None:
+    text = (swing.parent / "pendulum.yaml").read_text()
+    text = text.replace("k: -w0_squared}", "k: -share*w0_squared}")
+    text = text.replace("parameters:", "parameters:\n  share: {value: 1, fit: [0.5, 2]}")
+    (swing.parent / "shared.yaml").write_text(text)
+    only = {"only": ["acceleration"], "effects": 1}
+    found = trace(compile(read(swing.parent / "shared.yaml")), options=only)
+    assert found.verdict == "effect"
+    assert any(word.startswith("only share*w0_squared is determined") for word in found.words)
+
+
 @pytest.mark.parametrize("rtol", [1e-2, 1e-3])
 def test_a_solver_as_coarse_as_the_noise_is_made_more_precise(swing: Path, rtol: float) -> None:
     only = {"only": ["acceleration"], "effects": 1}  # what else may be missing is not asked

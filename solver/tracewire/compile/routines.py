@@ -245,6 +245,9 @@ class Routines:
 
     def address(self, name: str) -> int:
         """The address of a function; of a lazy one that was never called, that of its callback."""
+        known = self._addresses.get(name)
+        if known is not None:
+            return known
         with self.lock:
             if name in self._addresses or name not in self.lazy:
                 return self.compiled_address(name)

@@ -137,13 +137,13 @@ def _from_lower_rate(name: str, t: Vector, y: Vector) -> list[str]:
     if every and moving.mean() > 0.5:
         share = 1.0 - float(kinks.mean())
         return [
-            f"{name} lies on straight lines between every {every}th sample ({share:.0%} of its "
+            f"{name} lies on straight lines between samples {every} apart ({share:.0%} of its "
             f"second differences are zero): it was taken at {1 / (every * np.median(steps)):.4g} Hz"
         ]
     every = _pattern(np.flatnonzero(moving), len(first), moving)
     if every:
         return [
-            f"{name} changes only at every {every}th sample: it was taken at "
+            f"{name} changes only every {every} samples: it was taken at "
             f"{1 / (every * np.median(steps)):.4g} Hz"
         ]
     return []

@@ -7,7 +7,7 @@ from tracewire.fit.optimset import Options, optimset
 from tracewire.fit.profile import Profile, profile
 from tracewire.fit.result import Comparison, Fit
 from tracewire.fit.search import Progress
-from tracewire.fit.uncertainty import Uncertainty
+from tracewire.fit.uncertainty import Uncertainty, describe_undetermined
 
 __all__ = [
     "Comparison",
@@ -18,6 +18,7 @@ __all__ = [
     "Profile",
     "Progress",
     "Uncertainty",
+    "describe_undetermined",
     "diagnose",
     "fit",
     "fminsearch",

@@ -12,7 +12,15 @@ from scipy.special import stdtrit
 from tracewire.fit.combinations import Direction, describe_directions, followers
 from tracewire.fit.identify import LinearResponse, ParameterColumns, flat_directions
 from tracewire.fit.limits import UNCERTAINTY
-from tracewire.residual import LOSSES, Criterion, degrees_of, noise_in, noises_beside
+from tracewire.residual import (
+    LOSSES,
+    Criterion,
+    Windows,
+    degrees_of,
+    noise_in,
+    noises_beside,
+    project_out_initial_states,
+)
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -101,6 +109,29 @@ def uncertainty_of(
     )
     covariance = np.full_like(found.covariance, np.nan)
     return replace(found, covariance=covariance, words=(words, *found.words))
+
+
+def describe_undetermined(windows: Windows) -> tuple[str, ...]:
+    """In sentences, which fitted values of windows with free starts the data leave open.
+
+    As in `uncertainty_from`; a value on a bound counts as free.
+    """
+    names, values = tuple(windows.values), np.array([*windows.values.values()])
+    if not names:
+        return ()
+    sizes = np.where(values, np.abs(values), 1.0)
+    slopes, residual = project_out_initial_states(windows)
+    everywhere = np.full(len(names), np.inf)
+    columns = ParameterColumns(names, len(names), values, sizes, -everywhere, everywhere)
+    found = uncertainty_from(
+        [residual[:, None]],
+        [slopes * sizes],
+        [np.ones((1, 1))],
+        [("", ("",))],
+        columns,
+        accuracy=max(1e-6, windows.criterion.rtol),
+    )
+    return found.words
 
 
 def _lost(criterion: Criterion, residuals: Sequence[Matrix]) -> list[str]:

@@ -85,6 +85,7 @@ class Criterion:
             + [s.start_scale(name) for s in self.segments for name in s.free]
         )
         self._samples = [segment.samples() for segment in self.segments]
+        self._weights: dict[int, Vector] = {}
         self._following = (
             {n for n in range(1, len(self.segments)) if self._follows(n)} if chained else set()
         )
@@ -197,6 +198,11 @@ class Criterion:
 
     def weights(self, n: int) -> Vector:
         """The weights w (N, signals) of the residuals of segment n."""
+        if n not in self._weights:
+            self._weights[n] = self._weights_of(n)
+        return self._weights[n]
+
+    def _weights_of(self, n: int) -> Vector:
         measured, samples = self.segments[n].measured, self._samples[n]
         counts = [measured.weights.get(name, 1.0) for name in measured.values]
         shares = measured.weight * np.array(counts)

@@ -239,6 +239,9 @@ class RemarkLimits:
     """In rad: a first sample so near to pi from the start counts from the other end."""
     resting: int = 5
     """Samples of exactly zero that are no passage through zero."""
+    noisier: float = 10.0
+    """Samples that scatter by so many times the declared sigma are told: a wrong unit is a factor
+    of 57 (degrees for radians) or 1000, and the estimate was wrong by 7 on one record of 230."""
 
 
 REMARK = RemarkLimits()

@@ -20,7 +20,7 @@ from tracewire.library import SENSOR_TERMS
 from tracewire.residual.arrays import ArrayCheck, fields_of_frame
 from tracewire.residual.inputs import between_samples
 from tracewire.residual.limits import WINDOW
-from tracewire.residual.remarks import check_quantities, remarks_of
+from tracewire.residual.remarks import check_quantities, factor_of_column, remarks_of
 from tracewire.residual.sensor import PLAIN, Sensor, read_sensor
 from tracewire.solve import Driving, Options, parameter_values
 
@@ -261,7 +261,7 @@ def _measured(
     if t[rows[-1]] < counts_from:
         what = f"the series '{series.name}' ends within its burn_in of {series.burn_in:g} s"
         raise DataError([Problem(what, series.place, (), "Make burn_in shorter.")])
-    factors = {name: _factor(record, name, channel) for name, channel in channels.items()}
+    factors = {name: factor_of_column(record, name, channel) for name, channel in channels.items()}
     used = record.t[rows]
     few = np.sum((read.t >= used[0]) & (read.t <= used[-1])) < 3
     seen = read if few else read.trim(used[0], used[-1])
@@ -290,7 +290,7 @@ def _measured(
         counts_from=counts_from,
         inputs=inputs,
         input_sigma={
-            name: channel.sigma * _factor(record, f"input {name}", channel)
+            name: channel.sigma * factor_of_column(record, f"input {name}", channel)
             for name, channel in series.inputs.items()
             if channel.sigma is not None
         },
@@ -306,11 +306,6 @@ def _measured(
         steps=(*steps, *told),
         remarks=remarks_of(model, series, replace(seen, remarks=read.remarks), values, zero),
     )
-
-
-def _factor(record: Record, name: str, channel: Channel) -> float:
-    """The factor to SI of the numbers that are said of a column."""
-    return record.unit(name).factor if channel.declared is None else 1.0
 
 
 def _inputs(series: Series, record: Record, t: Vector) -> tuple[dict[str, Driving], list[str]]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import comb
 
@@ -10,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.residual.limits import NOISE
-from tracewire.residual.measured import Measured
 from tracewire.residual.readings import MAD, interpolation, replace_outliers, rounding_step
 from tracewire.residual.spectrum import Spectrum, spectrum_of
 
@@ -45,46 +43,6 @@ class NoiseEstimate:
 def noise_level(values: Vector) -> float:
     """The standard deviation of the noise on an evenly sampled signal, shape (N,)."""
     return noise_of_signal(values).level
-
-
-def channel_noise(measured: Sequence[Measured]) -> dict[str, float]:
-    """The noise of each measured signal: as declared, else estimated from the series."""
-    return {name: one.level for name, one in estimate_noise(measured).items()}
-
-
-def estimate_noise(measured: Sequence[Measured]) -> dict[str, NoiseEstimate]:
-    """The noise of each measured signal: as declared, else estimated; the median over series.
-
-    At least the step of the readings over the root of 12, and a millionth of the signal's spread.
-    """
-    found: dict[str, list[NoiseEstimate]] = {}
-    for series in measured:
-        for name, values in series.values.items():
-            found.setdefault(name, []).append(_of_channel(series, name, values))
-    return {name: _common(estimates) for name, estimates in found.items()}
-
-
-def _of_channel(series: Measured, name: str, values: Vector) -> NoiseEstimate:
-    declared = series.sigma.get(name)
-    if declared is not None:
-        return NoiseEstimate(declared, declared, declared, "declared", rounding_step(values))
-    estimate = noise_of_signal(values, series.t)
-    least = max(NOISE.least * float(np.std(values)), 1e-300)
-    if estimate.level >= least:
-        return estimate
-    return replace(
-        estimate, level=least, high=max(estimate.high, least), low=min(estimate.low, least)
-    )
-
-
-def _common(estimates: Sequence[NoiseEstimate]) -> NoiseEstimate:
-    """The median over series, with the interval that covers theirs."""
-    if len(estimates) == 1:
-        return estimates[0]
-    level = float(np.median([one.level for one in estimates]))
-    middle = min(estimates, key=lambda one: abs(one.level - level))
-    low, high = (float(np.median([getattr(e, end) for e in estimates])) for end in ("low", "high"))
-    return replace(middle, level=level, low=min(low, level), high=max(high, level))
 
 
 def noise_of_signal(values: Vector, t: Vector | None = None) -> NoiseEstimate:

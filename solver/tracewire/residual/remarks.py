@@ -17,6 +17,7 @@ from tracewire.formula import evaluate, quantity_hint, read_unit
 from tracewire.residual.endings import alike
 from tracewire.residual.inputs import line_error, looks_held, spline_if_smooth
 from tracewire.residual.limits import INPUT, REMARK
+from tracewire.residual.noise_estimate import noise_of_signal
 
 
 def check_quantities(model: Model, series: Series, record: Record) -> None:
@@ -35,6 +36,11 @@ def check_quantities(model: Model, series: Series, record: Record) -> None:
             problems.append(Problem(what, channel.place, hint=hint))
     if problems:
         raise DataError(problems)
+
+
+def factor_of_column(record: Record, name: str, channel: Channel) -> float:
+    """The factor to SI of the numbers that are said of a column."""
+    return record.unit(name).factor if channel.declared is None else 1.0
 
 
 def remarks_of(
@@ -72,6 +78,7 @@ def remarks_of(
                     f"{name} begins at {column[0]:.4g} rad, about pi from the diagram's start at "
                     f"{start:.4g} rad: is the angle measured from another line?"
                 )
+    found += _on_sigma(model, series, read)
     found += _on_rest(model, series, read)
     found += _on_hold(series, read)
     return tuple(found)
@@ -112,6 +119,31 @@ def _on_hold(series: Series, read: Record) -> list[str]:
                 f"{100 * lost:.2g} % of its amplitude; say hold: smooth where it is smooth between "
                 "samples, hold: previous where each value acts until the next"
             )
+    return found
+
+
+def _on_sigma(model: Model, series: Series, read: Record) -> list[str]:
+    """Signals whose declared noise is not that of their samples."""
+    found = []
+    for name, channel in series.channels.items():
+        column = read.columns.get(name)
+        if channel.sigma is None or column is None:
+            continue
+        sigma = channel.sigma * factor_of_column(read, name, channel)
+        unit = read.unit(name).text or model.flat.units.get(name, "")
+        seen, spread = noise_of_signal(column, read.t), float(np.std(column))
+        if seen.is_sure and seen.low > REMARK.noisier * sigma:
+            what = f"its samples scatter by {seen.level:.3g} {unit}".rstrip()
+            what += f", {seen.level / sigma:.2g} times that"
+        elif 0 < spread < sigma:
+            what = f"the whole signal varies by {spread:.3g} {unit}".rstrip() + " (rms)"
+        else:
+            continue
+        declared = f"{sigma:.3g} {unit}".rstrip()
+        found.append(
+            f"{name} is declared with a noise of sigma = {declared}, and {what}: "
+            "sigma is in the unit of the column; correct it, or leave it out to have it estimated"
+        )
     return found
 
 

@@ -130,8 +130,13 @@ def contents(model: Model) -> dict[str, object]:
     }
 
 
-def series_contents(series: Measured) -> dict[str, object]:
-    """What is in a measured series."""
+def series_contents(series: Measured, units: Mapping[str, str]) -> dict[str, object]:
+    """What is in a measured series; `units` are those of the signals in SI."""
+    noises = {**series.sigma, **series.input_sigma}
+    sigma = {name: value for name, value in noises.items() if value is not None}
+    told = [
+        f"{name}: noise of σ = {s:.4g} {units.get(name, '')}".rstrip() for name, s in sigma.items()
+    ]
     return {
         "name": series.name,
         "series": series.series,
@@ -142,7 +147,9 @@ def series_contents(series: Measured) -> dict[str, object]:
         "to": float(series.t[-1]),
         "signals": list(series.values),
         "inputs": list(series.inputs),
+        "sigma": sigma,
         "steps": list(series.steps),
+        "noise": told,
         "remarks": list(series.remarks),
     }
 
@@ -167,7 +174,7 @@ def contents_text(found: Mapping[str, object], measured: Sequence[Mapping[str, o
             f"  measured    {name}{'' if name.endswith(use) else use}: {series['samples']} samples "
             f"from {series['from']:g} to {series['to']:g} s of {_listed(series['signals'])}"
         )
-        for key, sign in (("steps", "-"), ("remarks", "!")):
+        for key, sign in (("steps", "-"), ("noise", "-"), ("remarks", "!")):
             texts = series[key]
             assert isinstance(texts, Sequence)
             fresh = [text for text in texts if (series["series"], text) not in told]

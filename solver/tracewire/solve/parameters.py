@@ -21,6 +21,12 @@ def _known_values(model: Model) -> dict[Given, tuple[dict[str, float], list[str]
     return {}
 
 
+@once_per_model
+def _preset_values(model: Model) -> dict[str, dict[str, float]]:
+    """The values of presets that meet what the diagram requires."""
+    return {}
+
+
 def parameter_values(
     model: Model, given: Mapping[str, float], preset: str = ""
 ) -> dict[str, float]:
@@ -30,7 +36,9 @@ def parameter_values(
     exist and values that are not finite, SimulationError for values that do not meet what the
     diagram requires.
     """
-    flat = model.flat
+    flat, met = model.flat, _preset_values(model)
+    if not given and preset in met:
+        return met[preset].copy()
     if preset and preset not in flat.presets:
         raise OptionError([unknown("preset", preset, flat.presets)])
     problems = [unknown("parameter", n, flat.parameters) for n in given if n not in flat.parameters]
@@ -63,7 +71,10 @@ def parameter_values(
         for name in following:
             values[name] = evaluate(formulas[name], values, flat.parameters[name].place)
     refuse_unmet(model, values)
-    return {name: values[name] for name in flat.parameters}
+    values = {name: values[name] for name in flat.parameters}
+    if not given:
+        met[preset] = values.copy()
+    return values
 
 
 def refuse_unmet(model: Model, values: Mapping[str, float]) -> None:

@@ -155,8 +155,10 @@ def _spans(problem: InitialValueProblem, space: Workspace, spans: Sequence[Span]
         raise OptionError([Problem(what)])
     follows = np.array([span.follows for span in spans])
     follows[0] = False
-    kept = np.flatnonzero(~given[follows].any(axis=0))
-    given[np.ix_(follows, kept)] = True
+    kept = np.empty(0, dtype=np.intp)  # states that go on from span to span
+    if follows.any():
+        kept = np.flatnonzero(~given[follows].any(axis=0))
+        given[np.ix_(follows, kept)] = True
     is_start = np.array([name.startswith(START) for name in asked], dtype=bool)
     set_here = given[:, :, None] & ~is_start  # what is set follows no parameter
     rows = np.cumsum([0, *(len(span.times) for span in spans)])

@@ -55,6 +55,14 @@ def test_of_models_within_five_percent_the_one_of_fewest_numbers_is_taken() -> N
     assert chosen(entrants, 1.0, 0.2, 0.0, -0.005).chosen == 2
 
 
+def test_a_model_with_as_many_more_numbers_as_blocks_is_not_taken() -> None:
+    """So many numbers follow what a handful of blocks show, whatever it is."""
+    entrants = [model(), model("a"), model("b", "c", numbers=2 + BLOCKS)]
+    assert chosen(entrants, 1.0, 0.4, 0.0).chosen == 1
+    entrants[2] = model("b", "c", numbers=1 + BLOCKS)
+    assert chosen(entrants, 1.0, 0.4, 0.0).chosen == 2
+
+
 def test_a_gain_within_one_standard_error_is_none() -> None:
     entrants = [model(), model("a"), model("b", "c")]
     steady, shaky = 0.12, 0.12 + wobble(0.6)

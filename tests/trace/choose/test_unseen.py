@@ -12,6 +12,7 @@ from tracewire.trace.choose.choice import Entrant, choose, log_scores
 from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.choose.unseen import (
     better_unseen,
+    lowers_no_claim,
     prune_by_other_runs,
     raises_whole_runs,
     share_of_whole_runs,
@@ -111,7 +112,7 @@ def run_of(left: dict[tuple[str, ...], float]) -> Any:
         residuals_on=lambda names, windows: [np.full(WHOLE, left[names])], sigma={"x": 1.0}
     )
     return SimpleNamespace(
-        data_split=SimpleNamespace(unseen=[section]),
+        data_split=SimpleNamespace(unseen=[section], validate=[section]),
         problem=problem,
         windows=lambda sections, length: [length],
         options=TraceOptions(),
@@ -190,3 +191,51 @@ def test_effects_that_hardly_help_on_whole_unseen_runs_are_an_approximation(
     assert found.final is final
     told = f"{DRY} takes 8% of the excess squared error of whole unseen runs away"
     assert [words.split(",")[0] for words in there.words] == [told] * (verdict == "unexplained")
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "in_windows", "lowers_none"),
+    [
+        (50.0, 58.0, 1.04, True),
+        (50.0, 50.0, 1.0, True),
+        (50.0, 49.0, 1.04, False),
+        (50.0, 58.0, 0.9, False),  # long runs depend on everything
+        (1.2, 1.3, 1.04, False),  # at the noise nothing is told
+        (600.0, 700.0, 1.04, False),  # both have lost track of the sine
+    ],
+)
+def test_an_effect_lowers_some_error_where_the_claim_is_made(
+    before: float, after: float, in_windows: float, lowers_none: bool
+) -> None:
+    fewer: Any = Names(())
+    more: Any = Names((DRY,))
+    more.length = 200
+    there = run_of({})
+    there.short_length = 50
+    left = {
+        ((), WHOLE): before,
+        ((DRY,), WHOLE): after,
+        ((), 50): 10.0,
+        ((DRY,), 50): 10 * in_windows,
+    }
+    there.problem.residuals_on = lambda names, windows: [
+        np.full(windows[0], left[tuple(names), windows[0]])
+    ]
+    assert lowers_no_claim(there, fewer, more) == lowers_none
+
+
+def test_effects_that_do_not_help_where_the_claim_is_made_are_an_approximation(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    there = run_of({(): 50.0, (DRY,): 30.0})
+    there.words, there.short_length = [], WHOLE
+    final: Any = SimpleNamespace(declared=(), best=Names((DRY,)))
+    monkeypatch.setattr(safeguards, "is_loose", lambda problem, trial: False)
+    monkeypatch.setattr(safeguards, "lowers_no_claim", lambda search, fewer, more: True)
+    monkeypatch.setattr(safeguards, "residual_map", lambda search, trial: ((), None))
+    found = safeguards.safeguard(there, safeguards.Judgement("effect", final))
+    assert (found.verdict, found.final) == ("unexplained", final)
+    assert there.words == [
+        f"{DRY} lowers the error neither of windows nor of whole runs in the part of the data that"
+        " played no part"
+    ]

@@ -1,4 +1,4 @@
-"""Numbers on a bound are told before any effect is believed."""
+"""Numbers on a bound, and such as no record determines, are told before any effect is believed."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 from oracles.oscillator import DIAGRAM, candidates_of, problem_of, record, trial_of
+from tracewire.fit import describe_undetermined
 from tracewire.residual.sensor import Sensor
 from tracewire.trace.trials.bounds import AtBound, at_bounds
 from tracewire.trace.trials.trial import PlacedEffect
@@ -84,3 +85,17 @@ def test_a_coefficient_at_zero_is_an_effect_that_is_not_used() -> None:
     one = AtBound("coulomb.level", "coefficient", 0.0, 0.0, 10.0, False, "", "coulomb @ force")
     assert one.absent
     assert one.words == "the level of coulomb @ force sits on its bound 0: the fit does not use it"
+
+
+def test_declared_parameters_that_the_record_cannot_separate_are_told() -> None:
+    """The record depends on the product alone."""
+    assert describe_undetermined(trial_of(problem_of(record())).windows) == ()
+    twice = DIAGRAM.replace("parameters:", "parameters:\n  s: {value: 1, fit: [0.5, 2]}")
+    twice = twice.replace("k: -k}", "k: -s*k}")
+    (words,) = describe_undetermined(trial_of(problem_of(record(), text=twice)).windows)
+    assert words == "only s*k is determined: fix k or s"
+
+
+def test_a_model_with_nothing_free_leaves_nothing_open() -> None:
+    known = DIAGRAM.replace("fit: [5, 80]", "").replace("fit: [0, 2]", "")
+    assert describe_undetermined(trial_of(problem_of(record(), text=known)).windows) == ()

@@ -125,13 +125,15 @@ def choose(
 ) -> Choice:
     """The simplest model that predicts as well as the best, pruned; model 0 is the declared one.
 
-    Only models that are surely better than the declared one are compared, where there are any.
+    Only models that are surely better than the declared one are compared, where there are any; none
+    that fits as many numbers more than the declared one as there are blocks to judge them by.
     scores: S, (models, horizons, families of folds, blocks); not finite where a model does not run.
     folds: the blocks that one fit predicts, by family.
     """
     tolerance = float(np.log1p(options.near))
     totals = scores.mean(axis=(1, 2))
-    usable = _usable(totals)
+    fewer = entrants[0].numbers + totals.shape[-1]
+    usable = [n for n in _usable(totals) if n == 0 or entrants[n].numbers < fewer]
     surer = [n for n in usable if n and is_sure(totals, 0, n, options)]
     among = surer or usable
     chosen = _simplest_near_best(entrants, totals, among, tolerance)

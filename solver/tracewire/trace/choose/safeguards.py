@@ -8,6 +8,7 @@ from tracewire.trace.check.mistakes import refuse_mistakes
 from tracewire.trace.check.tolerance import is_loose, tighten_tolerance
 from tracewire.trace.choose.unseen import (
     join_names,
+    lowers_no_claim,
     raises_unseen,
     raises_whole_runs,
     share_of_whole_runs,
@@ -54,7 +55,7 @@ def safeguard(search: Search, judgement: Judgement) -> Judgement:
         lengths = sorted({min(search.short_length, final.best.length), final.best.length})
         harm = raises_unseen(search, final.declared, final.best, lengths)
         if not harm and judgement.verdict == "effect":
-            judgement = _of_whole_runs(search, judgement, final)
+            judgement = _confirmed(search, judgement, final)
         if not harm and judgement.verdict == "unexplained":
             harm = raises_whole_runs(search, final.declared, final.best)
         if harm:
@@ -66,17 +67,24 @@ def safeguard(search: Search, judgement: Judgement) -> Judgement:
     return replace(judgement, final=final)
 
 
-def _of_whole_runs(search: Search, judgement: Judgement, final: FinalModels) -> Judgement:
-    """The judgement, or `unexplained` where the effects hardly lower the error of whole unseen
-    runs: what follows a rest of no block's form on windows does not carry over to them."""
-    share = share_of_whole_runs(search, final.declared, final.best)
-    if share >= search.options.whole_runs:
+def _confirmed(search: Search, judgement: Judgement, final: FinalModels) -> Judgement:
+    """The judgement, or `unexplained` where unseen data do not confirm the effects.
+
+    They hardly lower the error of whole unseen runs: what follows a rest of no block's form on
+    windows does not carry over to them. Or they do not lower it at all where the claim is made.
+    """
+    declared, best = final.declared, final.best
+    share = share_of_whole_runs(search, declared, best)
+    if share < search.options.whole_runs:
+        what = f"takes {max(share, 0):.0%} of the excess squared error of whole unseen runs away,"
+        what += " which is too little"
+    elif lowers_no_claim(search, declared, best):
+        what = "lowers the error neither of windows nor of whole runs in the part of the data that"
+        what += " played no part"
+    else:
         return judgement
-    search.words.append(
-        f"{join_names(map(str, final.best.effects))} takes {max(share, 0):.0%} of the excess"
-        " squared error of whole unseen runs away, which is too little"
-    )
-    dependences, missing = residual_map(search, final.declared)
+    search.words.append(f"{join_names(map(str, best.effects))} {what}")
+    dependences, missing = residual_map(search, declared)
     return replace(judgement, verdict="unexplained", dependences=dependences, missing=missing)
 
 

@@ -66,16 +66,29 @@ def share_of_whole_runs(search: Search, fewer: Trial, more: Trial) -> float:
     return 1 - (after - count) / (before - count)
 
 
+def lowers_no_claim(search: Search, fewer: Trial, more: Trial) -> bool:
+    """Whether a model has no less error than one with fewer effects in the part of the data that is
+    kept for the claim, neither in windows nor in whole runs; false where the latter are at the
+    noise, or have lost track of the data."""
+    claim = search.data_split.validate
+    whole, short = _longest(claim), min(search.short_length, more.length)
+    before, after = (float(squares_on(search, claim, t, whole).sum()) for t in (fewer, more))
+    tells = search.options.informative * _count(claim) < before < _tracked(search, claim)
+    if not tells or after < before:
+        return False
+    before, after = (float(squares_on(search, claim, t, short).sum()) for t in (fewer, more))
+    return after >= before
+
+
 def _whole_runs(search: Search, fewer: Trial, more: Trial) -> tuple[float, float, int]:
     """The sums of squares of two models in whole unseen runs, in sigma^2, and of how many
     residuals; nothing where the first has lost track of the data."""
     unseen = search.data_split.unseen
-    whole = max((section.end - section.first for section in unseen), default=0)
+    whole = _longest(unseen)
     before, after = (squares_on(search, unseen, trial, whole) for trial in (fewer, more))
-    if not before.sum() < search.options.tracked**2 * _spread(search, unseen):
+    if not before.sum() < _tracked(search, unseen):
         return 0.0, 0.0, 0
-    count = sum((s.end - s.first) * len(s.measured.values) for s in unseen)
-    return float(before.sum()), float(after.sum()), count
+    return float(before.sum()), float(after.sum()), _count(unseen)
 
 
 def better_unseen(search: Search, prediction: Prediction) -> list[int]:
@@ -99,7 +112,7 @@ def better_unseen(search: Search, prediction: Prediction) -> list[int]:
         return []
     unseen = search.data_split.unseen
     lengths = {horizon.length for horizon in prediction.horizons.each}
-    whole = max((section.end - section.first for section in unseen), default=0)
+    whole = _longest(unseen)
 
     def error(number: int, length: int) -> float:
         trial = prediction.models[number].trials[-1]
@@ -151,10 +164,21 @@ def squares_on(search: Search, sections: Sequence[Section], trial: Trial, length
     return np.array([float(np.sum(r**2)) for r in search.problem.residuals_on(trial, windows)])
 
 
-def _spread(search: Search, sections: Sequence[Section]) -> float:
-    """The sum of squares of the measured signals about their means, in sigma."""
+def _longest(sections: Sequence[Section]) -> int:
+    """The samples of the longest section."""
+    return max((section.end - section.first for section in sections), default=0)
+
+
+def _count(sections: Sequence[Section]) -> int:
+    """How many samples of all signals sections have."""
+    return sum((s.end - s.first) * len(s.measured.values) for s in sections)
+
+
+def _tracked(search: Search, sections: Sequence[Section]) -> float:
+    """The sum of squared residuals, in sigma, below which a whole run has not lost track of the
+    data: a part of the sum of squares of the measured signals about their means."""
     sigma = search.problem.sigma
-    return sum(
+    return search.options.tracked**2 * sum(
         float(np.var(values[section.first : section.end])) * (section.end - section.first)
         / sigma[name] ** 2
         for section in sections

@@ -10,6 +10,7 @@ import numpy as np
 
 from tracewire.diagram import Diagram
 from tracewire.errors import TracewireError
+from tracewire.fit import describe_undetermined
 from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.choose.verdict import Judgement
 from tracewire.trace.experiment.experiment import design_experiment
@@ -45,6 +46,7 @@ def result_of(
     problem, declared, best = search.problem, final.declared, final.best
     bounds = (one for t in (declared, best) for one in at_bounds(t))
     search.words += dict.fromkeys(one.words for one in bounds if not one.exact)
+    search.words += [w for w in describe_undetermined(best.windows) if w not in search.words]
     parts = compare_models(search, declared, best)
     claimed = [part for part in parts if part.use == "validate"]
     values = {**best.values, **dict.fromkeys(final.dropped, 0.0)}
