@@ -98,7 +98,7 @@ class CurveLimits:
     coarse: int = 8
     """The same while its scale is looked for."""
     steep: float = 0.3
-    """How much a bend counts less for each largest step between two samples: a ramp between two
+    """Of the largest step between two samples: so much less a bend counts, as a ramp between two
     limits shall look like one."""
     jump: float = 0.6
     """Between two samples: it is drawn upright."""

@@ -115,7 +115,7 @@ class MultistartLimits:
     most_points: int = 4096
     """In all, at most."""
     batch: int = 32
-    """Points that are evaluated together; between two batches a search is kept."""
+    """Points that are evaluated together."""
     polished: int = 6
     """Of the best points: how many least squares goes on from."""
     steps: int = 60

@@ -182,7 +182,7 @@ class DescentLimits:
     most_damping: float = 1e6
     """Damping from which on a fit ends: steps so short change nothing."""
     most_failures: int = 8
-    """Steps in a row that gain nothing, after which a fit ends."""
+    """Steps whose run fails, after which a fit ends."""
     patience: int = 4
     """Steps in a row that are too slow until a fit is given up."""
     hope: float = 2.0

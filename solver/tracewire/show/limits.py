@@ -107,7 +107,7 @@ class LiveLimits:
     thinning: float = 0.02
     """The next frame waits for this part of the time so far: frames thin out in a long search."""
     most_frames: int = 500
-    """That are kept."""
+    """That are drawn."""
     most_signals: int = 4
     """That are drawn, of the series to be fitted first."""
 

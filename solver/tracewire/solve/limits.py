@@ -95,9 +95,9 @@ class MemoryLimits:
     stiff: int = 64
     """Mode combinations of a run that are remembered as stiff."""
     first_moves: int = 512
-    """Steps for which a past has place at first; it doubles."""
+    """Rows for moves of a past at first; they double."""
     first_points: int = 512
-    """The same of its points where something jumps."""
+    """The same of its points."""
     past: int = 250_000_000
     """Of the past of what is delayed: 2 GB."""
     workspaces: int = 16
@@ -105,7 +105,7 @@ class MemoryLimits:
     workspace: int = 500_000
     """Of the samples and tables of one; larger ones are not kept."""
     given: int = 100
-    """Kinds of given values whose order a model keeps."""
+    """Kinds of given values for which a model keeps the values of all others."""
     sensitivities: int = 200
     """Kinds of what is asked for, of which a model keeps what moves."""
     times: int = 64
