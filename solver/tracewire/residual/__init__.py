@@ -52,6 +52,7 @@ from tracewire.residual.windows import (
     evaluate_windows,
     project_out_initial_states,
     with_lead_in,
+    with_memory,
 )
 
 __all__ = [
@@ -110,6 +111,7 @@ __all__ = [
     "whole_segment",
     "with_lead_in",
     "with_measured_signals",
+    "with_memory",
     "with_past",
     "wrap_to_period",
 ]

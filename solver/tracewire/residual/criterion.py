@@ -8,6 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cache
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -87,14 +88,10 @@ class Criterion:
         self._samples = [segment.samples() for segment in self.segments]
         self._weights: dict[int, Vector] = {}
         self._following = (
-            {n for n in range(1, len(self.segments)) if self._follows(n)} if chained else set()
+            {n for n, pair in enumerate(pairwise(segments), 1) if pair[1].continues(pair[0])}
+            if chained
+            else set()
         )
-
-    def _follows(self, n: int) -> bool:
-        """Whether segment n begins where the one before it ends."""
-        before, segment = self.segments[n - 1], self.segments[n]
-        near = int(before.rows[-1]) + 1 == int(segment.rows[0])
-        return bool(segment.free) and before.measured is segment.measured and near
 
     def follows(self, n: int) -> bool:
         """Whether segment n goes on where the one before it ends, and is chained to it."""

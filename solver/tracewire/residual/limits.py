@@ -146,6 +146,9 @@ class WindowLimits:
     ahead: float = 2.0
     """How many delays of a sensor a window's run begins ahead of its first sample: a fit may find a
     longer delay than it began with."""
+    remembered: float = 0.1
+    """The part of a series by which a run begins ahead of a window, so that what a model remembers
+    is what the record has made it: two time constants of a lag that the record shows ten times."""
     initial_state_steps: int = 8
     """Gauss-Newton steps of initial states, at most."""
     far_off: float = 100.0

@@ -45,6 +45,11 @@ class Segment:
         """The measured signals."""
         return tuple(self.measured.values)
 
+    def continues(self, before: Segment) -> bool:
+        """Whether it begins where another one of its series ends, with a free start."""
+        near = int(before.rows[-1]) + 1 == int(self.rows[0])
+        return bool(self.free) and before.measured is self.measured and near
+
     def samples(self) -> Vector:
         """The measured values, shape (N, signals) in SI."""
         return np.stack([v[self.rows] for v in self.measured.values.values()], axis=1)

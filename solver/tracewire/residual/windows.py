@@ -79,11 +79,35 @@ def with_lead_in(model: Model, segment: Segment, delays: Mapping[str, float]) ->
     if not segment.free or segment.begin <= begin:
         return segment
     row = int(np.searchsorted(measured.t, begin, side="right")) - 1
-    if row < 0:
-        return replace(segment, begin=begin)
-    states = start_from_data(model, measured, row)
+    return replace(segment, begin=begin) if row < 0 else _begun_at(model, segment, row)
+
+
+def with_memory(model: Model, segments: Sequence[Segment]) -> list[Segment]:
+    """Windows whose runs find what a model remembers beside the states that are free at a start.
+
+    A lag or a hysteresis begins as its block says, which is wrong inside a record. So the run of a
+    window that follows no other begins ahead of it by a tenth of the series, or where that does.
+    """
+    found: list[Segment] = []
+    for n, segment in enumerate(segments):
+        known = set(model.states) <= set(segment.free)
+        known &= not any(mode.kind == "memory" for mode in model.modes)
+        follows = n > 0 and segment.continues(segments[n - 1])
+        row = max(int(segment.rows[0]) - 1 - int(WINDOW.remembered * len(segment.measured.t)), 0)
+        ahead = segment.measured.t[row] < segment.begin
+        if known or not segment.free or follows or not ahead:
+            found.append(segment)
+        else:
+            found.append(_begun_at(model, segment, row))
+    return found
+
+
+def _begun_at(model: Model, segment: Segment, row: int) -> Segment:
+    """A window whose run begins at a row of its series, with the free states that the data tell."""
+    states = start_from_data(model, segment.measured, row)
     start = {name: states[name] for name in segment.free if name in states}
-    return replace(segment, begin=float(measured.t[row]), start={**segment.start, **start})
+    begin = float(segment.measured.t[row])
+    return replace(segment, begin=begin, start={**segment.start, **start})
 
 
 @dataclass(frozen=True, eq=False)

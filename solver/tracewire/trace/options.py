@@ -135,8 +135,8 @@ class TraceOptions:
     """Models that may be refused because they raise the error on unseen data, before none is
     named."""
     lost: float = 1.5
-    """The reduced chi-square on windows of three times the shortest length, from which on a model
-    that is at the noise on the shortest ones is not right."""
+    """The reduced chi-square on longer windows, three times the shortest length and all of a
+    record, from which on a model that is at the noise on shorter ones is not right."""
     slow_noise: float = 30.0
     """The reduced chi-square below which a rest is taken for slow noise of a sensor, where no body
     comes back to where it was."""

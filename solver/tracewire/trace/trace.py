@@ -16,15 +16,13 @@ from tracewire.trace.choose.prediction import Prediction, predict
 from tracewire.trace.choose.safeguards import fit_declared, refuse_mistaken, safeguard
 from tracewire.trace.choose.verdict import (
     Judgement,
-    is_at_noise,
-    is_slow_noise,
     judge_at_noise,
     judge_prediction,
 )
 from tracewire.trace.found import Found
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.results.result import result_of
-from tracewire.trace.search.refinement import FinalModels, refine
+from tracewire.trace.search.refinement import FinalModels
 from tracewire.trace.search.setup import set_up_search
 
 
@@ -62,12 +60,11 @@ def trace(
         declared = fit_declared(search)
         search.run(declared)
         first, best = search.declared_and_best
-        if is_at_noise(search, best) or is_slow_noise(search, best):
-            judgement = judge_at_noise(search, refine(search, first, best))
-        else:
+        found = judge_at_noise(search, first, best)
+        if found is None:
             prediction = predict(search, first)
-            judgement = judge_prediction(search, prediction)
-        judgement = safeguard(search, judgement)
+            found = judge_prediction(search, prediction)
+        judgement = safeguard(search, found)
         refuse_mistaken(search, declared, judgement)
     except (KeyboardInterrupt, OutOfTime) as stopped:
         if search.best is None:

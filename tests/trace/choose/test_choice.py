@@ -63,6 +63,22 @@ def test_a_model_with_as_many_more_numbers_as_blocks_is_not_taken() -> None:
     assert chosen(entrants, 1.0, 0.4, 0.0).chosen == 2
 
 
+def test_one_block_that_is_extrapolated_does_not_hide_a_law() -> None:
+    """A plateau is predicted from fast switching alone: a right model is off there by a factor."""
+    plateau = np.r_[-1.5, np.full(BLOCKS - 1, 0.6) + 0.1 * np.arange(BLOCKS - 1)]
+    raw = plateau.mean() / (plateau.std(ddof=1) / BLOCKS**0.5)
+    assert raw < OPTIONS.sure
+    found = chosen([model(), model("coulomb")], plateau, 0.0)
+    assert (found.chosen, found.sure) == (1, True)
+
+
+def test_a_model_that_has_more_squared_error_is_not_taken() -> None:
+    """The logarithm may prefer it for many small blocks."""
+    worse = replace(model("a"), left=(3.0, 1.2))
+    assert chosen([model(), worse], 1.0, 0.0).chosen == 0
+    assert chosen([model(), replace(worse, left=(3.0, 0.9))], 1.0, 0.0).chosen == 1
+
+
 def test_a_gain_within_one_standard_error_is_none() -> None:
     entrants = [model(), model("a"), model("b", "c")]
     steady, shaky = 0.12, 0.12 + wobble(0.6)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tracewire.trace.choose import safeguards
+from tracewire.trace.choose import safeguards, unseen
 from tracewire.trace.choose.choice import Entrant, choose, log_scores
 from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.choose.unseen import (
@@ -183,8 +183,10 @@ def test_effects_that_hardly_help_on_whole_unseen_runs_are_an_approximation(
 ) -> None:
     there = run_of({(): 50.0, (DRY,): after})
     there.words, there.short_length = [], WHOLE
+    monkeypatch.setattr(safeguards, "lowers_no_claim", lambda search, fewer, more: False)
     final: Any = SimpleNamespace(declared=(), best=Names((DRY,)))
     monkeypatch.setattr(safeguards, "is_loose", lambda problem, trial: False)
+    monkeypatch.setattr(safeguards, "undetermined_effects", lambda trial, confidence: [])
     monkeypatch.setattr(safeguards, "residual_map", lambda search, trial: ((), None))
     found = safeguards.safeguard(there, safeguards.Judgement("effect", final))
     assert found.verdict == verdict
@@ -201,26 +203,29 @@ def test_effects_that_hardly_help_on_whole_unseen_runs_are_an_approximation(
         (50.0, 49.0, 1.04, False),
         (50.0, 58.0, 0.9, False),  # long runs depend on everything
         (1.2, 1.3, 1.04, False),  # at the noise nothing is told
-        (600.0, 700.0, 1.04, False),  # both have lost track of the sine
+        (600.0, 700.0, 1.01, False),  # both have lost track of the sine
+        (600.0, 700.0, 1.04, True),  # and windows show more than chance
     ],
 )
 def test_an_effect_lowers_some_error_where_the_claim_is_made(
-    before: float, after: float, in_windows: float, lowers_none: bool
+    before: float,
+    after: float,
+    in_windows: float,
+    lowers_none: bool,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     fewer: Any = Names(())
     more: Any = Names((DRY,))
     more.length = 200
     there = run_of({})
-    there.short_length = 50
-    left = {
-        ((), WHOLE): before,
-        ((DRY,), WHOLE): after,
-        ((), 50): 10.0,
-        ((DRY,), 50): 10 * in_windows,
-    }
-    there.problem.residuals_on = lambda names, windows: [
-        np.full(windows[0], left[tuple(names), windows[0]])
-    ]
+    there.short_length, there.shortest = 50, 10
+    windowed, free = {(): 10.0, (DRY,): 10 * in_windows}, {(): before, (DRY,): after}
+    there.problem.residuals_on = lambda names, windows: [np.full(50, windowed[tuple(names)])]
+
+    def run_freely(problem: Any, names: Names, whole: Any, shortest: int) -> np.ndarray:
+        return np.full(WHOLE, free[tuple(names)])
+
+    monkeypatch.setattr(unseen, "free_run", run_freely)
     assert lowers_no_claim(there, fewer, more) == lowers_none
 
 
@@ -231,11 +236,28 @@ def test_effects_that_do_not_help_where_the_claim_is_made_are_an_approximation(
     there.words, there.short_length = [], WHOLE
     final: Any = SimpleNamespace(declared=(), best=Names((DRY,)))
     monkeypatch.setattr(safeguards, "is_loose", lambda problem, trial: False)
+    monkeypatch.setattr(safeguards, "undetermined_effects", lambda trial, confidence: [])
     monkeypatch.setattr(safeguards, "lowers_no_claim", lambda search, fewer, more: True)
     monkeypatch.setattr(safeguards, "residual_map", lambda search, trial: ((), None))
     found = safeguards.safeguard(there, safeguards.Judgement("effect", final))
     assert (found.verdict, found.final) == ("unexplained", final)
     assert there.words == [
-        f"{DRY} lowers the error neither of windows nor of whole runs in the part of the data that"
+        f"{DRY} lowers the error neither of windows nor of free runs in the part of the data that"
         " played no part"
     ]
+
+
+@pytest.mark.parametrize(("left", "verdict"), [(1.0, "null"), (4.0, "unexplained")])
+def test_an_effect_whose_coefficient_may_be_zero_is_not_named(
+    left: float, verdict: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    there = run_of({})
+    there.words = []
+    declared: Any = SimpleNamespace(reduced_chi2=left, effects=())
+    final: Any = SimpleNamespace(declared=declared, best=Names((DRY,)))
+    monkeypatch.setattr(safeguards, "is_loose", lambda problem, trial: False)
+    monkeypatch.setattr(safeguards, "undetermined_effects", lambda trial, confidence: [DRY])
+    found = safeguards.safeguard(there, safeguards.Judgement("effect", final))
+    assert (found.verdict, found.final.best) == (verdict, declared)
+    told = f"{DRY} is not named: the 95% interval of its coefficient holds zero"
+    assert there.words == [told]

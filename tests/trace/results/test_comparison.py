@@ -12,11 +12,11 @@ from tracewire.residual.windows import Section, cut_windows
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.results.comparison import (
     compare_models,
-    free_run,
-    intervals,
     parameter_changes,
     rmse,
 )
+from tracewire.trace.trials.free_run import free_run
+from tracewire.trace.trials.intervals import intervals
 from tracewire.trace.trials.trial import TraceProblem
 
 OPTIONS = TraceOptions()

@@ -126,14 +126,19 @@ def choose(
     """The simplest model that predicts as well as the best, pruned; model 0 is the declared one.
 
     Only models that are surely better than the declared one are compared, where there are any; none
-    that fits as many numbers more than the declared one as there are blocks to judge them by.
+    that fits as many numbers more than the declared one as there are blocks to judge them by, and
+    none that has more squared error at each horizon.
     scores: S, (models, horizons, families of folds, blocks); not finite where a model does not run.
     folds: the blocks that one fit predicts, by family.
     """
     tolerance = float(np.log1p(options.near))
     totals = scores.mean(axis=(1, 2))
     fewer = entrants[0].numbers + totals.shape[-1]
-    usable = [n for n in _usable(totals) if n == 0 or entrants[n].numbers < fewer]
+    usable = [
+        n
+        for n in _usable(totals)
+        if n == 0 or (entrants[n].numbers < fewer and min(entrants[n].left, default=0.0) < 1)
+    ]
     surer = [n for n in usable if n and is_sure(totals, 0, n, options)]
     among = surer or usable
     chosen = _simplest_near_best(entrants, totals, among, tolerance)
@@ -192,11 +197,16 @@ def _usable(totals: Array) -> list[int]:
 
 
 def is_sure(totals: Array, one: int, other: int, options: TraceOptions) -> bool:
-    """Whether one model is worse than another by the tolerance and so many standard errors, also of
-    differences that are cut: a decay shows nearly all in its first blocks, and that these differ
-    from the later ones is no doubt about the sign."""
+    """Whether one model is worse than another by the tolerance and so many standard errors.
+
+    Also of differences that are cut: a decay shows nearly all in its first blocks, and that these
+    differ from the later ones is no doubt about the sign. And also without the largest and the
+    smallest: a block that no other one is like is predicted by extrapolation, where a right model
+    with one number more may be far off.
+    """
     change, most = totals[one] - totals[other], np.log1p(options.block_counts)
-    errors = max(_in_errors(change), _in_errors(np.clip(change, -most, most)))
+    inner = np.sort(change)[1:-1]
+    errors = max(map(_in_errors, (change, np.clip(change, -most, most), inner)))
     return bool(np.mean(change) >= np.log1p(options.near) and errors >= options.sure)
 
 

@@ -14,8 +14,10 @@ from tracewire.trace.choose.unseen import (
     share_of_whole_runs,
 )
 from tracewire.trace.choose.verdict import Judgement, residual_map
+from tracewire.trace.found import Verdict
 from tracewire.trace.search.refinement import FinalModels
 from tracewire.trace.search.search import Search
+from tracewire.trace.trials.intervals import undetermined_effects
 from tracewire.trace.trials.trial import Trial
 
 
@@ -51,6 +53,7 @@ def safeguard(search: Search, judgement: Judgement) -> Judgement:
             for trial in (final.declared, final.best)
         )
         final = replace(final, declared=declared, best=best)
+    judgement, final = _without_undetermined(search, judgement, final)
     if final.best.effects:
         lengths = sorted({min(search.short_length, final.best.length), final.best.length})
         harm = raises_unseen(search, final.declared, final.best, lengths)
@@ -67,6 +70,35 @@ def safeguard(search: Search, judgement: Judgement) -> Judgement:
     return replace(judgement, final=final)
 
 
+def _without_undetermined(
+    search: Search, judgement: Judgement, final: FinalModels
+) -> tuple[Judgement, FinalModels]:
+    """The judgement and the models without effects whose coefficient may as well be zero."""
+    names = undetermined_effects(final.best, search.options.confidence)
+    if not names:
+        return judgement, final
+    search.words.append(
+        f"{join_names(names)} is not named: the {search.options.confidence:.0%} interval of its"
+        " coefficient holds zero"
+    )
+    kept = [effect for effect in final.best.effects if str(effect) not in names]
+    if not kept:
+        at_noise = final.declared.reduced_chi2 <= search.options.at_noise
+        verdict: Verdict = "null" if at_noise else "unexplained"
+        alone = FinalModels(final.declared, final.declared, {}, ())
+        return replace(judgement, verdict=verdict, final=alone), alone
+    best = search.problem.fit(
+        kept,
+        final.best.windows.segments,
+        final.best.length,
+        final.best.values,
+        fixed=final.best.windows.criterion.parameters,
+    )
+    rivals = {str(effect): final.rivals.get(str(effect), ()) for effect in kept}
+    final = replace(final, best=best, rivals=rivals)
+    return replace(judgement, final=final), final
+
+
 def _confirmed(search: Search, judgement: Judgement, final: FinalModels) -> Judgement:
     """The judgement, or `unexplained` where unseen data do not confirm the effects.
 
@@ -79,7 +111,7 @@ def _confirmed(search: Search, judgement: Judgement, final: FinalModels) -> Judg
         what = f"takes {max(share, 0):.0%} of the excess squared error of whole unseen runs away,"
         what += " which is too little"
     elif lowers_no_claim(search, declared, best):
-        what = "lowers the error neither of windows nor of whole runs in the part of the data that"
+        what = "lowers the error neither of windows nor of free runs in the part of the data that"
         what += " played no part"
     else:
         return judgement

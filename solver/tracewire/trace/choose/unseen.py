@@ -12,6 +12,7 @@ from tracewire.residual import Section
 from tracewire.trace.choose.choice import is_sure, log_scores
 from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.search.search import Search
+from tracewire.trace.trials.free_run import free_run
 from tracewire.trace.trials.trial import Trial
 
 Vector = NDArray[np.float64]
@@ -68,16 +69,26 @@ def share_of_whole_runs(search: Search, fewer: Trial, more: Trial) -> float:
 
 def lowers_no_claim(search: Search, fewer: Trial, more: Trial) -> bool:
     """Whether a model has no less error than one with fewer effects in the part of the data that is
-    kept for the claim, neither in windows nor in whole runs; false where the latter are at the
-    noise, or have lost track of the data."""
-    claim = search.data_split.validate
-    whole, short = _longest(claim), min(search.short_length, more.length)
-    before, after = (float(squares_on(search, claim, t, whole).sum()) for t in (fewer, more))
-    tells = search.options.informative * _count(claim) < before < _tracked(search, claim)
-    if not tells or after < before:
+    kept for the claim, neither in windows nor in free runs; false where the latter are at the
+    noise. Where they have lost track of the data, windows must show a rise that is no chance."""
+    claim, short = search.data_split.validate, search.short_length
+    before, after = (_squares_of_free_runs(search, claim, trial) for trial in (fewer, more))
+    if before <= search.options.informative * _count(claim) or after < before:
         return False
+    rise = 0.0 if before < _tracked(search, claim) else search.options.harm
     before, after = (float(squares_on(search, claim, t, short).sum()) for t in (fewer, more))
-    return after >= before
+    return after >= (1 + rise) ** 2 * before
+
+
+def _squares_of_free_runs(search: Search, sections: Sequence[Section], trial: Trial) -> float:
+    """The sum of squared residuals in sigma of a run over each section, whose start is fitted on
+    the first part of it alone."""
+    runs = [
+        free_run(search.problem, trial, whole, search.shortest)
+        for section in sections
+        for whole in search.windows([section], section.end - section.first)
+    ]
+    return sum(float(np.sum(run**2)) for run in runs)
 
 
 def _whole_runs(search: Search, fewer: Trial, more: Trial) -> tuple[float, float, int]:

@@ -30,7 +30,7 @@ from tracewire.trace.found import (
 )
 from tracewire.trace.missing.dependence import map_dependence
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.search.refinement import FinalModels, Rival, order_effects
+from tracewire.trace.search.refinement import FinalModels, Rival, order_effects, refine
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.trial import Trial
 
@@ -86,9 +86,21 @@ def is_slow_noise(search: Search, trial: Trial) -> bool:
     )
 
 
-def judge_at_noise(search: Search, final: FinalModels) -> Judgement:
-    """`null` where the declared model is at the noise, else `effect`."""
-    return Judgement("effect" if final.best.effects else "null", final)
+def judge_at_noise(search: Search, first: Trial, best: Trial) -> Judgement | None:
+    """`null` where the declared model `first` is at the noise, `effect` where the best one is; None
+    where neither is, so that models must be compared by what they predict.
+
+    Windows whose starts are free swallow what is slower than they are: nothing is missing only
+    where the declared model is near the noise on the longest windows that it bears, too.
+    """
+    slow = is_slow_noise(search, best)
+    if not slow and not is_at_noise(search, best):
+        return None
+    final = refine(search, first, best)
+    if final.best.effects:
+        return Judgement("effect", final)
+    lost = final.best.length > best.length and final.best.reduced_chi2 > search.options.lost
+    return Judgement("null", final) if slow or not lost else None
 
 
 def judge_prediction(search: Search, prediction: Prediction) -> Judgement:

@@ -13,9 +13,9 @@ from tracewire.diagram import Diagram, patch, set_sensors, set_values
 from tracewire.residual import SENSED
 from tracewire.trace.candidates.changes import changes_of
 from tracewire.trace.found import CandidateScore, FoundEffect, SearchStep, Tie
-from tracewire.trace.results.comparison import intervals
 from tracewire.trace.search.refinement import FinalModels, Rival
 from tracewire.trace.search.search import Search, Step
+from tracewire.trace.trials.intervals import intervals
 from tracewire.trace.trials.trial import PlacedEffect, Trial
 
 Matrix = NDArray[np.float64]

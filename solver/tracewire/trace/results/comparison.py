@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import stdtrit
 
-from tracewire.residual import Section, Segment, evaluate_windows
+from tracewire.residual import Section, Segment
 from tracewire.trace.found import ChannelError, Curve, ParameterChange, RunKind
 from tracewire.trace.search.search import Search
+from tracewire.trace.trials.free_run import first_part, free_run
 from tracewire.trace.trials.trial import TraceProblem, Trial
 
 Vector = NDArray[np.float64]
@@ -92,51 +92,22 @@ def _compare(
     )
 
 
-def free_run(problem: TraceProblem, trial: Trial, whole: Segment, shortest: int) -> Vector:
-    """The residuals in sigma of one run over a section, shape (N, signals).
-
-    A free start is fitted on the first part of the section alone.
-    """
-    if whole.free:
-        first = _first_part(whole, shortest, problem.options.split.first_part)
-        (fitted,) = problem.windows_on(trial, [first]).segments
-        whole = replace(fitted, rows=whole.rows)
-    return evaluate_windows(problem.criterion_on(trial, [whole])).residuals[0]
-
-
 def with_unseen_phases(search: Search, trial: Trial) -> Trial:
     """The trial whose effects have what series of their own need that no fit saw: the phase of a
     wave, from the first part of each such series alone."""
     if not any(effect.own_series for effect in trial.effects):
         return trial
     firsts = [
-        _first_part(whole, search.shortest, search.options.split.first_part)
+        first_part(whole, search.shortest, search.options.split.first_part)
         for section in search.data_split.unseen
         for whole in search.windows([section], section.end - section.first)
     ]
     return replace(trial, effects=search.problem.fit_unseen_phases(trial, firsts))
 
 
-def _first_part(whole: Segment, shortest: int, part: float) -> Segment:
-    count = max(int(part * len(whole.rows)), min(2 * shortest, len(whole.rows)))
-    return replace(whole, rows=whole.rows[:count])
-
-
 def rmse(parts: Sequence[ModelComparison], which: int) -> float:
     """The root mean square of free-run residuals over all signals, in SI."""
     return float(np.sqrt(np.mean(np.concatenate([p.free[which].ravel() for p in parts]) ** 2)))
-
-
-def intervals(trial: Trial, confidence: float) -> dict[str, tuple[float, float]]:
-    """The interval of each fitted value, which holds the truth with this confidence."""
-    quantile = float(
-        stdtrit(max(trial.degrees_of_freedom * trial.effective_fraction, 1.0), 0.5 + confidence / 2)
-    )
-    errors = trial.standard_errors
-    return {
-        name: (value - quantile * errors[name], value + quantile * errors[name])
-        for name, value in trial.values.items()
-    }
 
 
 def parameter_changes(

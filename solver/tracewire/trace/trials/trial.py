@@ -29,6 +29,7 @@ from tracewire.residual import (
     project_out_initial_states,
     sensor_unknowns,
     with_lead_in,
+    with_memory,
 )
 from tracewire.solve import Limits, parameter_values, release
 from tracewire.trace.candidates.candidate import Candidate, unknowns_of, without_defaults
@@ -400,7 +401,7 @@ class TraceProblem:
     ) -> Criterion:
         """The sum of squares in sigma, which is what a likelihood needs."""
         values = {**fixed, **{u.name: u.value for u in unknowns}}
-        segments = [with_lead_in(model, segment, values) for segment in segments]
+        segments = with_memory(model, [with_lead_in(model, s, values) for s in segments])
         longest = max(int(np.sum(s.measured.t[: s.rows[-1] + 1] >= s.begin)) for s in segments)
         options = self.options.trial
         return Criterion(
