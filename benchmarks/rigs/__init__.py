@@ -1,4 +1,4 @@
-"""Records of eighty-eight labs and machines, with effects that their diagrams lack.
+"""Records of a hundred and four labs and machines, with effects that their diagrams lack.
 
 An integrator that shares nothing with the product makes them. `python -m benchmarks rigs`.
 """

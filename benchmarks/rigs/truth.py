@@ -8,6 +8,7 @@ from benchmarks.rigs.eighties import EIGHTIES
 from benchmarks.rigs.further import FURTHER
 from benchmarks.rigs.hidden import Truth
 from benchmarks.rigs.later import LATER
+from benchmarks.rigs.nineties import NINETIES
 
 EARLIER: Mapping[str, Truth] = {
     "r01_pendulum": Truth(
@@ -375,5 +376,5 @@ EARLIER: Mapping[str, Truth] = {
     ),
 }
 
-TRUTHS: Mapping[str, Truth] = {**EARLIER, **LATER, **FURTHER, **EIGHTIES}
+TRUTHS: Mapping[str, Truth] = {**EARLIER, **LATER, **FURTHER, **EIGHTIES, **NINETIES}
 """By rig, in the order of their records."""

@@ -146,6 +146,9 @@ class TraceOptions:
         "drive_3rd_harm",
     )  # fmt: skip
     """Effects that come after common ones where both predict as well: waves, drifts, gains."""
+    with_motion: float = 0.5
+    """The part by which common effects may take less of the squared error than a wave in time that
+    is within one line of a free motion: on a swing with dry friction they took 10 % less."""
 
     most_samples: int = 5000
     """Samples of the windows on which effects are screened and refits begin; longer records show

@@ -60,12 +60,12 @@ def modulating_periods(
     """
     length = max(float(t[-1] - t[0]) for t, _ in signals)
     near = np.arange(-options.line_around, options.line_around + 1e-9, 1 / options.line_finer)
-    own = {line for t, values in signals for line in _lines_of(t, values, options)}
+    own = {line for t, values in signals for line in lines_of(t, values, options)}
     shifted = {f for p in periods for line in own for f in (1 / p + line, abs(1 / p - line))}
     return [1 / f for s in sorted(shifted) for f in (s + near / length).tolist() if f * length >= 1]
 
 
-def _lines_of(t: Vector, values: Vector, options: CandidateOptions) -> list[float]:
+def lines_of(t: Vector, values: Vector, options: CandidateOptions) -> list[float]:
     """The frequencies in Hz of the highest lines in the spectrum of a signal."""
     interval = float(np.median(np.diff(t)))
     if not options.line_near <= (t[-1] - t[0]) / interval <= options.line_sparse * len(t):

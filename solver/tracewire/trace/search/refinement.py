@@ -10,6 +10,7 @@ import numpy as np
 
 from tracewire.errors import FitError
 from tracewire.trace.candidates.candidate import is_default
+from tracewire.trace.search.common import least_part, uncommon
 from tracewire.trace.search.refits import few_of, target_of
 from tracewire.trace.search.search import Search
 from tracewire.trace.search.workers import RefitTask
@@ -52,7 +53,7 @@ def refine(search: Search, declared: Trial, best: Trial) -> FinalModels:
     best = _prune(search, best)
     rivals: dict[str, tuple[Rival, ...]] = {}
     for number in range(len(best.effects)):
-        best, found = _exchange_effect(search, best, number)
+        best, found = _exchange_effect(search, declared, best, number)
         rivals[str(best.effects[number])] = found
     best = _free_shapes(search, best)
     best = _share_phases(search, best)
@@ -94,8 +95,14 @@ def _prepare_refit(
     return search.refits.prepare(trial, effects, segments, fixed=fixed, target=target, words=words)
 
 
-def _exchange_effect(search: Search, best: Trial, number: int) -> tuple[Trial, tuple[Rival, ...]]:
-    """The best model with the best of the rivals of one effect, and the other rivals."""
+def _exchange_effect(
+    search: Search, declared: Trial, best: Trial, number: int
+) -> tuple[Trial, tuple[Rival, ...]]:
+    """The best model with the best of the rivals of one effect, and the other rivals.
+
+    A wave, a drift or their kin takes the place of a common effect only where it takes that much
+    more of what is missing.
+    """
     effect = best.effects[number]
     search.tell(f"comparing {effect} with its rivals")
     others = [e for e in best.effects if e is not effect]
@@ -124,7 +131,13 @@ def _exchange_effect(search: Search, best: Trial, number: int) -> tuple[Trial, t
             not result[2].candidate.sign,
         )
     )
-    quality, winner, chosen = results[0]
+    missing = declared.reduced_chi2 - best.reduced_chi2
+    quality, winner, chosen = next(
+        (bic, trial, added)
+        for bic, trial, added in results
+        if uncommon(trial, options) <= uncommon(best, options)
+        or best.reduced_chi2 - trial.reduced_chi2 > least_part(trial, options) * missing
+    )
     correlation = {str(added): value for added, value in known} | {str(effect): 1.0}
     if str(chosen) != str(effect):
         correlation = {str(added): value for added, value in _known_rivals(search, chosen)}
@@ -136,7 +149,8 @@ def _exchange_effect(search: Search, best: Trial, number: int) -> tuple[Trial, t
             delta_bic - quality,
             delta_bic - quality < options.search.tied,
         )
-        for delta_bic, trial, added in results[1:]
+        for delta_bic, trial, added in results
+        if trial is not winner
     ]
     return winner, tuple(found)
 

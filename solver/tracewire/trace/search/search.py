@@ -20,6 +20,7 @@ from tracewire.trace.screen.assimilation import assimilate, candidates_along_dat
 from tracewire.trace.screen.screening import Proposal, Screen, screen_candidates
 from tracewire.trace.screen.shortlist import distinct, shortlist
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
+from tracewire.trace.search.common import common_first
 from tracewire.trace.search.refits import RefitResult, Refits, new_effects
 from tracewire.trace.search.workers import Workers
 from tracewire.trace.trials.data_split import DataSplit
@@ -205,6 +206,7 @@ class Search:
         results = self.refits.refit_best(now, singles, pairs)
         winner = None
         queue = _worth_judging(results, now, self.options.screen.least_gain)
+        queue = common_first(queue, results, now, self.options)
         numbers_judged: set[int] = set()
         while queue and winner is None:
             number = queue.pop(0)
