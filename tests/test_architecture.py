@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from file_graph import circles, modules, needs
+from named_numbers import constants
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "solver" / "tracewire"
@@ -49,6 +50,11 @@ DEEP = {
     "show -> trace": 2,
     "solve -> compile": 1,
 }
+# Thresholds are fields of records (`limits.py`). Other numbers with names at the top of a file, by
+# room: codes, sizes of formats, plain mathematics; and those of the core. The numbers only fall.
+CONSTANTS = {"errors": 2, "files": 1, "formula": 1, "data": 14, "elk": 2, "compile": 7, "solve": 4}
+CONSTANTS |= {"solve/core": 154, "residual": 2, "fit": 9, "trace": 15, "analyse": 1, "paper": 14}
+CONSTANTS |= {"cli": 2}
 FACADE = {"__init__", "__main__"}  # they stand above the rooms and may import each of them
 BLOCKS_MAY_IMPORT = {"__future__", "tracewire.library"}
 MOST_LINES = 500
@@ -220,6 +226,17 @@ def test_rooms_use_each_other_s_faces() -> None:
     assert counts == DEEP, "there are fewer now: write the smaller numbers into DEEP"
 
 
+def test_thresholds_are_fields_of_records() -> None:
+    counts: Counter[str] = Counter()
+    for file, text in sources().items():
+        room = Path(file).with_suffix("").parts[0]
+        counts["solve/core" if file.startswith("solve/core/") else room] += len(constants(text))
+    assert {room: n for room, n in counts.items() if n > CONSTANTS.get(room, 0)} == {}, (
+        "a threshold belongs into the `limits.py` of its room, with meaning, unit and source"
+    )
+    assert +counts == CONSTANTS, "there are fewer now: write the smaller numbers into CONSTANTS"
+
+
 def test_no_file_needs_one_that_needs_it() -> None:
     read = {f"tracewire/{file}": text for file, text in sources().items()}
     for folder in (BLOCKS, ROOT / "benchmarks"):
@@ -332,6 +349,23 @@ def test_an_import_in_the_order_passes(file: str, source: str) -> None:
 def test_an_import_past_a_face_is_found(source: str, refused: int) -> None:
     faces = {"fit": {"fit"}, "trace": {"trace"}}
     assert len(past_a_face("trace/trace.py", source, faces)) == refused
+
+
+@pytest.mark.parametrize(
+    ("source", "names"),
+    [
+        ("FAR = 3.0", ["FAR"]),
+        ("FAR: float = -2 * 10**3", ["FAR"]),
+        ("NEAR, FAR = 1, 2.5", ["NEAR", "FAR"]),
+        ("NEAR = FAR = 1", ["NEAR", "FAR"]),
+        ("NAME, FAR = 'far', 2", ["FAR"]),
+        ("TABLE = (1, 2)\nLIVE = True\nTEXT = '1'\nEPS = eps(float)", []),
+        ("class Limits:\n    far: float = 3.0", []),
+        ("def f(far=3.0):\n    near = 1", []),
+    ],
+)
+def test_a_number_with_a_name_is_counted(source: str, names: list[str]) -> None:
+    assert constants(source) == names
 
 
 HOUSE = {

@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from library.values import library
 from solve.models import BALL, one
 from tracewire.compile import Model, compile, native
+from tracewire.compile.limits import CodeLimits
 from tracewire.diagram import read, read_text
 from tracewire.errors import OptionError
 from tracewire.library import Block
@@ -181,8 +182,7 @@ def chain(length: int) -> str:
 
 @pytest.mark.parametrize("large", [10**9, 0])
 def test_long_functions_are_compiled_in_parts(large: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(native, "LARGE", large)
-    monkeypatch.setattr(native, "KEPT", 0)
+    monkeypatch.setattr(native, "CODE", CodeLimits(large=large, kept=0))
     native._kept.clear()
     agree(chain(60), range(2))
 
@@ -327,7 +327,7 @@ def test_threads_may_ask_and_call_at_once() -> None:
 def test_code_lives_as_long_as_its_model() -> None:
     model = compile(read_text(one("3*x")))
     address = model.address("rhs")
-    for number in range(native.KEPT + 3):
+    for number in range(native.CODE.kept + 3):
         compile(read_text(one(f"{number} + x"))).address("rhs")
     assert called(address, 1, x=[2.0]) == [6.0]
 

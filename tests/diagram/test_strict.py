@@ -5,8 +5,9 @@ from pathlib import Path
 import pytest
 from diagram.small_library import refused
 from tracewire.diagram import read
+from tracewire.diagram.limits import LIMITS
 from tracewire.diagram.problems import Problems
-from tracewire.diagram.strict import MOST_DEPTH, Entries, Items, Scalar, compose
+from tracewire.diagram.strict import Entries, Items, Scalar, compose
 from tracewire.errors import DiagramError
 
 BLOCKS = "blocks: {}\n"
@@ -56,7 +57,7 @@ def test_tabs_are_named_as_the_cause() -> None:
 @pytest.mark.parametrize("opening", ["[", "{a: ", "- "])
 def test_deep_nesting_is_refused(opening: str) -> None:
     deep = "title: " if opening != "- " else "title:\n  "
-    assert f"nested deeper than {MOST_DEPTH} levels" in refused(deep + opening * 5000)
+    assert f"nested deeper than {LIMITS.most_nesting} levels" in refused(deep + opening * 5000)
 
 
 def test_scalars_know_where_they_stand() -> None:

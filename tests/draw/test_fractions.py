@@ -11,7 +11,8 @@ from tracewire.draw import draw
 from tracewire.draw.font import text_width
 from tracewire.draw.fractions import items_of, polynomial, raised
 from tracewire.draw.graph import Look
-from tracewire.draw.shapes import MOST_TEXT, SHAPES, Drawn, shape_of
+from tracewire.draw.limits import LETTER
+from tracewire.draw.shapes import SHAPES, Drawn, shape_of
 
 
 @pytest.mark.parametrize(
@@ -66,7 +67,7 @@ def test_a_long_polynomial_is_named_only() -> None:
     drawn = look("transfer_function", denominator=f"[{', '.join(['coefficient'] * 9)}]")
     assert drawn.lines == ("b(s)", "a(s)")
     drawn = look("transfer_function", numerator="gain_of_the_motor_and_the_plate" * 3)
-    assert max(map(text_width, drawn.lines)) <= MOST_TEXT
+    assert max(map(text_width, drawn.lines)) <= LETTER.most_text
 
 
 def test_a_fraction_has_a_bar_over_its_text() -> None:

@@ -10,6 +10,7 @@ import pytest
 from residual.models import OSCILLATOR, T, made, oscillation, series
 from tracewire.errors import OptionError
 from tracewire.fit import Fit, checkpoint, fit, optimset
+from tracewire.fit.limits import SearchLimits
 from tracewire.fit.methods import METHODS
 
 MODEL = made(OSCILLATOR)
@@ -101,7 +102,7 @@ def test_a_disk_that_becomes_full_does_not_cost_the_fit(
             raise OSError(28, "No space left on device")
         return usual(path, content)
 
-    monkeypatch.setattr(checkpoint, "EVERY", 0.0)
+    monkeypatch.setattr(checkpoint, "SEARCH", SearchLimits(keep_every=0.0))
     monkeypatch.setattr(checkpoint, "write_file", full)
     found = fitted("least_squares", save=tmp_path / "fit.json")
     assert count > 1

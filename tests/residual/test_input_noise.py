@@ -18,6 +18,7 @@ from tracewire.residual.input_noise import (
     response_in_windows,
 )
 from tracewire.residual.input_response import InputResponse, input_response, states_in_windows
+from tracewire.residual.limits import INPUT
 from tracewire.residual.segment import Segment
 from tracewire.residual.unknowns import free_unknowns
 from tracewire.solve import Driving, Held, simulate
@@ -253,7 +254,8 @@ def test_a_long_window_is_whitened_by_the_size_of_its_residuals_alone(
     segment = Segment(measured, 0.0, np.arange(1, 400))
     sizes = []
     for largest in (1500, 300):
-        monkeypatch.setattr("tracewire.residual.input_noise.LARGEST", largest)
+        limits = replace(INPUT, largest=largest)
+        monkeypatch.setattr("tracewire.residual.input_noise.INPUT", limits)
         covariance = InputCovariance({"x": SENSOR_NOISE}, model, [measured], 50)
         white = covariance.whitening(segment)
         assert white is not None

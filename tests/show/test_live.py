@@ -13,6 +13,7 @@ from show.fits import compared
 from tracewire.fit import fminsearch, optimset
 from tracewire.fit.optimset import OptimValues
 from tracewire.show import live, optimplotfit, optimplotfval, optimplotx
+from tracewire.show.limits import LiveLimits
 from tracewire.show.live import FitPlot, LivePlot, PointPlot, ValuePlot
 
 POINT = np.array([1.0, -2.0])
@@ -86,13 +87,13 @@ def test_frames_thin_out_and_end(
         plot(POINT, values(n), "iter")
     gaps = np.diff(drawn)
     assert gaps[-1] > 5 * gaps[0]
-    assert len(drawn) < live.MOST_FRAMES
+    assert len(drawn) < live.LIVE.most_frames
 
 
 def test_the_number_of_frames_is_limited(
     tmp_path: Path, clock: list[float], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(live, "MOST_FRAMES", 3)
+    monkeypatch.setattr(live, "LIVE", LiveLimits(most_frames=3))
     plot = PointPlot(tmp_path)
     for n, state in zip(itertools.count(), ["init", *["iter"] * 20, "done"], strict=False):
         clock[0] = float(n)

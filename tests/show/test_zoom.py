@@ -19,10 +19,11 @@ from tracewire.npm import integrity
 from tracewire.show import Report, plot_comparisons, plot_fit, plot_run, report
 from tracewire.show.document import Figure as DrawnFigure
 from tracewire.show.document import Section
+from tracewire.show.limits import FIGURE
 from tracewire.show.plane_figures import plot_portrait
 from tracewire.show.style import panels, saved_figures
 from tracewire.show.uplot import HERE, scripts
-from tracewire.show.zoom import MOST_POINTS, curves_of, thinned
+from tracewire.show.zoom import curves_of, thinned
 from tracewire.solve import Run
 
 T = np.linspace(0.0, 4.0, 81)
@@ -100,7 +101,7 @@ def test_a_long_curve_keeps_its_peaks_and_gaps() -> None:
     y[[1234, 77_777]] = 50.0, -60.0
     y[5000:7000] = np.nan
     x, thin = thinned(t, y)
-    assert len(x) <= MOST_POINTS + 2
+    assert len(x) <= FIGURE.zoom_points + 2
     assert (np.diff(x) > 0).all()
     assert (x[0], x[-1]) == (0.0, 1.0)
     assert (np.nanmax(thin), np.nanmin(thin)) == (50.0, -60.0)

@@ -12,7 +12,8 @@ from pathlib import Path
 
 import pytest
 from tracewire.solve.code_store import DIGEST, LOCK, CodeStore
-from tracewire.solve.core_file import KEPT_FILES, kept_or_made
+from tracewire.solve.core_file import kept_or_made
+from tracewire.solve.limits import MEMORY
 
 NAME = "core.o"
 CODE = b"machine code" * 100
@@ -54,12 +55,12 @@ def test_code_is_made_once(store: CodeStore, said: list[str]) -> None:
 
 
 def test_code_of_old_sources_is_removed(store: CodeStore) -> None:
-    for number in range(KEPT_FILES + 3):
+    for number in range(MEMORY.core_files + 3):
         store.write(f"old-{number}.o", CODE)
         os.utime(store.folder / f"old-{number}.o", (number, number))
     assert is_made(store)
     left = sorted(file.name for file in store.folder.iterdir() if file.name != LOCK)
-    assert left == [NAME, *(f"old-{number}.o" for number in range(4, 4 + KEPT_FILES - 1))]
+    assert left == [NAME, *(f"old-{number}.o" for number in range(4, 4 + MEMORY.core_files - 1))]
 
 
 def test_what_waits_for_another_process_takes_its_code(store: CodeStore) -> None:

@@ -16,7 +16,7 @@ from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.errors import DiagramError
 from tracewire.view import Service
-from tracewire.view.service import MOST_VERSIONS
+from tracewire.view.limits import VIEW
 from tracewire.view.sliders import range_of, sliders_of
 from view.conftest import SPRING, frame_in
 
@@ -291,7 +291,7 @@ def test_a_file_that_is_not_there_is_told_at_once(tmp_path: Path) -> None:
 
 
 def test_only_some_versions_are_kept(service: Service, key_of: KeyOf) -> None:
-    keys = [key_of(f"{SPRING}# {n}\n") for n in range(MOST_VERSIONS + 1)]
+    keys = [key_of(f"{SPRING}# {n}\n") for n in range(VIEW.most_versions + 1)]
     assert "not kept" in service.answer("run", {"key": keys[0]})["problems"][0]["text"]
     frame_in(service.answer("run", {"key": keys[-1]}))
 

@@ -11,8 +11,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tracewire.analyse.clusters import NEAR, count_clusters, is_irregular
+from tracewire.analyse.clusters import count_clusters, is_irregular
 from tracewire.analyse.grid import grid_of
+from tracewire.analyse.limits import SECTION
 from tracewire.analyse.partial import Partial, fingerprint
 from tracewire.analyse.plane import Plane, span_of
 from tracewire.analyse.section import extent_of, take_points
@@ -108,7 +109,7 @@ def bifurcation(
     direction: Direction = "up",
     skip: int = 200,
     keep: int = 100,
-    near: float = NEAR,
+    near: float = SECTION.near,
     modulo: Mapping[str, float] | None = None,
     start: Mapping[str, float] | None = None,
     parameters: Mapping[str, float] | None = None,

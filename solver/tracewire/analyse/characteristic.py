@@ -12,15 +12,11 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.analyse.limits import ROOT
+
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
-FEWEST, MOST, LARGEST = 24, 160, 1600  # points of a delay; rows of the matrix
-LEAST_TOLD = 8
-FAR = 40.0  # exp of it: a root that decays so fast within the longest delay is not looked for
-MOST_STEPS = 30
-CLOSED = 1e-13
-NEAR = 1e-2  # of its size: how far an eigenvalue of the collocation lies from its root
 
 
 def characteristic_roots(a: Matrix, terms: Mapping[float, Matrix]) -> Complexes:
@@ -30,16 +26,17 @@ def characteristic_roots(a: Matrix, terms: Mapping[float, Matrix]) -> Complexes:
     """
     n, longest = len(a), max(terms)
     size = sum((np.abs(m).sum(axis=1).max() for m in terms.values()), np.abs(a).sum(axis=1).max())
-    points = int(np.clip(2.0 * size * longest, FEWEST, min(MOST, max(LARGEST // n, FEWEST))))
+    most = min(ROOT.most_points, max(ROOT.largest // n, ROOT.fewest_points))
+    points = int(np.clip(2.0 * size * longest, ROOT.fewest_points, most))
     found = np.linalg.eigvals(_collocated(a, terms, points))
-    found = found[found.real * longest > -FAR]
+    found = found[found.real * longest > -ROOT.far]
     found = found[np.lexsort((-found.imag, -found.real))]
-    roots = [_root(a, terms, complex(guess)) for guess in found[: 4 * max(n, LEAST_TOLD)]]
+    roots = [_root(a, terms, complex(guess)) for guess in found[: 4 * max(n, ROOT.fewest_roots)]]
     known = np.array([root for root in roots if root is not None], dtype=np.complex128)
     known = known[np.lexsort((-known.imag, -known.real))]
-    many = max(n, LEAST_TOLD)
+    many = max(n, ROOT.fewest_roots)
     beyond = known[many : many + 1]  # the other one of a pair
-    is_pair = np.abs(beyond - known[:many][-1:].conj()) <= NEAR * np.abs(beyond)
+    is_pair = np.abs(beyond - known[:many][-1:].conj()) <= ROOT.near * np.abs(beyond)
     return known[: many + int(np.any(is_pair))]
 
 
@@ -75,7 +72,7 @@ def _root(a: Matrix, terms: Mapping[float, Matrix], guess: complex) -> complex |
     none."""
     n, s = len(a), guess
     vector: Complexes | None = None
-    for _ in range(MOST_STEPS):
+    for _ in range(ROOT.most_steps):
         matrix = s * np.eye(n) - a.astype(np.complex128)
         slope = np.eye(n, dtype=np.complex128)
         for time, term in terms.items():
@@ -92,8 +89,8 @@ def _root(a: Matrix, terms: Mapping[float, Matrix], guess: complex) -> complex |
         vector = vector + step[:n]
         vector /= np.linalg.norm(vector)
         s += complex(step[n])
-        if not np.isfinite(s) or abs(s - guess) > NEAR * (abs(guess) + 1.0 / max(terms)):
+        if not np.isfinite(s) or abs(s - guess) > ROOT.near * (abs(guess) + 1.0 / max(terms)):
             return None
-        if abs(step[n]) <= CLOSED * (abs(s) + 1.0 / max(terms)):
-            return complex(s.real, 0.0) if abs(s.imag) <= CLOSED * abs(s) else s
+        if abs(step[n]) <= ROOT.closed * (abs(s) + 1.0 / max(terms)):
+            return complex(s.real, 0.0) if abs(s.imag) <= ROOT.closed * abs(s) else s
     return None

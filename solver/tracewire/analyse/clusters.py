@@ -6,15 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
+from tracewire.analyse.limits import SECTION
+
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-NEAR = 1e-3
-IRREGULAR = 0.25
-MANY = 2000  # points whose pairs still fit the memory
 
 
 def count_clusters(
-    points: Matrix, extent: Vector, unit: Vector | None = None, near: float = NEAR
+    points: Matrix, extent: Vector, unit: Vector | None = None, near: float = SECTION.near
 ) -> int:
     """The number of clusters of the points (K, n) of a section.
 
@@ -24,7 +23,7 @@ def count_clusters(
     one that still comes nearer to it; a motion that never repeats has about as many as points.
     """
     reach = near * np.where(extent > 0, extent, np.inf)
-    if len(points) > MANY:
+    if len(points) > SECTION.many:
         return _one_by_one(points, reach, unit)
     neighbours = _close(points[:, None, :] - points[None, :, :], reach, unit)
     return int(connected_components(neighbours, directed=False)[0]) if len(points) else 0
@@ -68,4 +67,4 @@ def _close(apart: NDArray[np.float64], reach: Vector, unit: Vector | None) -> ND
 
 def is_irregular(clusters: int, points: int) -> bool:
     """Whether more than a quarter of the points are clusters: no period up to that is there."""
-    return clusters > IRREGULAR * points
+    return clusters > SECTION.irregular * points

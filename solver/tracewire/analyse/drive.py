@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.analyse.limits import SECTION
 from tracewire.compile import Model
 from tracewire.diagram import find_recorded
 from tracewire.errors import OptionError, Problem, unknown
@@ -16,9 +17,6 @@ from tracewire.formula import CONSTANTS, evaluate, names_of, parse
 from tracewire.solve import Passage
 
 Vector = NDArray[np.float64]
-OTHER_TIMES = (0.137, 0.291, 0.618, 0.853)  # of the span: where a drive shows itself
-MOST_CHANGES = 8  # of each guard: how many are looked at
-BESIDE = 1e-9  # of a period: how far from an edge the source is looked at
 
 
 def number(model: Model, given: float | str, values: Mapping[str, float], what: str) -> float:
@@ -52,7 +50,7 @@ def is_driven(passage: Passage, span: float) -> bool:
     t, x = passage.t, passage.x
     before = passage.rates()
     driven = False
-    for part in OTHER_TIMES:
+    for part in SECTION.other_times:
         passage.begin_at(t + part * span, x)
         change = np.abs(passage.rates() - before)
         driven = driven or bool(np.any(change > 1e-9 * (1.0 + np.abs(before))))
@@ -89,7 +87,7 @@ def rising_edges(
     edges: list[float] = []
     x = passage.x
     instants = sorted({t for slope, offset in rows for t in _instants(model, slope, offset)})
-    near = BESIDE * max(1.0, max(instants, default=1.0))
+    near = SECTION.beside * max(1.0, max(instants, default=1.0))
     for t in instants:
         sides = []
         for side in (t - near, t + near):
@@ -110,5 +108,5 @@ def _instants(model: Model, slope: float, offset: float) -> Vector:
     if slope == 0.0 or not math.isfinite(slope):
         return np.empty(0)
     first = math.ceil(offset - 1e-9) if slope > 0 else math.floor(offset + 1e-9)
-    levels = first + np.arange(MOST_CHANGES) * (1 if slope > 0 else -1)
+    levels = first + np.arange(SECTION.most_changes) * (1 if slope > 0 else -1)
     return np.asarray((levels - offset) / slope, dtype=float)

@@ -12,22 +12,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.analyse.limits import EQUILIBRIUM
 from tracewire.errors import AnalysisError, Problem, SimulationError
 from tracewire.solve import Passage
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-CLOSED = 1e-9  # of the size of what adds up to a rate: so much of it is zero
-MOST_STEPS = 200
-ALONG = (0.13, 0.29, 0.41, 0.53, 0.67, 0.79, 0.91, 1.0)  # of a part of a step: where it is tried
-SHORTEST = 1e-10  # of Newton's step
-RANK = 1e-11  # of the largest singular value: what is below it is zero
-BEYOND = 1e-9  # of the size of a guard: beyond its level
-PASSED = 1e-6  # of a step: how far it goes on where it has reached a guard
-HALVINGS = 60
 EPSILON = float(np.finfo(float).eps)
-MOST_CORRECTIONS = 3
-MOST_TOLD = 4
 
 
 def state_sizes(passage: Passage) -> Vector:
@@ -53,7 +44,7 @@ def rate_sizes(passage: Passage, sizes: Vector) -> Vector:
 
 def is_steady(passage: Passage, sizes: Vector) -> bool:
     """Whether all rates at a stop are zero, but for rounding."""
-    return bool(np.all(np.abs(passage.rates()) <= CLOSED * rate_sizes(passage, sizes)))
+    return bool(np.all(np.abs(passage.rates()) <= EQUILIBRIUM.closed * rate_sizes(passage, sizes)))
 
 
 def find_equilibrium(passage: Passage) -> None:
@@ -63,7 +54,7 @@ def find_equilibrium(passage: Passage) -> None:
     """
     _refuse_outside(passage)
     sizes, last = state_sizes(passage), -1
-    for _ in range(MOST_STEPS):
+    for _ in range(EQUILIBRIUM.most_steps):
         if is_steady(passage, sizes):
             _Step(passage, sizes).finish()
             return
@@ -83,7 +74,7 @@ class _Step:
         scaled = self.rows[:, None] * passage.slopes() * self.columns
         if not np.all(np.isfinite(scaled)):
             raise _not_found(passage, sizes)
-        self.inverse = np.linalg.pinv(scaled, rcond=RANK)
+        self.inverse = np.linalg.pinv(scaled, rcond=EQUILIBRIUM.rank)
         self.way = self.newton(passage.rates())
 
     def newton(self, rates: Vector) -> Vector:
@@ -101,10 +92,10 @@ class _Step:
         A guard that was reached by the `last` step too, from its other side, ends the search on it.
         """
         whole, part, ends = self.length(self.way), 1.0, ""
-        while part >= SHORTEST and whole > 0:
+        while part >= EQUILIBRIUM.shortest and whole > 0:
             guard = self.passed(part)
             reach = part if guard < 0 else self.reached(guard, part)
-            if guard >= 0 and reach < SHORTEST:
+            if guard >= 0 and reach < EQUILIBRIUM.shortest:
                 reach = 0.0
             if reach == 0.0 or self.falls(reach):
                 ends = self.goes_to(guard, reach, guard == last)
@@ -125,7 +116,7 @@ class _Step:
 
     def falls(self, part: float) -> bool:
         """Whether the natural monotonicity test lets so much of the step pass, all along it."""
-        for share in ALONG:
+        for share in EQUILIBRIUM.along:
             some = share * part
             rates = self.passage.rates_at(self.x + some * self.way)
             if not np.all(np.isfinite(rates)):
@@ -144,7 +135,8 @@ class _Step:
         mode = passage.model.modes[guard]
         resets = [reset for reset in passage.model.lowered.resets if reset.trigger == guard]
         if not (resets or again):
-            self.begin_at(self.x + (part * (1 + PASSED) + SHORTEST) * self.way)
+            beyond = part * (1 + EQUILIBRIUM.passed) + EQUILIBRIUM.shortest
+            self.begin_at(self.x + beyond * self.way)
             return ""
         self.begin_at(self.on_surface(guard, at, with_rate=bool(resets)))
         if guard in passage.held or is_steady(passage, self.sizes):
@@ -174,13 +166,13 @@ class _Step:
         """The guard that is passed first on so much of the step; -1: none."""
         if not len(self.modes):
             return -1
-        beyond = np.flatnonzero(self.margins(part) < -BEYOND).tolist()
+        beyond = np.flatnonzero(self.margins(part) < -EQUILIBRIUM.beyond).tolist()
         return min(beyond, key=lambda i: self.reached(i, part), default=-1)
 
     def reached(self, guard: int, part: float) -> float:
         """Where on the step a guard reaches its level, by bisection."""
         low, high = 0.0, part
-        for _ in range(HALVINGS):
+        for _ in range(EQUILIBRIUM.halvings):
             middle = (low + high) / 2
             if self.margins(middle)[guard] < 0:
                 high = middle
@@ -191,7 +183,7 @@ class _Step:
     def on_surface(self, guard: int, x: Vector, *, with_rate: bool) -> Vector:
         """The point beside x where a guard, and its rate, are zero."""
         count, n = len(self.modes), len(x)
-        for _ in range(MOST_CORRECTIONS):
+        for _ in range(EQUILIBRIUM.most_corrections):
             value = self.passage.value("guards", count, x, self.t)[guard]
             rows = self.passage.value("guard_gradients", count * n, x, self.t)
             x = x + self.back(rows.reshape(count, n)[guard], value)
@@ -247,12 +239,12 @@ def _refuse_outside(passage: Passage) -> None:
 
 def told_rates(passage: Passage, sizes: Vector) -> str:
     """In words: the rates at a stop that are not zero, the largest ones first."""
-    rates, closed = passage.rates(), CLOSED * rate_sizes(passage, sizes)
+    rates, closed = passage.rates(), EQUILIBRIUM.closed * rate_sizes(passage, sizes)
     parts = np.abs(rates) * _inverse(closed)
     order = [int(i) for i in np.argsort(-parts) if abs(rates[i]) > closed[i]]
     names = passage.model.states
-    listed = ", ".join(f"{names[i]}' = {rates[i]:.6g}" for i in order[:MOST_TOLD])
-    return f"the rates are {listed}{', ...' if len(order) > MOST_TOLD else ''}"
+    listed = ", ".join(f"{names[i]}' = {rates[i]:.6g}" for i in order[: EQUILIBRIUM.most_told])
+    return f"the rates are {listed}{', ...' if len(order) > EQUILIBRIUM.most_told else ''}"
 
 
 def _not_found(passage: Passage, sizes: Vector, more: str = "") -> AnalysisError:

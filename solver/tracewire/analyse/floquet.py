@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tracewire.analyse import verdict
 from tracewire.analyse.drive import number, period_of
+from tracewire.analyse.limits import ORBIT
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, Problem
 from tracewire.result import Result
@@ -19,8 +20,6 @@ from tracewire.solve import Passage, parameter_values
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
-CLOSED = 1e-5  # of the size of the motion
-POINTS = 64  # of the motion, to know its size
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -126,7 +125,7 @@ class Tries:
     ) -> None:
         self.model, self.period, self.begin = model, period, begin
         self.linear = model.is_linear
-        self.points = 0 if self.linear else POINTS
+        self.points = 0 if self.linear else ORBIT.size_points
         self.given = dict(parameters or {})
         self.make = partial(
             Passage,
@@ -164,7 +163,7 @@ class Tries:
         if not self.linear:
             size = np.abs(passage.inside).max(axis=0, initial=0.0) + 1e-9
             closure = float((np.abs(passage.x - first) / size).max(initial=0.0))
-            if closure > CLOSED:
+            if closure > ORBIT.closed:
                 what = (
                     f"after {length:g} s the motion is not back at its start: {closure:.2g} of "
                     "its size is missing"

@@ -8,12 +8,12 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tracewire.analyse.limits import SWEEP
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.solve import START
 
 Vector = NDArray[np.float64]
-MOST_POINTS = 1_000_000
 
 
 def grid_of(model: Model, grid: Mapping[str, ArrayLike]) -> dict[str, Vector]:
@@ -27,10 +27,10 @@ def grid_of(model: Model, grid: Mapping[str, ArrayLike]) -> dict[str, Vector]:
             problems.append(Problem(what, hint="Give an array such as numpy.linspace(0, 1, 11)."))
     if not axes:
         problems.append(Problem("there is no parameter to sweep", hint="Give one at least."))
-    if math.prod(len(values) for values in axes.values()) > MOST_POINTS:
+    if math.prod(len(values) for values in axes.values()) > SWEEP.most_points:
         count = math.prod(len(values) for values in axes.values())
         what = f"a grid of {count} points is too large"
-        problems.append(Problem(what, hint=f"Give {MOST_POINTS} at most."))
+        problems.append(Problem(what, hint=f"Give {SWEEP.most_points} at most."))
     if problems:
         raise OptionError(problems)
     return axes

@@ -9,14 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import find_peaks
 
+from tracewire.analyse.limits import SIGNAL
 from tracewire.analyse.signal import signal_of
 from tracewire.errors import AnalysisError, OptionError, Problem, unknown
 from tracewire.result import Result
 from tracewire.solve import Run
 
 Vector = NDArray[np.float64]
-FEWEST_PEAKS = 4
-APART, SEEN = 4.0, 0.1  # standard errors, and part of the rate: two halves have two rates
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -70,7 +69,7 @@ def growth_rate(
     else:
         at = np.flatnonzero(size > 0)
     at = at[size[at] > 0]
-    if len(at) < FEWEST_PEAKS:
+    if len(at) < SIGNAL.fewest_peaks:
         what = f"'{signal}' has {len(at)} peaks there, too few for a growth rate"
         hint = "Take a longer time, or samples that are closer."
         raise AnalysisError([Problem(what, hint=hint)])
@@ -121,12 +120,12 @@ def _refined(t: Vector, size: Vector, at: NDArray[np.int64]) -> tuple[Vector, Ve
 def _halves(t: Vector, y: Vector, rate: float) -> tuple[float, bool]:
     """The slope of the second half, and whether that of the first is another one."""
     half = len(t) // 2
-    if half < FEWEST_PEAKS:
+    if half < SIGNAL.fewest_peaks:
         return rate, False
     first, late = _line(t[:half], y[:half]), _line(t[half:], y[half:])
     # an envelope that bends makes residuals go together: errors are taken without that here
-    sure = APART * np.hypot(first[3], late[3])
-    seen = SEEN * max(abs(first[0]), abs(late[0]))
+    sure = SIGNAL.apart * np.hypot(first[3], late[3])
+    seen = SIGNAL.seen * max(abs(first[0]), abs(late[0]))
     return late[0], bool(abs(late[0] - first[0]) > max(sure, seen))
 
 

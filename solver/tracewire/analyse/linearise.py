@@ -15,6 +15,7 @@ from tracewire.analyse import verdict
 from tracewire.analyse.characteristic import characteristic_roots
 from tracewire.analyse.equilibrium import is_steady, state_sizes, told_rates
 from tracewire.analyse.internal_delays import InternalDelays
+from tracewire.analyse.limits import EQUILIBRIUM
 from tracewire.compile import Model, at_rest
 from tracewire.errors import AnalysisError, OptionError, Problem, unknown
 from tracewire.formula import to_text
@@ -24,8 +25,6 @@ from tracewire.solve import Passage
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
-AT_ZERO = 1e-9  # of the size of the states: a guard that is nearer to its level is at it
-ALIKE = 1e-9
 NOT_STEADY = "not a steady state"
 
 
@@ -243,7 +242,8 @@ def nonsmooth(passage: Passage) -> list[str]:
     n = len(x)
     guards = passage.value("guards", len(modes), x, t)
     slopes = passage.value("guard_gradients", len(modes) * n, x, t).reshape(len(modes), n)
-    reach = AT_ZERO * (1.0 + np.abs(x).max(initial=0.0)) * (1.0 + np.abs(slopes).sum(axis=1))
+    size = EQUILIBRIUM.at_guard * (1.0 + np.abs(x).max(initial=0.0))
+    reach = size * (1.0 + np.abs(slopes).sum(axis=1))
     held, m = passage.held, passage.modes
     found = []
     for i, mode in enumerate(modes):
@@ -276,5 +276,6 @@ def _differs(passage: Passage, m: Vector, other: Vector, rates: bool) -> bool:
     if rates:
         pairs.append((passage.value("rhs", n, x, t, m), passage.value("rhs", n, x, t, other)))
     return any(
-        bool(np.any(np.abs(a - b) > ALIKE * (1.0 + np.abs(a) + np.abs(b)))) for a, b in pairs
+        bool(np.any(np.abs(a - b) > EQUILIBRIUM.alike * (1.0 + np.abs(a) + np.abs(b))))
+        for a, b in pairs
     )

@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tracewire.analyse.limits import ORBIT
 from tracewire.analyse.plane import span_of
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, OptionError, Problem
@@ -17,11 +18,8 @@ from tracewire.solve import PartProgress, Passage, Tell, parameter_values, until
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-BATCHES = 20
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(32)  # on [-1, 1]
-STEPS = 30  # of the integrator between two times that deviations are made orthogonal
 SMOOTH = {"scheduled"}  # what may happen without a jump of the deviations
-LOST = 1e-13  # of the largest deviation: what rounding leaves of one that is lost
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -113,7 +111,7 @@ def lyapunov(
         if interval is None:  # a look ahead, at how long steps are
             ahead = make(length=step, begin=first, start=_named(passage))
             ahead.go_to(first + step)
-            step = min(step, STEPS * step / max(1, ahead.steps))
+            step = min(step, ORBIT.orthogonal_steps * step / max(1, ahead.steps))
         steps = round(length / step)
         turning = max(int(0.1 * transient / step), min(10, steps // 10))
         random = np.random.default_rng(seed).standard_normal((n, n))
@@ -139,11 +137,11 @@ def lyapunov(
     growth = growth[:, :many]
     t = np.asarray(step * np.arange(1, steps + 1), dtype=float)
     running = np.cumsum(growth, axis=0) / t[:, None]
-    parts = np.array_split(growth, BATCHES)
+    parts = np.array_split(growth, ORBIT.batches)
     means = np.array([part.mean(axis=0) / step for part in parts])
     finite = np.isfinite(means).all(axis=0)
     errors = np.full(many, np.nan)
-    errors[finite] = means[:, finite].std(axis=0, ddof=1) / np.sqrt(BATCHES)
+    errors[finite] = means[:, finite].std(axis=0, ddof=1) / np.sqrt(ORBIT.batches)
     order = np.argsort(-running[-1], kind="stable")
     divergence = None if whole is None or many < n else whole / t[-1]
     return Lyapunov(
@@ -196,7 +194,7 @@ def _orthogonal(passage: Passage) -> tuple[Matrix, Vector]:
         raise AnalysisError([Problem(what, hint="Give a shorter interval.")])
     directions, upper = np.linalg.qr(tangents)
     diagonal = np.diag(upper).copy()
-    lost = np.abs(diagonal) <= LOST * np.abs(diagonal).max(initial=0.0)
+    lost = np.abs(diagonal) <= ORBIT.lost * np.abs(diagonal).max(initial=0.0)
     # they have no direction of their own, and what QR makes up would not stay on a slide
     directions[:, lost], diagonal[lost] = 0.0, 0.0
     return directions, diagonal
@@ -224,9 +222,9 @@ def _check(n: int, many: int, length: float, step: float, transient: float) -> N
     if not 1 <= many <= n:
         what = f"{many} exponents of a model with {n} states cannot be had"
         problems.append(Problem(what, hint=f"Give a count from 1 to {n}."))
-    if not (0 < step < np.inf and length >= 2 * BATCHES * step and length < np.inf):
+    if not (0 < step < np.inf and length >= 2 * ORBIT.batches * step and length < np.inf):
         what = f"{length:g} s with intervals of {step:g} s are too few to average"
-        hint = f"Give {2 * BATCHES} intervals at least."
+        hint = f"Give {2 * ORBIT.batches} intervals at least."
         problems.append(Problem(what, hint=hint))
     if not 0 <= transient < np.inf:
         what = f"a transient of {transient:g} s has no use"

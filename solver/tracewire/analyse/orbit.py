@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tracewire.analyse.drive import is_driven, number, period_of
 from tracewire.analyse.floquet import Floquet
+from tracewire.analyse.limits import ORBIT
 from tracewire.analyse.turns import units_of, within_a_turn
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, OptionError, Problem, SimulationError
@@ -18,11 +19,6 @@ from tracewire.solve import Passage, parameter_values
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-POINTS = 400
-MOST_STEPS = 40
-MOST_HALVINGS = 8
-STILL = 1e-3  # of the motion at the guess: a steady state
-LOOSE = 1e3  # times rtol: the part of its size up to which an orbit closes
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -89,7 +85,7 @@ def periodic_orbit(
         method=method,
         rtol=rtol,
         tangents=True,
-        inner=POINTS,
+        inner=ORBIT.points,
     )
     driven = is_driven(passage, length)
     x = passage.x
@@ -110,15 +106,15 @@ def periodic_orbit(
         length = _return(passage, since, length, x, unit)
     shot = _shoot(passage, since, length, x, unit)
     extent = np.ptp(shot.motion, axis=0)
-    steps, tolerance = 0, LOOSE * rtol
+    steps, tolerance = 0, ORBIT.loose * rtol
     noise = 10 * rtol ** (2 / 3)  # of the monodromy, whose own tolerance is rtol^(2/3)
-    while steps < MOST_STEPS and shot.closure > 0.01 * tolerance:
+    while steps < ORBIT.most_steps and shot.closure > 0.01 * tolerance:
         steps += 1
         better = _along(passage, since, shot, driven, unit, noise)
         if better is None:
             break
         shot = better
-    if not driven and np.all(np.ptp(shot.motion, axis=0) <= STILL * (extent + 1e-12)):
+    if not driven and np.all(np.ptp(shot.motion, axis=0) <= ORBIT.still * (extent + 1e-12)):
         what = "the search has ended at a steady state, which is no orbit"
         raise AnalysisError([Problem(what, hint="Give a guess farther from it, or skip= periods.")])
     if not shot.closure <= tolerance:
@@ -148,7 +144,7 @@ def periodic_orbit(
 
 def _return(passage: Passage, since: float, length: float, x: Vector, unit: Vector) -> float:
     """The time within half of the guess from it when the motion is nearest to where it was."""
-    t = length * (0.5 + np.arange(1, POINTS + 1) / POINTS)
+    t = length * (0.5 + np.arange(1, ORBIT.points + 1) / ORBIT.points)
     passage.begin_at(since, x)
     passage.go_to(since + 1.5 * length, since + t)
     away = within_a_turn(passage.inside - x, unit)
@@ -172,7 +168,7 @@ class _Shot:
 
 
 def _shoot(passage: Passage, since: float, period: float, x: Vector, unit: Vector) -> _Shot:
-    t = since + period * np.arange(1, POINTS + 1) / POINTS
+    t = since + period * np.arange(1, ORBIT.points + 1) / ORBIT.points
     passage.begin_at(since, x)
     rates = passage.rates()
     passage.go_to(since + period, t)
@@ -213,7 +209,7 @@ def _along(
     way, longer = _newton(shot, driven, shot.missing, noise)
     size = float(np.hypot(np.linalg.norm(way), longer))
     part = min(1.0, 0.3 * shot.period / abs(longer)) if longer else 1.0
-    for _ in range(MOST_HALVINGS):
+    for _ in range(ORBIT.most_halvings):
         try:
             x, period = shot.x + part * way, shot.period + part * longer
             found = _shoot(passage, since, period, x, unit)

@@ -13,12 +13,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.analyse.limits import SWEEP
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Place, Problem
 from tracewire.files import replacing, writing
 from tracewire.formula import to_text
 
-EVERY = 2.0  # s between two writings, at least
 KIND = "a sweep of tracewire"
 
 
@@ -51,7 +51,7 @@ class Partial:
         if error:
             self.errors[number] = error
         self.done[number] = True
-        if time.monotonic() - self._written > EVERY:
+        if time.monotonic() - self._written > SWEEP.keep_every:
             with suppress(OptionError):  # a full disk may have space again; the last writing tells
                 self.write()
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.analyse.drive import number, period_of, rising_edges
+from tracewire.analyse.limits import SECTION
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, OptionError, Problem, unknown
 from tracewire.formula import evaluate
@@ -18,8 +19,6 @@ from tracewire.solve.core.codes import LOG_HEAD
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-FIRST_CHUNK = 0.02  # of the span: how far to look for the first crossings
-LONGEST = 100.0  # spans that are searched for the crossings of a guard
 
 
 @dataclass(frozen=True)
@@ -83,7 +82,7 @@ def crossings(passage: Passage, plane: Plane, skip: int, keep: int) -> tuple[Vec
     way = {"up": [1], "down": [-1], "both": [1, -1]}[plane.direction]
     low, high = span_of(model, passage.parameters)
     begin, length = passage.t, abs(high - low) or 1.0
-    chunk, count = FIRST_CHUNK * length, 0
+    chunk, count = SECTION.first_chunk * length, 0
     kept: list[Matrix] = []
     while count < skip + keep:
         passage.go_to(passage.t + chunk)
@@ -93,7 +92,7 @@ def crossings(passage: Passage, plane: Plane, skip: int, keep: int) -> tuple[Vec
         kept.append(rows[np.sort(first)][:, : LOG_HEAD + n])  # one point of each crossing
         count += len(kept[-1])
         gone = passage.t - begin
-        if count < skip + keep and gone > LONGEST * length:
+        if count < skip + keep and gone > SECTION.longest * length:
             what = (
                 f"'{plane.guard}' crosses {count} times in {gone:g} s, and {skip + keep} points "
                 "are asked for"
@@ -101,6 +100,6 @@ def crossings(passage: Passage, plane: Plane, skip: int, keep: int) -> tuple[Vec
             hint = "Ask for fewer points (skip, keep), or look where the motion goes."
             raise AnalysisError([Problem(what, hint=hint)])
         mean = gone / count if count else 2 * chunk
-        chunk = min(max((skip + keep - count) * mean, FIRST_CHUNK * length), length)
+        chunk = min(max((skip + keep - count) * mean, SECTION.first_chunk * length), length)
     rows = np.concatenate(kept)[skip : skip + keep]
     return rows[:, 0], rows[:, LOG_HEAD:]

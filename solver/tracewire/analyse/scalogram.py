@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import fft, ifft, next_fast_len
 
+from tracewire.analyse.limits import SIGNAL
 from tracewire.analyse.signal import signal_of
 from tracewire.errors import OptionError, Problem
 from tracewire.result import Result
@@ -15,7 +16,6 @@ from tracewire.solve import Run
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-MOST_NUMBERS = 50_000_000
 REACH = np.sqrt(2.0)  # e-folding time of the wavelet in its scale
 
 
@@ -97,7 +97,7 @@ def _check(low: float, high: float, count: int, waves: float, n: int, step: floa
         what = f"frequencies from {low:g} to {high:g} Hz are not in samples every {step:g} s"
         hint = f"Give low < high, up to {0.5 / step:g} Hz."
         problems.append(Problem(what, hint=hint))
-    if count < 3 or count * n > MOST_NUMBERS:
+    if count < 3 or count * n > SIGNAL.most_numbers:
         what = f"{count} frequencies of {n} samples make no scalogram"
         problems.append(Problem(what, hint="Give 3 or more, or fewer samples."))
     if not 4 <= waves <= 100:

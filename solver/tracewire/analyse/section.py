@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tracewire.analyse.clusters import NEAR, count_clusters, is_irregular
+from tracewire.analyse.clusters import count_clusters, is_irregular
+from tracewire.analyse.limits import SECTION
 from tracewire.analyse.plane import Plane, crossings, span_of
 from tracewire.analyse.turns import units_of
 from tracewire.compile import Model
@@ -20,7 +21,6 @@ from tracewire.solve import Passage, parameter_values
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-AROUND = 4  # periods that tell how far the motion goes
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -52,7 +52,7 @@ def section(
     *,
     skip: int = 0,
     keep: int = 100,
-    near: float = NEAR,
+    near: float = SECTION.near,
     modulo: Mapping[str, float] | None = None,
     start: Mapping[str, float] | None = None,
     parameters: Mapping[str, float] | None = None,
@@ -128,6 +128,6 @@ def take_points(
 def extent_of(passage: Passage, points: Matrix, mean: float) -> Vector:
     """How far each state goes (n,), over a few points on and at the points."""
     room = len(passage.inside)
-    later = passage.t + AROUND * mean * np.arange(1, room + 1) / room
+    later = passage.t + SECTION.around * mean * np.arange(1, room + 1) / room
     passage.go_to(later[-1], later)
     return np.asarray(np.ptp(np.vstack([passage.inside, points]), axis=0), dtype=float)

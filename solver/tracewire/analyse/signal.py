@@ -7,12 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.analyse.limits import SIGNAL
 from tracewire.errors import OptionError, Problem
 from tracewire.solve import Run
 
 Vector = NDArray[np.float64]
-EVEN = 1e-6  # of a step: what times may be off
-FEWEST = 16
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,14 +36,13 @@ def signal_of(
     values = run[name]
     low, high = -np.inf if since is None else since, np.inf if until is None else until
     chosen = (run.t >= low) & (run.t <= high)
-    if chosen.sum() < FEWEST:
+    if chosen.sum() < SIGNAL.fewest_samples:
         what = f"'{name}' has {int(chosen.sum())} samples there, too few to say anything"
-        raise OptionError(
-            [Problem(what, hint=f"Take {FEWEST} at least: a longer time, or every=.")]
-        )
+        hint = f"Take {SIGNAL.fewest_samples} at least: a longer time, or every=."
+        raise OptionError([Problem(what, hint=hint)])
     t = run.t[chosen]
     steps = np.diff(t)
-    if even and np.any(np.abs(steps - steps.mean()) > EVEN * steps.mean()):
+    if even and np.any(np.abs(steps - steps.mean()) > SIGNAL.even * steps.mean()):
         what = f"the samples of '{name}' are not at even times"
         raise OptionError([Problem(what, hint="Simulate with `every`, or even times=.")])
     return Signal(name, run.units.get(name, ""), t, values[chosen])

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.signal import find_peaks, get_window
 
+from tracewire.analyse.limits import SIGNAL
 from tracewire.analyse.signal import signal_of
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.result import Result
@@ -16,7 +17,6 @@ from tracewire.solve import Run
 
 Vector = NDArray[np.float64]
 WINDOWS = ("hann", "flattop", "blackman", "boxcar")
-SHAPE = 1024  # points of a window that say how it looks
 WIDE = {"hann": 2.0, "flattop": 5.0, "blackman": 3.0, "boxcar": 1.0}  # half of a line, in bins
 
 
@@ -104,8 +104,8 @@ def _between(three: Vector, window: str) -> tuple[float, float]:
 
     The ratio of the two largest of the three is that of the window's own transform there.
     """
-    weights = get_window(window, SHAPE)
-    places = np.arange(SHAPE) / SHAPE
+    weights = get_window(window, SIGNAL.window_points)
+    places = np.arange(SIGNAL.window_points) / SIGNAL.window_points
 
     def response(away: float) -> float:
         return float(np.abs(weights @ np.exp(-2j * np.pi * away * places)) / weights.sum())

@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 
 __all__ = ["main"]
 
-INTERRUPTED = 130
+INTERRUPTED = 128 + signal.SIGINT
+"""The exit code after Ctrl-C, as of a shell."""
 THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 """How many threads linear algebra takes: numpy reads these when it is imported."""
 SOON = 0.01

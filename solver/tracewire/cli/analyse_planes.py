@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tracewire.cli.limits import LIMITS
 from tracewire.cli.one_run import Signal, run_of
 from tracewire.cli.options import DiagramPath
 from tracewire.cli.records import FigureFile, FigureTarget, Given, Sampling, Since, Target
@@ -15,10 +16,6 @@ from tracewire.cli.setting import Rtol, read_setting, tell_parts
 
 if TYPE_CHECKING:
     from tracewire.solve import Run
-
-
-CURVE = 10_000
-"""Steps of a curve in a plane: with the 1000 of a run its turns are polygons."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +52,7 @@ def portrait(
     """
     names = (x, y)
     setting = read_setting(diagram, given, target, names)
-    run = run_of(setting, sampling, rtol, steps=CURVE)
+    run = run_of(setting, sampling, rtol, steps=LIMITS.curve)
     from tracewire.show import plot_portrait
 
     _tell_plane(run, names, since, plot_portrait, target)
@@ -85,7 +82,7 @@ def polar(
     """
     names = (radius, angle)
     setting = read_setting(diagram, given, target, names)
-    run = run_of(setting, sampling, rtol, steps=CURVE)
+    run = run_of(setting, sampling, rtol, steps=LIMITS.curve)
     from tracewire.show import plot_polar
 
     _tell_plane(run, names, since, plot_polar, target)

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from tracewire.cli.limits import LIMITS
 from tracewire.cli.options import AsJson, Debug, DiagramPath
 from tracewire.cli.output import check_target, note, print_json, print_text, telling, working
 from tracewire.cli.records import Given, Span
@@ -17,8 +18,6 @@ from tracewire.cli.values import parameter_values_of, start_values_of
 from tracewire.files import writing
 
 ENDINGS = (".gif", ".mp4")
-SAMPLES, FINER = 2000, 4
-"""Samples at least, and for each picture: with fewer a trace has corners."""
 
 
 def animate(
@@ -80,7 +79,7 @@ def animate(
 
     begin, end = options.get("span") or evenly(model, known, None, 1).tolist()
     times = frame_times(model, (begin, end), target, speed=speed, fps=fps, width=width)
-    finer = max(FINER, math.ceil(SAMPLES / len(times)))
+    finer = max(LIMITS.film_finer, math.ceil(LIMITS.film_samples / len(times)))
     samples = np.interp(
         np.arange((len(times) - 1) * finer + 1) / finer, np.arange(len(times)), times
     )

@@ -7,15 +7,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from tracewire.cli.limits import LIMITS
 from tracewire.cli.setting import values_of
 from tracewire.errors import OptionError, Problem
 
 if TYPE_CHECKING:
     from tracewire.compile import Model
     from tracewire.solve import Options
-
-MOST_CASES = 12
-"""Lines of one panel beyond this are not told apart."""
 
 
 @dataclass(frozen=True)
@@ -47,9 +45,10 @@ def cases_of(model: Model, over: Sequence[str], presets: Sequence[str]) -> list[
         start = {n.removeprefix("start."): v for n, v in given.items() if n.startswith("start.")}
         parameters = {n: v for n, v in given.items() if not n.startswith("start.")}
         found.append(Case(", ".join(parts), preset, parameters, start))
-    if len(found) > MOST_CASES:
+    if len(found) > LIMITS.most_cases:
         what = f"{len(found)} runs do not go into one figure"
-        hint = f"Take {MOST_CASES} at most; `tracewire sweep` keeps a few numbers of many runs."
+        hint = f"Take {LIMITS.most_cases} at most; "
+        hint += "`tracewire sweep` keeps a few numbers of many runs."
         raise OptionError([Problem(what, hint=hint)])
     return found
 

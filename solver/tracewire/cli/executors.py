@@ -9,11 +9,11 @@ from typing import Annotated, cast
 
 import typer
 
+from tracewire.cli.limits import LIMITS
 from tracewire.errors import OptionError, Problem
 from tracewire.extras import import_extra
 
 SCHEME = "dask://"
-WAIT = 10  # s for the scheduler to answer
 ADDRESS = "Give the address of a dask scheduler: dask://HOST:PORT."
 
 ExecutorAddress = Annotated[
@@ -37,7 +37,8 @@ def executor_at(address: str) -> Iterator[Executor | None]:
         raise OptionError([Problem(f"'{address}' is no executor", hint=ADDRESS)])
     distributed = import_extra("distributed", "scale", "for dask", error=OptionError)
     try:
-        client = distributed.Client("tcp://" + address.removeprefix(SCHEME), timeout=WAIT)
+        at = "tcp://" + address.removeprefix(SCHEME)
+        client = distributed.Client(at, timeout=LIMITS.scheduler)
     except (OSError, ValueError) as error:
         what = f"no dask scheduler answers at '{address}' ({error})"
         raise OptionError([Problem(what, hint=ADDRESS)]) from error

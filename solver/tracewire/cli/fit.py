@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tracewire.cli.limits import LIMITS
 from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries, load_model
 from tracewire.cli.output import Cut, note, print_json, print_parts, print_text, working
 from tracewire.cli.reporting import (
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from tracewire.diagram import Diagram
     from tracewire.fit import Options, Profile, Progress
 
-TELL_EVERY = 10.0
 PLOTS = "fit_frames"
 
 
@@ -222,7 +222,7 @@ def _told(tell: Callable[[str], None]) -> Callable[[Progress], None]:
             f"at most {now.remaining:.0f} s to go"
         )
         tell(text)
-        if time.perf_counter() - last > TELL_EVERY:
+        if time.perf_counter() - last > LIMITS.tell_every:
             last = time.perf_counter()
             note(text)
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tracewire.cli.limits import LIMITS
 from tracewire.cli.output import note, working
 from tracewire.cli.project import with_project
 
@@ -14,8 +15,6 @@ if TYPE_CHECKING:
     from tracewire.compile import Model
     from tracewire.diagram import Diagram
 
-MOST_TOLD = 3
-"""Units that contradict each other, of which each is told in a line."""
 DiagramPath = Annotated[
     str, typer.Argument(metavar="DIAGRAM", help="A diagram file (YAML).", show_default=False)
 ]
@@ -56,8 +55,9 @@ def load_model(
 
         model = compile(read(path, libraries or ()), record or ())
         contradictions = unit_problems(model.flat)
-    for problem in contradictions[:MOST_TOLD]:
+    for problem in contradictions[: LIMITS.contradictions]:
         note(f"units: {problem}")
-    if len(contradictions) > MOST_TOLD:
-        note(f"units: {len(contradictions) - MOST_TOLD} more; `tracewire check` tells them all.")
+    more = len(contradictions) - LIMITS.contradictions
+    if more > 0:
+        note(f"units: {more} more; `tracewire check` tells them all.")
     return model

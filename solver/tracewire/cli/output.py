@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import signal
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -13,15 +14,15 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from tracewire.cli.limits import LIMITS
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.result import plain
 
 if TYPE_CHECKING:
     from tracewire.show import Table
 
-INTERRUPTED = 130
-WIDTH_OF_A_PIPE = 200
-SOON = 1.0  # s: what takes no longer needs no progress
+INTERRUPTED = 128 + signal.SIGINT
+"""The exit code after Ctrl-C, as of a shell."""
 CONTROLS = {
     number: f"\\x{number:02x}" if number < 256 else f"\\u{number:04x}"
     for first, last in (
@@ -70,7 +71,7 @@ def print_table(table: Table) -> None:
     from rich.text import Text
 
     terminal = sys.stdout.isatty()
-    console = Console(width=None if terminal else WIDTH_OF_A_PIPE, highlight=False)
+    console = Console(width=None if terminal else LIMITS.pipe_width, highlight=False)
     shown = RichTable(
         title=Text(visible(table.title), style="bold") if table.title else None,
         title_justify="left",
@@ -156,7 +157,7 @@ def telling(text: str, show: Callable[[str], None]) -> Callable[[float, float], 
     began = time.monotonic()
 
     def tell(part: float, left: float) -> None:
-        if time.monotonic() - began > SOON:
+        if time.monotonic() - began > LIMITS.soon:
             rest = f", {clock(left)} left" if math.isfinite(left) else ""
             show(f"{text}: {100 * part:.0f} %{rest}")
 

@@ -6,7 +6,8 @@ import re
 import time
 from collections.abc import Callable
 
-from tracewire.cli.output import SOON, clock
+from tracewire.cli.limits import LIMITS
+from tracewire.cli.output import clock
 
 COUNTED = re.compile(r" \((\d+) of (\d+)\)$")
 """How a stage of several like parts ends its words: the part that begins now, and how many."""
@@ -30,7 +31,7 @@ def stages(show: Callable[[str], None]) -> Callable[[str], None]:
             part, parts = int(counted[1]), int(counted[2])
             if part <= first[0] or parts != of:
                 first, of = (part, now), parts
-            elif now - first[1] > SOON:
+            elif now - first[1] > LIMITS.soon:
                 rest = (now - first[1]) / (part - first[0]) * (parts - part + 1)
                 left = f", about {clock(rest)} left for these"
         show(f"{f'{now - began:.0f} s':>6}  {text}{left}")

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tracewire.cli.cases import cases_of
+from tracewire.cli.limits import LIMITS
 from tracewire.cli.one_run import evenly
 from tracewire.cli.options import DiagramPath, load_model
 from tracewire.cli.output import note, print_json, print_table, print_text, telling, working
@@ -23,9 +24,6 @@ if TYPE_CHECKING:
     from tracewire.compile import Model
     from tracewire.residual import Measured
     from tracewire.solve import Interrupted, Options, Run
-
-FINER = 10
-"""Times as many samples are drawn as are written."""
 
 
 def run(
@@ -93,7 +91,7 @@ def _simulated(model: Model, options: Options, finer: bool, what: str, lost: str
         if finer:
             preset = options.get("preset", "")
             known = parameter_values(model, options.get("parameters") or {}, preset)
-            steps = FINER * (DEFAULT_SAMPLES - 1)
+            steps = LIMITS.finer * (DEFAULT_SAMPLES - 1)
             options["times"] = evenly(model, known, options.get("span"), steps)
         try:
             return simulate(model, **options, progress=telling(what, show))
@@ -167,6 +165,6 @@ def _kept(error: Interrupted, path: str) -> Interrupted:
 
 def _thinned(result: Run) -> Run:
     """The run with the samples that it has without a figure: every tenth, and the last one."""
-    kept = [*range(0, len(result.t) - 1, FINER), len(result.t) - 1]
+    kept = [*range(0, len(result.t) - 1, LIMITS.finer), len(result.t) - 1]
     signals = {name: values[kept] for name, values in result.signals.items()}
     return replace(result, t=result.t[kept], signals=signals)

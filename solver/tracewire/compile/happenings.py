@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from tracewire.compile.flat import FlatEvent, FlatMemory, FlatTransition
+from tracewire.compile.limits import MODEL
 from tracewire.diagram import Condition, Crosses, Event, Value
 from tracewire.errors import Place
 from tracewire.formula import Call, Expression, Name, Number, parse, parse_condition, to_text
 from tracewire.library import Block
 
-MOST_PERIODS = 1e9
 NEAR = "Give the clock an offset between 0 and its period: the ticks are at offset + k*period."
 Write = Callable[[Expression], Expression]
 """A formula of a block with its names replaced by full ones."""
@@ -117,7 +117,7 @@ def near_ticks(period: Expression, offset: Expression, place: Place) -> list[Con
     """What keeps the ticks of a clock apart: beyond, offset + k*period is the same for many k."""
     if offset == Number(0.0):
         return []
-    most = Call("*", (Number(MOST_PERIODS), period))
+    most = Call("*", (Number(MODEL.most_periods), period))
     return [Condition(Call("<=", (Call("abs", (offset,)), most)), place, NEAR)]
 
 

@@ -10,14 +10,13 @@ from collections.abc import Collection, Iterable, Mapping
 from typing import TYPE_CHECKING
 
 from tracewire.compile.flat import Loop
+from tracewire.compile.limits import MODEL
 from tracewire.diagram import cycles, shown_cycle
 from tracewire.errors import DiagramError, Place, Problem
 from tracewire.formula import Expression, evaluation_order, read_at_once
 
 if TYPE_CHECKING:
     import networkx as nx
-
-MOST_UNKNOWNS = 60
 
 
 def order_signals(
@@ -90,10 +89,9 @@ def _opened(
 
             unknowns.append(max(part, key=worth))
             rest.remove_node(unknowns[-1])
-        if len(unknowns) > MOST_UNKNOWNS:
-            what = (
-                f"algebraic loops: more than {MOST_UNKNOWNS} signals depend on each other: {text}"
-            )
+        if len(unknowns) > MODEL.most_unknowns:
+            many = f"more than {MODEL.most_unknowns} signals depend on each other"
+            what = f"algebraic loops: {many}: {text}"
             hint = "So many are not solved at once. Break the loops with states."
             raise DiagramError([Problem(what, at, (), hint)])
     names = nx.lexicographical_topological_sort(rest, position.__getitem__)

@@ -11,14 +11,13 @@ from tracewire.compile.draws import lower_random
 from tracewire.compile.flat import Flat
 from tracewire.compile.holding import holding, modes_read, moving
 from tracewire.compile.kept import kept_states
+from tracewire.compile.limits import MODEL
 from tracewire.compile.linear import solve_linear, work
 from tracewire.compile.lowered import Delay, Lowered, Mode, ModeKind
 from tracewire.compile.tape import BINARY, UNARY, Entry
 from tracewire.errors import DiagramError, Place, Problem
 from tracewire.formula import Call, Expression, Name, Number, to_text
 
-MOST_FULL = 60  # unknowns of a linear system without zeros
-MOST_WORK = 300_000  # entries of its elimination
 PRESCRIBED = frozenset({"t", "param", "const", "table", "mode"})  # leaves that no state moves
 
 
@@ -182,11 +181,10 @@ class Lowering:
 
     def refuse_large(self, matrix: list[int], size: int) -> None:
         """Raise where the equations of a linear system would take minutes to compile."""
-        if work(self.tape, matrix, size) > MOST_WORK:
+        if work(self.tape, matrix, size) > MODEL.most_work:
             what = f"the matrix of {size} unknowns has too few zeros to be solved"
-            hint = (
-                f"Full ones may have {MOST_FULL} unknowns. Split the system, or write zeros as 0."
-            )
+            hint = f"Full ones may have {MODEL.most_full} unknowns. "
+            hint += "Split the system, or write zeros as 0."
             raise self.refused(what, hint)
 
     def refused(self, what: str, hint: str) -> DiagramError:

@@ -17,6 +17,7 @@ from collections.abc import Mapping, Sequence
 
 from tracewire.compile import libm
 from tracewire.compile.constants import Constants
+from tracewire.compile.limits import CODE
 from tracewire.compile.past import PAST
 from tracewire.compile.search import SearchText
 from tracewire.compile.tape import Entry, Tape
@@ -28,8 +29,6 @@ LIBRARY = {name: o.library for name, o in OPERATIONS.items() if o.library}
 INTRINSIC = {name: o.intrinsic for name, o in OPERATIONS.items() if o.intrinsic}
 PREFIX = "tracewire."
 ARGUMENTS = "double %t, " + ", ".join(f"ptr noalias readonly %{a}" for a in "xmck")
-LONGEST_RUN = 8  # stores of one value to neighbours, beyond which a loop does them
-PART = 400  # lines of IR in a part of a function
 PURE = "nounwind willreturn readnone"
 
 TABLE = """
@@ -158,7 +157,7 @@ class _Body:
             if index in self.names or index in places:
                 for done in {index, *self.pairs.get(index, ())} & places.keys():
                     self.store(done, places.pop(done))
-            if len(self.lines) > begin + PART:
+            if len(self.lines) > begin + CODE.part:
                 self.begin_part()
                 begin = len(self.lines)
 
@@ -166,7 +165,7 @@ class _Body:
         """Write a root as soon as it is known: it need not be kept till the end."""
         value = self.value(index)
         for begin, end in _runs(places):
-            if end - begin > LONGEST_RUN:
+            if end - begin > CODE.longest_run:
                 call = f"call void @fill(ptr %out, i64 {begin}, i64 {end}, double {value})"
                 self.lines.append(call)
                 continue

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import reduce
 
+from tracewire.compile.limits import CODE
 from tracewire.formula import FUNCTIONS, Call, Expression, Name, Number
-
-LONGEST_FOLD = 100
 
 
 def write_wires(formula: Expression, manies: Mapping[str, list[Expression]]) -> Expression:
@@ -42,7 +41,7 @@ def _folded(sign: str, terms: list[Expression], empty: float) -> Expression:
             return Call("-", (a, *b.arguments))
         return Call(sign, (a, b))
 
-    if len(terms) > LONGEST_FOLD:  # by halves: a formula may not nest as deep as that
+    if len(terms) > CODE.longest_fold:  # by halves: a formula may not nest as deep as that
         middle = len(terms) // 2
         return joined(_folded(sign, terms[:middle], empty), _folded(sign, terms[middle:], empty))
     return reduce(joined, terms) if terms else Number(empty)

@@ -11,11 +11,8 @@ from threading import RLock
 from typing import Any
 
 from tracewire.compile import libm
+from tracewire.compile.limits import CODE
 from tracewire.compile.machine import PREFIX
-
-LARGE = 1_000_000  # characters of IR, about 6000 blocks, from which on a quick compiler is better:
-# it takes a tenth of the time, and what it makes is 20 % slower
-KEPT = 256
 
 _lock = RLock()
 _kept: OrderedDict[bytes, Native] = OrderedDict()
@@ -34,7 +31,7 @@ def assemble(text: str, names: Iterable[str], *, quickly: bool = False) -> Nativ
 
     `quickly`: by the quick compiler, which large texts get anyway.
     """
-    quickly = quickly or len(text) > LARGE
+    quickly = quickly or len(text) > CODE.large
     key = hashlib.sha256(text.encode()).digest() + bytes([quickly])
     with _lock:
         found = _kept.pop(key, None)
@@ -42,7 +39,7 @@ def assemble(text: str, names: Iterable[str], *, quickly: bool = False) -> Nativ
             engine = _engine(text, quickly)
             found = Native({name: engine.get_function_address(name) for name in names}, engine)
         _kept[key] = found
-        if len(_kept) > KEPT:
+        if len(_kept) > CODE.kept:
             _kept.popitem(last=False)  # a model that uses it holds it still
         return found
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from tracewire.compile.flat import Flat
+from tracewire.compile.limits import REMARK
 from tracewire.compile.model import Model
 from tracewire.diagram import BlockUse, Value
 from tracewire.errors import FormulaError
@@ -17,14 +18,7 @@ STICKING = ("coulomb", "dry_friction", "stribeck")
 """Blocks whose output has two values at rest, and any between them while it sticks."""
 OF_THE_SIGNAL = ("value", "start", "offset", "height", "amplitude", "low", "high", "before")
 """Parameters of blocks that are in the unit of the output, where the declaration names none."""
-LARGE = 360.0
-"""In degrees, mm and so on: of a number in SI that shows as more another unit may be meant."""
-MOST_VALUES = 300_000
-"""Signals times evaluations, a second of work; larger models are not looked at."""
-STEP = 1e-2
 PRIME = "'"
-BENT = 1e-6
-"""Of the values of a function: what a straight line is not off by."""
 
 Values = Mapping[str, float]
 
@@ -53,7 +47,7 @@ def _bare(model: Model) -> Iterator[str]:
             ):
                 continue
             number = value.formula.value if isinstance(value.formula, Number) else 0.0
-            large = abs(number) > LARGE * use.shown.factor
+            large = abs(number) > REMARK.large * use.shown.factor
             if large and not value.unit and value.factor == 1.0:
                 unit = use.shown.unit
                 yield (
@@ -67,7 +61,7 @@ def _of_forces(model: Model, parameters: Values) -> list[str]:
     probe = _Probe(model.flat, parameters)
     forces = [use for use in model.diagram.blocks.values() if _is_force(model, use)]
     runs = 2 * len(model.states) + 8 * len(forces)
-    if not forces or model.flat.loops or len(model.flat.signals) * runs > MOST_VALUES:
+    if not forces or model.flat.loops or len(model.flat.signals) * runs > REMARK.most_values:
         return []
     found = [text for use in forces for text in probe.pushes_on(use)]
     return found + [text for use in forces for text in probe.bends(use)]
@@ -110,7 +104,7 @@ class _Probe:
 
     def slope(self, name: str, state: str) -> float:
         """How much a signal grows while a state goes from below to above zero; 0 if unknown."""
-        low, high = self.moved(state, -STEP), self.moved(state, STEP)
+        low, high = self.moved(state, -REMARK.step), self.moved(state, REMARK.step)
         return high[name] - low[name] if name in low and name in high else 0.0
 
     def pushes_on(self, use: BlockUse) -> Iterator[str]:
@@ -149,7 +143,7 @@ class _Probe:
         """What is a nonlinear function of a friction that may stick."""
         if use.type not in STICKING:
             return
-        size = max(abs(self.moved(s, STEP).get(use.name, 0.0)) for s in self.rest) or 1.0
+        size = max(abs(self.moved(s, REMARK.step).get(use.name, 0.0)) for s in self.rest) or 1.0
         curves = [
             [self.values(self.rest, {use.name: middle + k * 0.05 * size}) for k in (-1, 0, 1)]
             for middle in (0.37 * size, -0.61 * size)  # two: one of them may be at a kink
@@ -169,4 +163,4 @@ def _bent(name: str, low: Values, middle: Values, high: Values) -> bool:
     if not (name in low and name in middle and name in high):
         return False
     bend = low[name] - 2 * middle[name] + high[name]
-    return abs(bend) > BENT * max(abs(high[name] - low[name]), abs(middle[name]))
+    return abs(bend) > REMARK.bent * max(abs(high[name] - low[name]), abs(middle[name]))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Sequence
 
-from tracewire.compile.tape import CLOSE, LEAST_SHARE, SEARCHES
+from tracewire.compile.limits import SEARCH
 from tracewire.formula import FUNCTIONS
 
 FABS = FUNCTIONS["abs"].intrinsic
@@ -105,7 +105,7 @@ class SearchText:
             f"%{tag}.i = load i64, ptr {self.slot('count')}",
             f"%{tag}.j = add i64 %{tag}.i, 1",
             f"store i64 %{tag}.j, ptr {self.slot('count')}",
-            f"%{tag}.more = icmp slt i64 %{tag}.j, {SEARCHES}",
+            f"%{tag}.more = icmp slt i64 %{tag}.j, {SEARCH.most_steps}",
             f"br i1 %{tag}.more, label %{tag}.search, label %{tag}.lost",
             f"{tag}.lost:",
             *(self.store(bits(float("nan")), f"at{j}") for j in self.range),
@@ -131,7 +131,7 @@ class SearchText:
             self.load("least", "worst"),
             self.load("share", "share"),
             f"%{tag}.worse = fcmp uge double %{tag}.worst, %{tag}.least",
-            f"%{tag}.long = fcmp ogt double %{tag}.share, {bits(LEAST_SHARE)}",
+            f"%{tag}.long = fcmp ogt double %{tag}.share, {bits(SEARCH.least_share)}",
             f"%{tag}.far = xor i1 %{tag}.near, true",
             f"%{tag}.both = and i1 %{tag}.worse, %{tag}.long",
             f"%{tag}.shorter = and i1 %{tag}.both, %{tag}.far",
@@ -143,7 +143,7 @@ class SearchText:
         lines = [f"%{tag}.{result}.0 = and i1 true, true"]
         for j in self.range:
             lines += [
-                f"%{tag}.{result}.p{j} = fmul double {bits(CLOSE)}, %{tag}.{scale}{j}",
+                f"%{tag}.{result}.p{j} = fmul double {bits(SEARCH.close)}, %{tag}.{scale}{j}",
                 f"%{tag}.{result}.q{j} = fcmp ole double %{tag}.a{j}, %{tag}.{result}.p{j}",
                 f"%{tag}.{result}.{j + 1} = and i1 %{tag}.{result}.{j}, %{tag}.{result}.q{j}",
             ]

@@ -15,10 +15,10 @@ from typing import Any
 
 from tracewire.compile import libm
 from tracewire.compile.constants import OF_THE_PAST, Constants
+from tracewire.compile.limits import CODE, SEARCH
 from tracewire.compile.past import past
-from tracewire.compile.tape import CLOSE, LEAST_SHARE, SEARCHES, Tape
+from tracewire.compile.tape import Tape
 
-LONGEST_INLINE = 60
 INLINE = ("const", "table", "history", "history_rate", "record")
 
 Function = Callable[..., tuple[float, ...]]
@@ -60,13 +60,13 @@ def _newton(equations: Callable[..., Sequence[float]], guess: Sequence[float]) -
     z = old = list(guess)
     old_step, old_worst, share = [0.0] * size, math.inf, 1.0
     scale = [abs(value) for value in guess]
-    for _ in range(SEARCHES):
+    for _ in range(SEARCH.most_steps):
         found = equations(*z)
         step = found[size:]
         worst = found[0] * found[0]
         for residual in found[1:size]:
             worst += residual * residual
-        if not worst < old_worst and share > LEAST_SHARE and not _close(step, scale):
+        if not worst < old_worst and share > SEARCH.least_share and not _close(step, scale):
             share *= 0.5
             z = [a - share * b for a, b in zip(old, old_step, strict=True)]
             continue
@@ -79,7 +79,7 @@ def _newton(equations: Callable[..., Sequence[float]], guess: Sequence[float]) -
 
 
 def _close(step: Sequence[float], scale: Sequence[float]) -> bool:
-    return all(abs(a) <= CLOSE * s for a, s in zip(step, scale, strict=True))
+    return all(abs(a) <= SEARCH.close * s for a, s in zip(step, scale, strict=True))
 
 
 SHARED: dict[str, Any] = {
@@ -141,7 +141,7 @@ class _Body:
             text = self.text(index)
             label = writer.labels.get(index)
             plain = self.is_leaf(index) and uses[index] < 2
-            short = uses[index] < 2 and len(text) <= LONGEST_INLINE and label is None
+            short = uses[index] < 2 and len(text) <= CODE.longest_inline and label is None
             if plain or short or self.tape.entries[index].op in INLINE:
                 self.texts[index] = text
             else:

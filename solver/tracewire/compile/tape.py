@@ -16,17 +16,17 @@ operations:
   n numbers, so it is never a constant of the run, never folded, and read by `pick` only.
 - `pick`, payload j, operand a `newton`: its unknown j.
 
-The search, the same in every back end, to the bit:
+The search, the same in every back end, to the bit, with the numbers of `limits.SEARCH`:
 
     z = z_old = guess; step_old = 0; worst_old = inf; share = 1; scale_j = |guess_j|
-    SEARCHES times:
+    most_steps times:
         r, step = residuals and steps at z;   worst = r_0*r_0 + r_1*r_1 + ... (from the left)
-        if not worst < worst_old and share > LEAST_SHARE and not (all |step_j| <= CLOSE*scale_j):
+        if not worst < worst_old and share > least_share and not (all |step_j| <= close*scale_j):
             share = share/2; z_j = z_old_j - share*step_old_j       (it went too far, or NaN)
         else:
             z_old = z; step_old = step; worst_old = worst; share = 1
             z_j = z_j - step_j; scale_j = |z_j| if |z_j| > scale_j else scale_j
-            if all |step_j| <= CLOSE*scale_j (the new scale): the result is z
+            if all |step_j| <= close*scale_j (the new scale): the result is z
     the result is NaN, n times
 
 It is infinite where J is singular at the guess.
@@ -65,11 +65,6 @@ BINARY: dict[str, Callable[[float, float], float]] = {
     "or": lambda a, b: max(a, b),
 }
 """What operations of the tape give for numbers; conditions are 0.0 and 1.0."""
-
-SEARCHES = 100
-LEAST_SHARE = 2.0**-10
-CLOSE = 1e-10
-"""Of a search: its most steps, the least share of a step, the step that is the last one."""
 
 
 @dataclass(frozen=True, slots=True)

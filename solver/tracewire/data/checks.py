@@ -7,28 +7,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.data.limits import CHECK, FILE
+
 Vector = NDArray[np.float64]
 Marks = NDArray[np.bool_]
-
-JITTER = 0.01
-GAP = 3.0  # steps of this many medians are gaps
-MOST_TOLD = 3
-FEWEST = 20  # less samples say nothing about how they were taken
-
-RUN = 4  # samples at the extreme value in a row, and how many such runs are a clipped signal
-FEWEST_RUNS = 2
-CLIPPED_SHARE = 0.005
-ABRUPT = 3.0
-
-LONGEST_PATTERN = 50
-FEWEST_KINKS = 20
-REGULAR = 0.9
-
-SPIKE = 10.0  # times the range of nearly all samples is one away that stands alone
-NEARLY_ALL = (0.02, 0.98)  # quantiles
-
-MOST_LEVELS = 500
-FEWEST_LEVELS = 5
 
 
 def time_remarks(t: Vector) -> list[str]:
@@ -39,18 +21,18 @@ def time_remarks(t: Vector) -> list[str]:
     median = float(np.median(steps))
     # the last digit of a time that was written rounded moves a step by as much as this
     rounding = 4 * float(np.spacing(max(abs(t[0]), abs(t[-1]))))
-    gaps = np.flatnonzero(steps > GAP * median)
-    regular = steps[steps <= GAP * median]
+    gaps = np.flatnonzero(steps > CHECK.gap * median)
+    regular = steps[steps <= CHECK.gap * median]
     remarks = []
-    if count := int(np.sum(np.abs(regular - median) > JITTER * median + rounding)):
+    if count := int(np.sum(np.abs(regular - median) > CHECK.jitter * median + rounding)):
         low, high = float(regular.min()), float(regular.max())
         remarks.append(
             f"the time step is not regular: {low:.4g} to {high:.4g} s, median {median:.4g} s; "
-            f"{count} of {len(steps)} are more than {JITTER:.0%} off"
+            f"{count} of {len(steps)} are more than {CHECK.jitter:.0%} off"
         )
     if gaps.size:
-        told = ", ".join(f"{steps[i]:.4g} s after t = {t[i]:.6g} s" for i in gaps[:MOST_TOLD])
-        more = f" and {gaps.size - MOST_TOLD} more" if gaps.size > MOST_TOLD else ""
+        told = ", ".join(f"{steps[i]:.4g} s after t = {t[i]:.6g} s" for i in gaps[: FILE.most_told])
+        more = f" and {gaps.size - FILE.most_told} more" if gaps.size > FILE.most_told else ""
         some = "a gap" if gaps.size == 1 else f"{gaps.size} gaps"
         remarks.append(f"{some} in the time, where the step is {median:.4g} s: {told}{more}")
     return remarks
@@ -76,14 +58,14 @@ def signal_remarks(
     shown = f" {unit}" if unit else ""
     if np.ptp(y) == 0:
         return [f"{name} is constant: {y[0]:.6g}{shown} in every sample"]
-    if len(y) < FEWEST:
+    if len(y) < CHECK.fewest_samples:
         return []
     levels = np.unique(y)
     found = [
         *_clipped(name, y, levels, shown),
         *([] if exact or cleaned else _spikes(name, t, y, shown)),
     ]
-    made = [] if len(levels) < FEWEST_LEVELS else _from_lower_rate(name, t, y)
+    made = [] if len(levels) < CHECK.fewest_levels else _from_lower_rate(name, t, y)
     return [*found, *made, *([] if made or exact else _coarse(name, y, levels, shown))]
 
 
@@ -93,17 +75,17 @@ def _clipped(name: str, y: Vector, levels: Vector, unit: str) -> list[str]:
     A signal that turns round smoothly stays at its extreme too where it is read coarsely, but
     arrives there by the smallest of its steps.
     """
-    if len(levels) < FEWEST_LEVELS:
+    if len(levels) < CHECK.fewest_levels:
         return []  # a square wave, or a switch
     smallest = float(np.min(np.diff(levels)))
     remarks = []
     for extreme, word in ((levels[-1], "largest"), (levels[0], "smallest")):
         begins, ends = _runs(y == extreme)
-        long = np.flatnonzero((ends - begins >= RUN) & (begins > 0))
+        long = np.flatnonzero((ends - begins >= CHECK.run) & (begins > 0))
         arrived = np.abs(y[begins[long]] - y[begins[long] - 1])
-        abrupt = long[arrived > ABRUPT * smallest]
+        abrupt = long[arrived > CHECK.abrupt * smallest]
         count = int((ends - begins)[abrupt].sum())
-        if len(abrupt) >= FEWEST_RUNS and count >= CLIPPED_SHARE * len(y):
+        if len(abrupt) >= CHECK.fewest_runs and count >= CHECK.clipped_share * len(y):
             remarks.append(
                 f"{name} stays at exactly its {word} value, {extreme:.6g}{unit}, in {len(abrupt)} "
                 f"stretches of together {count} samples: is the sensor at the end of its range?"
@@ -113,7 +95,7 @@ def _clipped(name: str, y: Vector, levels: Vector, unit: str) -> list[str]:
 
 def usual_range(y: Vector) -> tuple[float, float]:
     """Between which values nearly all samples (N,) are: spikes are outside."""
-    low, high = np.quantile(y, NEARLY_ALL)
+    low, high = np.quantile(y, CHECK.nearly_all)
     return float(low), float(high)
 
 
@@ -121,13 +103,13 @@ def _spikes(name: str, t: Vector, y: Vector, unit: str) -> list[str]:
     """Samples far beyond all others, whose neighbours are not."""
     low, high = usual_range(y)
     beyond = np.maximum(low - y, y - high)
-    far = beyond > SPIKE * (high - low)
+    far = beyond > CHECK.spike * (high - low)
     beside = np.concatenate([[False], far[:-1]]) | np.concatenate([far[1:], [False]])
     alone = np.flatnonzero(far & ~beside)
     if high == low or not len(alone):
         return []
-    told = ", ".join(f"{y[i]:.6g}{unit} at t = {t[i]:.6g} s" for i in alone[:MOST_TOLD])
-    more = f" and {len(alone) - MOST_TOLD} more" if len(alone) > MOST_TOLD else ""
+    told = ", ".join(f"{y[i]:.6g}{unit} at t = {t[i]:.6g} s" for i in alone[: FILE.most_told])
+    more = f" and {len(alone) - FILE.most_told} more" if len(alone) > FILE.most_told else ""
     return [
         f"{name} has samples far from all others, each alone: {told}{more}; nearly all are between "
         f"{low:.4g} and {high:.4g}{unit}. Where they are faults of the measurement, leave them out "
@@ -144,7 +126,7 @@ def _runs(marks: Marks) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
 def _from_lower_rate(name: str, t: Vector, y: Vector) -> list[str]:
     """Samples on straight lines, or held, between points that stand a fixed number apart."""
     steps = np.diff(t)
-    if float(np.ptp(steps)) > JITTER * float(np.median(steps)):
+    if float(np.ptp(steps)) > CHECK.jitter * float(np.median(steps)):
         return []
     first = np.diff(y)
     second = np.diff(first)
@@ -172,25 +154,25 @@ def _pattern(places: NDArray[np.intp], count: int, moving: Marks) -> int:
 
     They must cover most of the stretches in which the signal moves at all.
     """
-    if len(places) < FEWEST_KINKS:
+    if len(places) < CHECK.fewest_kinks:
         return 0
     gaps = np.diff(places)
     every = int(np.median(gaps))
-    if not 2 <= every <= LONGEST_PATTERN or len(places) < 0.5 * count / every * moving.mean():
+    if not 2 <= every <= CHECK.longest_pattern or len(places) < 0.5 * count / every * moving.mean():
         return 0
     rests = np.bincount(places % every, minlength=every)
-    return every if rests.max() >= REGULAR * len(places) else 0
+    return every if rests.max() >= CHECK.regular * len(places) else 0
 
 
 def _coarse(name: str, y: Vector, levels: Vector, unit: str) -> list[str]:
     """Readings in few equal steps: their rounding is noise that no model explains."""
-    if not FEWEST_LEVELS <= len(levels) <= len(y) / 2:
+    if not CHECK.fewest_levels <= len(levels) <= len(y) / 2:
         return []
     gaps = np.diff(levels)
     step = float(gaps.min())
     multiples = gaps / step
     count = float(np.ptp(levels)) / step
-    if count > MOST_LEVELS or float(np.max(np.abs(multiples - np.round(multiples)))) > 0.05:
+    if count > CHECK.most_levels or float(np.max(np.abs(multiples - np.round(multiples)))) > 0.05:
         return []
     return [
         f"{name} is read in steps of {step:.3g}{unit} ({count:.0f} over its range): the rounding "

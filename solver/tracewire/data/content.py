@@ -7,11 +7,9 @@ import stat
 from collections.abc import Sequence
 from pathlib import Path
 
+from tracewire.data.limits import FILE
 from tracewire.errors import DataError, Place, Problem, unknown
 
-MOST_BYTES = 200_000_000
-MOST_UNPACKED = 1_000_000_000
-"""Bytes of the arrays that a file of another format holds, once they are unpacked."""
 AS_TEXT = "Save it as text, in UTF-8."
 AS_CSV = "Open it, and save the sheet or table as CSV (text with commas)."
 UNPACK = "Unpack it, and name the file with the numbers."
@@ -48,8 +46,8 @@ def content_of(path: Path, place: Place) -> bytes:
             raise _refused(place, path, "is a folder", "Name a file in it.", _names(path))
         if not stat.S_ISREG(status.st_mode):
             raise _refused(place, path, "is not a regular file", "Copy its content into a file.")
-        if status.st_size > MOST_BYTES:
-            size, limit = (f"{count / 1e6:.0f} MB" for count in (status.st_size, MOST_BYTES))
+        if status.st_size > FILE.most_bytes:
+            size, limit = (f"{count / 1e6:.0f} MB" for count in (status.st_size, FILE.most_bytes))
             what = f"is too large: {size}, and the limit is {limit}"
             raise _refused(place, path, what, "Split it, or keep every n-th row.")
         content = path.read_bytes()

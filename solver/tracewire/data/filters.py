@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.data.limits import STEP
+
 Vector = NDArray[np.float64]
 NORMAL = 1.4826  # a normal distribution's standard deviation over its median absolute deviation
-LOGARITHMS = -6.0, 12.0  # beyond, rounding is larger than what the spline shall leave out
 FOURTH = 70.0  # 1 + 16 + 36 + 16 + 1: the variance of a fourth difference of white noise of 1
-MOST_AT_ONCE = 2_000_000
 
 
 def jitter(t: Vector) -> tuple[float, float]:
@@ -96,7 +96,7 @@ def derivative(t: Vector, y: Vector, noise: float) -> tuple[Vector, float]:
         left = smoothed(u, z, 10.0**logarithm) - z
         return float(np.sqrt(np.mean(left**2))) - noise / scale
 
-    low, high = LOGARITHMS
+    low, high = STEP.logarithms
     if excess(low) >= 0:
         best = low
     elif excess(high) <= 0:
@@ -118,7 +118,7 @@ def far_from_median(y: Vector, width: int, limit: float) -> NDArray[np.bool_]:
     half = width // 2
     windows = np.lib.stride_tricks.sliding_window_view(np.pad(y, half, mode="reflect"), width)
     median, spread = np.empty_like(y), np.empty_like(y)
-    rows = max(MOST_AT_ONCE // width, 1)
+    rows = max(STEP.most_at_once // width, 1)
     for first in range(0, len(y), rows):
         part = windows[first : first + rows]
         middle = np.median(part, axis=1)

@@ -12,14 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.data.content import MOST_UNPACKED
+from tracewire.data.limits import FILE
 from tracewire.data.quiet import Attempts
 from tracewire.data.vectors import Column, Group
 from tracewire.errors import DataError, Place
 from tracewire.extras import import_extra
 
-MOST_COLUMNS = 200  # of a matrix
-MOST_DEPTH = 20
 UNITS = ("units", "unit", "Units", "Unit")
 
 
@@ -67,7 +65,7 @@ def _groups(opened: Opened) -> list[Group]:
             ]
         elif data.ndim == 1:
             found[group].append(Column(head, partial(opened.values, data), _unit(data)))
-        elif data.ndim == 2 and min(data.shape) <= MOST_COLUMNS:
+        elif data.ndim == 2 and min(data.shape) <= FILE.most_columns:
             found[group] += [
                 Column(f"{head}[{n + 1}]", partial(_column, opened, data, n), _unit(data))
                 for n in range(min(data.shape))
@@ -80,7 +78,7 @@ def data_sets(group: Any, name: str = "", depth: int = 0) -> Iterator[tuple[str,
 
     A link to another file, and data that are stored in other files, could name any file.
     """
-    for key in group if depth <= MOST_DEPTH else ():
+    for key in group if depth <= FILE.most_depth else ():
         if type(group.get(key, getlink=True)).__name__ != "HardLink":
             continue
         item, path = group[key], f"{name}/{key}" if name else key
@@ -91,8 +89,8 @@ def data_sets(group: Any, name: str = "", depth: int = 0) -> Iterator[tuple[str,
 
 
 def _values(data: Any) -> NDArray[Any]:
-    if data.nbytes > MOST_UNPACKED:
-        raise ValueError(f"'{data.name}' holds more than {MOST_UNPACKED / 1e9:g} GB")
+    if data.nbytes > FILE.most_unpacked:
+        raise ValueError(f"'{data.name}' holds more than {FILE.most_unpacked / 1e9:g} GB")
     values = np.asarray(data[()])
     if values.dtype.kind in "OS":  # texts of any length are bytes
         texts = [v.decode("utf-8", "replace") if isinstance(v, bytes) else v for v in values.flat]

@@ -15,9 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.data.content import MOST_UNPACKED
+from tracewire.data.limits import FILE
 
-MOST_DEPTH = 20
 MATRIX, COMPRESSED = 14, 15
 NUMBERS = {
     1: "i1",
@@ -62,7 +61,7 @@ def variables_of(content: bytes) -> dict[str, Value]:
     if order is None:
         raise Damaged("its header has no mark of the byte order")
     found: dict[str, Value] = {}
-    left = [MOST_UNPACKED]
+    left = [FILE.most_unpacked]
     at = 128
     while at + 8 <= len(content):
         kind, data, at = _element(content, at, order)
@@ -83,7 +82,7 @@ def _unpacked(data: bytes, left: list[int]) -> bytes:
         raise Damaged(str(error)) from None
     left[0] -= len(made)
     if left[0] < 0:
-        raise Damaged(f"it holds more than {MOST_UNPACKED / 1e9:g} GB")
+        raise Damaged(f"it holds more than {FILE.most_unpacked / 1e9:g} GB")
     return made
 
 
@@ -115,8 +114,8 @@ def _numbers(kind: int, data: bytes, order: str) -> NDArray[Any]:
 
 def _matrix(data: bytes, order: str, depth: int) -> tuple[str, Value]:
     """Name and value of an array."""
-    if depth > MOST_DEPTH:
-        raise Damaged(f"it is nested deeper than {MOST_DEPTH} levels")
+    if depth > FILE.most_depth:
+        raise Damaged(f"it is nested deeper than {FILE.most_depth} levels")
     if not data:
         return "", np.zeros((0, 0))
     kind, flags, at = _element(data, 0, order)
@@ -128,7 +127,7 @@ def _matrix(data: bytes, order: str, depth: int) -> tuple[str, Value]:
     if kind_of_array == 17:  # objects have another layout: their name stands where the shape does
         return _text(shape_data), Other(OTHERS[17])
     shape = tuple(int(n) for n in _numbers(kind, shape_data, order))
-    if len(shape) < 2 or min(shape) < 0 or math.prod(shape) > MOST_UNPACKED:
+    if len(shape) < 2 or min(shape) < 0 or math.prod(shape) > FILE.most_unpacked:
         raise Damaged(f"an array in it has the shape {shape}")
     _, name_data, at = _element(data, at, order)
     name, count = _text(name_data), math.prod(shape)

@@ -11,14 +11,13 @@ from typing import Any
 
 import numpy as np
 
+from tracewire.data.limits import FILE
 from tracewire.data.matfile import Cells, Damaged, Other, Structs, Value, variables_of
 from tracewire.data.matlab_hdf5 import is_matlab_hdf5, variables_of_hdf5
 from tracewire.data.request import Found, Request, Vector
 from tracewire.data.vectors import found_of
 from tracewire.errors import DataError, Place, Problem, unknown
 
-MOST_LISTED = 200
-MOST_DEPTH = 6
 STEP = re.compile(r"\.([^\W\d]\w*)|\[(\d{1,9})\]")
 ADDRESS = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*|\[\d{1,9}\])*")
 
@@ -129,21 +128,21 @@ def _addresses(variables: Mapping[str, Value]) -> list[str]:
     """The vectors that there are, by their addresses; the longest first."""
 
     def walk(name: str, value: Value | None, depth: int) -> Iterator[tuple[str, int]]:
-        if depth > MOST_DEPTH:
+        if depth > FILE.listed_depth:
             return
         if isinstance(value, Structs) and len(value) == 1:
             for field, inner in value[0].items():
                 yield from walk(f"{name}.{field}", inner, depth + 1)
         elif isinstance(value, Structs | Cells):
-            for i in range(1, min(len(value), MOST_LISTED) + 1):
+            for i in range(1, min(len(value), FILE.most_columns) + 1):
                 yield from walk(f"{name}[{i}]", _entry(value, i), depth + 1)
         elif isinstance(value, np.ndarray) and value.dtype.kind in "biuf":
             shape = np.squeeze(value).shape
             if len(shape) == 1:
                 yield name, shape[0]
-            elif len(shape) == 2 and min(shape) <= MOST_LISTED:
+            elif len(shape) == 2 and min(shape) <= FILE.most_columns:
                 for i in range(1, min(shape) + 1):
                     yield f"{name}[{i}]", max(shape)
 
     found = [pair for name, value in variables.items() for pair in walk(name, value, 0)]
-    return [name for name, _ in sorted(found, key=lambda pair: -pair[1])][:MOST_LISTED]
+    return [name for name, _ in sorted(found, key=lambda pair: -pair[1])][: FILE.most_columns]

@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 
 from tracewire.data.hdf5 import Opened
+from tracewire.data.limits import FILE
 from tracewire.data.matfile import Cells, Other, Structs, Value
 from tracewire.errors import Place
 
 MARK = b"MATLAB 7.3"
 CLASS = "MATLAB_class"
-MOST_DEPTH = 20
 NUMERIC = {
     "double",
     "single",
@@ -44,7 +44,7 @@ def _variables(opened: Opened) -> dict[str, Value]:
     file = opened.file
 
     def value_of(item: Any, depth: int) -> Value:
-        if depth > MOST_DEPTH:
+        if depth > FILE.most_depth:
             return Other("nested too deeply")
         if hasattr(item, "keys"):
             fields = {name: field(item, name, depth + 1) for name in item}

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.data.content import MOST_UNPACKED
+from tracewire.data.limits import FILE
 from tracewire.data.quiet import Attempts
 from tracewire.data.vectors import Column, Group
 from tracewire.errors import DataError, Place
@@ -33,8 +33,8 @@ def groups_of_parquet(content: bytes, path: Path, place: Place) -> list[Group]:
     file = attempt(lambda: parquet.ParquetFile(pyarrow.BufferReader(content)))
     schema, metadata = file.schema_arrow, file.metadata
     groups = [metadata.row_group(n) for n in range(metadata.num_row_groups)]
-    if sum(group.total_byte_size for group in groups) > MOST_UNPACKED:
-        what = f"'{path}' holds more than {MOST_UNPACKED / 1e9:g} GB"
+    if sum(group.total_byte_size for group in groups) > FILE.most_unpacked:
+        what = f"'{path}' holds more than {FILE.most_unpacked / 1e9:g} GB"
         raise DataError.one(what, place, hint="Split it, or keep every n-th row.")
 
     def read(n: int) -> NDArray[Any]:

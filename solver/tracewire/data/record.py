@@ -11,17 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.data import filters
+from tracewire.data.limits import FILE, STEP
 from tracewire.data.steps import STEPS
 from tracewire.errors import OptionError, unknown
 from tracewire.formula import Unit, read_unit
 
 Vector = NDArray[np.float64]
 ONE, SECOND = Unit("", 1.0), Unit("s", 1.0)
-MOST_SAMPLES = 20_000_000
-UNIFORM = 0.01
-LEAST_FOR_SPLINE = 5
-MOST_ORDER = 20
-MOST_TOLD = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,8 +76,8 @@ class Record:
         record = self._rows(order)
         if len(times) == len(order):
             return record._told(moved)
-        twice = ", ".join(f"{t:.9g}" for t in times[counts > 1][:MOST_TOLD])
-        twice += ", ..." if np.sum(counts > 1) > MOST_TOLD else ""
+        twice = ", ".join(f"{t:.9g}" for t in times[counts > 1][: FILE.most_told])
+        twice += ", ..." if np.sum(counts > 1) > FILE.most_told else ""
         some = f"{len(order) - len(times)} of {len(order)} rows repeat a time"
         if not duplicates:
             hint = "Say which row of a time counts: sort: {duplicates: first}, or last, or mean."
@@ -122,7 +118,8 @@ class Record:
             raise OptionError([unknown("method of resampling", method, ("linear", "spline"))])
         every = _above_zero("every", every)
         span = float(self.t[-1] - self.t[0])
-        count = math.floor(span / every * (1 + 1e-12)) + 1 if span / every < MOST_SAMPLES else 0
+        few = span / every < STEP.most_samples
+        count = math.floor(span / every * (1 + 1e-12)) + 1 if few else 0
         if count < 2:
             what = f"the interval {every:g} s does not fit into a record of {span:g} s"
             raise OptionError.one(what, hint="Give an interval between samples, in s.")
@@ -138,7 +135,7 @@ class Record:
 
         order 0 takes the mean away, 1 a straight line.
         """
-        order = _count("order", order, 0, MOST_ORDER)
+        order = _count("order", order, 0, STEP.most_order)
         if len(self.t) <= order:
             raise OptionError.one(f"a trend of order {order} takes more than {len(self.t)} samples")
         words = {0: "the mean", 1: "a straight line"}.get(order, f"a polynomial of order {order}")
@@ -171,9 +168,9 @@ class Record:
 
         cutoff: Hz, where the gain of both ways together is 1/2. Needs equal intervals.
         """
-        cutoff, order = _above_zero("cutoff", cutoff), _count("order", order, 1, MOST_ORDER)
+        cutoff, order = _above_zero("cutoff", cutoff), _count("order", order, 1, STEP.most_order)
         step, uneven = filters.jitter(self.t)
-        if uneven > UNIFORM:
+        if uneven > STEP.uniform:
             what = f"a filter needs equal intervals; these are up to {uneven:.0%} off {step:g} s"
             raise OptionError.one(what, hint=f"Resample first: resample: {{every: {step:.4g}}}.")
         half = 0.5 / step
@@ -202,8 +199,8 @@ class Record:
         if to in self.columns:
             raise OptionError.one(f"there is a column '{to}' already", hint="Choose another name.")
         y = self._column(signal)
-        if len(self.t) < LEAST_FOR_SPLINE:
-            raise OptionError.one(f"a spline takes at least {LEAST_FOR_SPLINE} samples")
+        if len(self.t) < STEP.fewest_for_spline:
+            raise OptionError.one(f"a spline takes at least {STEP.fewest_for_spline} samples")
         size = filters.white_noise(y) if noise is None else _above_zero("noise", noise)
         made, rest = filters.derivative(self.t, y, size)
         unit = self.unit(signal)

@@ -8,14 +8,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.data.limits import FILE
 from tracewire.errors import DataError, Place, Problem
 
 Vector = NDArray[np.float64]
-MOST_PROBLEMS = 10
 NO_ROWS = "A series needs at least two rows of numbers."
 SORT = "Sort the rows, in a series by clean: [sort]; or split the file, or choose rows by `where`."
 ONCE = "Keep one row for each time, in a series by clean: [{sort: {duplicates: first}}]."
-MOST_SHOWN = 3
 NO_VALUE = "Leave out the rows without a value."
 
 
@@ -73,7 +72,7 @@ def problems_of(found: Found, request: Request, file: str) -> list[Problem]:
 def raise_first(problems: Sequence[Problem], count: int, file: str) -> None:
     """Raise the first ten of the problems by line, and how many of `count` are not told."""
     if problems:
-        told = sorted(problems, key=lambda problem: problem.place)[:MOST_PROBLEMS]
+        told = sorted(problems, key=lambda problem: problem.place)[: FILE.most_problems]
         if more := count - len(told):
             told.append(Problem(f"and {more} more such problems", Place(file)))
         raise DataError(told)
@@ -93,8 +92,8 @@ def _check_time(found: Found, clock: int, note: Callable[[int, str, str, str], N
         if len(at) < 2:
             return ""
         kind = where(at[1]).partition(" ")[0]
-        shown = ", ".join(where(i).partition(" ")[2] for i in at[1 : 1 + MOST_SHOWN])
-        more = " and so on" if len(at) > 1 + MOST_SHOWN else ""
+        shown = ", ".join(where(i).partition(" ")[2] for i in at[1 : 1 + FILE.most_told])
+        more = " and so on" if len(at) > 1 + FILE.most_told else ""
         return f"; the same in {len(at) - 1} more rows: {kind} {shown}{more}"
 
     back = np.flatnonzero(time[1:] < time[:-1])

@@ -11,10 +11,10 @@ from collections.abc import Iterator, Sequence, Set
 from typing import NamedTuple
 
 from tracewire.data.dates import read_date
+from tracewire.data.limits import FILE
 from tracewire.errors import FormulaError, Place, Problem, unknown
 from tracewire.formula import read_unit
 
-SAMPLE = 200
 DELIMITERS = ("\t", ";", ",", " ")  # the semicolon first: where it stands, a comma may be decimal
 COMMA_NUMBER = re.compile(r"[+-]?(?:\d+,?\d*|,\d+)(?:[eE][+-]?\d+)?")
 MARK = re.compile(r"%+|//+|!|\*+")  # of a comment, as other programs write it
@@ -98,7 +98,7 @@ def sniff(
     """The dialect under which the first rows look most like a table of numbers."""
 
     def likeness(dialect: Dialect) -> tuple[int, int, int]:
-        sample = itertools.islice(rows_of(lines, dialect.delimiter, comment), SAMPLE)
+        sample = itertools.islice(rows_of(lines, dialect.delimiter, comment), FILE.sample_rows)
         shapes: dict[int, list[int]] = {}
         for row in sample:
             count = sum(is_value(cell, dialect.decimal) for cell in row.cells)
@@ -125,7 +125,7 @@ def layout_of(
     numbers that has as many cells, none of them a number. So a first row of data with a faulty cell
     is not taken for names. A row of units may follow it.
     """
-    head = list(itertools.islice(rows_of(lines, dialect.delimiter, comment), SAMPLE))
+    head = list(itertools.islice(rows_of(lines, dialect.delimiter, comment), FILE.sample_rows))
     numeric = [[is_value(cell, dialect.decimal) for cell in row.cells] for row in head]
     full = [
         any(found) and all(found[i] or not cell for i, cell in enumerate(row.cells))

@@ -12,8 +12,8 @@ import numpy as np
 
 from tracewire.data.content import text_of
 from tracewire.data.dates import Instant, read_date, seconds_since_first
+from tracewire.data.limits import FILE
 from tracewire.data.request import (
-    MOST_PROBLEMS,
     NO_ROWS,
     NO_VALUE,
     Found,
@@ -124,7 +124,7 @@ def _find_all(wanted: Sequence[str], layout: Layout, place: Place, file: str) ->
     answers = [_find(want, layout, place, file) for want in wanted]
     problems = [answer for answer in answers if isinstance(answer, Problem)]
     if problems:
-        raise DataError(list(dict.fromkeys(problems))[:MOST_PROBLEMS])
+        raise DataError(list(dict.fromkeys(problems))[: FILE.most_problems])
     return [answer for answer in answers if isinstance(answer, int)]
 
 
@@ -252,7 +252,7 @@ class _Reading:
 
     def _note(self, line: int, what: str, hint: str) -> None:
         self.count += 1
-        if len(self.problems) < MOST_PROBLEMS:
+        if len(self.problems) < FILE.most_problems:
             self.problems.append(Problem(what, Place(self.file, line), hint=hint))
 
     def _note_width(self, row: Row) -> None:

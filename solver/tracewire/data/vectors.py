@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.data.dates import read_dates, seconds_since_first
+from tracewire.data.limits import FILE
 from tracewire.data.request import (
-    MOST_PROBLEMS,
     Found,
     Request,
     Vector,
@@ -22,8 +22,6 @@ from tracewire.data.request import (
 )
 from tracewire.data.table import matches, split_unit, unknown_column
 from tracewire.errors import DataError, Place, Problem
-
-MOST_SEEN = 1000
 
 
 @dataclass(frozen=True)
@@ -119,7 +117,7 @@ def found_of(
             numbers = made
         series.append(numbers)
     if problems:
-        raise DataError(list(dict.fromkeys(problems))[:MOST_PROBLEMS])
+        raise DataError(list(dict.fromkeys(problems))[: FILE.most_problems])
     names = [f"'{name}'" for name in request.wanted]
     lines = np.zeros(int(kept.sum()), dtype=np.int64)
     found = Found(series, list(units[:count]), names, lines, since=since)
@@ -153,7 +151,7 @@ def choose(
         if not some
     ]
     if problems:  # with another name in its place, what is ambiguous may be clear
-        raise DataError(list(dict.fromkeys(problems))[:MOST_PROBLEMS])
+        raise DataError(list(dict.fromkeys(problems))[: FILE.most_problems])
     chosen: list[tuple[int, Column]] = []
     for name, some in zip(names, found, strict=True):
         if len(some) > 1 and len(shared) == 1:
@@ -166,7 +164,7 @@ def choose(
             hint = "Give the number." if len(set(full)) == 1 else "Write one of these."
             problems.append(Problem(what, place, full, hint))
     if problems:
-        raise DataError(list(dict.fromkeys(problems))[:MOST_PROBLEMS])
+        raise DataError(list(dict.fromkeys(problems))[: FILE.most_problems])
     return chosen
 
 
@@ -198,10 +196,10 @@ def _rows(
         numbers = _numbers(array)
         if isinstance(numbers, str):
             texts = np.array([str(value) for value in array], dtype=object)
-            seen.append([str(text) for text in dict.fromkeys(texts[rows][:MOST_SEEN])])
+            seen.append([str(text) for text in dict.fromkeys(texts[rows][: FILE.most_texts])])
             rows &= texts == str(wanted)
         else:
-            seen.append([f"{value:g}" for value in np.unique(numbers[rows])[:MOST_SEEN]])
+            seen.append([f"{value:g}" for value in np.unique(numbers[rows])[: FILE.most_texts]])
             rows &= numbers == (wanted if isinstance(wanted, float) else np.nan)
     if not rows.any():
         raise none_left(where, seen, file, place)

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from tracewire.data.content import MOST_UNPACKED
+from tracewire.data.limits import FILE
 from tracewire.data.quiet import Attempts
 from tracewire.data.request import Found, Request
 from tracewire.data.table import Dialect, Row, layout_of
@@ -92,8 +92,8 @@ def sheets_of(content: bytes, path: Path, place: Place) -> dict[str, list[str]]:
 
 def _lines_of_sheets(content: bytes, openpyxl: Any) -> dict[str, list[str]]:
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
-        if sum(entry.file_size for entry in archive.infolist()) > MOST_UNPACKED:
-            raise ValueError(f"it holds more than {MOST_UNPACKED / 1e9:g} GB")
+        if sum(entry.file_size for entry in archive.infolist()) > FILE.most_unpacked:
+            raise ValueError(f"it holds more than {FILE.most_unpacked / 1e9:g} GB")
     book = openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=True)
     sheets = {
         sheet.title: _lines(list(sheet.iter_rows(values_only=True))) for sheet in book.worksheets

@@ -44,9 +44,10 @@ from tracewire.diagram.edit_series import (
     with_series_of,
 )
 from tracewire.diagram.effects import EffectType, effects_of
-from tracewire.diagram.files import MOST_BYTES, STDIN, absent_series, load_stdin
+from tracewire.diagram.files import STDIN, absent_series, load_stdin
 from tracewire.diagram.files import load as load_text
 from tracewire.diagram.layout import laid_out
+from tracewire.diagram.limits import LIMITS
 from tracewire.diagram.loops import cycles, shown_cycle
 from tracewire.diagram.modeline import is_modeline, with_modeline
 from tracewire.diagram.names import (
@@ -74,7 +75,7 @@ from tracewire.diagram.yaml_text import mapping_text, quoted
 
 __all__ = [
     "EVENT_KINDS",
-    "MOST_BYTES",
+    "LIMITS",
     "STDIN",
     "AddBlock",
     "AddOwn",

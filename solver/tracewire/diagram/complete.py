@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from tracewire.diagram.context import Context, Level, context_of
 from tracewire.diagram.diagram import Diagram
 from tracewire.diagram.grammar import OF_A_BLOCK, OF_KINDS, SHAPES, named
+from tracewire.diagram.limits import LIMITS
 from tracewire.diagram.names import parameters, recordable, signals, states
 from tracewire.diagram.shapes import (
     Either,
@@ -22,8 +23,6 @@ from tracewire.diagram.shapes import (
 )
 from tracewire.formula import FUNCTIONS
 from tracewire.library import Library, bounds_text, joined_doc, wiring
-
-MOST = 60
 
 
 @dataclass(frozen=True)
@@ -50,7 +49,7 @@ def complete(before: str, library: Library, diagram: Diagram | None = None) -> l
     word = context.word.lower()
     begins = [p for text, p in found.items() if text.lower().startswith(word)]
     others = [p for text, p in found.items() if word and word in text.lower()[1:]]
-    return list(dict.fromkeys([*begins, *others]))[:MOST]
+    return list(dict.fromkeys([*begins, *others]))[: LIMITS.most_completions]
 
 
 def word_before(before: str) -> str:

@@ -6,13 +6,11 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from tracewire.diagram.extend import merged, without
+from tracewire.diagram.limits import LIMITS
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 
 CHANGING = ("extends", "remove")
-MOST_NODES = 20_000
-"""Values and lists of a subsystem that may be extended: those of 2000 blocks. A file that extends
-twice what another one does doubles with each file."""
 
 
 def with_bases(entries: Entries, bases: Mapping[str, Node], problems: Problems) -> Entries:
@@ -56,8 +54,8 @@ def _extended(own: Entries, bases: Mapping[str, Node], problems: Problems) -> En
         hint = "Of a subsystem of this file write variants."
         problems.unknown("subsystem of an included file", name.text, bases, name.place, hint)
         return changes
-    if not _has_at_most(base, MOST_NODES):
-        what = f"'{name.text}', which this one extends, has more than {MOST_NODES} parts"
+    if not _has_at_most(base, LIMITS.most_extended):
+        what = f"'{name.text}', which this one extends, has more than {LIMITS.most_extended} parts"
         problems.add(what, name.place, (), "Write the blocks that are needed, or a smaller base.")
         return changes
     given = own.values.get("remove")

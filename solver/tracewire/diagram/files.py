@@ -7,17 +7,16 @@ from dataclasses import replace
 from pathlib import Path
 
 from tracewire.diagram.diagram import Diagram
+from tracewire.diagram.limits import LIMITS
 from tracewire.errors import DiagramError, Place, Problem, unknown
 
-MOST_BYTES = 1_000_000
-MOST_LENGTH = 4096
 STDIN = Path("<stdin>")
 
 
 def problem_of(path: Path, place: Place) -> Problem | None:
     """Why `path` is no file that can be read, or None. `place` is where it is named."""
     try:
-        if len(str(path)) > MOST_LENGTH or "\0" in str(path):
+        if len(str(path)) > LIMITS.longest_path or "\0" in str(path):
             return Problem("no file can have this name", place, hint="Check the path.")
         if path.is_file():
             return None
@@ -41,7 +40,7 @@ def problem_of(path: Path, place: Place) -> Problem | None:
 def is_absent(path: Path) -> bool:
     """Whether there is nothing of this name, which a file could have."""
     try:
-        possible = len(str(path)) <= MOST_LENGTH and "\0" not in str(path)
+        possible = len(str(path)) <= LIMITS.longest_path and "\0" not in str(path)
         return possible and not path.exists()
     except (OSError, ValueError):
         return False
@@ -68,7 +67,7 @@ def load(path: Path, place: Place = Place()) -> str:
         raise DiagramError([problem])
     try:
         with path.open("rb") as file:
-            content = file.read(MOST_BYTES + 1)
+            content = file.read(LIMITS.most_bytes + 1)
     except OSError as error:
         raise DiagramError([_unreadable(path, error, place)]) from None
     return _decoded(content, path, place)
@@ -76,14 +75,15 @@ def load(path: Path, place: Place = Place()) -> str:
 
 def load_stdin() -> str:
     """The text of a diagram from stdin. Raises DiagramError, as `load` does."""
-    content = b"" if sys.stdin is None else sys.stdin.buffer.read(MOST_BYTES + 1)
+    content = b"" if sys.stdin is None else sys.stdin.buffer.read(LIMITS.most_bytes + 1)
     return _decoded(content, STDIN, Place())
 
 
 def _decoded(content: bytes, path: Path, place: Place) -> str:
-    if len(content) > MOST_BYTES:
+    if len(content) > LIMITS.most_bytes:
         hint = "Put subsystems into files of their own and include them; data belongs into CSV."
-        what = f"'{path}' is larger than {MOST_BYTES // 1_000_000} MB, too large for a diagram"
+        size = f"{LIMITS.most_bytes // 1_000_000} MB"
+        what = f"'{path}' is larger than {size}, too large for a diagram"
         raise DiagramError.one(what, place, hint=hint)
     try:
         return content.decode("utf-8")

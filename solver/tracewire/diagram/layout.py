@@ -9,12 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tracewire.diagram.grammar import TOP
+from tracewire.diagram.limits import LAYOUT
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.strict import NUMBER, Entries, Items, Node, Scalar, compose
 from tracewire.errors import DiagramError, Place
 
-STEP = 2  # blanks for each level
-BEFORE_COMMENT = 2
 MARK = "\ufeff"
 BARE = re.compile(r"-?(?:[^\W\d]|[/.]\w)(?:[\w./*^+-]|-(?!\s))*")
 """What needs no quotes, the wire with a minus among it."""
@@ -137,7 +136,7 @@ class _Printer:
             if token.kind == "break":
                 self.end_line()
             elif self.line:
-                width = max(token.column, len(self.line) + BEFORE_COMMENT)
+                width = max(token.column, len(self.line) + LAYOUT.before_comment)
                 self.line = self.line.ljust(width) + token.text
             else:
                 self.line = " " * self.beside(token.column, column, indent) + token.text
@@ -204,25 +203,25 @@ class _Printer:
             for _, _, value in node:
                 self.put(indent)
                 self.put(indent, ":")
-                self.node(value, indent + STEP)
+                self.node(value, indent + LAYOUT.indent)
             self.levels.pop()
         else:
             self.levels.append((self.column(node.start), indent))
             for item in node.items:
                 self.put(indent, "-")
-                self.node(item, indent + STEP)
+                self.node(item, indent + LAYOUT.indent)
             self.levels.pop()
 
     def flow(self, node: Items | Entries, indent: int) -> None:
         """A list or mapping in brackets; of a pair in a list they may be left out."""
         opening, closing = ("{", "}") if isinstance(node, Entries) else ("[", "]")
-        inner = indent if self.line else indent + STEP
+        inner = indent if self.line else indent + LAYOUT.indent
         opened = self.put(indent, opening)
         if isinstance(node, Entries):
             for _, _, value in node:
                 self.put(inner)
                 self.put(inner, ":")
-                self.node(value, inner + STEP)
+                self.node(value, inner + LAYOUT.indent)
                 if opened:
                     self.put(inner, ",")
         else:
@@ -230,7 +229,7 @@ class _Printer:
                 self.node(item, inner)
                 self.put(inner, ",")
         if opened:
-            self.put(inner - STEP, closing)
+            self.put(inner - LAYOUT.indent, closing)
 
 
 def _scalars(node: Node) -> Iterator[Scalar]:

@@ -10,13 +10,12 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from tracewire.diagram.diagram import Value
+from tracewire.diagram.limits import LIMITS
 from tracewire.diagram.problems import Problems
 from tracewire.formula import evaluation_order, names_of
 
 if TYPE_CHECKING:
     import networkx as nx
-
-MOST_SHOWN = 100
 
 
 def check_parameters(parameters: Mapping[str, Value], problems: Problems) -> None:
@@ -55,5 +54,5 @@ def cycles(graph: nx.DiGraph[str], order: Sequence[str]) -> list[list[str]]:
 
 def shown_cycle(names: Sequence[str]) -> str:
     """A cycle as `a -> b -> a`; a very long one in part."""
-    many = len(names) > MOST_SHOWN
-    return " -> ".join([*names[: MOST_SHOWN - 2], "...", names[-1]] if many else names)
+    many = len(names) > LIMITS.longest_loop
+    return " -> ".join([*names[: LIMITS.longest_loop - 2], "...", names[-1]] if many else names)

@@ -5,22 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
+from tracewire.diagram.limits import LIMITS
 from tracewire.errors import DiagramError, Place, Problem, TracewireError, unknown
 
-MOST_PROBLEMS = 100
-MOST_COMPARED = 20_000
-MOST_SHOWN = 60
 NO_UNIT = " is not a unit"
 
 
 def clip(text: str) -> str:
     """The text as it is quoted in a message: one line, and not too long of it."""
     line = " ".join(text.split())
-    return line if len(line) <= MOST_SHOWN else f"{line[: MOST_SHOWN - 3]}..."
+    return line if len(line) <= LIMITS.longest_quote else f"{line[: LIMITS.longest_quote - 3]}..."
 
 
 class Problems:
-    """What is wrong, in the order in which it was found; beyond `MOST_PROBLEMS` only a count."""
+    """What is wrong, in the order in which it was found; beyond `LIMITS.most_problems` only a
+    count."""
 
     def __init__(self) -> None:
         self.found: list[Problem] = []
@@ -39,14 +38,14 @@ class Problems:
             return
         names = sorted(set(existing))
         self.compared += len(names)
-        if self.compared <= MOST_COMPARED:
+        if self.compared <= LIMITS.most_compared:
             self._note(unknown(kind, clip(name), names, place, hint))
         else:  # the search for a near name takes a tenth of a millisecond for each that exists
             self._note(Problem(f"unknown {kind} '{clip(name)}'", place, tuple(names), hint))
 
     def skips(self) -> bool:
         """Whether there are enough problems already; if so this one is only counted."""
-        full = len(self.found) >= MOST_PROBLEMS
+        full = len(self.found) >= LIMITS.most_problems
         self.more += full
         return full
 

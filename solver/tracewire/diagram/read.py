@@ -18,6 +18,7 @@ from tracewire.diagram.definitions import (
 )
 from tracewire.diagram.diagram import Diagram, Value
 from tracewire.diagram.files import load
+from tracewire.diagram.limits import LIMITS
 from tracewire.diagram.loops import check_parameters
 from tracewire.diagram.measured import read_measured
 from tracewire.diagram.packages import Packages
@@ -41,14 +42,12 @@ from tracewire.diagram.settings import (
     read_require,
     read_span,
 )
-from tracewire.diagram.sources import MOST_LEVELS, Sources
+from tracewire.diagram.sources import Sources
 from tracewire.diagram.strict import Entries
 from tracewire.diagram.uses import read_blocks
 from tracewire.errors import DiagramError, Place, Problem
 from tracewire.formula import names_of
 from tracewire.library import Block, Library, load_library
-
-MOST_BLOCKS = 100_000
 
 
 def read(path: str | Path, libraries: Iterable[str | Path] = ()) -> Diagram:
@@ -152,9 +151,9 @@ class _Reader:
         diagram = self.with_settings(base, entries, body)
         diagram = replace(diagram, sources=self.sources.others)
         self.finish(diagram, body)
-        if self.sizes[id(diagram)] > MOST_BLOCKS:
+        if self.sizes[id(diagram)] > LIMITS.most_blocks:
             what = f"the diagram has {self.sizes[id(diagram)]} blocks with those of its subsystems"
-            hint = f"At most {MOST_BLOCKS} can be compiled."
+            hint = f"At most {LIMITS.most_blocks} can be compiled."
             self.problems.add(what, Place(str(file)), (), hint)
         return diagram
 
@@ -261,8 +260,8 @@ class _Reader:
             what = f"subsystem '{type_name}' contains itself: {' -> '.join([*chain, type_name])}"
             self.problems.add(what, place, (), "A subsystem cannot be a part of itself.")
             return None
-        if len(self.stack) == MOST_LEVELS:
-            what = f"subsystems stand inside each other more than {MOST_LEVELS} levels deep"
+        if len(self.stack) == LIMITS.most_levels:
+            what = f"subsystems stand inside each other more than {LIMITS.most_levels} levels deep"
             self.problems.add(what, place)
             return None
         choice = self.definitions.choice(definition, line, scope, place)

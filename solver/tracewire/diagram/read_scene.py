@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from tracewire.diagram.body import Body
 from tracewire.diagram.diagram import ScenePart
+from tracewire.diagram.limits import LIMITS
 from tracewire.diagram.problems import clip
 from tracewire.diagram.scene_kinds import COLORS, KINDS
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.diagram.values import read_formula
 from tracewire.formula import ALONG, FUNCTIONS, Call, Expression, Number
 
-MOST_PARTS = 200
 EXAMPLE = "- rod: {from: [0, 0], to: [l*sin(phi), -l*cos(phi)]}"
 NOT_ALONG = FUNCTIONS.keys() - ALONG.keys()
 """Functions that mean nothing for samples alone."""
@@ -22,10 +22,11 @@ def read_scene(node: Node, body: Body) -> tuple[ScenePart, ...]:
         what = "'scene' must be a list of parts"
         body.problems.add(what, body.place(node), (), f"Write it like {EXAMPLE}.")
         return ()
-    if len(node.items) > MOST_PARTS:
-        what = f"the scene has {len(node.items)} parts, and at most {MOST_PARTS} can be drawn"
+    if len(node.items) > LIMITS.most_parts:
+        what = f"the scene has {len(node.items)} parts, "
+        what += f"and at most {LIMITS.most_parts} can be drawn"
         body.problems.add(what, body.place(node), (), "Draw the bodies that move.")
-    parts = (_read_part(item, body) for item in node.items[:MOST_PARTS])
+    parts = (_read_part(item, body) for item in node.items[: LIMITS.most_parts])
     return tuple(part for part in parts if part is not None)
 
 

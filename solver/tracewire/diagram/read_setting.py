@@ -10,6 +10,7 @@ from pathlib import Path
 from tracewire.diagram.body import Body
 from tracewire.diagram.diagram import Diagram, Setting, Value
 from tracewire.diagram.grammar import DIRECTIONS, FIT_METHODS, SETTING
+from tracewire.diagram.limits import LIMITS
 from tracewire.diagram.names import find_parameter, find_state, parameters, states
 from tracewire.diagram.problems import clip
 from tracewire.diagram.quantities import read_above_zero, read_count
@@ -25,8 +26,6 @@ WORDS_OF = {"edge": (), "guard": (), "method": FIT_METHODS, "direction": DIRECTI
 """What the text of a key may be; any text where there are none."""
 EXAMPLE = "{preset: free, set: {k: 2}, until: 10}"
 RANGE = re.compile(r"\s*(\S+?)\s*:\s*(\S+?)\s*:\s*(\d+)\s*")
-MOST_VALUES = 100_000
-MOST_SAMPLES = 1_000_000
 
 
 def read_setting(
@@ -121,8 +120,8 @@ def _refuse_parameters(setting: Setting, body: Body) -> None:
 
 def _samples(node: Node, body: Body) -> int | None:
     count = read_count(node, body, "'samples'")
-    if count is not None and not 2 <= count <= MOST_SAMPLES:
-        what = f"'samples' must be 2 or more, and {MOST_SAMPLES} at most"
+    if count is not None and not 2 <= count <= LIMITS.most_samples:
+        what = f"'samples' must be 2 or more, and {LIMITS.most_samples} at most"
         body.problems.add(what, body.place(node))
     return count
 
@@ -203,7 +202,7 @@ def _read_range(text: str) -> list[float] | None:
     if ranged is None:
         return numbers
     count = int(ranged[3])
-    if not 2 <= count <= MOST_VALUES:
+    if not 2 <= count <= LIMITS.most_values:
         return None
     first, last = numbers
     step = (last - first) / (count - 1)

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 
 from tracewire.diagram.body import Body
 from tracewire.diagram.grammar import ROW
+from tracewire.diagram.limits import LIMITS
 from tracewire.diagram.problems import clip
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.formula import is_name
 
-MOST = 10_000
 NEIGHBOURS = ("previous", "next", "first", "last")
 WORDS = (*NEIGHBOURS, "index")
 WORD = re.compile(rf"(?<![\w.])(?:(?:{'|'.join(NEIGHBOURS)})(?!\w)|index(?![\w.]))", re.ASCII)
@@ -129,11 +129,11 @@ def _count(row: str, line: Entries, numbers: Mapping[str, float], body: Body) ->
     if isinstance(node, Scalar) and node.text in numbers:
         number = numbers[node.text]
     assert node is not None
-    if number is not None and number.is_integer() and 1 <= number <= MOST:
+    if number is not None and number.is_integer() and 1 <= number <= LIMITS.most_copies:
         return int(number)
     shown = clip(node.text) if isinstance(node, Scalar) else "this"
     said = f"{shown} = {number:g}" if number is not None and shown in numbers else shown
-    what = f"the count of a row must be a whole number from 1 to {MOST}, not {said}"
+    what = f"the count of a row must be a whole number from 1 to {LIMITS.most_copies}, not {said}"
     hint = "Write a number, or a parameter of this diagram that has one."
     body.problems.add(what, body.place(node, row), (), hint)
     return None

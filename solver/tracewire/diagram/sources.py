@@ -11,12 +11,12 @@ from tracewire.diagram.derived import with_bases
 from tracewire.diagram.extend import merged, without
 from tracewire.diagram.files import load
 from tracewire.diagram.grammar import INCLUDED, TOP
+from tracewire.diagram.limits import LIMITS
 from tracewire.diagram.packages import Packages
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.strict import Entries, Node, Scalar, compose
 from tracewire.errors import DiagramError, Place
 
-MOST_LEVELS = 30
 BROUGHT = ("parameters", "presets")
 """Sections of an included file that become a part of the diagram."""
 
@@ -106,8 +106,8 @@ class Sources:
             chain = [path.name for path in self.extending[self.extending.index(known) :]]
             what = f"diagrams extend each other: {' -> '.join([*chain, target.name])}"
             raise DiagramError.one(what, place, hint="Move what both need into a third file.")
-        if len(self.extending) > MOST_LEVELS:
-            what = f"diagrams extend each other more than {MOST_LEVELS} levels deep"
+        if len(self.extending) > LIMITS.most_levels:
+            what = f"diagrams extend each other more than {LIMITS.most_levels} levels deep"
             raise DiagramError.one(what, place)
         self.extended.append(target)
         found = self.tree(load(target, place), target)
@@ -170,8 +170,8 @@ class Sources:
             what = f"files include each other: {' -> '.join([*chain, file.name])}"
             self.problems.add(what, place, (), "Move what both need into a file of its own.")
             return None
-        if len(self.including) > MOST_LEVELS:
-            what = f"files include each other more than {MOST_LEVELS} levels deep"
+        if len(self.including) > LIMITS.most_levels:
+            what = f"files include each other more than {LIMITS.most_levels} levels deep"
             self.problems.add(what, place)
             return None
         if known not in self.files:

@@ -18,14 +18,12 @@ from pathlib import Path
 import yaml
 from yaml.reader import Reader
 
+from tracewire.diagram.limits import LIMITS
 from tracewire.diagram.problems import Problems, clip
 from tracewire.errors import DiagramError, Place
 
-MOST_DEPTH = 60
-TOO_DEEP = f"nested deeper than {MOST_DEPTH} levels"
+TOO_DEEP = f"nested deeper than {LIMITS.most_nesting} levels"
 FLATTER = "Use subsystems, or files of them with 'include'."
-MOST_KEY = 100
-MOST_VALUES = 10_000  # of a vector or matrix: 100 x 100 compiles in seconds, 500 x 500 in hours
 NUMBER = re.compile(r"[+-]?(?:(?:0|[1-9]\d*)(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?")
 NOT_FINITE = re.compile(r"([+-]?)\.(inf|nan)", re.IGNORECASE)
 STRANGE_BREAK = re.compile("\r(?!\n)|[\x85\u2028\u2029]")
@@ -206,7 +204,7 @@ class _Composer:
             start, end = self.span(event, event)
             self.put(Scalar(event.value, self.place(event), start, end, event.style or ""))
         elif isinstance(event, yaml.CollectionStartEvent):
-            if len(self.open) == MOST_DEPTH:
+            if len(self.open) == LIMITS.most_nesting:
                 raise self.stopped(TOO_DEEP, event, FLATTER)
             self.open.append(_Open(event))
         else:  # an alias: what it stands for is not read, so the rest would only mislead
@@ -237,9 +235,10 @@ class _Composer:
         frame = self.open[-1]
         frame.nodes.append(node)
         frame.values += values
-        if isinstance(frame.event, yaml.SequenceStartEvent) and frame.values > MOST_VALUES:
+        if isinstance(frame.event, yaml.SequenceStartEvent) and frame.values > LIMITS.most_entries:
             hint = "Put data into a file, with `measured:` or a `table` block; shorten a vector."
-            raise self.stopped(f"this list has more than {MOST_VALUES} values", frame.event, hint)
+            what = f"this list has more than {LIMITS.most_entries} values"
+            raise self.stopped(what, frame.event, hint)
 
     def pairs(self, nodes: list[Node | None]) -> tuple[dict[str, Scalar], dict[str, Node]]:
         keys: dict[str, Scalar] = {}
@@ -317,8 +316,8 @@ class _Composer:
             what = "a key is empty"
         elif key.text == "<<":
             what, hint = "merge keys (<<) are not allowed in a diagram", "Write the entries out."
-        elif len(key.text) > MOST_KEY:
-            what = f"the key '{clip(key.text)}' is longer than {MOST_KEY} characters"
+        elif len(key.text) > LIMITS.longest_key:
+            what = f"the key '{clip(key.text)}' is longer than {LIMITS.longest_key} characters"
         elif key.text in keys:
             first = keys[key.text].place
             what = f"two definitions of '{clip(key.text)}': it stands in line {first.line} already"

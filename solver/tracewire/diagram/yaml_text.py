@@ -6,10 +6,9 @@ import json
 from collections.abc import Mapping
 
 from tracewire.diagram.grammar import INSIDE, TOP
+from tracewire.diagram.limits import LAYOUT
 from tracewire.diagram.strict import NUMBER, Entries, Items, Node, Scalar
 
-WIDTH = 100
-"""The longest line that a mapping in braces may take; a longer one gets a line for each entry."""
 INDICATORS = "-?:,[]{}#&*!|>'\"%@`"
 OPENED = ("parameters", "inputs", "blocks", "subsystems", "presets", "measured", "events", "scene")
 """Sections that have a line for each entry, however short they are."""
@@ -94,7 +93,7 @@ def _entry(begin: str, node: Node, indent: int, is_opened: bool) -> list[str]:
     empty = not (node.items if isinstance(node, Items) else node.keys)
     if isinstance(node, Items) and all(isinstance(item, Scalar) for item in node.items):
         is_opened = False
-    if empty or (len(line) <= WIDTH and not is_opened):
+    if empty or (len(line) <= LAYOUT.width and not is_opened):
         return [line]
     if isinstance(node, Entries):
         return [begin, *_lines(node.values, indent + 2)]
@@ -105,7 +104,7 @@ def _entry(begin: str, node: Node, indent: int, is_opened: bool) -> list[str]:
 def _item(node: Node, indent: int) -> list[str]:
     """The lines of an entry of a list."""
     line = f"{' ' * indent}- {inline(node)}"
-    if len(line) <= WIDTH or not isinstance(node, Entries):
+    if len(line) <= LAYOUT.width or not isinstance(node, Entries):
         return [line]
     first, *others = _lines(node.values, indent + 2)
     return [f"{' ' * indent}- {first.lstrip()}", *others]

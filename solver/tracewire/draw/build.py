@@ -18,8 +18,9 @@ from tracewire.diagram import (
     split_index,
 )
 from tracewire.draw.details import details_of, event_text, input_details, settings_text
-from tracewire.draw.font import SMALL, shortened
+from tracewire.draw.font import shortened
 from tracewire.draw.graph import Connection, Graph, Look, Mark, Node, Plot, Port
+from tracewire.draw.limits import LETTER
 from tracewire.draw.needed import Needed
 from tracewire.draw.numbers import inner_numbers, numbers_of, setting_numbers
 from tracewire.draw.orient import oriented
@@ -37,9 +38,6 @@ UNNAMED = {"sum", "product", "mux", "max", "min", "dot", "and", "or", "xor"}
 """Types whose inputs need no names inside: they are alike, or their order says what they are."""
 NUMBERED = {"select"}
 """Types that tell the wires of one input by their numbers, which stand inside."""
-MOST_PORT_NAME = 90.0  # px
-MOST_NAME = 150.0
-WRITTEN_BELOW = 150.0
 
 
 @dataclass(frozen=True)
@@ -164,7 +162,7 @@ class _Builder:
         where = ".".join(part for part in (definition, use.name) if part)
         node = Node(
             id=full,
-            name=shortened(use.name, MOST_NAME),
+            name=shortened(use.name, LETTER.most_name),
             type=use.type,
             look=Look("box", 0, 0),
             ports=tuple(ports),
@@ -286,7 +284,7 @@ class _Builder:
         unit = shown.unit or source.unit
         if self.options.units and unit:
             parts.append(f"[{unit}]")
-        return shortened(" ".join(parts), MOST_NAME, SMALL)
+        return shortened(" ".join(parts), LETTER.most_name, LETTER.small)
 
 
 def _closed_on(diagram: Diagram, options: DrawOptions) -> Iterator[str]:
@@ -345,7 +343,7 @@ def _knotted(
 
 
 def _short(text: str) -> str:
-    return shortened(text, MOST_PORT_NAME, SMALL)
+    return shortened(text, LETTER.most_port, LETTER.small)
 
 
 def _label_widths(ports: Sequence[Port]) -> tuple[float, float]:

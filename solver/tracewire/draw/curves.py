@@ -7,18 +7,14 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 from tracewire.draw.graph import Line
+from tracewire.draw.limits import CURVE
 from tracewire.errors import FormulaError
 from tracewire.formula import Expression, evaluate, names_of
 from tracewire.library import Block
 
 SCALES = tuple(10.0 ** (n / 3) for n in range(-12, 13))
 """Ranges of the input that are tried, in its unit; the one with the sharpest bend counts, less
-STEEP times the largest step between two samples: a ramp between two limits shall look like one."""
-STEEP = 0.3
-SAMPLES, COARSE = 32, 8  # even numbers: none is at 0, where a friction jumps
-JUMP = 0.6  # of the height of the curve, between two samples: it is drawn upright
-STRAIGHT = 1e-6
-FLAT = 1e-12
+`CURVE.steep` times the largest step between two samples."""
 
 
 def curve_of(
@@ -40,11 +36,11 @@ def curve_of(
         return ()
     best, sharpest = 0.0, -2.0
     for scale in sorted(SCALES, key=lambda scale: abs(math.log10(scale))):
-        coarse = _sampled(formula, along, known, scale, COARSE)
-        bend = _bend([y for _, y in coarse]) - STEEP * _step([y for _, y in coarse])
+        coarse = _sampled(formula, along, known, scale, CURVE.coarse)
+        bend = _bend([y for _, y in coarse]) - CURVE.steep * _step([y for _, y in coarse])
         if bend > sharpest + 0.02:
             best, sharpest = scale, bend
-    return _scaled(_sampled(formula, along, known, best, SAMPLES)) if best else ()
+    return _scaled(_sampled(formula, along, known, best, CURVE.samples)) if best else ()
 
 
 def table_curve(x: Sequence[float], y: Sequence[float]) -> tuple[Line, ...]:
@@ -74,12 +70,12 @@ def _bend(values: Sequence[float]) -> float:
     if len(values) < 3:
         return -1.0
     height = max(values) - min(values)
-    if height <= FLAT * max(1.0, *map(abs, values)):
+    if height <= CURVE.flat * max(1.0, *map(abs, values)):
         return -0.5
     first, last = values[0], values[-1]
     straight = [first + (last - first) * n / (len(values) - 1) for n in range(len(values))]
     most = max(abs(y - s) for y, s in zip(values, straight, strict=True)) / height
-    return most if most > STRAIGHT else 0.0
+    return most if most > CURVE.straight else 0.0
 
 
 def _step(values: Sequence[float]) -> float:
@@ -96,7 +92,7 @@ def _scaled(points: Sequence[tuple[float, float]]) -> tuple[Line, ...]:
     scaled = [(x, y / largest) for x, y in points]
     line = [scaled[0]]
     for (x0, y0), (x1, y1) in pairwise(scaled):
-        if abs(y1 - y0) > JUMP:
+        if abs(y1 - y0) > CURVE.jump:
             middle = 0.5 * (x0 + x1)
             line += [(middle, y0), (middle, y1)]
         line.append((x1, y1))

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from PIL import ImageFont
 
+from tracewire.draw.limits import LETTER
+
 FAMILY = "DejaVu Sans"
-SIZE, SMALL = 11.0, 9.0  # px, of names and of what stands beside ports
-MEASURED_AT = 100  # px
 
 
 @cache
@@ -24,16 +24,17 @@ def font_file() -> Path:
 
 @cache
 def _font() -> ImageFont.FreeTypeFont:
-    return ImageFont.truetype(str(font_file()), MEASURED_AT, layout_engine=ImageFont.Layout.BASIC)
+    basic = ImageFont.Layout.BASIC
+    return ImageFont.truetype(str(font_file()), LETTER.measured_at, layout_engine=basic)
 
 
 @lru_cache(maxsize=10_000)
-def text_width(text: str, size: float = SIZE) -> float:
+def text_width(text: str, size: float = LETTER.size) -> float:
     """The width of a line of text in px."""
-    return float(_font().getlength(text)) * size / MEASURED_AT
+    return float(_font().getlength(text)) * size / LETTER.measured_at
 
 
-def shortened(text: str, most: float, size: float = SIZE) -> str:
+def shortened(text: str, most: float, size: float = LETTER.size) -> str:
     """The text, cut so that it is no wider than `most` px, with an ellipsis where it was cut."""
     text = " ".join(text[:500].split())
     if text_width(text, size) <= most:

@@ -8,14 +8,13 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Any
 
-from tracewire.draw.font import SIZE, SMALL, text_width
+from tracewire.draw.font import text_width
 from tracewire.draw.graph import Connection, Graph, Node, Port
-from tracewire.draw.needed import SIZE as PLOT
+from tracewire.draw.limits import LAYOUT, LETTER, SHAPE
 from tracewire.elk import lay_out
 
 Point = tuple[float, float]
 
-LINE_HEIGHT = 1.3
 OPTIONS = {
     "elk.algorithm": "layered",
     "elk.direction": "RIGHT",
@@ -45,14 +44,6 @@ COMPACT = {
 }
 """Half as high, with straighter lines and nearer to the order of the file; it takes a time
 that grows with the square of the wires."""
-MOST_COMPACT = 70
-"""Wires up to which a picture is compact; 70 take half a second."""
-
-
-ENOUGH_KEPT = 0.9
-"""The share of pairs of blocks in their order of which a picture is like another one."""
-LEVEL = 20.0
-"""Px within which two blocks stand level."""
 
 
 @dataclass(frozen=True)
@@ -90,14 +81,14 @@ def layout_of(graph: Graph, like: Layout | None = None) -> Layout:
     bottom. Feedback shall stand below: where it does not, a picture that is like no other is laid
     out upside down, too.
     """
-    few = sum(1 for _ in all_wires(graph)) <= MOST_COMPACT
+    few = sum(1 for _ in all_wires(graph)) <= LAYOUT.most_compact
     if like is None:
         return _own(graph, few)
     root = _root(graph, few, upside_down=False)
     _keep_order(root, like, {node.id for node in all_nodes(graph) if node.flipped})
     asked = _read(lay_out(root), graph)
     kept = _order_kept(asked, like)
-    if few and kept < ENOUGH_KEPT:  # the order that was asked for may turn feedback upwards
+    if few and kept < LAYOUT.enough_kept:  # the order that was asked for may turn feedback upwards
         own = _own(graph, few)
         if _order_kept(own, like) > kept:
             return own
@@ -125,7 +116,7 @@ def _order_kept(layout: Layout, like: Layout) -> float:
         (before[one] - before[other], now[one] - now[other])
         for one, other in combinations([id for id in before if id in now], 2)
     ]
-    apart = [(old, new) for old, new in pairs if abs(old) > LEVEL]
+    apart = [(old, new) for old, new in pairs if abs(old) > LAYOUT.level]
     return sum(old * new > 0 for old, new in apart) / len(apart) if apart else 1.0
 
 
@@ -196,16 +187,16 @@ def _labels(wires: Sequence[Connection]) -> dict[str, str]:
 
 
 def _label(text: str, size: float) -> dict[str, Any]:
-    return {"text": text, "width": text_width(text, size), "height": size * LINE_HEIGHT}
+    return {"text": text, "width": text_width(text, size), "height": size * LETTER.line_height}
 
 
 def _below(node: Node) -> list[dict[str, Any]]:
     """What stands below a block: its name, and its plot with the words of that."""
-    name = _label(node.name, SIZE)
+    name = _label(node.name, LETTER.size)
     if node.plot is None:
         return [name] if node.name else []
-    words = _label(node.plot.words, SMALL)
-    wide, high = PLOT
+    words = _label(node.plot.words, LETTER.small)
+    wide, high = SHAPE.plot
     width = max(name["width"], words["width"], wide)
     return [{"text": node.name, "width": width, "height": name["height"] + high + words["height"]}]
 
@@ -255,7 +246,7 @@ def _port(
         },
     }
     if port.id in labels:
-        found["labels"] = [_label(labels[port.id], SMALL)]
+        found["labels"] = [_label(labels[port.id], LETTER.small)]
     return found
 
 

@@ -7,9 +7,6 @@ from dataclasses import dataclass
 
 from tracewire.draw.graph import Line, Plot
 
-SIZE = (104.0, 60.0)
-"""Of the plot, in px."""
-
 
 @dataclass(frozen=True)
 class Needed:

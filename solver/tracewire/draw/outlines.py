@@ -7,9 +7,7 @@ from collections.abc import Sequence
 
 from tracewire.draw.graph import Outline
 from tracewire.draw.layout import Point, Rectangle
-
-HEAD = (7.0, 3.2)  # px, length and half width of an arrow head
-CORNER, TIP = 3.0, 10.0
+from tracewire.draw.limits import SHAPE
 
 
 def number(value: float) -> str:
@@ -29,9 +27,9 @@ def outline(kind: Outline, place: Rectangle, flipped: bool) -> str:
         tip, base = (x, x + w) if flipped else (x + w, x)
         return path([(base, y), (tip, y + h / 2), (base, y + h)]) + "Z"
     if kind == "tag":
-        tip = x + w - TIP
+        tip = x + w - SHAPE.tip
         return path([(x, y), (tip, y), (x + w, y + h / 2), (tip, y + h), (x, y + h)]) + "Z"
-    corner = {"circle": w / 2, "pill": w / 2, "bar": 1.0}.get(kind, CORNER)
+    corner = {"circle": w / 2, "pill": w / 2, "bar": 1.0}.get(kind, SHAPE.corner)
     return _rounded(place, corner)
 
 
@@ -65,7 +63,7 @@ def arrow(line: Sequence[Point]) -> str:
     length = math.hypot(x1 - x0, y1 - y0)
     if length < 1.0:
         return ""
-    long, wide = min(HEAD[0], length), HEAD[1]
+    long, wide = min(SHAPE.arrow_head[0], length), SHAPE.arrow_head[1]
     dx, dy = (x1 - x0) / length, (y1 - y0) / length
     bx, by = x1 - long * dx, y1 - long * dy
     head = [(x1, y1), (bx - wide * dy, by + wide * dx), (bx + wide * dy, by - wide * dx)]

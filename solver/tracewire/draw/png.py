@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from tracewire.draw.font import FAMILY, font_file
-
-ZOOM = 2.0
-MOST_PIXELS = 16_000  # of the longer side
+from tracewire.draw.limits import SHAPE
 
 
 def png_of(svg: str, longest: float) -> bytes:
@@ -16,7 +14,7 @@ def png_of(svg: str, longest: float) -> bytes:
         resvg_py.svg_to_bytes(
             svg_string=svg,
             background="#ffffff",
-            zoom=min(ZOOM, MOST_PIXELS / longest),
+            zoom=min(SHAPE.zoom, SHAPE.most_pixels / longest),
             skip_system_fonts=True,
             font_files=[str(font_file())],
             font_family=FAMILY,

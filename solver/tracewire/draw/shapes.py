@@ -7,18 +7,11 @@ from dataclasses import dataclass
 
 from tracewire.draw import icons
 from tracewire.draw.curves import curve_of, table_curve
-from tracewire.draw.font import SIZE, SMALL, shortened, text_width
+from tracewire.draw.font import shortened, text_width
 from tracewire.draw.fractions import items_of, polynomial, raised, times
 from tracewire.draw.graph import Line, Look
+from tracewire.draw.limits import LETTER, SHAPE
 from tracewire.library import Block
-
-PITCH = 18.0  # px between ports
-BOX = (44.0, 40.0)  # px, the least width and height
-MOST_TEXT = 190.0  # px
-MOST_LINE = 110.0  # px of a title in one line
-MOST_GAIN = 74.0
-LINE = 14.0
-AXES = 46.0  # px, the side of a box with a curve
 
 
 @dataclass(frozen=True)
@@ -49,14 +42,14 @@ def shape_of(drawn: Drawn) -> Look:
     curve = table_curve(*drawn.points)
     curve = curve or curve_of(drawn.block, drawn.numbers, _moving(drawn.block))
     if curve:
-        return Look("box", AXES, max(AXES - 6, _height(drawn)), curve=curve, axes=True)
+        return Look("box", SHAPE.axes, max(SHAPE.axes - 6, _height(drawn)), curve=curve, axes=True)
     return text_box(drawn.type.replace("_", " "), drawn)
 
 
 def text_box(text: str, drawn: Drawn) -> Look:
     """A box with one line of text."""
-    line = shortened(text, MOST_TEXT)
-    width = max(BOX[0], text_width(line) + 16)
+    line = shortened(text, LETTER.most_text)
+    width = max(SHAPE.box[0], text_width(line) + 16)
     return Look("box", round(width), _height(drawn), lines=(line,))
 
 
@@ -67,22 +60,23 @@ def _moving(block: Block) -> str | None:
 
 
 def _height(drawn: Drawn) -> float:
-    return max(BOX[1], PITCH * drawn.ports + 6)
+    return max(SHAPE.box[1], SHAPE.pitch * drawn.ports + 6)
 
 
 def _gain(drawn: Drawn) -> Look:
     if drawn.ports > 1:  # the formulas of a matrix may read signals
         return text_box(drawn.settings.get("matrix", "k"), drawn)
-    text = shortened(drawn.settings.get("k") or drawn.settings.get("matrix", "k"), MOST_GAIN, SIZE)
+    gain = drawn.settings.get("k") or drawn.settings.get("matrix", "k")
+    text = shortened(gain, LETTER.most_gain, LETTER.size)
     return Look("triangle", round(max(46.0, text_width(text) / 0.62 + 10)), 40.0, lines=(text,))
 
 
 def _fraction(above: str, below: str, drawn: Drawn, short: tuple[str, str] = ("", "")) -> Look:
     """A fraction; `short` is written where it would be too wide."""
     lines = (above, below)
-    if any(text_width(line) > MOST_TEXT for line in lines) and all(short):
+    if any(text_width(line) > LETTER.most_text for line in lines) and all(short):
         lines = short
-    lines = (shortened(lines[0], MOST_TEXT), shortened(lines[1], MOST_TEXT))
+    lines = (shortened(lines[0], LETTER.most_text), shortened(lines[1], LETTER.most_text))
     width = max(40.0, *(text_width(line) + 16 for line in lines))
     return Look("box", round(width), _height(drawn), lines=lines, fraction=True)
 
@@ -142,14 +136,14 @@ def lines_box(*lines: str) -> Shape:
     """A box with lines of text."""
     width = round(max(map(text_width, lines)) + 16)
     return lambda drawn: Look(
-        "box", width, max(_height(drawn), LINE * len(lines) + 12), lines=lines
+        "box", width, max(_height(drawn), SHAPE.line * len(lines) + 12), lines=lines
     )
 
 
 def _sum(drawn: Drawn) -> Look:
     if drawn.ports <= 3:
         return Look("circle", 34.0 if drawn.ports < 3 else 44.0, 34.0 if drawn.ports < 3 else 44.0)
-    return Look("pill", 34.0, PITCH * drawn.ports + 10)
+    return Look("pill", 34.0, SHAPE.pitch * drawn.ports + 10)
 
 
 def _operation(sign: str) -> Shape:
@@ -168,18 +162,19 @@ def _setting(name: str) -> Shape:
 
 
 def _bar(drawn: Drawn) -> Look:
-    return Look("bar", 8.0, max(BOX[1], PITCH * drawn.ports + 6))
+    return Look("bar", 8.0, max(SHAPE.box[1], SHAPE.pitch * drawn.ports + 6))
 
 
 def _icon(*lines: Line, axes: bool = True) -> Shape:
-    return lambda drawn: Look("box", AXES, max(AXES - 6, _height(drawn)), curve=lines, axes=axes)
+    side = SHAPE.axes
+    return lambda drawn: Look("box", side, max(side - 6, _height(drawn)), curve=lines, axes=axes)
 
 
 def _machine(*lines: Line) -> Shape:
     """An icon in a square, where circles are round."""
 
     def shape(drawn: Drawn) -> Look:
-        side = max(AXES - 6, _height(drawn))
+        side = max(SHAPE.axes - 6, _height(drawn))
         return Look("box", side, side, curve=lines)
 
     return shape
@@ -315,15 +310,16 @@ def subsystem_look(
 
     The title of an open one is one line above what is inside.
     """
-    lines = tuple(shortened(line, MOST_TEXT) for line in (_in_two(title) if closed else (title,)))
+    titles = _in_two(title) if closed else (title,)
+    lines = tuple(shortened(line, LETTER.most_text) for line in titles)
     width = max(64.0, max(text_width(line) for line in lines) + 20 + sum(labels))
-    return Look("box", round(width), max(46.0, PITCH * ports + 10), lines=lines)
+    return Look("box", round(width), max(46.0, SHAPE.pitch * ports + 10), lines=lines)
 
 
 def _in_two(title: str) -> tuple[str, ...]:
     """A title as one line, or as two of about one width where it is a long one of several words."""
     words = title.split()
-    if text_width(title) <= MOST_LINE or len(words) < 2:
+    if text_width(title) <= LETTER.most_line or len(words) < 2:
         return (title,)
     ways = [(" ".join(words[:n]), " ".join(words[n:])) for n in range(1, len(words))]
     return min(ways, key=lambda way: max(text_width(line) for line in way))
@@ -331,10 +327,10 @@ def _in_two(title: str) -> tuple[str, ...]:
 
 def tag_look(name: str) -> Look:
     """An input of the diagram: a tag with its name."""
-    return Look("tag", round(max(34.0, text_width(shortened(name, MOST_TEXT)) + 22)), 24.0,
-                lines=(shortened(name, MOST_TEXT),))  # fmt: skip
+    return Look("tag", round(max(34.0, text_width(shortened(name, LETTER.most_text)) + 22)), 24.0,
+                lines=(shortened(name, LETTER.most_text),))  # fmt: skip
 
 
 def port_width(text: str) -> float:
     """The width that the text beside a port takes inside of a block."""
-    return text_width(text, SMALL) + 6 if text else 0.0
+    return text_width(text, LETTER.small) + 6 if text else 0.0

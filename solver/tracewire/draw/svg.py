@@ -5,17 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from html import escape
 
-from tracewire.draw.font import FAMILY, SIZE, SMALL, shortened, text_width
+from tracewire.draw.font import FAMILY, shortened, text_width
 from tracewire.draw.graph import Connection, Graph, Node, Plot
-from tracewire.draw.layout import LINE_HEIGHT, Layout, Point, Rectangle, all_nodes, all_wires
-from tracewire.draw.needed import SIZE as PLOT
+from tracewire.draw.layout import Layout, Point, Rectangle, all_nodes, all_wires
+from tracewire.draw.limits import LETTER, SHAPE
 from tracewire.draw.outlines import arrow, number, outline, path, rim
 
-MARGIN = 6.0
-NOTE_LINE = 16.0
-TITLE = 13.0
-LEAST_WIDTH = 160.0
-MOST_NOTE = 900.0
 COLOURS = {
     "": ("#ffffff", "#3b4a5a"),
     "frame": ("#f6f8fa", "#9aa7b4"),
@@ -28,9 +23,10 @@ COLOURS = {
 }
 """The fill and the line of each kind of block."""
 STYLE = f"""
-.tracewire text{{font-family:"{FAMILY}",Verdana,sans-serif;font-size:{SIZE:g}px;fill:#1f2933}}
-.tracewire .small{{font-size:{SMALL:g}px;fill:#52606d}}
-.tracewire .title{{font-size:{TITLE:g}px}}
+.tracewire text{{font-family:"{FAMILY}",Verdana,sans-serif;\
+font-size:{LETTER.size:g}px;fill:#1f2933}}
+.tracewire .small{{font-size:{LETTER.small:g}px;fill:#52606d}}
+.tracewire .title{{font-size:{LETTER.title:g}px}}
 .tracewire .wire path{{fill:none;stroke:#3b4a5a;stroke-width:1.1}}
 .tracewire .wire .head{{fill:#3b4a5a;stroke:none}}
 .tracewire .wire.effect path{{stroke:#1a7f37}}
@@ -55,15 +51,15 @@ def svg_of(graph: Graph, layout: Layout) -> str:
     """The picture as a text of SVG; every text of the diagram is escaped in it."""
     notes = [("small", f"⚡ {note}") for note in graph.notes]
     notes += [("small mistake", f"✗ {mistake}") for mistake in graph.mistakes]
-    width = max(layout.width, LEAST_WIDTH, *(_note_width(text) for _, text in notes), 0)
-    height = layout.height + NOTE_LINE * len(notes) + (6 if notes else 0)
-    box = f"0 0 {number(width + 2 * MARGIN)} {number(height + 2 * MARGIN)}"
+    width = max(layout.width, SHAPE.least_width, *(_note_width(text) for _, text in notes), 0)
+    height = layout.height + SHAPE.note_line * len(notes) + (6 if notes else 0)
+    box = f"0 0 {number(width + 2 * SHAPE.margin)} {number(height + 2 * SHAPE.margin)}"
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" class="tracewire" viewBox="{box}" '
-        f'width="{number(width + 2 * MARGIN)}" height="{number(height + 2 * MARGIN)}">',
+        f'width="{number(width + 2 * SHAPE.margin)}" height="{number(height + 2 * SHAPE.margin)}">',
         f"<title>{_text(graph.title)}</title>",
         f"<style>{STYLE}</style>",
-        f'<g transform="translate({number(MARGIN)} {number(MARGIN)})">',
+        f'<g transform="translate({number(SHAPE.margin)} {number(SHAPE.margin)})">',
     ]
     frames = [node for node in all_nodes(graph) if node.nodes]
     lines += [line for node in frames for line in _block(node, layout)]
@@ -76,15 +72,15 @@ def svg_of(graph: Graph, layout: Layout) -> str:
     ]
     lines += [line for node in all_nodes(graph) if not node.nodes for line in _block(node, layout)]
     for text, place in layout.labels.values():
-        lines.append(_write(text, place.x, place.y + SMALL, "small"))
+        lines.append(_write(text, place.x, place.y + LETTER.small, "small"))
     for row, (kind, text) in enumerate(notes):
-        y = layout.height + NOTE_LINE * (row + 1)
-        lines.append(_write(shortened(text, MOST_NOTE, SMALL), 12, y, kind))
+        y = layout.height + SHAPE.note_line * (row + 1)
+        lines.append(_write(shortened(text, LETTER.most_note, LETTER.small), 12, y, kind))
     return "\n".join([*lines, "</g>", "</svg>"]) + "\n"
 
 
 def _note_width(text: str) -> float:
-    return min(text_width(text, SMALL), MOST_NOTE) + 24
+    return min(text_width(text, LETTER.small), LETTER.most_note) + 24
 
 
 def _text(text: str) -> str:
@@ -149,7 +145,7 @@ def _block(node: Node, layout: Layout) -> Iterator[str]:
     if node.id in layout.names:
         name = layout.names[node.id]
         kind = "measured" if node.measured else ""
-        yield _write(node.name, name.x + name.width / 2, name.y + SIZE, kind, "middle")
+        yield _write(node.name, name.x + name.width / 2, name.y + LETTER.size, kind, "middle")
         if node.plot is not None:
             yield from _plot(node.plot, node.mark, name)
     if node.has_event:
@@ -161,8 +157,8 @@ def _block(node: Node, layout: Layout) -> Iterator[str]:
 
 def _plot(plot: Plot, mark: str, below: Rectangle) -> Iterator[str]:
     """The plot of what is needed, and its words, at the foot of what stands below a block."""
-    wide, high = PLOT
-    x, y = below.x + below.width / 2, below.y + SIZE * LINE_HEIGHT + high / 2
+    wide, high = SHAPE.plot
+    x, y = below.x + below.width / 2, below.y + LETTER.size * LETTER.line_height + high / 2
     half = (wide / 2 - 4, high / 2 - 5)
     yield f'<path class="axis" d="{path([(x - wide / 2, y), (x + wide / 2, y)])}"/>'
     if plot.zero is not None:

@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 from tracewire.errors import OptionError, Place, Problem
 from tracewire.files import write_file, writing
+from tracewire.fit.limits import SEARCH
 from tracewire.fit.search import Search
 from tracewire.residual import Criterion
 
 Vector = NDArray[np.float64]
-EVERY = 2.0
 KIND = "a fit of tracewire"
 KEYS = ("method", "seed", "names", "best", "state", "evaluations", "iterations", "history")
 
@@ -40,7 +40,7 @@ class Store:
         became full, the search goes on, and `remarks` says so.
         """
         now = time.perf_counter()
-        if not last and now - self.written < EVERY:
+        if not last and now - self.written < SEARCH.keep_every:
             return
         self.written = now
         content = {

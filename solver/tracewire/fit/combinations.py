@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.fit.identify import PART, TRACE, FlatDirection, ParameterColumns
+from tracewire.fit.identify import FlatDirection, ParameterColumns
+from tracewire.fit.limits import UNCERTAINTY
 
 Vector = NDArray[np.float64]
 
@@ -84,7 +85,7 @@ def _members(flats: Sequence[FlatDirection], missing: set[int]) -> list[int]:
 def _taking_part(flat: FlatDirection) -> list[int]:
     """The parameters of a direction: those that cancel in an exact one, or change much."""
     shares = np.abs(flat.changes) / np.abs(flat.changes).max()
-    takes = flat.effects > TRACE if flat.exact else shares > PART
+    takes = flat.effects > UNCERTAINTY.trace if flat.exact else shares > UNCERTAINTY.part
     takes[flat.fixed] = True
     return [int(j) for j in np.flatnonzero(takes)]
 
@@ -125,7 +126,7 @@ def _sentence(flats: Sequence[FlatDirection], missing: set[int], columns: Parame
 
 
 def _alone(flat: FlatDirection, columns: ParameterColumns) -> str:
-    many = np.flatnonzero(flat.effects > PART).tolist()
+    many = np.flatnonzero(flat.effects > UNCERTAINTY.part).tolist()
     others = [columns.names[j] for j in many if j != flat.fixed]
     name, together = columns.names[flat.fixed], " together" if len(others) > 1 else ""
     return (
@@ -245,7 +246,7 @@ def _changes(flat: FlatDirection, columns: ParameterColumns) -> str:
     units = np.where(columns.values, columns.values, columns.sizes)
     relative = flat.changes * columns.sizes / units
     relative *= 10.0 / np.abs(relative).max() * (1.0 if relative[flat.fixed] > 0 else -1.0)
-    kept = np.flatnonzero((np.abs(relative) > 0.5) | (flat.effects > PART)).tolist()
+    kept = np.flatnonzero((np.abs(relative) > 0.5) | (flat.effects > UNCERTAINTY.part)).tolist()
     parts = []
     for j in sorted(kept, key=lambda j: (j != flat.fixed, j)):
         if columns.values[j] == 0:

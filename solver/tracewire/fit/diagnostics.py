@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.special import chdtrc, ndtr, ndtri
 
 from tracewire.errors import FormulaError, SimulationError
+from tracewire.fit.limits import DIAGNOSIS
 from tracewire.fit.result import Comparison, Fit
 from tracewire.formula import Expression, evaluate, names_of
 from tracewire.residual import (
@@ -25,18 +26,6 @@ from tracewire.residual import (
 from tracewire.solve import parameter_values, values_at
 
 Vector = NDArray[np.float64]
-
-AT_NOISE = 1.3**0.5
-"""Times the noise up to which a residual is at it: the noise itself is known to 8 % or so."""
-DOUBT = 0.01
-"""Probability below which chance is no explanation."""
-NOTABLE = 0.1
-"""Autocorrelation that matters; less may be significant in long records and is not important."""
-FAR = 4.0
-"""Robust standard deviations from which a sample is an outlier; chance has 6 in 100 000."""
-LEAST = 10
-LAGS, COMPONENTS = 20, 6
-"""So many last samples of a drive, and combinations of these, may show in a residual."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +69,8 @@ class Diagnosis:
     @property
     def is_white(self) -> bool:
         """Whether no correlation in time is seen that would matter."""
-        return self.whiteness >= DOUBT or bool(np.abs(self.correlation[1:]).max() < NOTABLE)
+        largest = np.abs(self.correlation[1:]).max()
+        return self.whiteness >= DIAGNOSIS.doubt or bool(largest < DIAGNOSIS.notable)
 
 
 def diagnose(fit: Fit) -> tuple[Diagnosis, ...]:
@@ -93,7 +83,7 @@ def diagnose(fit: Fit) -> tuple[Diagnosis, ...]:
     return tuple(
         _diagnosis(fit, one, series[one.series], driven[one.series].get(one.signal))
         for one in fit.comparisons
-        if np.count_nonzero(_counted(one)) >= LEAST
+        if np.count_nonzero(_counted(one)) >= DIAGNOSIS.fewest_samples
     )
 
 
@@ -126,7 +116,7 @@ def sign_change_probability(residual: Vector) -> float:
     above, below = float(np.sum(signs)), float(np.sum(~signs))
     both = 2 * above * below
     if both == 0:
-        return 0.0 if len(signs) > LEAST else 1.0
+        return 0.0 if len(signs) > DIAGNOSIS.fewest_samples else 1.0
     count = above + below
     variance = both * (both - count) / (count**2 * (count - 1))
     runs = 1 + np.count_nonzero(signs[1:] != signs[:-1])
@@ -148,7 +138,7 @@ def independence(residual: Vector, other: Vector, lags: int) -> float:
     if squares[-1] <= 1e-20 * lags * float(other @ other):
         return 1.0
     strong = squares > 0.01 * squares[-1]
-    strong[:-COMPONENTS] = False
+    strong[: -DIAGNOSIS.components] = False
     basis = past @ components[:, strong] / np.sqrt(squares[strong])
     follows = basis.T @ x
     left = x - basis @ follows
@@ -225,7 +215,7 @@ def _diagnosis(
     others = _drives(fit, measured, t)
     others[comparison.signal] = comparison.after[rows]
     spread = 1.4826 * float(np.median(np.abs(residual - np.median(residual))))
-    far = np.abs(residual - np.median(residual)) > FAR * spread
+    far = np.abs(residual - np.median(residual)) > DIAGNOSIS.far * spread
     estimate = estimate_noise([measured])[comparison.signal]
     found = Diagnosis(
         series=comparison.series,
@@ -244,7 +234,7 @@ def _diagnosis(
         whiteness=ljung_box(correlation, count),
         sign_changes=sign_change_probability(residual),
         independence={
-            n: independence(residual, x, min(LAGS, count // 5)) for n, x in others.items()
+            n: independence(residual, x, min(DIAGNOSIS.lags, count // 5)) for n, x in others.items()
         },
         outliers=float(np.mean(far)) if spread > 0 else 0.0,
         words="",
@@ -262,22 +252,22 @@ def _memory(residual: Vector) -> int:
 
 
 def _with_words(found: Diagnosis, measured: Measured) -> Diagnosis:
-    noise, limit = found.noise, AT_NOISE * found.noise
+    noise, limit = found.noise, DIAGNOSIS.at_noise * found.noise
     source = "declared noise" if found.declared else "noise"
     if found.driven is not None:
         noise = float(np.hypot(found.noise, found.driven.size))
-        limit = max(AT_NOISE * noise, float(np.hypot(found.noise, found.driven.high)))
+        limit = max(DIAGNOSIS.at_noise * noise, float(np.hypot(found.noise, found.driven.high)))
         source += " of sensor and inputs"
     times = found.size / noise
     estimate = found.estimate
     doubtful = estimate is not None and not estimate.is_sure
     over = f"correlated over {found.memory:.2g} s"
-    of_inputs = found.driven is not None and AT_NOISE * found.noise < found.size <= limit
+    of_inputs = found.driven is not None and DIAGNOSIS.at_noise * found.noise < found.size <= limit
     if of_inputs:
         names = " and ".join(f"'{name}'" for name in measured.input_sigma)
         words = f"at the noise of the measured input {names}, which explains it; "
         words += f"without that, the residual is {found.size / found.noise:.2g} times the noise"
-    elif estimate and doubtful and limit < found.size <= AT_NOISE * estimate.high:
+    elif estimate and doubtful and limit < found.size <= DIAGNOSIS.at_noise * estimate.high:
         words = (
             f"the residual is {times:.2g} times the noise, which may be as large as that: it is "
         )
@@ -300,10 +290,11 @@ def _with_words(found: Diagnosis, measured: Measured) -> Diagnosis:
     depends = [
         name
         for name, p in found.independence.items()
-        if p < DOUBT and name != found.signal and name not in known
+        if p < DIAGNOSIS.doubt and name != found.signal and name not in known
     ]
     if depends:
         words += f"; it depends on {' and '.join(depends)}, which drives the model"
     if found.outliers > 0.005:
-        words += f"; {100 * found.outliers:.2g} % are outliers, beyond {FAR:g} standard deviations"
+        share = f"{100 * found.outliers:.2g} %"
+        words += f"; {share} are outliers, beyond {DIAGNOSIS.far:g} standard deviations"
     return replace(found, words=words)

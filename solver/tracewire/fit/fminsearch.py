@@ -36,10 +36,7 @@ from tracewire.options import options_of
 Vector = NDArray[np.float64]
 
 REFLECTION, EXPANSION, CONTRACTION, SHRINKAGE = 1.0, 2.0, 0.5, 0.5  # ρ, χ, γ, σ
-RELATIVE_EDGE, ZERO_EDGE = (
-    0.05,
-    0.0075,
-)  # Pfeffer: each coordinate + 5 %, or 0.0075 where it is zero
+RELATIVE_EDGE, ZERO_EDGE = 0.05, 0.0075  # Pfeffer: each coordinate + 5 %; where it is 0, so much
 
 CONVERGED, LIMIT, STOPPED = 1, 0, -1
 

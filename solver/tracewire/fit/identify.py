@@ -8,18 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.fit.limits import UNCERTAINTY
+
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-
-LOOSE = 0.5
-"""Relative standard error from which two of them reach the value itself: 100 %."""
-COLLINEAR = 100.0
-"""Brun's collinearity index from which the others stand in for a parameter. Brun calls 10 to 20
-critical; NIST certifies errors at 50 (Nelson), and 500 is what a product of parameters has."""
-PART = 0.1
-"""Share of a direction from which a parameter takes part in it."""
-TRACE = 1e-3
-"""The same where the direction is exactly flat: less is within the derivatives' error."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,17 +119,17 @@ def flat_directions(
         if is_exact:
             null = np.linalg.qr((directions[singular < response.accuracy] / lengths).T)[0]
             part = np.linalg.norm(null, axis=1)
-            weak = part > PART
+            weak = part > UNCERTAINTY.part
         else:
             inflation = np.linalg.norm(directions.T / singular, axis=1)
             covariance = response.covariance(left)
             errors = np.sqrt(np.diag(covariance))
-            weak = (errors > LOOSE) & (inflation > COLLINEAR)
+            weak = (errors > UNCERTAINTY.loose) & (inflation > UNCERTAINTY.collinear)
             if not weak.any():
                 break
             worst = int(np.argmax(np.where(weak, errors, 0.0)))
             part = np.abs(covariance[worst]) / np.linalg.norm(covariance[worst])
-            weak &= (part > PART) | (np.arange(len(left)) == worst)
+            weak &= (part > UNCERTAINTY.part) | (np.arange(len(left)) == worst)
         missing |= {left[j] for j in np.flatnonzero(weak)}
         first = weak & (np.array(left) < preferred)
         share = np.where(first if first.any() else weak, part / values[left], 0.0)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.errors import FitError, OptionError, Problem, unknown
+from tracewire.fit.limits import PROFILE
 from tracewire.fit.result import Fit
 from tracewire.fit.uncertainty import criterion_unit
 from tracewire.residual import Criterion, Unknown, solve_least_squares, whole_segment
@@ -17,14 +18,6 @@ from tracewire.result import Result
 
 Vector = NDArray[np.float64]
 
-FIRST, GROWTH = 0.6, 1.4
-"""The first step in standard errors, and how much longer each next one is."""
-BEYOND = 1.5
-"""Times the level at which a side has been followed far enough."""
-FINER = 3
-"""How many more values may be tried where a step has gone far beyond the level."""
-FELL = 1.0
-"""How much lower -2 log likelihood must be elsewhere before a fit counts as not converged."""
 
 Step = tuple[float, float, NDArray[np.float64]]
 """A value, the rise there, and the other scaled unknowns."""
@@ -80,7 +73,7 @@ def profile(
         raise OptionError([Problem(what, hint="Give a span in SI with the fitted value inside.")])
     held = _Held(fit, name, steps)
     level = fit.uncertainty.quantile**2
-    step = FIRST * held.error
+    step = PROFILE.first * held.error
     sides = [
         held.follow(best, sign * step, end, points, level)
         for sign, end in ((-1.0, low), (1.0, high))
@@ -97,7 +90,7 @@ def profile(
     others = np.array([held.others(z) for _, _, z in found])
     names = [unknown.name for unknown in held.unknowns]
     words = _words(name, values, ends, (low, high))
-    if fell > FELL:
+    if fell > PROFILE.fell:
         words += f"; a better fit was found at {values[middle]:.5g}: the fit had not converged"
     return Profile(name, values, rise, dict(zip(names, others.T, strict=True)), ends, level, words)
 
@@ -157,12 +150,14 @@ class _Held:
         """Values to one side: beyond the level, and close to where it is passed."""
         found = [(best, 0.0, self.begin)]
         size = abs(step)
-        while len(found) <= points and found[-1][0] != end and found[-1][1] < BEYOND * level:
+        while (
+            len(found) <= points and found[-1][0] != end and found[-1][1] < PROFILE.beyond * level
+        ):
             ahead = found[-1][0] + math.copysign(size, step)
             ahead = max(ahead, end) if step < 0 else min(ahead, end)
             found.append(self.at(ahead, found[-1][2]))
-            size *= GROWTH
-        for _ in range(FINER):
+            size *= PROFILE.growth
+        for _ in range(PROFILE.finer):
             n = next((n for n, (_, rise, _) in enumerate(found) if rise > level), 0)
             values = np.array([value for value, _, _ in found])
             rise = np.array([rise for _, rise, _ in found])

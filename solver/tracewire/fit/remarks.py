@@ -8,17 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
+from tracewire.fit.limits import DIAGNOSIS
 from tracewire.fit.result import Comparison
 from tracewire.fit.uncertainty import Uncertainty
 from tracewire.residual import Criterion, Measured
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-ELSEWHERE = 0.2
-"""Of the range of a measured state: a first sample so far from the run's is another start."""
-PROMISED = 0.9
-"""The part of the residual that a Gauss-Newton step promises to leave, below which a search has
-ended before a minimum."""
 
 
 def unfinished(
@@ -38,7 +34,7 @@ def unfinished(
         if (error := uncertainty.errors[name]) > 0 and abs(move) > error
     }
     promised = np.linalg.norm(vector + matrix @ step) / max(float(np.linalg.norm(vector)), 1e-300)
-    if not far and promised < PROMISED:
+    if not far and promised < DIAGNOSIS.promised:
         return [
             "the search ended before a minimum: the slope there promises to lower the residual to "
             f"{promised:.2g} of it; go on with --method least_squares"
@@ -62,7 +58,7 @@ def starts_elsewhere(
         if c.series not in without or c.signal not in model.states:
             continue
         measured, simulated = float(c.measured[0]), float(c.after[0])
-        if abs(measured - simulated) > ELSEWHERE * float(np.ptp(c.measured)):
+        if abs(measured - simulated) > DIAGNOSIS.elsewhere * float(np.ptp(c.measured)):
             found.append(
                 f"{c.series}: {c.signal} begins at {measured:.4g}, and the run is at "
                 f"{simulated:.4g} there (SI): where that is another start, say "

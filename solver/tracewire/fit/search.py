@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.fit.limits import SEARCH
 from tracewire.fit.optimset import OptimValues, Options
 from tracewire.fit.result import Comparison, Improvement
 from tracewire.residual import Criterion, half_square
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-REPORT_EVERY = 0.1
 
 
 @dataclass(frozen=True)
@@ -151,7 +151,7 @@ class Search:
             named, _ = self.criterion.unpack(z)
             self.history.append(Improvement(self.criterion.evaluations, value, named))
         now = time.perf_counter()
-        if now - self._told > REPORT_EVERY:
+        if now - self._told > SEARCH.report_every:
             self._told = now
             self._save(last=False)
             if self._progress is not None:

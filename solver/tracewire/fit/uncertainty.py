@@ -11,6 +11,7 @@ from scipy.special import stdtrit
 
 from tracewire.fit.combinations import Direction, describe_directions, followers
 from tracewire.fit.identify import LinearResponse, ParameterColumns, flat_directions
+from tracewire.fit.limits import UNCERTAINTY
 from tracewire.residual import (
     LOSSES,
     Criterion,
@@ -23,13 +24,6 @@ from tracewire.residual import (
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-
-AT_BOUND = 1e-6
-"""Part of the width between bounds within which a value sits on one."""
-FAR = 3.0
-"""In sigma: beyond it a robust loss takes a residual for an outlier."""
-UNMOVED = 10.0
-"""Relative standard error of a parameter, all others known, from which the data do not move it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,7 +141,9 @@ def _lost(criterion: Criterion, residuals: Sequence[Matrix]) -> list[str]:
     return [
         f"{signal} in {segment.measured.name}"
         for segment, r in zip(criterion.segments, residuals, strict=True)
-        for signal, far in zip(segment.signals, np.mean(np.abs(r) > FAR, axis=0), strict=True)
+        for signal, far in zip(
+            segment.signals, np.mean(np.abs(r) > UNCERTAINTY.far, axis=0), strict=True
+        )
         if far > 0.5
     ]
 
@@ -211,7 +207,7 @@ def uncertainty_from(
     noises = noises_beside(residuals, correlated, own)
     noise = noise_in(basis, weighted, noises)
     alone = np.array([_error_alone(response[:, j], noise) for j in range(len(names))])
-    unmoved = ~moving | (alone > UNMOVED)
+    unmoved = ~moving | (alone > UNCERTAINTY.unmoved)
     active = [j for j in free if not unmoved[j]]
     linear_response = LinearResponse(response, noise, accuracy)
     relative = np.where(values, np.abs(values) / sizes, 1.0)
@@ -275,7 +271,7 @@ def criterion_unit(
 def _on_bounds(columns: ParameterColumns) -> NDArray[np.bool_]:
     width = columns.high - columns.low
     size = np.maximum(np.abs(columns.values), columns.sizes)
-    near = AT_BOUND * np.where(np.isfinite(width), width, size)
+    near = UNCERTAINTY.at_bound * np.where(np.isfinite(width), width, size)
     inside = (columns.values - columns.low > near) & (columns.high - columns.values > near)
     return np.asarray(~inside)
 

@@ -13,12 +13,9 @@ from functools import lru_cache
 from tracewire.errors import FormulaError, Place, Problem, unknown
 from tracewire.formula.expression import Call, Expression, Name, Number
 from tracewire.formula.functions import CONSTANTS, FUNCTIONS
+from tracewire.formula.limits import LIMITS
 from tracewire.formula.quantities import QUANTITIES, Quantity
 from tracewire.formula.units import read_unit
-
-MOST_CHARACTERS = 4000
-MOST_NODES = 1000
-MOST_DEPTH = 60
 
 ARITHMETIC: dict[type[ast.operator], str] = {
     ast.Add: "+",
@@ -133,8 +130,9 @@ def _read(text: str, place: Place, condition: bool, quantity: bool = False) -> E
 
 @lru_cache(maxsize=4096)
 def _parse(text: str, condition: bool, quantity: bool) -> Expression:
-    if len(text) > MOST_CHARACTERS:
-        raise _Refused(f"it has {len(text)} characters, at most {MOST_CHARACTERS} are allowed")
+    if len(text) > LIMITS.most_characters:
+        most = LIMITS.most_characters
+        raise _Refused(f"it has {len(text)} characters, at most {most} are allowed")
     if not text.strip():
         raise _Refused("there is no text", 0, LANGUAGE)
     if "#" in text:
@@ -197,10 +195,12 @@ class _Converter:
 
     def convert(self, node: ast.expr, depth: int) -> Expression:
         self.count += 1
-        if depth > MOST_DEPTH:
-            raise self.refuse(node, f"it is nested deeper than {MOST_DEPTH}", "Use several blocks.")
-        if self.count > MOST_NODES:
-            raise self.refuse(node, f"it has more than {MOST_NODES} parts", "Use several blocks.")
+        if depth > LIMITS.most_nesting:
+            what = f"it is nested deeper than {LIMITS.most_nesting}"
+            raise self.refuse(node, what, "Use several blocks.")
+        if self.count > LIMITS.most_parts:
+            what = f"it has more than {LIMITS.most_parts} parts"
+            raise self.refuse(node, what, "Use several blocks.")
         match node:
             case ast.Constant(value=value):
                 return self.number(node, value)

@@ -6,9 +6,8 @@ from collections.abc import Callable, Sequence
 
 from tracewire.formula.expression import Call, Expression, Name, Number
 from tracewire.formula.functions import OPERATIONS
+from tracewire.formula.limits import LIMITS
 from tracewire.formula.quantities import QUANTITIES, Quantity
-
-LARGEST_POWER = 100.0
 
 Term = dict[str, float]
 """A unit as powers of names, of base units or of what is not known yet; {} is a number."""
@@ -70,7 +69,7 @@ def unit_term(node: Expression, named: Named, equal: Equal, strict: bool) -> Ter
             return _product(terms, -1.0)
         case "power":
             exponent = node.arguments[1]
-            if isinstance(exponent, Number) and abs(exponent.value) <= LARGEST_POWER:
+            if isinstance(exponent, Number) and abs(exponent.value) <= LIMITS.largest_power:
                 return None if terms[0] is None else times({}, terms[0], exponent.value)
             return _number(node, terms, equal) if strict else None
         case "number":

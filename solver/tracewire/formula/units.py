@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from tracewire.errors import FormulaError, Place, Problem
 from tracewire.formula.common_units import COMMON
+from tracewire.formula.limits import LIMITS
 
 if TYPE_CHECKING:
     from pint import UnitRegistry
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
 OFFSET = re.compile(
     r"(?<![A-Za-z])(deg(ree)?_?|°)(C|F|celsius|fahrenheit)(?![A-Za-z])", re.IGNORECASE
 )
-MOST_CHARACTERS = 60
 
 SYMBOL = r"(?:kg|mol|cd|rad|sr|Hz|Pa|Wb|Ohm|m|s|A|K|N|J|W|C|V|F|S|T|H)"
 POWER = r"(?:\s*(?:\^|\*\*)\s*[+-]?\d{1,2}(?:\.\d{1,2})?)"
@@ -79,7 +79,7 @@ def read_unit(text: str, place: Place = Place()) -> Unit:
     if text.strip() in ("", "1"):
         return Unit("", 1.0)
     try:
-        if len(text) > MOST_CHARACTERS:
+        if len(text) > LIMITS.unit_characters:
             raise ValueError("length")
         text = OHM.sub("ohm", TORQUE.sub(r"\1 m", text))
         if COHERENT.fullmatch(text.strip()):

@@ -12,8 +12,6 @@ from tracewire.library.load import Library
 from tracewire.library.parts import ByMode, Event, Input, Mode, Output, Parameter, Transition
 from tracewire.library.synonyms import OTHERWISE, find_instead, find_synonym, other_names
 
-MOST_VALUES = 8
-
 
 def palette(library: Library) -> str:
     """A table of all blocks: family, block and the sentence that says what it is."""
@@ -215,14 +213,14 @@ def _effect(block: Block) -> str:
     )
 
 
-def _tried(shape: Shape) -> str:
-    """The values of a shape; of a long grid its ends."""
+def _tried(shape: Shape, most: int = 8) -> str:
+    """The values of a shape; of more than `most` the ends."""
     if shape.of == "rates":
         return f"at {len(shape.at)} rates from the slowest to the fastest"
     if shape.of == "drives":
         return f"at {len(shape.at)} sizes of the drive from the least to the largest"
     values = [f"{value:.3g}" for value in shape.at]
-    if len(values) > MOST_VALUES:
+    if len(values) > most:
         values = [*values[:2], "...", f"{values[-1]} ({len(values)} values)"]
     if shape.wave:
         return f"at the best of all lengths up to {max(shape.at):.3g} times {SCALES[shape.of]}"

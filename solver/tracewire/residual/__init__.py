@@ -3,7 +3,7 @@
 from tracewire.residual.channel_noise import channel_noise, estimate_noise
 from tracewire.residual.criterion import LIMITS, Criterion, half_square
 from tracewire.residual.files import series_from_files
-from tracewire.residual.initial_states import INITIAL_STATE_STEPS, fit_initial_states
+from tracewire.residual.initial_states import fit_initial_states
 from tracewire.residual.input_noise import (
     InputCovariance,
     likely_input_noise,
@@ -11,7 +11,8 @@ from tracewire.residual.input_noise import (
     run_noise,
 )
 from tracewire.residual.input_response import InputNoise
-from tracewire.residual.levenberg_marquardt import FTOL, LEAST_DAMPING, bounded_step, fit_windows
+from tracewire.residual.levenberg_marquardt import bounded_step, fit_windows
+from tracewire.residual.limits import FTOL, INITIAL_STATE_STEPS, LEAST_DAMPING
 from tracewire.residual.linearisation import Linearisation, Projection, wrap_to_period
 from tracewire.residual.loss import LOSSES
 from tracewire.residual.measured import (

@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.residual.limits import NOISE
 from tracewire.residual.measured import Measured
-from tracewire.residual.noise_estimate import LEAST, NoiseEstimate, noise_of_signal
+from tracewire.residual.noise_estimate import NoiseEstimate, noise_of_signal
 from tracewire.residual.readings import rounding_step
 
 Vector = NDArray[np.float64]
@@ -37,7 +38,7 @@ def _of_channel(series: Measured, name: str, values: Vector) -> NoiseEstimate:
     if declared is not None:
         return NoiseEstimate(declared, declared, declared, "declared", rounding_step(values))
     estimate = noise_of_signal(values, series.t)
-    least = max(LEAST * float(np.std(values)), 1e-300)
+    least = max(NOISE.least * float(np.std(values)), 1e-300)
     if estimate.level >= least:
         return estimate
     return replace(

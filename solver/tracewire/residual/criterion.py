@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import DataError, OptionError, Problem, SimulationError, unknown
+from tracewire.residual.limits import CRITERION
 from tracewire.residual.linearisation import BatchLinearisation, Linearisation, SegmentBatch
 from tracewire.residual.loss import LOSSES
 from tracewire.residual.segment import Segment, Unknown
@@ -24,10 +25,6 @@ from tracewire.solve import Halt, Interrupted, Limits, beyond_budget, cores, unt
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 Weighting = Literal["mean", "sum"]
-STEP = 1e-4
-PENALTY = 100.0
-MANY = 3000
-"""Steps from which on series run in parallel: threads cost more than they save before."""
 LIMITS = Limits(steps=500_000, seconds=120.0)
 
 
@@ -253,7 +250,7 @@ class Criterion:
         Without `slopes` from a plain run; one that fails counts as far away.
         """
         rows = sum(len(self.segments[n].rows) for n in starts)  # about as many steps, at first
-        many = (len(starts) * self.steps / self.runs if self.runs else rows) > MANY
+        many = (len(starts) * self.steps / self.runs if self.runs else rows) > CRITERION.many
         groups = self._groups(sorted(starts), halves=many and not self.remembers)
         with _interruptible() as halt:
 
@@ -347,7 +344,7 @@ class Criterion:
         self.failure = error
         self.failures[self.segments[n].measured.name] += 1
         sigma = self.sigma[self.segments[n].measured.name]
-        spread = PENALTY * np.maximum(np.std(self._samples[n], axis=0), sigma)
+        spread = CRITERION.penalty * np.maximum(np.std(self._samples[n], axis=0), sigma)
         residual = np.asarray(np.broadcast_to(spread / sigma, self._samples[n].shape))
         scales = self.segments[n].start_scales(start)
         none, ends = np.zeros((residual.size, 0)), np.zeros((len(self.model.states), 0))
@@ -366,11 +363,11 @@ class Criterion:
             return replace(at, slopes=np.zeros((at.residual.size, len(named) + len(start))))
         steps, moved = [], []
         for u in self.unknowns:
-            h = STEP * max(u.scale, abs(named[u.name]))
+            h = CRITERION.step * max(u.scale, abs(named[u.name]))
             steps.append(-h if named[u.name] + h > u.high else h)
             moved.append(there({**named, u.name: named[u.name] + steps[-1]}, start))
         for state, value in start.items():
-            steps.append(STEP * max(self.segments[n].start_scale(state), abs(value)))
+            steps.append(CRITERION.step * max(self.segments[n].start_scale(state), abs(value)))
             moved.append(there(named, {**start, state: value + steps[-1]}))
         rows = np.array([(near.residual - at.residual).ravel() for near in moved])
         ends = np.array([[near.final.get(x, y) - y for x, y in at.final.items()] for near in moved])

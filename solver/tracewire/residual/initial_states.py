@@ -7,23 +7,14 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.residual.limits import WINDOW
 from tracewire.residual.starts import start_from_data
 from tracewire.residual.windows import Windows, keep_better, with_initial_states
 
 Vector = NDArray[np.float64]
-INITIAL_STATE_STEPS = 8
-"""Steps of the starts."""
-FAR_OFF = 100.0
-"""A start this many scales of its state away from the one that the data show."""
-CONVERGED = 1e-4
-DIVERGED = 10.0
-"""The mean squared residual of a window, in units of the median of all, from which on its start may
-be astray."""
-NEGLIGIBLE_GAIN = 0.05
-"""What is still to gain, in units of the noise's variance, where a fit has converged."""
 
 
-def fit_initial_states(windows: Windows, steps: int = INITIAL_STATE_STEPS) -> Windows:
+def fit_initial_states(windows: Windows, steps: int = WINDOW.initial_state_steps) -> Windows:
     """The starts alone fitted, each window for itself; the unknowns stay.
 
     A window whose start is led astray (a start inside a stiff barrier kicks it away) is tried from
@@ -41,7 +32,7 @@ def restart_from_data(windows: Windows, steps: int) -> Windows:
     """
     sizes = np.array([near.residual.size for near in windows.linearisations])
     means = windows.squares / np.maximum(sizes, 1)
-    diverged = np.flatnonzero(means > DIVERGED * float(np.median(means))).tolist()
+    diverged = np.flatnonzero(means > WINDOW.diverged * float(np.median(means))).tolist()
     criterion, restarts = windows.criterion, {}
     for n in diverged:
         segment = criterion.segments[n]
@@ -110,7 +101,7 @@ def refine_initial_states(windows: Windows, rows: Sequence[int], steps: int) -> 
             if n not in answers:
                 view = windows.linearisations[n].projection
                 gain = float(np.sum((view.basis.T @ near.residual.ravel()) ** 2))
-                if gain < max(NEGLIGIBLE_GAIN, CONVERGED * near.square):
+                if gain < max(WINDOW.negligible_gain, WINDOW.converged * near.square):
                     del share[n]
                     continue
                 answers[n] = -view.pseudoinverse @ near.residual.ravel()
@@ -138,6 +129,6 @@ def is_far_off(windows: Windows, n: int, start: Mapping[str, float]) -> bool:
     """Whether a start is where no body of this record can be: no run is worth its time there."""
     segment = windows.criterion.segments[n]
     return any(
-        not abs(value - segment.start.get(name, 0.0)) < FAR_OFF * segment.start_scale(name)
+        not abs(value - segment.start.get(name, 0.0)) < WINDOW.far_off * segment.start_scale(name)
         for name, value in start.items()
     )

@@ -19,6 +19,7 @@ from tracewire.residual.input_response import (
     input_response,
     states_in_windows,
 )
+from tracewire.residual.limits import INPUT
 from tracewire.residual.measured import Measured
 from tracewire.residual.segment import Segment, of_diagram
 from tracewire.residual.starts import whole_segment
@@ -26,10 +27,6 @@ from tracewire.solve import simulate
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-LARGEST, KEPT = 1500, 2.5e7
-"""Residuals of a window whose covariance is made, and the numbers of those that are kept."""
-GRID = 40
-"""Levels of noise from which a search begins."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +69,7 @@ class InputCovariance:
         first = int(np.searchsorted(measured.t, segment.begin))
         key = name, min(first, int(segment.rows[0])), segment.rows.tobytes()
         if key not in self._known:
-            if sum(known.size for known in self._known.values()) > KEPT:
+            if sum(known.size for known in self._known.values()) > INPUT.kept:
                 self._known.clear()
             self._known[key] = self._compute(measured, key[1], segment.rows)
         return self._known[key]
@@ -87,7 +84,7 @@ class InputCovariance:
         level = np.array([self.sigma[signal] for signal in response.signals])
         window = np.arange(first, int(rows[-1]) + 1)
         size = len(rows) * len(level)
-        if size > LARGEST:  # a free run: its covariance would fill the memory
+        if size > INPUT.largest:  # a free run: its covariance would fill the memory
             noise = response.noise(measured.input_sigma, [window], ())
             more = np.array([noise[signal].size for signal in response.signals]) / level
             return np.asarray(np.tile(1 / np.sqrt(1 + more**2), len(rows)))
@@ -113,7 +110,7 @@ def likely_input_noise(
     level = np.array([sigma[signal] for signal in response.signals])
     sizes, squares = [np.zeros(0)], [np.zeros(0)]
     for segment, residual, slopes in windows:
-        if residual.size > LARGEST:
+        if residual.size > INPUT.largest:
             continue
         first = int(np.searchsorted(segment.measured.t, segment.begin))
         first = min(first, int(segment.rows[0]))
@@ -136,11 +133,11 @@ def likely_input_noise(
 
     # from what no sample shows to what would make all of the residual
     ends = -np.log(np.max(size)) - 5, np.log(np.sum(square) / np.sum(size)) + 5
-    grid = np.linspace(min(ends), max(ends), GRID)
+    grid = np.linspace(min(ends), max(ends), INPUT.grid)
     from scipy.optimize import minimize_scalar
 
     best = int(np.argmin([unlikely(log) for log in grid]))
-    around = grid[max(best - 1, 0)], grid[min(best + 1, GRID - 1)]
+    around = grid[max(best - 1, 0)], grid[min(best + 1, INPUT.grid - 1)]
     found = float(np.exp(minimize_scalar(unlikely, bounds=around, method="bounded").x))
     after = float(np.mean(square / (1 + found * size)))
     return LikelyNoise(found**0.5, float(np.mean(square)), after)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model, compile
+from tracewire.residual.limits import INPUT
 from tracewire.residual.measured import Measured
 from tracewire.residual.segment import of_diagram
 from tracewire.residual.starts import start_from_data
@@ -19,13 +20,6 @@ from tracewire.solve import Driving, Held, Span, SpanRuns, refuse_delays, simula
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-DRAWS = 64
-"""Sequences of input errors that are followed."""
-CHANCE = 0.99
-SMALL = 1e-2
-"""Of the spread of an input: the change by which answers are taken where no noise is declared."""
-RTOL = 1e-9
-"""Of runs from sample to sample, of which differences are taken."""
 
 
 @dataclass(frozen=True)
@@ -71,13 +65,16 @@ class InputResponse:
         """
         rng = np.random.default_rng(seed)
         level = np.array([sigma.get(name, 0.0) for name in self.inputs])
-        squares = np.zeros((len(self.signals), DRAWS))
+        squares = np.zeros((len(self.signals), INPUT.draws))
         for window in rows:
-            errors = rng.standard_normal((len(window) + 1, len(level), DRAWS)) * level[:, None]
+            shape = (len(window) + 1, len(level), INPUT.draws)
+            errors = rng.standard_normal(shape) * level[:, None]
             squares += np.sum(self._window(window, errors, free, slopes) ** 2, axis=0)
         squares /= max(sum(len(window) for window in rows), 1)
         return {
-            name: InputNoise(float(np.mean(one)) ** 0.5, float(np.quantile(one, CHANCE)) ** 0.5)
+            name: InputNoise(
+                float(np.mean(one)) ** 0.5, float(np.quantile(one, INPUT.chance)) ** 0.5
+            )
             for name, one in zip(self.signals, squares, strict=True)
         }
 
@@ -140,7 +137,7 @@ def input_response(
             quick,
             spans,
             parameters=of_diagram(values, measured),
-            rtol=RTOL,
+            rtol=INPUT.rtol,
             preset=measured.preset,
             inputs=driving,
             sensitivities=asked,
@@ -163,7 +160,7 @@ def input_response(
     failed = set(base.errors)
     for number, name in enumerate(inputs):
         known = measured.inputs[name]
-        change = measured.input_sigma.get(name) or SMALL * float(np.std(known[1])) or 1.0
+        change = measured.input_sigma.get(name) or INPUT.small * float(np.std(known[1])) or 1.0
         for parity in (0, 1):
             pushed = _perturb_input(known, measured.t, change, parity)
             found = runs({**measured.inputs, name: pushed})

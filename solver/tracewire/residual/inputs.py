@@ -8,25 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.diagram import Hold
+from tracewire.residual.limits import INPUT
 from tracewire.solve import Driving, Held
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline  # scipy is slow to import: who needs a part does it
 
 Vector = NDArray[np.float64]
-LEAST_SAMPLES = 9
-BETTER = 0.3
-"""The largest error of the spline, in units of that of straight lines, where an input is smooth."""
-VISIBLE = 1e-6
-"""Of the range of an input: an error of straight lines that is smaller is no concern."""
-FINE = 1e-3
-"""The same for what may be left between the points."""
-FINEST = 8
-UNEVEN = 0.01
-"""The spread of time steps, in units of their mean, up to which samples are evenly spaced."""
-REPEATED, JUMP = 0.5, 0.02
-"""Samples that repeat the one before, and the least of the changes beside the range, from which on
-an input looks held."""
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(3)
 
 
@@ -52,9 +40,9 @@ def looks_held(u: Vector) -> bool:
     """Whether an input is constant for most of the time and jumps between, as one that is held."""
     changes = np.abs(np.diff(u))
     jumps = changes[changes > 0]
-    if not len(jumps) or np.mean(changes == 0) < REPEATED:
+    if not len(jumps) or np.mean(changes == 0) < INPUT.repeated:
         return False
-    return bool(np.median(jumps) > JUMP * np.ptp(u))
+    return bool(np.median(jumps) > INPUT.jump * np.ptp(u))
 
 
 def line_error(t: Vector, u: Vector) -> float:
@@ -63,7 +51,9 @@ def line_error(t: Vector, u: Vector) -> float:
     A sine of angular frequency omega, sampled each dt, loses (omega*dt)^2/12; that is averaged over
     the power of the input. 0 where the samples are few or not evenly spaced.
     """
-    if len(t) < LEAST_SAMPLES or np.ptp(np.diff(t)) > UNEVEN * (t[-1] - t[0]) / (len(t) - 1):
+    if len(t) < INPUT.fewest_samples:
+        return 0.0
+    if np.ptp(np.diff(t)) > INPUT.uneven * (t[-1] - t[0]) / (len(t) - 1):
         return 0.0
     power = np.abs(np.fft.rfft((u - np.mean(u)) * np.hanning(len(u)))) ** 2
     angle = 2 * np.pi * np.fft.rfftfreq(len(u))
@@ -85,10 +75,10 @@ def spline_if_smooth(t: Vector, u: Vector) -> tuple[Vector, Vector] | None:
     a mechanism integrates it away; it is at most about a thousandth of the input's range, for which
     there are up to 8 points for each sample: a run takes as much longer as there are more.
     """
-    if len(t) < LEAST_SAMPLES or not np.all(np.diff(t) > 0):
+    if len(t) < INPUT.fewest_samples or not np.all(np.diff(t) > 0):
         return None
     lines, spline = _errors(t, u)
-    if not lines > VISIBLE * float(np.ptp(u)) or not spline < BETTER * lines:
+    if not lines > INPUT.visible * float(np.ptp(u)) or not spline < INPUT.better * lines:
         return None
     return fit_spline(t, u)
 
@@ -98,7 +88,7 @@ def fit_spline(t: Vector, u: Vector) -> tuple[Vector, Vector]:
     lines, _ = _errors(t, u)
     # lines err by the square of the interval: a quarter of `lines` on all samples
     size = float(np.ptp(u)) or 1.0
-    factor = int(np.clip(np.ceil(np.sqrt(lines / (4 * FINE * size))), 1, FINEST))
+    factor = int(np.clip(np.ceil(np.sqrt(lines / (4 * INPUT.fine * size))), 1, INPUT.finest))
     count = (len(t) - 1) * factor + 1
     times = np.interp(np.arange(count) / factor, np.arange(len(t)), t)
     from scipy.interpolate import CubicSpline

@@ -9,8 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.residual.initial_states import (
-    INITIAL_STATE_STEPS,
-    NEGLIGIBLE_GAIN,
     fit_initial_states,
     is_far_off,
     previous_ends,
@@ -19,6 +17,7 @@ from tracewire.residual.initial_states import (
     restart_from_ends,
     update_memories,
 )
+from tracewire.residual.limits import DESCENT, WINDOW
 from tracewire.residual.linearisation import Projection
 from tracewire.residual.windows import (
     Windows,
@@ -29,23 +28,14 @@ from tracewire.residual.windows import (
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-RESCUE_STEPS = 2
-"""Steps of the start of a window that was led astray."""
-FTOL = 5e-4
-"""A step that gains less than this part of the sum of squares is the last one."""
-FIRST_DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-9, 1e6
-MOST_FAILURES = 8
-PATIENCE, HOPE = 4, 2.0
-"""Steps in a row that are too slow until a fit is given up, and how many times the gain that its
-pace promises may still come."""
 
 
 def fit_windows(
     windows: Windows,
     steps: int = 20,
     target: float = np.inf,
-    ftol: float = FTOL,
-    initial_state_steps: int = INITIAL_STATE_STEPS,
+    ftol: float = DESCENT.ftol,
+    initial_state_steps: int = WINDOW.initial_state_steps,
 ) -> tuple[Windows, bool]:
     """The unknowns and all starts fitted by Levenberg and Marquardt; whether it converged.
 
@@ -75,7 +65,7 @@ def _take_steps(
     unknowns = windows.criterion.unknowns
     low, high = np.array([u.low for u in unknowns]), np.array([u.high for u in unknowns])
     scales = np.array([u.scale for u in unknowns])
-    damping, failures = FIRST_DAMPING, 0
+    damping, failures = DESCENT.first_damping, 0
     gained, too_slow = np.inf, 0
     for left_over in reversed(range(steps)):
         views = windows.projections
@@ -89,7 +79,7 @@ def _take_steps(
             left = residual + reduced @ step
             promised = float(residual @ residual - left @ left)
             start_gain = windows.rss - float(residual @ residual)
-            if promised + start_gain < max(NEGLIGIBLE_GAIN, 0.2 * ftol * windows.rss):
+            if promised + start_gain < max(WINDOW.negligible_gain, 0.2 * ftol * windows.rss):
                 return windows, True, left_over
             there = _step_windows(windows, views, step * scales)
             failures += there is None
@@ -97,20 +87,20 @@ def _take_steps(
                 before, gained = gained, windows.rss - there.rss
                 windows = there
                 # what was refused a moment ago would be refused again
-                damping = damping if refused else max(damping / 10, LEAST_DAMPING)
+                damping = damping if refused else max(damping / 10, DESCENT.least_damping)
                 break
             if there is not None and there.rss < (1 + ftol) * windows.rss:
                 return windows, True, left_over  # as flat as the solver is exact
-            damping = max(damping * (100 if refused else 10), FIRST_DAMPING)
+            damping = max(damping * (100 if refused else 10), DESCENT.first_damping)
             refused = True
-            if damping > MOST_DAMPING or failures > MOST_FAILURES:
+            if damping > DESCENT.most_damping or failures > DESCENT.most_failures:
                 return windows, False, left_over
-        if gained < max(NEGLIGIBLE_GAIN, ftol * windows.rss):
+        if gained < max(WINDOW.negligible_gain, ftol * windows.rss):
             return windows, True, left_over
         pace = min(gained / before, 1 - 1e-9)
-        coming = HOPE * gained * min(left_over, pace / (1 - pace))
+        coming = DESCENT.hope * gained * min(left_over, pace / (1 - pace))
         too_slow = too_slow + 1 if windows.rss - coming > target else 0
-        if too_slow >= PATIENCE:
+        if too_slow >= DESCENT.patience:
             return windows, False, 0
     return windows, False, 0
 
@@ -173,6 +163,6 @@ def _rescue(windows: Windows, before: Mapping[int, Mapping[str, float]]) -> Wind
     tried = keep_better(windows, with_initial_states(windows, before), rows)
     ends = previous_ends(tried, rows)
     tried = keep_better(tried, with_initial_states(tried, ends), list(ends))
-    return update_memories(
-        restart_from_ends(refine_initial_states(tried, rows, RESCUE_STEPS), rows, RESCUE_STEPS)
-    )
+    steps = DESCENT.rescue_steps
+    tried = refine_initial_states(tried, rows, steps)
+    return update_memories(restart_from_ends(tried, rows, steps))

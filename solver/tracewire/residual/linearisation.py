@@ -11,15 +11,14 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import Problem, SimulationError
-from tracewire.residual.measured import LARGEST, Measured
+from tracewire.residual.limits import WINDOW
+from tracewire.residual.measured import Measured
 from tracewire.residual.observation import ObservationModel
 from tracewire.residual.segment import Segment, absolute_tolerances, of_diagram, parameter_in
 from tracewire.solve import Halt, Interrupted, Limits, Span, SpanRuns, simulate_spans
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-UNSEEN = 1e-7
-"""A direction of a segment's start that moves its residual less than this part of the strongest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +61,7 @@ class Linearisation:
         if not moved.size:
             return Projection(np.zeros((len(moved), 0)), np.zeros((0, len(moved))))
         left, singular, right = np.linalg.svd(moved, full_matrices=False)
-        kept = singular > UNSEEN * max(float(singular[0]), 1e-300)
+        kept = singular > WINDOW.unseen * max(float(singular[0]), 1e-300)
         answer = (scales[:, None] * right[kept].T / singular[kept]) @ left[:, kept].T
         return Projection(left[:, kept], answer)
 
@@ -160,7 +159,9 @@ class SegmentBatch:
             if number in errors:
                 continue
             # squares of what is larger would be no numbers
-            if not all((np.abs(some) < LARGEST).all() for some in (shown[mine], slopes[mine])):
+            if not all(
+                (np.abs(some) < WINDOW.largest).all() for some in (shown[mine], slopes[mine])
+            ):
                 errors[number] = _huge(measured.name, shown[mine])
                 continue
             own = slopes[mine].reshape(residual[mine].size, len(answers))

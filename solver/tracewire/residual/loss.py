@@ -8,10 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.residual.limits import CRITERION
+
 Array = NDArray[np.float64]
-HUBER, CAUCHY = 1.345, 2.385
-"""In sigma; each keeps 95 % of the efficiency of least squares on normal noise (P. W. Holland and
-R. E. Welsch, Communications in Statistics A6, 1977, 813)."""
 
 
 class Lossy(NamedTuple):
@@ -29,17 +28,18 @@ def linear(r: Array) -> Lossy:
 def huber(r: Array) -> Lossy:
     """rho = r^2 up to c = 1.345 sigma, 2 c |r| - c^2 beyond."""
     size = np.abs(r)
-    inside = size <= HUBER
-    far = np.sqrt(2 * HUBER * np.maximum(size, HUBER) - HUBER**2)
-    slope = np.where(inside, 1.0, HUBER / far)
+    c = CRITERION.huber
+    inside = size <= c
+    far = np.sqrt(2 * c * np.maximum(size, c) - c**2)
+    slope = np.where(inside, 1.0, c / far)
     return Lossy(np.where(inside, r, np.sign(r) * far), slope)
 
 
 def cauchy(r: Array) -> Lossy:
     """rho = c^2 log(1 + (r/c)^2) with c = 2.385 sigma."""
-    ratio = r / CAUCHY
+    ratio = r / CRITERION.cauchy
     square = np.log1p(ratio**2)
-    f = np.sign(r) * CAUCHY * np.sqrt(square)
+    f = np.sign(r) * CRITERION.cauchy * np.sqrt(square)
     steep = np.divide(np.abs(ratio), np.sqrt(square), out=np.ones_like(r), where=square > 1e-16)
     return Lossy(f, steep / (1 + ratio**2))
 

@@ -19,12 +19,12 @@ from tracewire.formula import evaluate
 from tracewire.library import SENSOR_TERMS
 from tracewire.residual.arrays import ArrayCheck, fields_of_frame
 from tracewire.residual.inputs import between_samples
+from tracewire.residual.limits import WINDOW
 from tracewire.residual.remarks import check_quantities, factor_of_column, remarks_of
 from tracewire.residual.sensor import PLAIN, Sensor, read_sensor
 from tracewire.solve import Driving, Options, parameter_values
 
 Vector = NDArray[np.float64]
-LARGEST = 1e100  # its square, and sums of such squares, are numbers still
 
 
 @dataclass(frozen=True, eq=False)
@@ -392,12 +392,12 @@ def _cleaned(series: Series, record: Record, steps: Sequence[Cleaning]) -> Recor
 def _check_size(series: Series, record: Record) -> None:
     problems = []
     longest = float(np.abs(record.t).max())
-    if longest > LARGEST:
+    if longest > WINDOW.largest:
         what = f"the time of the series '{series.name}' reaches {longest:.3g} s, too large to fit"
         problems.append(Problem(what, series.place, (), "Correct its column, or its unit."))
     for name, channel in series.channels.items():
         largest = float(np.abs(record.columns[name]).max())
-        if largest > LARGEST:
+        if largest > WINDOW.largest:
             what = f"'{name}' of the series '{series.name}' reaches {largest:.3g}, too large to fit"
             hint = f"Correct the column '{channel.column}', or its unit."
             problems.append(Problem(what, series.place, (), hint))

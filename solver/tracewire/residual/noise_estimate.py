@@ -8,35 +8,11 @@ from math import comb
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.residual.limits import NOISE
 from tracewire.residual.readings import MAD, interpolation, replace_outliers, rounding_step
 from tracewire.residual.spectrum import Spectrum, spectrum_of
 
 Vector = NDArray[np.float64]
-ORDERS = (4, 6, 8, 10, 12)
-"""Of differences: the higher, the less of a smooth signal they see."""
-FALLING = 1.2
-"""A higher order that finds no less than this part of the noise sees no less of the signal."""
-FEWEST_FOR_SPECTRUM = 96
-UNEVEN = 1e-3
-"""Of an interval: times that differ by more from even ones are not even."""
-FLAT = 1.6
-"""The largest ratio of the densities of two bands of white noise, beside their own errors."""
-PLATEAU = 3
-"""Bands of half an octave that a plateau below the highest frequencies has, at least."""
-LOWEST, PART = 12, 0.05
-"""Bands above the plateau of noise, and the part of a signal that it is, at most: the rest of the
-density is that of the signal."""
-ABOVE = 8.0
-"""How many times the density of a plateau of noise the signal's is, which follows it."""
-STEEPEST = 2.3
-"""The rise of density per half octave of noise without a plateau: a random walk has 2."""
-ROUNDED = 1.5
-"""A floor within this factor of that of rounding is rounding."""
-SURE = 2.0
-DISTURBED = 0.5
-"""Of the highest band's noise: differences that find less do so between events."""
-LEAST = 1e-6
-"""Of the spread of a signal: no sensor is better."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +37,7 @@ class NoiseEstimate:
     @property
     def is_sure(self) -> bool:
         """Whether the level is right within a factor 2."""
-        return self.factor <= SURE
+        return self.factor <= NOISE.sure
 
 
 def noise_level(values: Vector) -> float:
@@ -79,14 +55,14 @@ def noise_of_signal(values: Vector, t: Vector | None = None) -> NoiseEstimate:
     something happens in most stretches: a difference sees a dozen samples only.
     """
     step = rounding_step(values)
-    if len(values) <= ORDERS[0] + 1:
+    if len(values) <= NOISE.orders[0] + 1:
         return NoiseEstimate(step / 12**0.5, 0.0, float(np.ptp(values)), "too few samples", step)
     factor, phase = interpolation(values)
     if factor > 1:
         own = noise_of_signal(values[phase::factor], None if t is None else t[phase::factor])
         return replace(own, method=f"{own.method}; interpolated {factor} times between samples")
-    even = t is None or bool(np.ptp(np.diff(t)) <= UNEVEN * np.median(np.diff(t)))
-    if len(values) < FEWEST_FOR_SPECTRUM:
+    even = t is None or bool(np.ptp(np.diff(t)) <= NOISE.uneven * np.median(np.diff(t)))
+    if len(values) < NOISE.fewest_samples:
         found = _of_differences(values, t)
     else:
         clean = replace_outliers(values)
@@ -94,7 +70,7 @@ def noise_of_signal(values: Vector, t: Vector | None = None) -> NoiseEstimate:
         local = _of_differences(values, None if even else t)
         found = _of_spectrum(spectrum, clean, step, local)
         # events in most stretches: between them differences see less than the highest band
-        disturbed = local.level < DISTURBED * float(spectrum.density[0]) ** 0.5
+        disturbed = local.level < NOISE.disturbed * float(spectrum.density[0]) ** 0.5
         if (disturbed and local.is_sure) or (not even and local.level < found.level):
             found = local
     rounding = step / 12**0.5
@@ -123,21 +99,21 @@ def _of_spectrum(
         return float((within + density[last] * 2 * spectrum.low[last]) ** 0.5)
 
     flat = _flat_from(density, spectrum.error, 0)
-    steep = np.flatnonzero(steps > STEEPEST * likely)
+    steep = np.flatnonzero(steps > NOISE.steepest * likely)
     last = int(steep[0]) if len(steep) else len(density) - 1
     floor, whole = level(flat - 1), level(last)
-    rounding = floor <= ROUNDED * step / 12**0.5
+    rounding = floor <= NOISE.rounded * step / 12**0.5
     if (flat == 1 and last == 0) or rounding:
         below = _plateau_below(density, slower, spectrum.error, flat)
         found = 0.0 if below is None else level(below)
-        if 0 < found < PART * float(np.std(values)):
+        if 0 < found < NOISE.part * float(np.std(values)):
             words = "the plateau of the spectrum below " + (
                 "rounding" if rounding else "a filter's edge"
             )
             return NoiseEstimate(found, floor if rounding else 0.7 * found, 1.5 * found, words)
     if rounding:
         return NoiseEstimate(floor, 0.7 * floor, 1.4 * floor, "rounding")
-    ending = density[max(last - PLATEAU + 1, 0) : last + 1]
+    ending = density[max(last - NOISE.plateau + 1, 0) : last + 1]
     less = min(local.level / float(density[0]) ** 0.5, 1.0) if local.is_sure else 1.0
     calm = min(float(np.median(spectrum.calm[:flat] / density[:flat])), less**2, 1.0) ** 0.5
     if flat > 1 and (last < flat or whole <= 1.3 * floor):
@@ -145,16 +121,16 @@ def _of_spectrum(
         low = min(whole * calm, found) / error
         return NoiseEstimate(found, low, whole * error, "white: the spectrum's floor")
     rise = float(np.max(ending) / np.min(ending))
-    if len(ending) == PLATEAU and rise < FLAT * (1 + 3 * float(spectrum.error[last])):
-        most = whole * (1.5 if rise < FLAT else 2.5)
+    if len(ending) == NOISE.plateau and rise < NOISE.flat * (1 + 3 * float(spectrum.error[last])):
+        most = whole * (1.5 if rise < NOISE.flat else 2.5)
         return NoiseEstimate(whole, whole / 1.5, most, "coloured: the spectrum's plateau")
     if flat > 1 or last > 0:
         found, words = floor * less**0.5, "the spectrum's floor, which rises slowly"
         return NoiseEstimate(found, min(calm * floor, found), 2 * max(floor, whole), words)
     # all that is faster than the signal may be noise, and none of it
-    signal = np.flatnonzero(density * ABOVE >= max(float(np.max(density)), slower))
+    signal = np.flatnonzero(density * NOISE.above >= max(float(np.max(density)), slower))
     most = level(max(int(signal[0]) - 1, 0)) if len(signal) else level(len(density) - 1)
-    least = max(local.level, LEAST * float(np.std(values)))
+    least = max(local.level, NOISE.least * float(np.std(values)))
     words = "differences of high order: the spectrum has no plateau"
     low = 0.5 * min(floor, local.level)
     return NoiseEstimate(least, low, max(1.5 * most, 2 * least), words)
@@ -165,7 +141,7 @@ def _flat_from(density: Vector, error: Vector, first: int) -> int:
     after = first + 1
     while after < len(density):
         part = density[first : after + 1]
-        if np.max(part) > FLAT * (1 + 3 * error[after]) * np.min(part):
+        if np.max(part) > NOISE.flat * (1 + 3 * error[after]) * np.min(part):
             break
         after += 1
     return after
@@ -174,13 +150,13 @@ def _flat_from(density: Vector, error: Vector, first: int) -> int:
 def _plateau_below(density: Vector, slower: float, error: Vector, first: int) -> int | None:
     """The last band of the first plateau that the density rises to, and the signal from."""
     begin = first
-    while begin + PLATEAU <= len(density) and begin < LOWEST:
+    while begin + NOISE.plateau <= len(density) and begin < NOISE.lowest:
         after = _flat_from(density, error, begin)
-        if after - begin >= PLATEAU:
+        if after - begin >= NOISE.plateau:
             rest = np.append(density[after:], slower)
-            rises = np.max(rest) > ABOVE * np.max(density[begin:after])
+            rises = np.max(rest) > NOISE.above * np.max(density[begin:after])
             return after - 1 if rises else None
-        if density[begin + 1] < density[begin] / FLAT:
+        if density[begin + 1] < density[begin] / NOISE.flat:
             return None  # a hump: signal
         begin += 1
     return None
@@ -188,14 +164,16 @@ def _plateau_below(density: Vector, slower: float, error: Vector, first: int) ->
 
 def _of_differences(values: Vector, t: Vector | None) -> NoiseEstimate:
     """The least of differences of several orders, divided by the norm of their weights."""
-    orders = [order for order in ORDERS if order + 2 <= max(len(values) // 3, ORDERS[0] + 2)]
+    most = max(len(values) // 3 - 2, NOISE.orders[0])
+    orders = [order for order in NOISE.orders if order <= most]
     found = [_difference(values, t, order) for order in orders]
     if t is not None:
         even = [_difference(values, None, order) for order in orders]
         found = even if min(even) < min(found) else found
     least = min(found)
-    level = next(size for size in found if size <= FALLING * least)  # the first that sees no signal
-    spread = 1 + 3 / max(len(values) - ORDERS[0], 1) ** 0.5
+    # the first that sees no signal
+    level = next(size for size in found if size <= NOISE.falling * least)
+    spread = 1 + 3 / max(len(values) - NOISE.orders[0], 1) ** 0.5
     falls = level == found[-1] or len(found) < 3
     low = level / spread * (0.3 if falls else 1.0)
     return NoiseEstimate(level, low, level * spread, "differences of high order")

@@ -13,14 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.library import SENSOR_TERMS
+from tracewire.residual.limits import CRITERION
 from tracewire.residual.segment import Segment
 from tracewire.residual.sensor import Sensor
 from tracewire.solve import SpanRuns
 
 Vector = NDArray[np.float64]
 Cube = NDArray[np.float64]
-STEP = 1e-3
-"""Of a sample interval: how far to each side a signal is sampled for its rate."""
 
 
 class ObservationModel:
@@ -60,7 +59,7 @@ class ObservationModel:
         looks: Vector = np.array([t - sensor.delay for sensor in self.sensors])
         if not self.rates:
             return looks
-        step = STEP * float(np.median(np.diff(t))) if len(t) > 1 else STEP
+        step = CRITERION.rate_step * (float(np.median(np.diff(t))) if len(t) > 1 else 1.0)
         return np.concatenate([looks, looks - step, looks + step])
 
     @property

@@ -5,18 +5,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.residual.limits import READING
+
 Vector = NDArray[np.float64]
 MAD = 1.4826
 """The standard deviation of normal numbers over their median absolute value."""
 INTERPOLATED = {1: 1, 2: 1, 4: 3}
 """By the order of differences that vanish between the own samples of an interpolated record (held,
 straight lines, cubic pieces): how many of them see an own sample."""
-LARGEST_FACTOR, FEWEST_OWN, QUIET = 64, 20, 0.03
-"""Of an interpolation that is looked for; own samples; how small differences between them are."""
-OUTLIER = 8.0
-"""Standard deviations from the mean of both neighbours: such a sample is an outlier."""
-FEWEST_STEPS, MOST_PARTS, COARSE = 8, 8, 1e3
-"""Gaps between readings that show a step, steps of the least gap, and of the median gap."""
 
 
 def replace_outliers(values: Vector) -> Vector:
@@ -26,7 +22,9 @@ def replace_outliers(values: Vector) -> Vector:
     spread = MAD * float(np.median(size))
     around = np.maximum(np.append(size[1:], 0.0), np.append(0.0, size[:-1]))
     outliers = (
-        (size > OUTLIER * spread) & (size > around) & (size > 2 * np.abs(values[2:] - values[:-2]))
+        (size > READING.outlier * spread)
+        & (size > around)
+        & (size > 2 * np.abs(values[2:] - values[:-2]))
     )
     if spread == 0 or not outliers.any():
         return values
@@ -41,13 +39,13 @@ def rounding_step(values: Vector) -> float:
     steps = np.diff(distinct)
     size = float(np.ptp(values))
     steps = steps[steps > 1e-9 * size]
-    if len(steps) < FEWEST_STEPS:
+    if len(steps) < READING.fewest_steps:
         return 0.0
     least = float(np.median(steps[steps < 1.2 * np.min(steps)]))
-    for parts in range(1, MOST_PARTS + 1):  # the least gap may be several steps
+    for parts in range(1, READING.most_parts + 1):  # the least gap may be several steps
         multiples = steps * parts / least
         near = np.abs(multiples - np.round(multiples)) < 0.05
-        if np.median(multiples) < COARSE and np.mean(near) > 0.95:
+        if np.median(multiples) < READING.coarse and np.mean(near) > 0.95:
             return least / parts
     return 0.0
 
@@ -61,12 +59,14 @@ def interpolation(values: Vector) -> tuple[int, int]:
     for order, loud in INTERPOLATED.items():
         bent = np.abs(np.diff(values, order))
         found = 1, 0
-        for factor in range(loud + 1, min(LARGEST_FACTOR, len(bent) // FEWEST_OWN) + 1):
+        largest = min(READING.largest_factor, len(bent) // READING.fewest_own)
+        for factor in range(loud + 1, largest + 1):
             rows = len(bent) // factor
             by_phase = bent[: rows * factor].reshape(rows, factor)
             usual = np.median(by_phase, axis=0)
             between = np.argsort(usual)[:-loud]
-            if np.max(np.mean(by_phase[:, between], axis=0)) < QUIET * np.sort(usual)[-loud]:
+            rest = np.max(np.mean(by_phase[:, between], axis=0))
+            if rest < READING.quiet * np.sort(usual)[-loud]:
                 first = int(np.argmax(np.convolve(np.tile(usual, 2), np.ones(loud), "valid")))
                 found = factor, (first + (order + 1) // 2 + loud // 2) % factor
         if found[0] > 1:

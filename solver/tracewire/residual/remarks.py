@@ -16,19 +16,8 @@ from tracewire.errors import DataError, Problem
 from tracewire.formula import evaluate, quantity_hint, read_unit
 from tracewire.residual.endings import alike
 from tracewire.residual.inputs import line_error, looks_held, spline_if_smooth
+from tracewire.residual.limits import INPUT, REMARK
 from tracewire.residual.noise_estimate import noise_of_signal
-
-LARGEST_ANGLE = 20.0
-MUCH_LONGER = 100.0
-FAR = 10.0
-NEAR_PI = 0.3
-RESTING = 5
-"""Samples of exactly zero that are no passage through zero."""
-NOISIER = 10.0
-"""Samples that scatter by so many times the declared sigma are told: a wrong unit is a factor of 57
-(degrees for radians) or 1000, and the estimate was wrong by 7 on one record of 230."""
-LOST = 5e-3
-"""The part of an input's amplitude that straight lines lose, from which on it is told."""
 
 
 def check_quantities(model: Model, series: Series, record: Record) -> None:
@@ -77,14 +66,14 @@ def remarks_of(
             continue
         column = read.columns[name]
         low, high = usual_range(column)
-        if given.factor == 1.0 and high - low > LARGEST_ANGLE:
+        if given.factor == 1.0 and high - low > REMARK.largest_angle:
             found.append(
                 f"{name} goes from {column.min():.4g} to {column.max():.4g} rad: "
                 "is the column in degrees? Then say unit: deg"
             )
         elif name in states and name not in series.start:
             start = evaluate(states[name].start, values)
-            if abs(abs(float(column[0]) - start) - math.pi) < NEAR_PI:
+            if abs(abs(float(column[0]) - start) - math.pi) < REMARK.near_pi:
                 found.append(
                     f"{name} begins at {column[0]:.4g} rad, about pi from the diagram's start at "
                     f"{start:.4g} rad: is the angle measured from another line?"
@@ -124,7 +113,7 @@ def _on_hold(series: Series, read: Record) -> list[str]:
                 f"the input {name} looks held: most of its samples repeat the one before; if it "
                 "acts so, say hold: previous, if not, hold: linear"
             )
-        elif lost > LOST and spline_if_smooth(read.t, column) is None:
+        elif lost > INPUT.lost and spline_if_smooth(read.t, column) is None:
             found.append(
                 f"the input {name} has few samples a period: straight lines between them lose "
                 f"{100 * lost:.2g} % of its amplitude; say hold: smooth where it is smooth between "
@@ -143,7 +132,7 @@ def _on_sigma(model: Model, series: Series, read: Record) -> list[str]:
         sigma = channel.sigma * factor_of_column(read, name, channel)
         unit = read.unit(name).text or model.flat.units.get(name, "")
         seen, spread = noise_of_signal(column, read.t), float(np.std(column))
-        if seen.is_sure and seen.low > NOISIER * sigma:
+        if seen.is_sure and seen.low > REMARK.noisier * sigma:
             what = f"its samples scatter by {seen.level:.3g} {unit}".rstrip()
             what += f", {seen.level / sigma:.2g} times that"
         elif 0 < spread < sigma:
@@ -171,7 +160,7 @@ def _on_rest(model: Model, series: Series, read: Record) -> list[str]:
         first, last = edges[::2], edges[1::2] - 1
         if len(first) and (longest := int(np.argmax(last - first))) >= 0:
             a, b = int(first[longest]), int(last[longest])
-            if b - a >= RESTING:
+            if b - a >= REMARK.resting:
                 found.append(
                     f"the input {name} is exactly zero from {read.t[a]:g} to {read.t[b]:g} s: "
                     f"there '{guards[name]}' keeps one side, as if it moved; cut such stretches "
@@ -186,12 +175,12 @@ def _on_span(
     begin, end = (float(evaluate(side, values)) for side in model.flat.span)
     first, last = (float(t) - zero for t in (read.t[0], read.t[-1]))
     found = []
-    if last - first > MUCH_LONGER * (end - begin) and series.time.every is None:
+    if last - first > REMARK.much_longer * (end - begin) and series.time.every is None:
         found.append(
             f"the record is {last - first:g} s long, and the diagram's span {end - begin:g} s: "
             "is the time in ms? Then say time: {column: ..., unit: ms}"
         )
-    if abs(first - begin) > FAR * max(last - first, end - begin):
+    if abs(first - begin) > REMARK.far * max(last - first, end - begin):
         found.append(
             f"the first sample is at t = {first:.6g} s, far from the begin of the diagram at "
             f"{begin:g} s: say which time is t = 0, as in time: {{column: ..., zero: ...}}"

@@ -8,20 +8,11 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
+from tracewire.residual.limits import SPECTRUM
+
 Vector = NDArray[np.float64]
-LONG, SHORT = 64, 32
-"""Samples of a stretch for the highest octave; the fewer where the record is short."""
-ENOUGH = 384
-"""Samples from which on a record has the longer stretches."""
-SHAPE = 14.0
-"""Of Kaiser's window: its side lobes are at 1e-5 of the main one or less."""
-BINS = 2.1
-"""Neighbouring frequencies that this window makes one."""
 QUARTILE = -0.6745
 """Of normal numbers."""
-OVERLAP = 4
-FEWEST = 3
-"""Stretches of a record, at least."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,16 +41,16 @@ def spectrum_of(values: Vector) -> Spectrum:
     """
     from scipy.signal.windows import kaiser
 
-    length = LONG if len(values) >= ENOUGH else SHORT
+    length = SPECTRUM.long if len(values) >= SPECTRUM.enough else SPECTRUM.short
     bent = np.diff(values - np.mean(values), 2)
     high: list[float] = []
     density: list[float] = []
     error: list[float] = []
     calm: list[float] = []
     top = 0.5
-    while len(bent) >= length + (FEWEST - 1) * length // OVERLAP or not density:
-        window = kaiser(length, SHAPE)
-        rows = sliding_window_view(bent, length)[:: max(length // OVERLAP, 1)]
+    while len(bent) >= length + (SPECTRUM.fewest - 1) * length // SPECTRUM.overlap or not density:
+        window = kaiser(length, SPECTRUM.shape)
+        rows = sliding_window_view(bent, length)[:: max(length // SPECTRUM.overlap, 1)]
         rows = rows[np.ptp(rows, axis=1) > 0]
         if not len(rows):
             break
@@ -68,7 +59,7 @@ def spectrum_of(values: Vector) -> Spectrum:
         power[:, 1:] /= (2 * np.sin(np.pi * f[1:])) ** 4
         for end in (top, top / 2**0.5):
             inside = (f > end / 2**0.5) & (f <= end) & (f < 0.5)
-            freedom = 2 * max(np.sum(inside) / BINS, 0.5)
+            freedom = 2 * max(np.sum(inside) / SPECTRUM.bins, 0.5)
             band = np.mean(power[:, inside], axis=1)
             high.append(end)
             quarter, half = np.quantile(band, (0.25, 0.5)).tolist()

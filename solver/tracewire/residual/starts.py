@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from tracewire.compile import Model
 from tracewire.errors import OptionError, unknown
 from tracewire.formula import Name, evaluate
+from tracewire.residual.limits import WINDOW
 from tracewire.residual.measured import Measured
 from tracewire.residual.segment import Segment
 from tracewire.solve import parameter_values
@@ -15,8 +16,6 @@ from tracewire.solve import parameter_values
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 Rows = NDArray[np.intp]
-POINTS = 17
-DEGREE = 4
 
 
 def start_from_data(model: Model, measured: Measured, row: int) -> dict[str, float]:
@@ -33,8 +32,8 @@ def states_from_data(model: Model, measured: Measured, rows: Rows) -> dict[str, 
     off its derivative; other states are not in the result.
     """
     found: dict[str, Vector] = {}
-    first = np.clip(rows - POINTS // 2, 0, max(len(measured.t) - POINTS, 0))
-    near = first[:, None] + np.arange(min(POINTS, len(measured.t)))
+    first = np.clip(rows - WINDOW.points // 2, 0, max(len(measured.t) - WINDOW.points, 0))
+    near = first[:, None] + np.arange(min(WINDOW.points, len(measured.t)))
     states = {state.name: state for state in model.flat.states}
     for name, values in measured.values.items():
         if name not in states:
@@ -53,7 +52,7 @@ def _quartics(t: Matrix, signal: Matrix) -> tuple[Vector, Vector]:
     """The values (N,) and slopes (N,) at t = 0 of the quartics through signals (N, 17)."""
     middle, half = (t[:, -1] + t[:, 0]) / 2, (t[:, -1] - t[:, 0]) / 2
     half[half == 0] = 1.0
-    powers = np.arange(min(DEGREE, t.shape[1] - 1) + 1)
+    powers = np.arange(min(WINDOW.degree, t.shape[1] - 1) + 1)
     z = ((t - middle[:, None]) / half[:, None])[:, :, None] ** powers
     q, r = np.linalg.qr(z)
     quartic = np.linalg.solve(r, np.einsum("nij,ni->nj", q, signal)[:, :, None])[:, :, 0]

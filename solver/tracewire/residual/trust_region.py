@@ -10,15 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.residual.criterion import half_square
+from tracewire.residual.limits import DESCENT
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-FAST = 0.9
-"""A step that leaves less than this part of the criterion lets the next one do without a run for
-its derivatives."""
-SLOW, UNSEEN, STEADY = 6, 0.1, 0.3
-"""So many steps that together gain less than this in units of the noise's variance end a search,
-where the last of them still gains this part of the first: it creeps, and does not converge."""
 
 
 class LeastSquaresProblem(Protocol):
@@ -154,7 +149,7 @@ class _Jacobian:
         renewed = False
         if not np.array_equal(self.at[0], z):
             residual = self.vector(z)
-            if self.frugal and half_square(residual) < FAST * half_square(self.at[1]):
+            if self.frugal and half_square(residual) < DESCENT.fast * half_square(self.at[1]):
                 self.at, self.is_fresh = _broyden_update(self.at, z, residual), False
             else:
                 renewed = not self.is_fresh
@@ -165,9 +160,9 @@ class _Jacobian:
             self.best = z.copy()
             if self.callback is not None:
                 self.callback(z, value)
-        if self.frugal and len(self.values) > SLOW:
-            gains = -np.diff(self.values[-1 - SLOW :]) * len(self.at[1])
-            if gains.sum() < UNSEEN * value and gains[-1] > STEADY * gains[0]:
+        if self.frugal and len(self.values) > DESCENT.slow:
+            gains = -np.diff(self.values[-1 - DESCENT.slow :]) * len(self.at[1])
+            if gains.sum() < DESCENT.slow_gain * value and gains[-1] > DESCENT.steady * gains[0]:
                 raise _Stalled
         if renewed:
             raise _Refreshed

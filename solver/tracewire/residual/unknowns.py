@@ -10,11 +10,9 @@ from tracewire.compile import Model
 from tracewire.errors import OptionError, Place, Problem, unknown
 from tracewire.formula import names_of
 from tracewire.library import SENSOR_TERMS
+from tracewire.residual.limits import CRITERION
 from tracewire.residual.measured import Measured
 from tracewire.residual.segment import Unknown, own_name
-
-TINY = 1e-6
-"""Of the width between its bounds: a value closer to zero says nothing of its size."""
 
 
 def free_unknowns(
@@ -58,7 +56,7 @@ def _outside(
 def _size(value: float, width: float) -> float:
     """The size by which a number is scaled that begins at a value between bounds."""
     width = width if np.isfinite(width) else 0.0
-    return max(abs(value), TINY * width) if value else 0.1 * (width or 1.0)
+    return max(abs(value), CRITERION.tiny * width) if value else 0.1 * (width or 1.0)
 
 
 def sensor_unknowns(measured: Sequence[Measured]) -> list[Unknown]:

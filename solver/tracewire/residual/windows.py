@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.residual.criterion import Criterion
+from tracewire.residual.limits import WINDOW
 from tracewire.residual.linearisation import Linearisation, Projection
 from tracewire.residual.measured import Measured
 from tracewire.residual.past import longest_delay
@@ -24,12 +25,6 @@ from tracewire.residual.starts import start_from_data, whole_segment
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-REMEMBERED = 0.1
-"""The part of a series by which a run begins ahead of a window, so that what a model remembers is
-what the record has made it: two time constants of a lag that the record shows ten times."""
-AHEAD = 2.0
-"""How many delays of a sensor a window's run begins ahead of its first sample: a fit may find a
-longer delay than it began with."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +75,7 @@ def with_lead_in(model: Model, segment: Segment, delays: Mapping[str, float]) ->
     measured, first = segment.measured, float(segment.t[0])
     signals = segment.signals
     delay = max(delays.get(f"delay.{name}", measured.sensor(name).delay) for name in signals)
-    begin = first - AHEAD * delay
+    begin = first - WINDOW.ahead * delay
     if not segment.free or segment.begin <= begin:
         return segment
     row = int(np.searchsorted(measured.t, begin, side="right")) - 1
@@ -98,7 +93,7 @@ def with_memory(model: Model, segments: Sequence[Segment]) -> list[Segment]:
         known = set(model.states) <= set(segment.free)
         known &= not any(mode.kind == "memory" for mode in model.modes)
         follows = n > 0 and segment.continues(segments[n - 1])
-        row = max(int(segment.rows[0]) - 1 - int(REMEMBERED * len(segment.measured.t)), 0)
+        row = max(int(segment.rows[0]) - 1 - int(WINDOW.remembered * len(segment.measured.t)), 0)
         ahead = segment.measured.t[row] < segment.begin
         if known or not segment.free or follows or not ahead:
             found.append(segment)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.files import replacing, write_file
+from tracewire.show.limits import SCENE
 from tracewire.show.scene import COLORS, add_part, extent_of, moved_parts, required_scene
 from tracewire.show.style import cut, styled
 from tracewire.solve import Run
@@ -24,20 +25,6 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
 ENDINGS = (".gif", ".mp4")
-MOST_FRAMES = 5000
-WIDTHS = (100, 2000)
-DOTS = 100.0
-"""Pixels per inch: a text of 10 points is 14 pixels high."""
-TICK = 0.01
-"""Seconds: the pause between two pictures of a GIF is a multiple of it."""
-HEAD = 0.45
-"""Inches above the scene, for the title and the time."""
-LEAST_HEIGHT, MOST_HEIGHT = 0.3, 1.5
-"""Of the scene, over its width."""
-SHADES = 16
-"""Of each colour in a GIF: the edge of a shape is mixed with the white around it."""
-LETTER = 6.3
-"""Pixels that a letter of the title is wide."""
 
 Tell = Callable[[float], None]
 
@@ -96,25 +83,27 @@ def frame_times(
     if not (0 < speed < math.inf and 1 <= fps <= 100):
         what = f"a film with speed {speed:g} and {fps:g} pictures in a second cannot be made"
         raise OptionError([Problem(what, hint="Give a speed above 0, and fps from 1 to 100.")])
-    if not WIDTHS[0] <= width <= WIDTHS[1]:
+    if not SCENE.widths[0] <= width <= SCENE.widths[1]:
         what = f"a picture cannot be {width} pixels wide"
-        raise OptionError([Problem(what, hint=f"Give a width from {WIDTHS[0]} to {WIDTHS[1]}.")])
+        hint = f"Give a width from {SCENE.widths[0]} to {SCENE.widths[1]}."
+        raise OptionError([Problem(what, hint=hint)])
     begin, end = span
     if not begin < end:
         what = f"the span from {begin:g} to {end:g} s is empty"
         raise OptionError([Problem(what, hint="Give a begin before the end.")])
     step = _pause(path, fps) * speed
     count = math.floor((end - begin) / step * (1 + 1e-12)) + 1
-    if count > MOST_FRAMES:
+    if count > SCENE.most_frames:
         what = f"a film of {end - begin:g} s with speed {speed:g} has {count} pictures"
-        hint = f"At most {MOST_FRAMES} are made: give a shorter span, a higher speed, or fewer fps."
+        hint = f"At most {SCENE.most_frames} are made: "
+        hint += "give a shorter span, a higher speed, or fewer fps."
         raise OptionError([Problem(what, hint=hint)])
     return np.asarray(np.minimum(begin + step * np.arange(count), end))
 
 
 def _pause(path: Path, fps: float) -> float:
     """The time in s from one picture to the next."""
-    return max(round(1 / fps / TICK), 1) * TICK if path.suffix == ".gif" else 1 / fps
+    return max(round(1 / fps / SCENE.tick), 1) * SCENE.tick if path.suffix == ".gif" else 1 / fps
 
 
 def _frames(run: Run, times: NDArray[np.float64], width: int, tell: Tell) -> Iterator[Image]:
@@ -126,19 +115,19 @@ def _frames(run: Run, times: NDArray[np.float64], width: int, tell: Tell) -> Ite
     parts = moved_parts(run)
     left, right, bottom, top = extent_of(parts)
     middle, tall = (bottom + top) / 2, (top - bottom) / (right - left)
-    tall = min(max(tall, LEAST_HEIGHT), MOST_HEIGHT)
-    inches = width / DOTS
-    height = inches * tall + HEAD
+    tall = min(max(tall, SCENE.least_height), SCENE.most_height)
+    inches = width / SCENE.dots
+    height = inches * tall + SCENE.head
     # ffmpeg wants even numbers of pixels
-    size = (2 * (width // 2) / DOTS, 2 * round(height * DOTS / 2) / DOTS)
-    figure = Figure(figsize=size, dpi=DOTS)
+    size = (2 * (width // 2) / SCENE.dots, 2 * round(height * SCENE.dots / 2) / SCENE.dots)
+    figure = Figure(figsize=size, dpi=SCENE.dots)
     canvas: Any = FigureCanvasAgg(figure)  # its methods have no types
-    panel = figure.add_axes((0, 0, 1, 1 - HEAD / height))
+    panel = figure.add_axes((0, 0, 1, 1 - SCENE.head / height))
     panel.set_axis_off()
     across = max(right - left, (top - bottom) / tall)
     panel.set_xlim((left + right - across) / 2, (left + right + across) / 2)
     panel.set_ylim(middle - across * tall / 2, middle + across * tall / 2)
-    title = cut(run.title, max(int((width - 110) / LETTER), 3))
+    title = cut(run.title, max(int((width - 110) / SCENE.letter), 3))
     figure.text(0.02, 0.985, title, va="top", fontsize=10)
     clock = figure.text(0.98, 0.985, "", va="top", ha="right", fontsize=10, color="#555555")
     clock.set_fontfamily("monospace")
@@ -203,7 +192,7 @@ def _ms(seconds: float) -> int:
 def _palette() -> list[int]:
     """The colours of parts with their shades up to white: red, green, blue, red, ..."""
     colors = np.array([[int(text[n : n + 2], 16) for n in (1, 3, 5)] for text in COLORS.values()])
-    white = np.linspace(0.0, 1.0, SHADES)[:, None, None]
+    white = np.linspace(0.0, 1.0, SCENE.shades)[:, None, None]
     shades = colors * (1 - white) + 255.0 * white
     found: list[int] = np.rint(shades).astype(int).ravel().tolist()
     return found

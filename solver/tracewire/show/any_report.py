@@ -12,6 +12,7 @@ from tracewire.show.document import Figure, Report, Section
 from tracewire.show.event_rows import is_tick
 from tracewire.show.figures import plot_run
 from tracewire.show.fit_report import fit_report
+from tracewire.show.limits import WORD
 from tracewire.show.summary import event_counts, events_table, run_table
 from tracewire.show.table import Table, shown
 from tracewire.show.trace_report import trace_report
@@ -19,8 +20,6 @@ from tracewire.solve import Run
 from tracewire.trace import Found
 
 NUMERIC = frozenset({1})
-MOST_EVENTS = 40
-"""Rows of the log of events in a report."""
 
 
 def report(
@@ -59,11 +58,11 @@ def _events(run: Run) -> Section:
     told = [event for event in run.events if not is_tick(run, event)] or list(run.events)
     ticks = len(run.events) - len(told)
     texts = []
-    if len(told) > MOST_EVENTS:
-        texts.append(f"The first {MOST_EVENTS} of {len(told)}.")
+    if len(told) > WORD.most_events:
+        texts.append(f"The first {WORD.most_events} of {len(told)}.")
     if ticks:
         texts.append(f"{ticks} ticks of the clocks of sampled blocks are left out.")
-    table = replace(events_table(run, told[:MOST_EVENTS]), title="")
+    table = replace(events_table(run, told[: WORD.most_events]), title="")
     return Section("The events", (" ".join(texts),) if texts else (), (table,))
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tracewire.analyse import Bifurcation, Branch, PoincareSection
 from tracewire.errors import OptionError, Problem
+from tracewire.show.limits import FIGURE
 from tracewire.show.plane_figures import check_names, square
 from tracewire.show.style import LINES, QUIET, panels, save, styled, with_unit
 
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 BAND = "#F6E7D8"
 ARROWS = {"up": "values going up →", "down": "← values going down", "apart": "each from the start"}
-MOST_PANELS = 8
-MOST_BANDS = 3  # the widest of them are named
 
 
 def plot_bifurcation(found: Bifurcation, path: str | Path, states: Sequence[str] = ()) -> Path:
@@ -33,9 +32,9 @@ def plot_bifurcation(found: Bifurcation, path: str | Path, states: Sequence[str]
     names = list(states) or list(found.states[:1])
     check_names(names, found.states, "state")
     count = len(names) * len(found.branches)
-    if not 1 <= count <= MOST_PANELS:
+    if not 1 <= count <= FIGURE.branch_panels:
         what = f"{count} panels make no figure"
-        hint = f"Name 1 to {MOST_PANELS // max(len(found.branches), 1)} states."
+        hint = f"Name 1 to {FIGURE.branch_panels // max(len(found.branches), 1)} states."
         raise OptionError([Problem(what, hint=hint)])
     with styled():
         tall = 3.6 if count == 1 else 2.7 if count == 2 else 2.0
@@ -79,12 +78,12 @@ def _draw_branch(panel: Axes, found: Bifurcation, branch: Branch, name: str, tit
     )
     panel.set_ylabel(with_unit(name, found.units.get(name, "")))
     if titled:
-        widest = sorted(branch.bands, key=lambda band: band[0] - band[1])[:MOST_BANDS]
+        widest = sorted(branch.bands, key=lambda band: band[0] - band[1])[: FIGURE.most_bands]
         bands = ", ".join(
             f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
             for low, high in sorted(widest)
         )
-        more = " ..." if len(branch.bands) > MOST_BANDS else ""
+        more = " ..." if len(branch.bands) > FIGURE.most_bands else ""
         told = f"irregular (shaded): {bands}{more}" if bands else "no irregular motion"
         panel.set_title(
             f"{ARROWS[branch.direction]}     {told}", loc="left", fontsize=9, color="#555555"

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from tracewire.errors import OptionError, Problem
 from tracewire.fit import Comparison
+from tracewire.show.limits import FIGURE, FIT, WORD
 from tracewire.show.style import (
     AFTER,
     BAND,
     BEFORE,
     MEASURED,
-    NOTHING,
     QUIET,
     UNCOUNTED,
     USES,
@@ -35,14 +35,6 @@ from tracewire.show.style import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-MOST_COMPARISONS = 12
-MANY_POINTS = 5000
-"""A vector picture holds more points than this as pixels: its file would be slow to open."""
-FAR = 4.0
-"""A model before the fit that is this many times as far away is left out of the axis' limits, and
-the residual after the fit has a strip of its own."""
-RESOLVED = 1e-9
-"""What changes by less than this part of its size is drawn as constant."""
 
 ENLARGED = "the residual after, enlarged"
 
@@ -61,8 +53,8 @@ def plot_comparisons(path: str | Path, comparisons: Sequence[Comparison], title:
     if not comparisons:
         what = "a figure of no measured signal cannot be drawn"
         raise OptionError([Problem(what, hint="Compare at least one series.")])
-    title = shortened(title, len(comparisons), MOST_COMPARISONS, "signals")
-    chosen = comparisons[:MOST_COMPARISONS]
+    title = shortened(title, len(comparisons), FIT.most_comparisons, "signals")
+    chosen = comparisons[: FIT.most_comparisons]
     with styled():
         heights = [[2.3, 1.0, *([1.0] if differ_much(c) else [])] for c in chosen]
         figure, axes = panels([h for each in heights for h in each], title, sharex=False)
@@ -80,7 +72,7 @@ def differ_much(compared: Comparison) -> bool:
     """Whether the residual after the fit would be flat on the scale of the one before."""
     before, after = compared.residual_before, compared.residual_after
     old, new = (root_mean_square(x, compared.counts) for x in (before, after))
-    return bool(np.isfinite(old) and old > FAR * new > 0)
+    return bool(np.isfinite(old) and old > FIT.far * new > 0)
 
 
 def draw_comparison(upper: Axes, lower: Axes, compared: Comparison, now: str = "after") -> None:
@@ -88,12 +80,12 @@ def draw_comparison(upper: Axes, lower: Axes, compared: Comparison, now: str = "
     t, counts = compared.t, compared.counts
     left_before, left_after = compared.residual_before, compared.residual_after
     before, after = compared.measured - left_before, compared.measured - left_after
-    points = dots(len(t)) | {"rasterized": len(t) > MANY_POINTS}
+    points = dots(len(t)) | {"rasterized": len(t) > FIGURE.many_points}
     upper.plot(t[counts], compared.measured[counts], label="measured", **points)
     if not counts.all():
         upper.plot(t[~counts], compared.measured[~counts], **points | {"alpha": 0.2})
     # the dashes above the line: both are seen where they agree
-    many = len(t) > MANY_POINTS
+    many = len(t) > FIGURE.many_points
     upper.plot(t, _unjoined(before, compared.period), "--", color=BEFORE, linewidth=1.1, zorder=3,
                label="before", rasterized=many)  # fmt: skip
     upper.plot(t, _unjoined(after, compared.period), color=AFTER, label=now, rasterized=many)
@@ -125,10 +117,10 @@ def limit(panel: Axes, shown: Sequence[Vector], far: Vector) -> None:
         return
     low, high = float(near.min()), float(near.max())
     size = max(abs(low), abs(high))
-    span = high - low if high - low > RESOLVED * size else size or 1.0
+    span = high - low if high - low > FIT.resolved * size else size or 1.0
     if len(far):
-        low = max(min(low, float(far.min())), low - FAR / 2 * span)
-        high = min(max(high, float(far.max())), high + FAR / 2 * span)
+        low = max(min(low, float(far.min())), low - FIT.far / 2 * span)
+        high = min(max(high, float(far.max())), high + FIT.far / 2 * span)
     margin = 0.05 * max(high - low, span)
     panel.set_ylim(low - margin, high + margin)
 
@@ -159,7 +151,7 @@ def _draw_enlarged(panel: Axes, compared: Comparison) -> None:
     """Draw the residual after the fit alone, with a scale of its own."""
     after = compared.residual_after
     _draw_noise(panel, compared.sigma)
-    many = len(after) > MANY_POINTS
+    many = len(after) > FIGURE.many_points
     panel.plot(compared.t, after, color=AFTER, linewidth=0.8, rasterized=many)
     limit(panel, (_counted(after, compared), _edges(compared.sigma)), np.array([]))
     panel.set_ylabel(with_unit("after", compared.unit).replace(" ", "\n", 1))
@@ -199,7 +191,7 @@ def _write_titles(upper: Axes, lower: Axes, compared: Comparison, now: str) -> N
     )
     before = root_mean_square(compared.residual_before, compared.counts)
     after = root_mean_square(compared.residual_after, compared.counts)
-    if compared.sigma and after < NOTHING * compared.sigma:
+    if compared.sigma and after < WORD.nothing * compared.sigma:
         after = 0.0
     unit = f" {compared.unit}" if compared.unit else ""
     words = [

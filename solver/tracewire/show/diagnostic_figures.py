@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from tracewire.errors import OptionError, Problem
 from tracewire.fit import Diagnosis, Fit, Profile, diagnose
-from tracewire.fit.diagnostics import DOUBT
+from tracewire.fit.limits import DIAGNOSIS
+from tracewire.show.limits import FIGURE, FIT
 from tracewire.show.style import (
     AFTER,
     BAND,
@@ -21,7 +22,6 @@ from tracewire.show.style import (
     MEASURED,
     QUIET,
     USES,
-    WIDTH,
     cut,
     dots,
     fit_time,
@@ -34,11 +34,6 @@ from tracewire.show.style import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-MOST_ROWS = 12
-MOST_PROFILES = 24
-MOST_POINTS = 4000
-FACES = 4.5
-"""The histogram reaches this many root mean squares to each side."""
 
 Vector = NDArray[np.float64]
 
@@ -56,15 +51,16 @@ def plot_diagnostics(fit: Fit, path: str | Path, found: Sequence[Diagnosis] | No
     if not found:
         what = "no measured signal has enough samples for a diagnosis of its residual"
         raise OptionError([Problem(what)])
-    title = shortened("What is left after the fit", len(found), MOST_ROWS, "signals")
-    shown = found[:MOST_ROWS]
+    title = shortened("What is left after the fit", len(found), FIT.most_residuals, "signals")
+    shown = found[: FIT.most_residuals]
     inputs = {m.name: m.inputs for m in fit.measured}
     driven = any(inputs[d.series] for d in shown)
     columns = 4 if driven else 3
     with styled():
         from matplotlib.figure import Figure
 
-        figure = Figure(figsize=(WIDTH + driven, 2.0 * len(shown) + 0.8), layout="constrained")
+        size = (FIGURE.width + driven, 2.0 * len(shown) + 0.8)
+        figure = Figure(figsize=size, layout="constrained")
         figure.suptitle(f"{title}; bands: ±2 of the noise, and where white noise would stay",
                         fontsize=12, x=0.01, ha="left")  # fmt: skip
         grid = figure.subplots(
@@ -92,7 +88,7 @@ def _times(fit: Fit, one: Diagnosis) -> Vector:
 
 def _draw_time(panel: Axes, one: Diagnosis, t: Vector) -> None:
     panel.axhspan(-2 * one.noise, 2 * one.noise, color=BAND, linewidth=0, zorder=0.2)
-    points = dots(len(t)) | {"color": AFTER, "rasterized": len(t) > MOST_POINTS}
+    points = dots(len(t)) | {"color": AFTER, "rasterized": len(t) > FIT.residual_points}
     panel.plot(t, one.residual, **points)
     panel.axhline(0.0, color=QUIET, linewidth=0.7)
     panel.set_ylabel(f"residual\n[{one.unit}]" if one.unit else "residual")
@@ -121,7 +117,7 @@ def _draw_autocorrelation(panel: Axes, one: Diagnosis) -> None:
     panel.set_ylabel("autocorrelation")
     plain_numbers(panel.xaxis, panel.yaxis)
     word = "white" if one.is_white else f"correlated over {one.memory:.2g} s"
-    if one.is_white and one.whiteness < DOUBT:
+    if one.is_white and one.whiteness < DIAGNOSIS.doubt:
         word = "correlated, too little to matter"
     panel.set_title(word, loc="left", fontsize=8.5, color=color, pad=5)
 
@@ -129,10 +125,11 @@ def _draw_autocorrelation(panel: Axes, one: Diagnosis) -> None:
 def _draw_histogram(panel: Axes, one: Diagnosis) -> None:
     panel.set_visible(one.size > 0)
     if one.size > 0:
-        relative = np.clip(one.residual / one.size, -FACES, FACES)
+        low, high = -FIT.histogram, FIT.histogram
+        relative = np.clip(one.residual / one.size, low, high)
         bins = int(np.clip(2 * len(relative) ** (1 / 3), 7, 41))
-        panel.hist(relative, bins=bins, range=(-FACES, FACES), density=True, color=AFTER, alpha=0.5)
-        x = np.linspace(-FACES, FACES, 181)
+        panel.hist(relative, bins=bins, range=(low, high), density=True, color=AFTER, alpha=0.5)
+        x = np.linspace(low, high, 181)
         panel.plot(x, np.exp(-(x**2) / 2) / math.sqrt(2 * math.pi), color=MEASURED, linewidth=1.1)
     panel.set_yticks([])
     panel.set_xticks([-3, 0, 3])
@@ -157,7 +154,7 @@ def _draw_cross_correlation(panel: Axes, one: Diagnosis, inputs: dict[str, Vecto
         if size > 0:
             cross = correlate(x, y)[count - 1 :][: len(one.lags)] / size
             panel.plot(one.lags * one.step, cross, color=LINES[n % len(LINES)], label=cut(name, 14))
-        if one.independence.get(name, 1.0) < DOUBT:
+        if one.independence.get(name, 1.0) < DIAGNOSIS.doubt:
             words.append(cut(name, 14))
     panel.axhline(0.0, color=QUIET, linewidth=0.7)
     low, high = panel.get_ylim()
@@ -185,14 +182,14 @@ def plot_profiles(profiles: Sequence[Profile], path: str | Path) -> Path:
             "Compute one with profile(fit, name).",
         )
         raise OptionError([Problem(what, hint=hint)])
-    title = shortened("Profile likelihood", len(profiles), MOST_PROFILES, "values")
-    shown = profiles[:MOST_PROFILES]
+    title = shortened("Profile likelihood", len(profiles), FIT.most_profiles, "values")
+    shown = profiles[: FIT.most_profiles]
     columns = min(len(shown), 3)
     rows = -(-len(shown) // columns)
     with styled():
         from matplotlib.figure import Figure
 
-        figure = Figure(figsize=(WIDTH if columns > 1 else 5.5, 2.6 * rows + 0.6),
+        figure = Figure(figsize=(FIGURE.width if columns > 1 else 5.5, 2.6 * rows + 0.6),
                         layout="constrained")  # fmt: skip
         figure.suptitle(title, fontsize=12, x=0.01, ha="left")
         grid = figure.subplots(rows, columns, squeeze=False)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tracewire.diagram import Diagram, find_signal, split_index
 from tracewire.draw import Drawing, Needed, draw
 from tracewire.show.document import Figure
+from tracewire.show.limits import TRACE
 from tracewire.show.trace_law import along, depends_on, has_law, is_function, is_sure, means_over
 from tracewire.trace import Force, Found, Missing, signal_of, unit_at
 
@@ -19,10 +20,6 @@ MEASURED = "blue names are measured"
 ADDED = "green is what the trace added"
 LACKING = "amber is where something is missing that no effect explains"
 NEEDED = "the plot below a sum is what the data need there"
-MOST_POINTS = 80
-"""Of a line in a plot that is 100 px wide."""
-AMONG = (0.1, 0.5, 0.9)
-"""Quantiles of a second variable at which a force over two variables is drawn."""
 
 Vector = NDArray[np.float64]
 
@@ -123,13 +120,13 @@ def _rows(missing: Missing) -> Iterator[tuple[Vector, NDArray[np.bool_]]]:
         yield torque, density > 0
     elif len(missing.grid) == 2:
         weight = np.cumsum(density.sum(axis=0))
-        numbers = np.searchsorted(weight, np.array(AMONG) * weight[-1])
+        numbers = np.searchsorted(weight, np.array(TRACE.among) * weight[-1])
         for number in dict.fromkeys(numbers.tolist()):
             yield torque[:, number], density[:, number] > 0
 
 
 def _line(x: Vector, y: Vector) -> tuple[tuple[float, float], ...]:
-    every = np.unique(np.linspace(0, len(x) - 1, min(len(x), MOST_POINTS)).astype(int))
+    every = np.unique(np.linspace(0, len(x) - 1, min(len(x), TRACE.law_points)).astype(int))
     return tuple(zip(x[every].tolist(), y[every].tolist(), strict=True))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
+from tracewire.show.limits import FIGURE
 from tracewire.show.sticking import Interval, joined, stick_intervals
 from tracewire.show.style import EDGE, MARK, QUIET, STICK, cut
 from tracewire.solve import Event, Run
@@ -12,7 +13,6 @@ from tracewire.solve import Event, Run
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-MOST_ROWS = 8
 STRONG = ("impact", "reset", "rest")
 """Events that change a state, or end a motion."""
 TICK = "tick"
@@ -20,19 +20,14 @@ TICK = "tick"
 WEAK = ("crossing", "scheduled", "transition", TICK)
 CLOCK = "clock of "
 """How the guard of a clock begins."""
-WIDTH = 700
-"""Marks nearer to each other than this part of the span cannot be told apart: they are a bar, from
-the first mark to the last one, which are drawn, as a bar can be thinner than a pixel."""
-DENSE = 0.45
-"""The opacity of such a bar, which would be the loudest part of the figure."""
 
 
 def event_rows(run: Run) -> list[str]:
     """The blocks that had events, in the order of the first, and one row for all that are left."""
     names = list(dict.fromkeys(event.block for event in run.events))
-    if len(names) <= MOST_ROWS:
+    if len(names) <= FIGURE.event_rows:
         return names
-    return [*names[: MOST_ROWS - 1], f"{len(names) - MOST_ROWS + 1} others"]
+    return [*names[: FIGURE.event_rows - 1], f"{len(names) - FIGURE.event_rows + 1} others"]
 
 
 def is_tick(run: Run, event: Event) -> bool:
@@ -64,7 +59,7 @@ def draw_events(panel: Axes, run: Run, rows: Sequence[str], shaded: bool = False
     counts = [0] * len(rows)
     for event in run.events:
         counts[position.get(event.block, last)] += 1
-    apart = _span(run) / WIDTH
+    apart = _span(run) / FIGURE.apart
     for kinds, color, half in ((WEAK, QUIET, 0.2), (STRONG, MARK, 0.38)):
         for row in range(len(rows)):
             times = [
@@ -74,7 +69,7 @@ def draw_events(panel: Axes, run: Run, rows: Sequence[str], shaded: bool = False
             ]
             groups = joined(((time, time) for time in times), apart)
             many = [(begin, end) for begin, end in groups if end > begin]
-            _draw_bars(panel, many, row, half, facecolor=color, alpha=DENSE, linewidth=0)
+            _draw_bars(panel, many, row, half, facecolor=color, alpha=FIGURE.dense, linewidth=0)
             marks = list(dict.fromkeys(time for ends in groups for time in ends))
             panel.vlines(marks, row - half, row + half, color=color, linewidth=0.9)
     labels = (f"{cut(name)} ({count})" for name, count in zip(rows, counts, strict=True))

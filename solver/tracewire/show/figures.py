@@ -10,6 +10,7 @@ import numpy as np
 
 from tracewire.errors import OptionError, Problem
 from tracewire.show.event_rows import draw_events, event_rows, jump_times
+from tracewire.show.limits import FIGURE
 from tracewire.show.sticking import held_intervals
 from tracewire.show.style import (
     LINES,
@@ -28,13 +29,6 @@ if TYPE_CHECKING:
 
     from tracewire.residual import Measured
 
-MOST_LINES = 4
-MOST_PANELS = 16
-MOST_STRIKES = 60
-"""More lines than these through a panel would hide what they mark."""
-SCALE_APART = 20.0
-"""Signals whose ranges differ by more than this would hide each other in one panel."""
-
 
 def plot_run(run: Run, path: str | Path, measured: Measured | None = None) -> Path:
     """Draw a run to a .png, .svg or .pdf file, with the samples of a measured series as dots.
@@ -49,7 +43,7 @@ def plot_run(run: Run, path: str | Path, measured: Measured | None = None) -> Pa
     if not groups:
         hint = "Name signals under `record:` of the diagram."
         raise OptionError([Problem("the run has no recorded signals to draw", hint=hint)])
-    shown = groups[:MOST_PANELS]
+    shown = groups[: FIGURE.most_panels]
     rows = event_rows(run)
     title = run.title
     if len(shown) < len(groups):
@@ -65,7 +59,7 @@ def plot_run(run: Run, path: str | Path, measured: Measured | None = None) -> Pa
                 for begin, end in held.get(name, ()):
                     panel.axvspan(begin, end, color=color, alpha=0.13, linewidth=0, zorder=0)
             times = jump_times(run, names)
-            for time in times if len(times) <= MOST_STRIKES else ():
+            for time in times if len(times) <= FIGURE.most_strikes else ():
                 panel.axvline(time, color=MARK, alpha=0.45, linewidth=0.6, zorder=0.5)
         if rows:
             draw_events(axes[-1], run, rows, shaded=bool(held))
@@ -86,8 +80,8 @@ def group_signals(run: Run) -> list[list[str]]:
         unit = run.look(name).unit
         for n, group in enumerate(groups):
             alike = run.look(group[0]).unit == unit != ""
-            near = max(extent, ranges[n]) <= SCALE_APART * min(extent, ranges[n])
-            if alike and near and len(group) < MOST_LINES:
+            near = max(extent, ranges[n]) <= FIGURE.scale_apart * min(extent, ranges[n])
+            if alike and near and len(group) < FIGURE.most_lines:
                 group.append(name)
                 break
         else:

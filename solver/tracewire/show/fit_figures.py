@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tracewire.errors import OptionError, Problem
+from tracewire.show.limits import FIT
 from tracewire.show.style import (
     AFTER,
     BEFORE,
@@ -28,7 +29,6 @@ from tracewire.show.style import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-MOST_SERIES = 12
 
 Vector = NDArray[np.float64]
 
@@ -52,8 +52,8 @@ def plot_fit(
         raise OptionError(
             [Problem(what, hint="Give at least one series, and one unit or one each.")]
         )
-    title = shortened(title, len(table), MOST_SERIES, "series")
-    table = table[:MOST_SERIES]
+    title = shortened(title, len(table), FIT.most_series, "series")
+    table = table[: FIT.most_series]
     with styled():
         figure, axes = panels([2.3, 1.0] * len(table), title, sharex=False)
         for n, ((name, columns), shown) in enumerate(zip(table, units, strict=False)):
@@ -108,8 +108,8 @@ def plot_residual(
     if not table:
         what = "a figure of no series cannot be drawn"
         raise OptionError([Problem(what, hint="Give at least one series.")])
-    title = shortened(title, len(table), MOST_SERIES, "series")
-    table = table[:MOST_SERIES]
+    title = shortened(title, len(table), FIT.most_series, "series")
+    table = table[: FIT.most_series]
     found = windows or {}
     with styled():
         figure, axes = panels([1.9] * len(table), title, sharex=False)

@@ -29,12 +29,9 @@ from tracewire.show.fit_tables import (
     starts_table,
     tied_table,
 )
+from tracewire.show.limits import FIT
 from tracewire.show.parameter_figures import plot_convergence, plot_correlation, plot_parameters
 from tracewire.show.table import Table, shown
-
-ALIKE = 0.95
-"""Two values whose errors are correlated more than this are told in a sentence."""
-MOST_PAIRS = 6
 
 ERRORS = (
     "The standard error says how much a value would scatter if the same experiment were repeated "
@@ -148,11 +145,12 @@ def _alike(fit: Fit) -> list[str]:
         (float(matrix[i, j]), names[j], names[i])
         for i in range(len(names))
         for j in range(i)
-        if abs(matrix[i, j]) > ALIKE
+        if abs(matrix[i, j]) > FIT.correlated
     ]
     pairs.sort(key=lambda pair: -abs(pair[0]))
-    told = [f"{one} and {other} ({value:.4g})" for value, one, other in pairs[:MOST_PAIRS]]
-    return told + ([f"{len(pairs) - MOST_PAIRS} more pairs"] if len(pairs) > MOST_PAIRS else [])
+    told = [f"{one} and {other} ({value:.4g})" for value, one, other in pairs[: FIT.most_pairs]]
+    more = len(pairs) - FIT.most_pairs
+    return told + ([f"{more} more pairs"] if more > 0 else [])
 
 
 def _compared(fit: Fit) -> Section:

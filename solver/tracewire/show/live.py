@@ -15,20 +15,12 @@ from numpy.typing import NDArray
 from tracewire.fit import Comparison
 from tracewire.fit.optimset import OptimValues
 from tracewire.show.comparison_figures import draw_comparison
-from tracewire.show.style import AFTER, QUIET, STYLE, WIDTH, align_ylabels, save
+from tracewire.show.limits import FIGURE, LIVE
+from tracewire.show.style import AFTER, QUIET, STYLE, align_ylabels, save
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-SHARE = 0.1
-"""The part of a search's time that all its pictures together may take."""
-FIRST_COST = 0.15
-"""What a picture is supposed to cost in s before one has been drawn."""
-SOONEST = 0.1
-THINNING = 0.02
-"""The next frame waits for this part of the time so far: frames thin out in a long search."""
-MOST_FRAMES = 500
-MOST_SIGNALS = 4
 
 Vector = NDArray[np.float64]
 
@@ -51,7 +43,7 @@ class LivePlot(ABC):
         self._iteration = 0
         self._given_up = self._told = False
         self._began = self._last = time.perf_counter()
-        self._spent, self._cost = 0.0, FIRST_COST
+        self._spent, self._cost = 0.0, LIVE.first_cost
         self._frames = 0
         self._window: int | str | None = None
 
@@ -96,7 +88,7 @@ class LivePlot(ABC):
         self._running = True
         _RUNNING.add(self)
         self._began = self._last = time.perf_counter()
-        self._spent, self._cost = 0.0, FIRST_COST
+        self._spent, self._cost = 0.0, LIVE.first_cost
         self._frames = 0
         self._given_up = self._told = False
         self._window = None
@@ -104,10 +96,10 @@ class LivePlot(ABC):
 
     def _may_draw(self, now: float) -> bool:
         elapsed = now - self._began
-        share = SHARE / max(len(_RUNNING), 1)
+        share = LIVE.share / max(len(_RUNNING), 1)
         return (
-            self._frames < MOST_FRAMES
-            and now - self._last >= max(SOONEST, THINNING * elapsed)
+            self._frames < LIVE.most_frames
+            and now - self._last >= max(LIVE.soonest, LIVE.thinning * elapsed)
             and self._spent + self._cost <= share * elapsed
         )
 
@@ -126,7 +118,7 @@ class LivePlot(ABC):
         if self._window is not None and not pyplot.fignum_exists(self._window):
             self._given_up = True  # its window was closed
             return
-        figure = pyplot.figure(self.name, figsize=(WIDTH, 4.5))
+        figure = pyplot.figure(self.name, figsize=(FIGURE.width, 4.5))
         figure.clear()
         if not self.paint(figure, x, values):
             pyplot.close(figure)
@@ -140,7 +132,7 @@ class LivePlot(ABC):
     def _save(self, x: Vector, values: OptimValues, last: bool) -> None:
         from matplotlib.figure import Figure
 
-        figure = Figure(figsize=(WIDTH, 4.5))
+        figure = Figure(figsize=(FIGURE.width, 4.5))
         if not self.paint(figure, x, values):
             return
         if self._frames == 0:
@@ -238,7 +230,7 @@ class FitPlot(LivePlot):
             self._given_up = True
             return False
         shown = _chosen(values.comparisons())
-        figure.set_size_inches(WIDTH, 3.1 * len(shown) + 0.9)
+        figure.set_size_inches(FIGURE.width, 3.1 * len(shown) + 0.9)
         axes: Any = figure.subplots(
             2 * len(shown), 1, squeeze=False, height_ratios=[2.3, 1.0] * len(shown)
         )[:, 0]
@@ -262,7 +254,7 @@ def _leave_margins(figure: Figure, top: float = 0.4) -> None:
 
 def _chosen(comparisons: tuple[Comparison, ...]) -> list[Comparison]:
     ordered = sorted(comparisons, key=lambda c: c.use != "train")
-    return ordered[:MOST_SIGNALS]
+    return ordered[: LIVE.most_signals]
 
 
 def _interactive() -> bool:

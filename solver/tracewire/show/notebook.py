@@ -10,13 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tracewire.errors import OptionError
+from tracewire.show.limits import FIGURE
 from tracewire.show.style import STYLE, drawn
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-MOST_VECTOR = 400_000
-"""Bytes up to which a figure is SVG; one of very many samples is smaller as PNG."""
 
 
 def pictures_by(plot: Callable[[Any, Path], object]) -> Callable[[Any], str]:
@@ -43,7 +41,7 @@ def figure_image(figure: Figure) -> str:
     with rc_context(STYLE):
         file = io.BytesIO()
         figure.savefig(file, format="svg", metadata={"Date": None})
-        if file.tell() <= MOST_VECTOR:
+        if file.tell() <= FIGURE.vector_bytes:
             return _image("svg+xml", file.getvalue(), words)
         file = io.BytesIO()
         figure.savefig(file, format="png")

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from tracewire.errors import OptionError, Problem
 from tracewire.fit import Fit
+from tracewire.show.limits import FIGURE, FIT
 from tracewire.show.style import (
     AFTER,
     BEFORE,
     LINES,
     MARK,
     QUIET,
-    WIDTH,
     cut,
     panels,
     save,
@@ -29,11 +29,6 @@ from tracewire.show.style import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-MOST_ROWS = 40
-MOST_LINES = 24
-MOST_NUMBERS = 16
-"""Correlations of more parameters than this are colours without numbers."""
-STRONG = 0.995
 PLACES = (
     "value, its 95 % interval (bar) and the value before (hollow),\n"
     "between the bounds where these are given"
@@ -53,12 +48,12 @@ def plot_parameters(fit: Fit, path: str | Path) -> Path:
     names = list(fit.values)
     if not names:
         raise OptionError([Problem("a figure of no parameters cannot be drawn")])
-    title = shortened("Parameters", len(names), MOST_ROWS, "parameters")
-    shown = names[:MOST_ROWS]
+    title = shortened("Parameters", len(names), FIT.most_parameters, "parameters")
+    shown = names[: FIT.most_parameters]
     with styled():
         from matplotlib.figure import Figure
 
-        figure = Figure(figsize=(WIDTH, 0.32 * len(shown) + 1.5), layout="constrained")
+        figure = Figure(figsize=(FIGURE.width, 0.32 * len(shown) + 1.5), layout="constrained")
         left, right = figure.subplots(1, 2, sharey=True, width_ratios=[3, 2])
         figure.suptitle(title, fontsize=12, x=0.01, ha="left")
         for row, name in enumerate(shown):
@@ -169,10 +164,10 @@ def plot_correlation(fit: Fit, path: str | Path) -> Path:
     if len(found.names) < 2:
         hint = "Free a second parameter."
         raise OptionError([Problem("a correlation needs two parameters", hint=hint)])
-    names = [cut(name, 18) for name in found.names[:MOST_ROWS]]
+    names = [cut(name, 18) for name in found.names[: FIT.most_parameters]]
     count = len(names)
     matrix = np.array(found.correlation)[:count, :count]
-    side = float(np.clip(0.5 * count + 2.0, 4.0, WIDTH))
+    side = float(np.clip(0.5 * count + 2.0, 4.0, FIGURE.width))
     with styled():
         from matplotlib import colormaps
         from matplotlib.figure import Figure
@@ -190,7 +185,7 @@ def plot_correlation(fit: Fit, path: str | Path) -> Path:
         for spine in panel.spines.values():
             spine.set_visible(False)
         figure.colorbar(image, shrink=0.7, ticks=[-1, -0.5, 0, 0.5, 1])
-        title = shortened("Correlation", len(found.names), MOST_ROWS, "parameters")
+        title = shortened("Correlation", len(found.names), FIT.most_parameters, "parameters")
         figure.suptitle(title, fontsize=12, x=0.01, ha="left")
         return save(figure, path)
 
@@ -202,9 +197,9 @@ def _write_numbers(panel: Axes, matrix: NDArray[np.float64]) -> None:
             value = float(matrix[row, column])
             if not math.isfinite(value):
                 text = "–"
-            elif count > MOST_NUMBERS or row == column:
+            elif count > FIT.most_numbers or row == column:
                 continue
-            elif abs(value) >= STRONG:  # 1.00 would say that it is a tie
+            elif abs(value) >= FIT.strong:  # 1.00 would say that it is a tie
                 text = f"{value:.4f}".replace("0.", ".")
             else:
                 text = f"{value:.2f}".replace("0.", ".")
@@ -223,7 +218,7 @@ def plot_convergence(fit: Fit, path: str | Path) -> Path:
         raise OptionError([Problem("the fit has no history of its search to draw")])
     count = np.array([entry.evaluations for entry in fit.history], dtype=float)
     best = np.array([entry.criterion for entry in fit.history])
-    title = shortened("Convergence", len(fit.values), MOST_LINES, "parameters")
+    title = shortened("Convergence", len(fit.values), FIT.most_paths, "parameters")
     end = max(float(fit.evaluations), float(count[-1]))
     with styled():
         figure, (upper, lower) = panels([2.2, 2.8], title)
@@ -257,7 +252,7 @@ def _draw_values(
     names = list(history[-1])
     most = 24 if len(names) <= 14 else 18
     styles = ("-", "--", "-.", ":")
-    for n, name in enumerate(names[:MOST_LINES]):
+    for n, name in enumerate(names[: FIT.most_paths]):
         values = np.array([entry[name] for entry in history])
         # a value that ends near zero, such as an offset, is measured by the largest it had
         size = abs(values[-1])

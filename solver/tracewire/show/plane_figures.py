@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tracewire.analyse import PeriodicOrbit
 from tracewire.errors import OptionError, Problem, unknown
+from tracewire.show.limits import FIGURE
 from tracewire.show.sticking import held_intervals
 from tracewire.show.style import LINES, MARK, QUIET, save, styled, with_unit
 from tracewire.solve import Run
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Vector = NDArray[np.float64]
-SIDE = 5.6
-MANY_POINTS = 5000
 
 
 def plot_portrait(run: Run, x: str, y: str, path: str | Path, since: float = -np.inf) -> Path:
@@ -35,7 +34,7 @@ def plot_portrait(run: Run, x: str, y: str, path: str | Path, since: float = -np
     chosen = _since(run, since)
     with styled():
         figure, panel = square(run.title)
-        many = len(run.t[chosen]) > MANY_POINTS
+        many = len(run.t[chosen]) > FIGURE.many_points
         across, up = run.as_shown(x)[chosen], run.as_shown(y)[chosen]
         _draw_path(panel, across, up, many)
         sticks = _sticks(run, x, y)[chosen]
@@ -66,7 +65,7 @@ def plot_polar(run: Run, radius: str, angle: str, path: str | Path, since: float
     with styled():
         figure, panel = square(run.title)
         across, up = r * np.sin(phi), -r * np.cos(phi)
-        _draw_path(panel, across, up, len(r) > MANY_POINTS)
+        _draw_path(panel, across, up, len(r) > FIGURE.many_points)
         mark_start(panel, across[0], up[0])
         panel.plot(0, 0, marker="+", color=MARK, markersize=9)
         panel.set_aspect("equal", adjustable="datalim")
@@ -124,7 +123,7 @@ def square(title: str) -> tuple[Figure, Axes]:
     """A figure with one square panel."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(SIDE, SIDE), layout="constrained")
+    figure = Figure(figsize=(FIGURE.plane_side, FIGURE.plane_side), layout="constrained")
     panel = figure.subplots()
     if title:
         figure.suptitle(title, fontsize=12, x=0.01, ha="left")
@@ -138,8 +137,8 @@ def mark_start(panel: Axes, x: float, y: float) -> None:
 
 def _draw_path(panel: Axes, x: Vector, y: Vector, rasterized: bool) -> None:
     """A line through all points. Of a longer one Matplotlib leaves a gap where it parts it."""
-    for begin in range(0, max(len(x) - 1, 1), MANY_POINTS):
-        piece = slice(begin, begin + MANY_POINTS + 1)
+    for begin in range(0, max(len(x) - 1, 1), FIGURE.many_points):
+        piece = slice(begin, begin + FIGURE.many_points + 1)
         panel.plot(x[piece], y[piece], color=LINES[0], linewidth=0.9, rasterized=rasterized)
 
 

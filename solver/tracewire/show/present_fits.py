@@ -8,16 +8,15 @@ from tracewire.fit import Fit, Profile
 from tracewire.show.diagnostic_figures import plot_profiles
 from tracewire.show.fit_report import plot_fitted
 from tracewire.show.fit_tables import fit_tables, fit_text, fit_words
+from tracewire.show.limits import WORD
 from tracewire.show.notebook import pictures_by
 from tracewire.show.presentation import Part, Presentation
 from tracewire.show.table import Table, shown
 
-MOST_NAMES = 4
-
 
 def _in_a_line(fit: Fit) -> str:
     values = [f"{name} = {shown(value)}" for name, value in fit.values.items()]
-    some = ", ".join(values[:MOST_NAMES]) + (", ..." if len(values) > MOST_NAMES else "")
+    some = ", ".join(values[: WORD.most_names]) + (", ..." if len(values) > WORD.most_names else "")
     return f"{fit.model.flat.title or 'a fit'}, {some}, by {fit.method}"
 
 

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from tracewire.show.figures import plot_run
+from tracewire.show.limits import WORD
 from tracewire.show.notebook import pictures_by
 from tracewire.show.presentation import Part, Presentation
 from tracewire.show.summary import run_data, run_table, run_text
 from tracewire.show.table import Table, shown
 from tracewire.solve import Run, Runs
 
-MOST_NAMES = 4
-MOST_ROWS = 100
-
 
 def _run_in_a_line(run: Run) -> str:
     names = list(run.signals)
-    some = ", ".join(names[:MOST_NAMES]) + (", ..." if len(names) > MOST_NAMES else "")
+    some = ", ".join(names[: WORD.most_names]) + (", ..." if len(names) > WORD.most_names else "")
     return (
         f"{run.title or 'a run'}, {run.t[0]:g} to {run.t[-1]:g} s, {len(run.t)} samples of "
         f"{some or 'no signal'}, {len(run.events)} events"
@@ -36,10 +34,10 @@ def _runs_table(runs: Runs) -> Table:
     columns = [*runs.parameters.values(), *runs.final.T]
     rows = tuple(
         (str(n), *(shown(float(column[n])) for column in columns))
-        for n in range(min(len(runs), MOST_ROWS))
+        for n in range(min(len(runs), WORD.most_rows))
     )
     header = ("row", *runs.parameters, *(f"end of {name}" for name in runs.states))
-    more = f" (the first {MOST_ROWS} of {len(runs)})" if len(runs) > MOST_ROWS else ""
+    more = f" (the first {WORD.most_rows} of {len(runs)})" if len(runs) > WORD.most_rows else ""
     return Table(f"runs, in SI{more}", header, rows, frozenset(range(len(header))))
 
 

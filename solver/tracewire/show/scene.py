@@ -13,6 +13,7 @@ from tracewire.compile import Model
 from tracewire.diagram import ScenePart
 from tracewire.errors import FormulaError, OptionError, Problem
 from tracewire.formula import evaluate_along
+from tracewire.show.limits import SCENE
 from tracewire.show.style import LINES, QUIET
 from tracewire.solve import Run
 
@@ -30,13 +31,6 @@ COLORS = {
 }
 USUAL = {"rod": "black", "spring": "black", "disc": "blue", "box": "blue", "ground": "grey"}
 TRACED = "orange"
-SPRING = 0.05
-"""The usual width of a spring as a part of the extent of the scene."""
-MOST_COILS = 100
-LARGEST = 1e100
-"""In m: a scene beyond cannot be put into pixels."""
-HATCHES = 24
-"""Strokes under a piece of ground."""
 
 
 @dataclass(frozen=True)
@@ -106,9 +100,9 @@ def _moved(part: ScenePart, values: Mapping[str, float | Vector], count: int) ->
         what = f"a {part.kind} of the scene cannot be drawn: {error.problems[0].what}"
         raise OptionError([Problem(what, part.place, hint=hint)]) from error
     coils = sizes.get("coils", np.ones(1))[0]
-    if not 1 <= coils <= MOST_COILS:
+    if not 1 <= coils <= SCENE.most_coils:
         what = f"a spring with {coils:g} coils cannot be drawn"
-        raise OptionError([Problem(what, part.place, hint=f"Give it 1 to {MOST_COILS}.")])
+        raise OptionError([Problem(what, part.place, hint=f"Give it 1 to {SCENE.most_coils}.")])
     usual = TRACED if part.kind == "trace" else USUAL[part.kind]
     return Moved(part.kind, points, sizes, COLORS[part.color or usual])
 
@@ -126,7 +120,7 @@ def extent_of(parts: list[Moved]) -> tuple[float, float, float, float]:
                 high.append((points + part.reach).max(axis=0))
     least, most = np.min(low, axis=0), np.max(high, axis=0)
     largest = float(np.abs([least, most]).max())
-    if not largest < LARGEST:
+    if not largest < SCENE.largest:
         what = f"the scene reaches as far as {largest:g} m, and cannot be drawn"
         raise OptionError([Problem(what, hint="Give a shorter span, or draw what stays near.")])
     # a point alone, and one far away, have a surrounding, too
@@ -173,7 +167,7 @@ def _spring(panel: Axes, part: Moved, t: Vector, size: float) -> tuple[list[Arti
         way = end - begin
         length = float(np.hypot(*way))
         normal = np.array([-way[1], way[0]]) / length if length else np.zeros(2)
-        width = float(part.sizes["width"][k]) if "width" in part.sizes else SPRING * size
+        width = float(part.sizes["width"][k]) if "width" in part.sizes else SCENE.spring * size
         wire.set_data(*(begin + np.outer(along, way) + np.outer(across, width * normal)).T)
 
     return [wire], update
@@ -217,13 +211,14 @@ def _box(panel: Axes, part: Moved, t: Vector, size: float) -> tuple[list[Artist]
 def _ground(panel: Axes, part: Moved, t: Vector, size: float) -> tuple[list[Artist], Update]:
     from matplotlib.collections import LineCollection
 
-    lines = LineCollection([], colors=part.color, linewidths=[2.0] + [0.8] * HATCHES, zorder=1)
+    widths = [2.0] + [0.8] * SCENE.hatches
+    lines = LineCollection([], colors=part.color, linewidths=widths, zorder=1)
     panel.add_collection(lines, autolim=False)
 
     def update(k: int) -> None:
         length = float(part.sizes["length"][k])
-        deep = min(0.03 * size, abs(length) / HATCHES * 1.5)
-        at = np.linspace(-0.5, 0.5, HATCHES + 1)[1:] * length
+        deep = min(0.03 * size, abs(length) / SCENE.hatches * 1.5)
+        at = np.linspace(-0.5, 0.5, SCENE.hatches + 1)[1:] * length
         strokes = [np.array([[x, 0.0], [x - deep, -deep]]) for x in at]
         turn = _turn(part.sizes["angle"][k])
         pieces = [np.array([[-length / 2, 0.0], [length / 2, 0.0]]), *strokes]

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tracewire.errors import OptionError, Problem
-from tracewire.show.figures import MOST_PANELS
+from tracewire.show.limits import FIGURE
 from tracewire.show.style import LINES, dots, fit_time, panels, save, shortened, styled, with_unit
 from tracewire.show.summary import extremes, with_label
 from tracewire.show.table import Table, shown
@@ -28,11 +28,11 @@ def plot_runs(runs: Mapping[str, Run], path: str | Path, measured: Measured | No
         hint = "Name signals under `record:` of the diagram."
         raise OptionError([Problem("the runs have no recorded signals to draw", hint=hint)])
     first = next(iter(runs.values()))
-    drawn = names[:MOST_PANELS]
+    drawn = names[: FIGURE.most_panels]
     tall = 2.4 if len(drawn) <= 3 else 1.6
     with styled():
         figure, axes = panels(
-            [tall] * len(drawn), shortened(first.title, len(names), MOST_PANELS, "panels")
+            [tall] * len(drawn), shortened(first.title, len(names), FIGURE.most_panels, "panels")
         )
         for panel, name in zip(axes, drawn, strict=True):
             if measured is not None and name in measured.values:

@@ -9,6 +9,7 @@ import numpy as np
 
 from tracewire.analyse import Drift, GrowthRate, Lyapunov, Scalogram, Spectrum
 from tracewire.errors import OptionError, Problem
+from tracewire.show.limits import FIGURE
 from tracewire.show.style import (
     LINES,
     MARK,
@@ -21,10 +22,6 @@ from tracewire.show.style import (
     with_unit,
 )
 
-FLOOR = 1e-5  # of the largest amplitude: what a logarithmic axis shows
-MOST_LABELS = 6
-MOST_PIXELS = 4000
-
 
 def plot_spectrum(found: Spectrum, path: str | Path, high: float | None = None) -> Path:
     """Draw an amplitude spectrum, logarithmic, with its largest lines named.
@@ -36,7 +33,7 @@ def plot_spectrum(found: Spectrum, path: str | Path, high: float | None = None) 
     if not top > 0:
         what = f"the spectrum of '{found.signal}' is zero"
         raise OptionError([Problem(what, hint="Draw a signal that moves.")])
-    seen = np.flatnonzero(found.amplitude > 10 * FLOOR * top)
+    seen = np.flatnonzero(found.amplitude > 10 * FIGURE.floor * top)
     end = high or 1.15 * float(found.frequency[seen[-1]]) or float(found.frequency[-1])
     end = min(end, float(found.frequency[-1]))
     with styled():
@@ -44,14 +41,14 @@ def plot_spectrum(found: Spectrum, path: str | Path, high: float | None = None) 
         chosen = found.frequency <= end
         panel.semilogy(
             found.frequency[chosen],
-            np.maximum(found.amplitude[chosen], FLOOR * top),
+            np.maximum(found.amplitude[chosen], FIGURE.floor * top),
             color=LINES[0],
             linewidth=0.9,
         )
         named: list[float] = []
         for line in found.lines:
             near = any(abs(line.frequency - other) < 0.08 * end for other in named)
-            if line.frequency > end or near or len(named) == MOST_LABELS:
+            if line.frequency > end or near or len(named) == FIGURE.most_labels:
                 continue
             named.append(line.frequency)
             panel.plot(line.frequency, line.amplitude, "o", color=MARK, markersize=3.5)
@@ -64,8 +61,8 @@ def plot_spectrum(found: Spectrum, path: str | Path, high: float | None = None) 
                 color=MARK,
             )
         panel.set_xlim(0, end)
-        panel.set_ylim(FLOOR * top, 4 * top)
-        plain_log(panel.yaxis, FLOOR * top, 4 * top)
+        panel.set_ylim(FIGURE.floor * top, 4 * top)
+        plain_log(panel.yaxis, FIGURE.floor * top, 4 * top)
         panel.set_xlabel("frequency [Hz]")
         panel.set_ylabel(with_unit(f"amplitude of {found.signal}", found.unit))
         return save(figure, path)
@@ -78,7 +75,7 @@ def plot_scalogram(found: Scalogram, path: str | Path) -> Path:
     """
     with styled():
         figure, (panel,) = panels([4.4], found.title)
-        every = max(1, len(found.t) // MOST_PIXELS)
+        every = max(1, len(found.t) // FIGURE.scalogram_pixels)
         mesh = panel.pcolormesh(
             found.t[::every],
             found.frequency,

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from tracewire.errors import OptionError, unknown
 from tracewire.files import replacing
+from tracewire.show.limits import FIGURE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,11 +22,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ENDINGS = (".png", ".svg", ".pdf")
-WIDTH = 9.0
-NOTHING = 1e-6
-"""An error of less than this part of the noise is 0."""
-PIECE = 10_000
-"""Points of a curve: a piece of one that is too long to be drawn as a whole."""
 
 # told apart with every kind of colour vision (Okabe and Ito, 2008)
 LINES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
@@ -92,7 +88,7 @@ def panels(
     """A figure with one panel above the other, of the given heights in inches."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(WIDTH, sum(heights) + 0.7), layout="constrained")
+    figure = Figure(figsize=(FIGURE.width, sum(heights) + 0.7), layout="constrained")
     grid = figure.subplots(
         len(heights), 1, sharex=sharex, squeeze=False, height_ratios=list(heights)
     )
@@ -123,7 +119,7 @@ def _write(figure: Figure, file: IO[bytes], **given: Any) -> None:
     try:
         figure.savefig(file, **given)
     except OverflowError:
-        with matplotlib.rc_context({"agg.path.chunksize": PIECE}):
+        with matplotlib.rc_context({"agg.path.chunksize": FIGURE.piece}):
             figure.savefig(file, **given)
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.diagram import Diagram
+from tracewire.show.limits import WORD
 from tracewire.show.table import Table, shown
 from tracewire.show.tidy import tidied
 
@@ -18,9 +19,6 @@ if TYPE_CHECKING:
     from tracewire.residual import Measured
     from tracewire.solve import Event, Run
 
-
-RUNAWAY = 1e9
-"""What grows this many times within a run has most likely a force with the wrong sign."""
 
 # --- diagrams and models ------------------------------------------------------------------------
 
@@ -97,8 +95,9 @@ def overview(model: Model) -> dict[str, object]:
 
 
 def runaway_remarks(run: Run) -> list[str]:
-    """The recorded signals that grow without end: from the first tenth to the last by `RUNAWAY`,
-    beside the largest signal of the unit, as a wave that arrives in a chain grows from nothing."""
+    """The recorded signals that grow without end: from the first tenth to the last by
+    `WORD.runaway`, beside the largest signal of the unit, as a wave that arrives in a chain grows
+    from nothing."""
     tenth = max(len(run.t) // 10, 1)
     found, largest = [], dict[str, float]()
     for name, values in run.signals.items():
@@ -107,7 +106,7 @@ def runaway_remarks(run: Run) -> list[str]:
     for name, values in run.signals.items():
         size = np.abs(values)
         early, late = float(size[:tenth].max()), float(size[-tenth:].max())
-        if early > 0 and late > RUNAWAY * largest[run.units.get(name, "")]:
+        if early > 0 and late > WORD.runaway * largest[run.units.get(name, "")]:
             found.append(
                 f"'{name}' grows from {early:.3g} to {late:.3g} and does not stop. "
                 "Is a sign wrong? "

@@ -9,7 +9,8 @@ import numpy as np
 
 from tracewire.analyse import StabilityChart, Sweep
 from tracewire.errors import OptionError, Problem
-from tracewire.show.style import LINES, WIDTH, cut, panels, save, styled, with_unit
+from tracewire.show.limits import FIGURE
+from tracewire.show.style import LINES, cut, panels, save, styled, with_unit
 
 if TYPE_CHECKING:
     from matplotlib.colors import Colormap
@@ -28,7 +29,7 @@ def plot_chart(chart: StabilityChart, path: str | Path) -> Path:
     with styled():
         from matplotlib.figure import Figure
 
-        figure = Figure(figsize=(WIDTH * 0.85, 5.2), layout="constrained")
+        figure = Figure(figsize=(FIGURE.width * 0.85, 5.2), layout="constrained")
         panel = figure.subplots()
         panel.grid(False)
         panel.set_facecolor("#D9D9D9")

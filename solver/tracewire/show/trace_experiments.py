@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from tracewire.show.limits import WORD
 from tracewire.trace import Experiment, Found
 
-LEAST_TOLD = 0.1
-"""A separation in sigma that needs no number."""
 START, AMPLITUDE, FREQUENCY = "start.", " amplitude", " frequency"
 
 
@@ -40,7 +39,8 @@ def experiment_words(found: Found, experiment: Experiment) -> str:
     others = [row["separation"] for row in experiment.map if {"separation"} < row.keys() <= keys]
     if len(others) > 1:
         low, high = min(others), max(*others, experiment.separation)
-        least = f"{low:.2g}" if low >= LEAST_TOLD else f"less than {LEAST_TOLD:g}"
+        enough = WORD.least_separation
+        least = f"{low:.2g}" if low >= enough else f"less than {enough:g}"
         told += f" (by {least} to {high:.2g} at the settings that were searched)"
     return f"{told}."
 

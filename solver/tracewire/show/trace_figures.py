@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from tracewire.fit import Comparison
 from tracewire.show.comparison_figures import plot_comparisons
+from tracewire.show.limits import TRACE
 from tracewire.show.style import (
     AFTER,
     BEFORE,
@@ -35,11 +36,6 @@ if TYPE_CHECKING:
 
 Vector = NDArray[np.float64]
 
-MOST_CURVES = 8
-MOST_CANDIDATES = 10
-UNLIKE = 8.0
-"""Where the largest residuals differ by more than this, that after has a panel of its own below."""
-
 
 def plot_residuals(found: Found, path: Path) -> Path:
     """Residuals in units of the noise within windows, before and after, with the windows' edges.
@@ -48,8 +44,8 @@ def plot_residuals(found: Found, path: Path) -> Path:
     enlarged.
     """
     chosen = [c for c in found.curves if len(c.windowed_before) == len(c.t)]
-    title = shortened("Residual within windows", len(chosen), MOST_CURVES, "signals")
-    chosen = chosen[:MOST_CURVES]
+    title = shortened("Residual within windows", len(chosen), TRACE.most_curves, "signals")
+    chosen = chosen[: TRACE.most_curves]
     with styled():
         changed = bool(found.effects)
         drawn = [
@@ -90,7 +86,7 @@ def plot_candidates(found: Found, path: Path) -> Path:
     steps = [(n, s) for n, s in enumerate(found.steps, start=1) if s.tried]
     refitted = [(n, s) for n, s in steps if any(math.isfinite(row.gain) for row in s.tried)]
     steps = refitted or steps[:1]  # where nothing stands out, nothing is seen
-    heights = [0.75 + 0.27 * min(len(step.tried), MOST_CANDIDATES) for _, step in steps]
+    heights = [0.75 + 0.27 * min(len(step.tried), TRACE.most_candidates) for _, step in steps]
     with styled():
         from matplotlib.figure import Figure
 
@@ -99,7 +95,7 @@ def plot_candidates(found: Found, path: Path) -> Path:
             len(steps), 2, squeeze=False, width_ratios=[2.4, 1], height_ratios=heights
         )
         for (left, right), (number, step) in zip(grid, steps, strict=True):
-            _draw_candidates(left, right, step.tried[:MOST_CANDIDATES])
+            _draw_candidates(left, right, step.tried[: TRACE.most_candidates])
             if compares(step):
                 left.set_xlabel("gain of prediction on held-out blocks")
                 right.set_visible(False)  # no part of a model is masked
@@ -119,7 +115,7 @@ def _unlike(curve: Curve) -> bool:
         float(np.nanmax(np.abs(x), initial=0.0))
         for x in (curve.windowed_before, curve.windowed_after)
     )
-    return before > UNLIKE * max(after, 1.0)
+    return before > TRACE.unlike * max(after, 1.0)
 
 
 def _draw_residual(panel: Axes, curve: Curve, changed: bool, alone: bool) -> None:

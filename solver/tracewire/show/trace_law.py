@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.errors import OptionError
+from tracewire.show.limits import TRACE
 from tracewire.show.style import (
     AFTER,
     BEFORE,
@@ -29,19 +30,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Vector = NDArray[np.float64]
-
-MOST_FORCES = 3
-MOST_DOTS = 4000
-BINS, LEAST_IN_BIN = 24, 8
-FINE = 60
-"""Bins in which it is asked whether the law is a function of one variable."""
-TIGHT, MOSTLY = 0.04, 0.9
-"""A law is drawn as a line where in most bins it varies by less than this part of its range."""
-SPIKES = 0.05
-NOISY = 0.5
-"""Samples that scatter by more than this part of the axis are noise, and are not drawn."""
-FAR = 3.0
-"""Means with an error of more than this many median errors set no limits."""
 
 
 def has_law(found: Found) -> bool:
@@ -95,7 +83,7 @@ def _chosen(found: Found) -> tuple[Force, ...]:
     chosen = [force for force in found.forces if len(force.needed)]
     if not chosen:
         raise OptionError.one("no place of a sum has got an effect")
-    return tuple(chosen[:MOST_FORCES])
+    return tuple(chosen[: TRACE.most_forces])
 
 
 def _label(force: Force, found: Found) -> str:
@@ -115,8 +103,8 @@ def _draw(panel: Axes, force: Force, over: int, found: Found) -> tuple[float, fl
     sure = is_sure(there)
     shown = [*means[sure], *(means - errors)[sure], *(means + errors)[sure], *force.fitted, 0.0]
     low, high = float(np.nanmin(shown)), float(np.nanmax(shown))
-    every = max(1, math.ceil(len(values) / MOST_DOTS))
-    if float(np.nanstd(force.needed - force.fitted)) < NOISY * (high - low):
+    every = max(1, math.ceil(len(values) / TRACE.most_dots))
+    if float(np.nanstd(force.needed - force.fitted)) < TRACE.noisy * (high - low):
         size = float(np.clip(70 / np.sqrt(max(len(values) / every, 1)), 1.5, 5))
         panel.plot(values[::every], force.needed[::every], color=MEASURED, alpha=0.25,
                    linestyle="", marker=".", markersize=size, rasterized=True, zorder=1,
@@ -152,10 +140,10 @@ def means_over(force: Force, over: int) -> Means:
 
 def is_sure(means: Means) -> NDArray[np.bool_]:
     """Which means have an error like that of most: where there are few data, they are far off."""
-    return np.asarray(means.error <= FAR * np.median(means.error))
+    return np.asarray(means.error <= TRACE.far * np.median(means.error))
 
 
-def binned(values: Vector, needed: Vector, bins: int = BINS) -> Means:
+def binned(values: Vector, needed: Vector, bins: int = TRACE.bins) -> Means:
     """Middles of bins with equally many samples, the mean there and its standard error.
 
     What is needed has spikes where windows begin and end: the outermost twentieth on either side
@@ -163,8 +151,9 @@ def binned(values: Vector, needed: Vector, bins: int = BINS) -> Means:
     """
     known = np.isfinite(values) & np.isfinite(needed)
     order = np.argsort(values[known], kind="stable")
-    parts = np.array_split(order, min(bins, max(len(order) // LEAST_IN_BIN, 1)))
-    x, y = values[known], np.clip(needed[known], *np.quantile(needed[known], [SPIKES, 1 - SPIKES]))
+    parts = np.array_split(order, min(bins, max(len(order) // TRACE.least_in_bin, 1)))
+    ends = np.quantile(needed[known], [TRACE.spikes, 1 - TRACE.spikes])
+    x, y = values[known], np.clip(needed[known], *ends)
     middles = np.array([np.median(x[part]) for part in parts])
     means = np.array([np.mean(y[part]) for part in parts])
     errors = np.array([np.std(y[part]) / math.sqrt(len(part)) for part in parts])
@@ -175,7 +164,7 @@ def is_function(values: Vector, law: Vector) -> bool:
     """Whether a law is a function of one variable, jumps included."""
     whole = float(np.ptp(law))
     spreads = np.array([float(np.std(part)) for part in _fine(values, law)])
-    return bool(np.mean(spreads <= TIGHT * whole) >= MOSTLY)
+    return bool(np.mean(spreads <= TRACE.tight * whole) >= TRACE.mostly)
 
 
 def _held_by(values: Vector, force: Force) -> float:
@@ -194,4 +183,4 @@ def _held_by(values: Vector, force: Force) -> float:
 def _fine(values: Vector, law: Vector) -> list[Vector]:
     """The law in narrow bins of a variable."""
     order = np.argsort(values, kind="stable")
-    return np.array_split(law[order], min(FINE, max(len(law) // LEAST_IN_BIN, 1)))
+    return np.array_split(law[order], min(TRACE.fine, max(len(law) // TRACE.least_in_bin, 1)))

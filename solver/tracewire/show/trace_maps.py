@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.show.limits import MAP
 from tracewire.show.style import (
     AFTER,
     BAND,
@@ -32,21 +33,7 @@ if TYPE_CHECKING:
 
 Matrix = NDArray[np.float64]
 SHARES, ALIKE, SEPARATION = "Blues", "Purples", "cividis"
-DARK = 0.6
-MOST_NINES = 3.0
-TIED = 0.985
-MOST_ALIKE = 16
-MOST_EXPERIMENTS = 3
-ALIKE_EVERYWHERE = 0.1
-"""Where the best experiment separates two effects by less sigma than this, its map is empty."""
-SHORT = 9
-"""Letters of a label that stands level below its column; longer ones are slanted."""
 SLANTED: dict[str, Any] = {"rotation": 35, "ha": "right", "rotation_mode": "anchor"}
-MOST_NUMBERS = 5
-"""Steps of the axis of a map; numbers with many digits do not touch then."""
-FEW, CROWDED = 0.05, 10.0
-"""Where the density of samples is less than this part of its largest, a map is pale. A body that
-rests piles them up: no density counts as more than this many times the median."""
 
 
 def plot_where(found: Found, path: Path) -> Path:
@@ -75,12 +62,12 @@ def _plot_shares(
         for (row, column), share in np.ndenumerate(shares):
             if np.isfinite(share):
                 text = percent(max(share, 0))
-                color = "white" if share > DARK else "#333333"
+                color = "white" if share > MAP.dark else "#333333"
                 panel.text(column, row, text, ha="center", va="center", color=color)
         if best is not None and best[1] in sets and best[0] in places:
             _outline(panel, (sets.index(best[1]), places.index(best[0])))
         labels = [cut(", ".join(names), 18) for names in sets]
-        if max(map(len, labels)) > SHORT:
+        if max(map(len, labels)) > MAP.short:
             panel.set_xticks(range(len(sets)), labels, **SLANTED)
         else:
             panel.set_xticks(range(len(sets)), labels)
@@ -106,7 +93,7 @@ def plot_missing(found: Found, path: Path) -> Path:
             _draw_map(figure, panel, missing, label)
             panel.set_ylabel(_variable(found, missing, 1))
         panel.set_xlabel(_variable(found, missing, 0))
-        panel.locator_params(axis="x", nbins=MOST_NUMBERS)
+        panel.locator_params(axis="x", nbins=MAP.most_ticks)
         return save(figure, path)
 
 
@@ -119,26 +106,27 @@ def _variable(found: Found, missing: Missing, number: int) -> str:
 def plot_confusable(found: Found, path: Path) -> Path:
     """How alike effects are on these data: 1 cannot be told apart by them."""
     names, matrix = found.confusable
-    names, matrix = names[:MOST_ALIKE], matrix[:MOST_ALIKE, :MOST_ALIKE]
+    names, matrix = names[: MAP.most_alike], matrix[: MAP.most_alike, : MAP.most_alike]
     size = len(names)
     with styled():
         figure, panel = _square(3.6 + 0.5 * size, 2.6 + 0.42 * size)
         # what matters is how far from 1 it is: 0.9 and 0.99 differ as 0.99 and 0.999
-        nines = -np.log10(np.maximum(1 - np.abs(matrix), 10.0**-MOST_NINES))
-        picture = panel.imshow(nines, cmap=ALIKE, vmin=0, vmax=MOST_NINES, aspect="auto")
+        nines = -np.log10(np.maximum(1 - np.abs(matrix), 10.0**-MAP.most_nines))
+        picture = panel.imshow(nines, cmap=ALIKE, vmin=0, vmax=MAP.most_nines, aspect="auto")
+        dark = MAP.dark * MAP.most_nines
         for (row, column), value in np.ndenumerate(np.abs(matrix)):
             if row != column and np.isfinite(value):
                 text = f"{value:.3f}"[1:] if value < 0.9995 else "1"
-                tied = value > TIED
+                tied = value > MAP.tied
                 panel.text(column, row, text, ha="center", va="center", fontsize=8,
-                           color="white" if nines[row, column] > DARK * MOST_NINES else "#333333",
+                           color="white" if nines[row, column] > dark else "#333333",
                            fontweight="bold" if tied else "normal")  # fmt: skip
                 if tied:
                     _outline(panel, (column, row))
         labels = [cut(name, 34) for name in names]
         panel.set_yticks(range(size), labels)
         panel.set_xticks(range(size), labels, **SLANTED)
-        panel.set_title(f"outlined: above {TIED}", loc="left", fontsize=9)
+        panel.set_title(f"outlined: above {MAP.tied}", loc="left", fontsize=9)
         _bare(panel)
         bar = figure.colorbar(picture, ax=panel, fraction=0.05, pad=0.02)
         ticks = (0.0, 0.5, 0.9, 0.97, 0.99, 0.999)
@@ -152,7 +140,7 @@ def plot_experiments(found: Found, path: Path) -> Path:
     """The separation of two effects over the settings of an experiment; a star marks the best."""
     from matplotlib.figure import Figure
 
-    chosen = [e for e in found.experiments if drawable(e)][:MOST_EXPERIMENTS]
+    chosen = [e for e in found.experiments if drawable(e)][: MAP.most_experiments]
     with styled():
         figure = Figure(figsize=(7.5, 3.6 * len(chosen) + 0.3), layout="constrained")
         grid = figure.subplots(len(chosen), 1, squeeze=False)
@@ -163,7 +151,7 @@ def plot_experiments(found: Found, path: Path) -> Path:
 
 def drawable(experiment: Experiment) -> bool:
     """Whether there is a setting that varied, and an experiment that tells the two apart."""
-    return experiment.separation > ALIKE_EVERYWHERE and bool(_settings(experiment))
+    return experiment.separation > MAP.alike_everywhere and bool(_settings(experiment))
 
 
 def _rows(experiment: Experiment) -> list[Mapping[str, float]]:
@@ -246,7 +234,7 @@ def _wide(values: Matrix) -> bool:
 def _draw_line(panel: Axes, missing: Missing) -> None:
     x, torque = missing.grid[0], np.ravel(missing.torque)
     density = np.ravel(missing.density)
-    many = density > FEW * _usual(density)
+    many = density > MAP.few * _usual(density)
     known = np.where(many, torque, np.nan)
     if not many.all():
         panel.plot(x, torque, color=QUIET, linewidth=1.0, linestyle="--", label="few samples")
@@ -267,11 +255,11 @@ def _draw_line(panel: Axes, missing: Missing) -> None:
 def _usual(density: Matrix) -> float:
     """The largest density that counts."""
     filled = density[density > 0]
-    return min(float(filled.max()), CROWDED * float(np.median(filled))) if filled.size else 1.0
+    return min(float(filled.max()), MAP.crowded * float(np.median(filled))) if filled.size else 1.0
 
 
 def _draw_map(figure: Figure, panel: Axes, missing: Missing, label: str) -> None:
-    known = np.where(missing.density > FEW * _usual(missing.density), missing.torque, np.nan)
+    known = np.where(missing.density > MAP.few * _usual(missing.density), missing.torque, np.nan)
     largest = float(np.nanmax(np.abs(known))) if np.isfinite(known).any() else 1.0
     picture = panel.pcolormesh(
         missing.grid[0], missing.grid[1], known.T, cmap="PuOr", vmin=-largest, vmax=largest,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tracewire.show.limits import TRACE
 from tracewire.show.style import AFTER, BAND, BEFORE, QUIET, cut, plain_log, save, styled
 from tracewire.show.trace_words import share_words
 from tracewire.trace import Explained, Found, HeldOut
@@ -16,10 +17,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 FLOOR = "#009E73"
-LEAST = 0.1
-"""In units of the noise: errors of less, as of a body at rest, are drawn here."""
-MOST_NAMED = 12
-"""So many series have their names over the blocks."""
 
 
 def plot_held_out(found: Found, path: Path) -> Path:
@@ -59,7 +56,8 @@ def _draw_share(panel: Axes, explained: Explained) -> None:
 
 def _draw_blocks(panel: Axes, held: HeldOut) -> None:
     at = np.arange(len(held.begin))
-    declared, best, floor = (np.maximum(x, LEAST) for x in (held.declared, held.best, held.floor))
+    errors = (held.declared, held.best, held.floor)
+    declared, best, floor = (np.maximum(x, TRACE.least_error) for x in errors)
     panel.vlines(at, best, declared, color=QUIET, linewidth=0.8, alpha=0.6, zorder=1)
     panel.plot(at, declared, color=BEFORE, marker="s", markersize=4.5, linestyle="",
                label="declared model")  # fmt: skip
@@ -71,7 +69,7 @@ def _draw_blocks(panel: Axes, held: HeldOut) -> None:
     panel.axhline(1.0, color=QUIET, linestyle=":", linewidth=1.0, label="noise (1 σ)")
     every = np.concatenate([held.declared, held.best, held.floor, [1.0]])
     every = every[np.isfinite(every) & (every > 0)]
-    low, high = max(0.8 * float(every.min()), LEAST), 1.25 * float(every.max())
+    low, high = max(0.8 * float(every.min()), TRACE.least_error), 1.25 * float(every.max())
     high *= (high / low) ** 0.15  # room for the names of the series
     panel.set_yscale("log")
     panel.set_ylim(low, high)
@@ -85,7 +83,7 @@ def _draw_blocks(panel: Axes, held: HeldOut) -> None:
     for name, count in names:
         if begin:
             panel.axvline(begin - 0.5, color=QUIET, linewidth=0.8)
-        if len(names) <= MOST_NAMED:
+        if len(names) <= TRACE.named_series:
             panel.text(begin - 0.4, 0.97, cut(name, 16), transform=panel.get_xaxis_transform(),
                        va="top", fontsize=8, color="#555555")  # fmt: skip
         begin += count

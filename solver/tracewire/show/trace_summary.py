@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
+from tracewire.show.limits import WORD
 from tracewire.show.trace_experiments import experiment_words
 from tracewire.show.trace_words import (
-    MOST_TOLD,
     SENSORS,
     both_of,
     common_powers,
@@ -25,10 +25,6 @@ from tracewire.show.trace_words import (
 )
 from tracewire.trace import Found, FoundEffect, Tie, TraceOptions, coefficient_of, unit_of_power
 
-LITTLE = 0.5
-"""The share of the excess below which the variables found explain little of it."""
-FAR = 2.0
-"""Times the noise from which on a null needs a word about what the noise is not."""
 RANDOM = (
     "a random disturbance of the motion (process noise), or something that is not measured, looks "
     "like that"
@@ -200,7 +196,7 @@ def _null(found: Found) -> list[str]:
     parts = []
     if not found.interrupted:
         parts.append("No effect of the library reduces it on unseen data.")
-        if found.s2_before**0.5 > FAR:
+        if found.s2_before**0.5 > WORD.far:
             parts.append(
                 "It is more than the noise that was assumed, and follows nothing that was tried: "
                 f"{RANDOM}, and so does a noise that is larger than assumed."
@@ -209,7 +205,7 @@ def _null(found: Found) -> list[str]:
         few = [
             f"{p.name} {place_words(p.place)} from {coefficient_of(p)} = "
             f"{p.smallest:.3g} {unit_of_power(found, p)}".rstrip()
-            for p in common_powers(found)[:MOST_TOLD]
+            for p in common_powers(found)[: WORD.most_told]
         ]
         parts.append(f"These data would have shown, for example, {both_of(few)} on.")
     return parts
@@ -243,7 +239,7 @@ def _left(found: Found) -> str:
 
 def _remains(found: Found) -> list[str]:
     parts = []
-    for left in found.remainder[:MOST_TOLD]:
+    for left in found.remainder[: WORD.most_told]:
         size, _, unit = remainder_numbers(found, left)
         size = f"{size} {unit}".rstrip()
         share = f"{left.in_sigma:.3g} σ, {percent(left.share)} of the error before"
@@ -271,7 +267,7 @@ def _unexplained(found: Found) -> list[str]:
         parts.append(f"If {names} is measured with such noise, say its `sigma:` and trace again.")
     elif found.missing is None:
         parts.append(f"The residual depends on nothing that was tried: {RANDOM}.")
-    elif found.missing.share < LITTLE:
+    elif found.missing.share < WORD.little:
         parts.append(f"The rest depends on no variable that was tried: {RANDOM}.")
     if found.effects:
         names = both_of([_named(found, effect) for effect in found.effects])

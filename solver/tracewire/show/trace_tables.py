@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from tracewire.show.limits import WORD
 from tracewire.show.table import Table, shown
 from tracewire.show.trace_experiments import settings_words
 from tracewire.show.trace_steps import compares, own_gain
@@ -26,9 +27,6 @@ from tracewire.trace import (
     users_unit,
 )
 
-MOST_POWERS, MOST_WHERE = 12, 8
-ALL = 10_000
-
 
 def trace_tables(found: Found) -> tuple[Table, ...]:
     """The tables of a trace that a terminal shows, without those that are empty.
@@ -42,12 +40,12 @@ def trace_tables(found: Found) -> tuple[Table, ...]:
         remainder_table(found),
         errors_table(found),
         moved_table(found),
-        where_table(found, MOST_WHERE),
-        remainder_where_table(found, MOST_WHERE),
+        where_table(found, WORD.most_where),
+        remainder_where_table(found, WORD.most_where),
         experiments_table(found),
         tried_table(found, screened=False),
         compared_table(found),
-        *([power_table(found, MOST_POWERS)] if found.verdict == "null" else []),
+        *([power_table(found, WORD.most_powers)] if found.verdict == "null" else []),
     )
     return tuple(table for table in tables if table.rows)
 
@@ -158,7 +156,7 @@ def compared_table(found: Found) -> Table:
     return Table("models compared by what they predict", header, rows, frozenset({0, 2, 3}))
 
 
-def power_table(found: Found, most: int = ALL) -> Table:
+def power_table(found: Found, most: int = WORD.report_rows) -> Table:
     """The smallest coefficient of each effect that these data would have shown."""
     powers = common_powers(found)
     rows = [
@@ -171,12 +169,12 @@ def power_table(found: Found, most: int = ALL) -> Table:
     return Table("what would have been seen", header, tuple(rows), frozenset({3}))
 
 
-def where_table(found: Found, most: int = ALL) -> Table:
+def where_table(found: Found, most: int = WORD.report_rows) -> Table:
     """On what the residual of the declared model depends, at which place, the best first."""
     return _depends(found, "where, and on what", found.dependences, most)
 
 
-def remainder_where_table(found: Found, most: int = ALL) -> Table:
+def remainder_where_table(found: Found, most: int = WORD.report_rows) -> Table:
     """On what the residual that is left depends, at which place, the best first."""
     return _depends(found, "what is left: where, and on what", found.remainder_depends, most)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from tracewire.show.limits import WORD
 from tracewire.show.trace_experiments import experiment_words
 from tracewire.show.trace_steps import decided_words
 from tracewire.show.trace_summary import noisy_words, ties_words
@@ -25,7 +26,6 @@ from tracewire.show.trace_words import (
 )
 from tracewire.trace import Found, FoundEffect, SearchStep, coefficient_of, signal_of, unit_of_power
 
-MOST_CHANNELS = 4
 NONE = "no effect of the library explains it"
 
 
@@ -50,7 +50,7 @@ def answer_lines(found: Found) -> tuple[str, ...]:
     if found.verdict == "null" and found.power:
         least = ", ".join(
             f"{p.name} {coefficient_of(p)} = {p.smallest:.2g} {unit_of_power(found, p)}".rstrip()
-            for p in common_powers(found)[:MOST_CHANNELS]
+            for p in common_powers(found)[: WORD.most_channels]
         )
         lines.append(f"  smallest coefficients that these data would show: {least}")
     return tuple(lines)
@@ -141,7 +141,7 @@ def _error_lines(found: Found) -> list[str]:
 
 def _remainder_lines(found: Found) -> list[str]:
     lines = []
-    for left in found.remainder[:MOST_CHANNELS]:
+    for left in found.remainder[: WORD.most_channels]:
         size, floor, unit = remainder_numbers(found, left)
         least = f"; a smooth map would leave {floor} {unit}".rstrip() if floor else ""
         lines.append(

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Sequence
 
 from tracewire.library import SENSOR_TERMS
-from tracewire.show.style import NOTHING
+from tracewire.show.limits import WORD
 from tracewire.trace import (
     ChannelError,
     Explained,
@@ -31,16 +31,7 @@ VARIABLES = {
     "y": "the signal",
 }
 COMMON = ("coulomb", "viscous", "quad_drag", "stiffness", "cubic_stiffness", "sensor_offset")
-MOST_TOLD = 3
-TINY = 1e-12
-NEARLY_ALL = 0.995
-"""From here on a share would round to 100 %, which it is not."""
-WORTH_TELLING = 0.01
-"""A parameter that moved by less than this part of itself is not worth a word."""
 UNTRIED = re.compile(r"(\S+ @ \S+) was not tried: ")
-MOST_DIGITS = 10
-PLAIN = 1e-4, 1e6
-"""Numbers between these are written without an exponent."""
 
 
 # --- numbers ------------------------------------------------------------------------------------
@@ -50,16 +41,16 @@ def percent(part: float) -> str:
     """A part of a whole: `62 %`, `> 99.5 %` where that is not all; '' where it is not known."""
     if not math.isfinite(part):
         return ""
-    if NEARLY_ALL <= part < 1:
-        return f"> {100 * NEARLY_ALL:g} %"
-    if 0 < part < 1 - NEARLY_ALL:
-        return f"< {100 * (1 - NEARLY_ALL):.1g} %"
+    if WORD.nearly_all <= part < 1:
+        return f"> {100 * WORD.nearly_all:g} %"
+    if 0 < part < 1 - WORD.nearly_all:
+        return f"< {100 * (1 - WORD.nearly_all):.1g} %"
     return f"{100 * part:.0f} %"
 
 
 def chance_words(chance: float) -> str:
     """A probability: `p = 0.4`, `p < 1e-12`."""
-    return f"p < {TINY:g}" if chance < TINY else f"p = {chance:.2g}"
+    return f"p < {WORD.tiny:g}" if chance < WORD.tiny else f"p = {chance:.2g}"
 
 
 def to_its_interval(value: float, low: float, high: float) -> tuple[str, str, str]:
@@ -79,10 +70,10 @@ def _rounded(value: float, last: int) -> str:
     rounded = round(value / 10.0**last) * 10.0**last
     if not rounded:
         return "0"
-    if PLAIN[0] <= abs(rounded) < PLAIN[1]:
-        return f"{rounded:.{min(max(-last, 0), MOST_DIGITS)}f}"
+    if WORD.plain[0] <= abs(rounded) < WORD.plain[1]:
+        return f"{rounded:.{min(max(-last, 0), WORD.most_digits)}f}"
     digits = math.floor(math.log10(abs(rounded))) - last
-    return f"{rounded:.{min(max(digits, 0), MOST_DIGITS)}e}"
+    return f"{rounded:.{min(max(digits, 0), WORD.most_digits)}e}"
 
 
 def value_words(found: Found, effect: FoundEffect, name: str) -> str:
@@ -121,7 +112,7 @@ def in_sigma(errors: Iterable[ChannelError], when: str) -> float:
     """
     squares = [(getattr(e, when) / e.sigma) ** 2 for e in errors if e.sigma > 0]
     mean = math.sqrt(sum(squares) / len(squares)) if squares else math.nan
-    return 0.0 if mean < NOTHING else mean
+    return 0.0 if mean < WORD.nothing else mean
 
 
 def error_words(found: Found, errors: Sequence[ChannelError], both: bool = True) -> list[str]:
@@ -130,7 +121,7 @@ def error_words(found: Found, errors: Sequence[ChannelError], both: bool = True)
     Without `both` the error after alone: `0.06 deg in theta`.
     """
     parts = []
-    for signal in list(dict.fromkeys(e.signal for e in errors))[:MOST_TOLD]:
+    for signal in list(dict.fromkeys(e.signal for e in errors))[: WORD.most_told]:
         own = [e for e in errors if e.signal == signal]
         unit, factor = users_unit(found, signal)
         before, after = (
@@ -139,7 +130,7 @@ def error_words(found: Found, errors: Sequence[ChannelError], both: bool = True)
         )
         if not math.isfinite(after):
             continue
-        if after < NOTHING * sum(e.sigma for e in own) / len(own) / factor:
+        if after < WORD.nothing * sum(e.sigma for e in own) / len(own) / factor:
             after = 0.0
         unit = f" {unit}" if unit else ""
         old = f"{before:.3g}" if math.isfinite(before) else "no run at all"
@@ -161,7 +152,8 @@ def stood_in(moved: ParameterChange) -> bool:
     """Whether a declared parameter had absorbed the missing effect: it moved by more than its
     uncertainty, and by more than a hundredth of itself."""
     change = abs(moved.after - moved.before)
-    return moved.significant and change > WORTH_TELLING * max(abs(moved.before), abs(moved.after))
+    size = max(abs(moved.before), abs(moved.after))
+    return moved.significant and change > WORD.worth_telling * size
 
 
 def moved_words(moved: ParameterChange) -> str:
@@ -208,7 +200,7 @@ def untried(found: Found) -> set[str]:
     return {hit[1] for text in found.words if (hit := UNTRIED.match(text))}
 
 
-def few_of(texts: Sequence[str], word: str = "and", most: int = MOST_TOLD) -> str:
+def few_of(texts: Sequence[str], word: str = "and", most: int = WORD.most_told) -> str:
     """The first of some texts, and how many more there are."""
     more = len(texts) - most
     return both_of([*texts[:most], f"{more} more"] if more > 0 else texts, word)

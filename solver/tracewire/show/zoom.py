@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.show.limits import FIGURE
+
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
@@ -21,10 +23,6 @@ if TYPE_CHECKING:
 Vector = NDArray[np.float64]
 
 TIME = "t [s]"
-MOST_POINTS = 4000
-"""A curve of more is thinned to the least and the greatest value of each short stretch."""
-MOST_BYTES = 4_000_000
-"""Of the curves of one figure; a larger one stays a picture."""
 WHOLE, ACROSS, ALONG = "points", "across", "along"
 """What an artist is placed by: by its points, from left to right, or from bottom to top."""
 
@@ -56,7 +54,7 @@ def curves_of(figure: Figure) -> str | None:
     _name_lines(made)
     data = {"panels": made, "arrays": arrays}
     text = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
-    return text if len(text) <= MOST_BYTES else None
+    return text if len(text) <= FIGURE.zoom_bytes else None
 
 
 def _name_lines(panels: list[dict[str, Any]]) -> None:
@@ -140,13 +138,14 @@ def _line(line: Line2D, keep: Any) -> dict[str, Any]:
 
 
 def thinned(x: Vector, y: Vector) -> tuple[Vector, Vector]:
-    """A curve of `MOST_POINTS` at most: of each stretch the least and the greatest value, in order.
+    """A curve of `FIGURE.zoom_points` at most: of each stretch the least and the greatest value, in
+    order.
 
     A value that is not finite counts as the least one: a gap stays a gap.
     """
-    if len(x) <= MOST_POINTS:
+    if len(x) <= FIGURE.zoom_points:
         return x, y
-    edges = np.linspace(0, len(x), MOST_POINTS // 2 + 1).astype(int)
+    edges = np.linspace(0, len(x), FIGURE.zoom_points // 2 + 1).astype(int)
     kept = set()
     for begin, end in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
         part = y[begin:end]

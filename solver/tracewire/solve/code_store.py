@@ -20,11 +20,10 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from tracewire.files import write_file
+from tracewire.solve.limits import MEMORY
 
 DIGEST = hashlib.sha256().digest_size
-LONGEST_WAIT = 600.0  # s for another process that makes it: then both do
 LOCK = "lock"
-SOON = 1.0  # s after which the wait is told
 OTHERS = stat.S_IRWXG | stat.S_IRWXO
 CACHE = "TRACEWIRE_CACHE_DIR"
 """The variable of the environment that names another folder than the system's."""
@@ -149,9 +148,9 @@ class CodeStore:
                     return descriptor
                 except BlockingIOError:
                     waited = time.monotonic() - began
-                    if waited > LONGEST_WAIT:
+                    if waited > MEMORY.code_wait:
                         return descriptor
-                if waited > SOON and not told:
+                if waited > MEMORY.code_soon and not told:
                     told = True
                     self.tell("another tracewire makes this machine code: waiting for it ...")
                 time.sleep(0.05)

@@ -24,11 +24,11 @@ import platformdirs
 from tracewire.errors import InstallationError
 from tracewire.files import write_file
 from tracewire.solve.code_store import CACHE, CodeStore, opened, sealed, tell
+from tracewire.solve.limits import MEMORY
 
 HERE = Path(__file__).resolve().parent
 PACKAGED = HERE / "core_library"
 SOURCES = (HERE / "core", HERE / "core_build")
-KEPT_FILES = 4  # of other texts: checkouts and branches take turns
 PROCESSORS = {"x86_64": "x86-64-v2", "arm64": "apple-m1", "aarch64": "generic"}
 """What LLVM calls the least processor that is served, by the family of the machine."""
 SAME = {"amd64": "x86_64"}
@@ -98,7 +98,7 @@ def kept_or_made(name: str, files: CodeStore, make: Callable[[], bytes]) -> byte
         if found is None:
             found = make()
             files.write(name, found)
-            files.forget_all_but(KEPT_FILES)
+            files.forget_all_but(MEMORY.core_files)
     return found
 
 

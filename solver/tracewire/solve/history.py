@@ -16,14 +16,12 @@ from tracewire.solve.core.arrays import FIRST, Arrays, History, Sensitivity
 from tracewire.solve.core.codes import T
 from tracewire.solve.core.history import DEGREE, EACH, HEAD, ROOM
 from tracewire.solve.held import Driving, Held, values_at
+from tracewire.solve.limits import MEMORY
 from tracewire.solve.once_per_model import once_per_model
 
 Matrix = NDArray[np.float64]
 Ints = NDArray[np.int64]
 FIRST_PIECES = 3 * ROOM
-FIRST_MOVES = 512
-FIRST_POINTS = 512
-MOST_NUMBERS = 250_000_000  # 2 GB
 GROWING = ("points", "ranks", "shifts", "pieces", "moves")
 
 
@@ -39,13 +37,13 @@ def new_history(model: Model, sensitivity: Sensitivity) -> History:
         seen=seen,
         lag=np.zeros(2 * count),
         size=np.zeros(count),
-        points=np.empty((count, FIRST_POINTS)),
-        ranks=np.empty((count, FIRST_POINTS), dtype=np.int64),
-        shifts=np.empty((count, FIRST_POINTS * q)),
+        points=np.empty((count, MEMORY.first_points)),
+        ranks=np.empty((count, MEMORY.first_points), dtype=np.int64),
+        shifts=np.empty((count, MEMORY.first_points * q)),
         counts=np.zeros((count, 2), dtype=np.int64),
         along=np.zeros(2, dtype=np.int64),
         pieces=np.empty((some * FIRST_PIECES, HEAD + EACH * count)),
-        moves=np.empty((some * FIRST_MOVES, HEAD + count + 5 * count * q)),
+        moves=np.empty((some * MEMORY.first_moves, HEAD + count + 5 * count * q)),
         first=np.array([len(model.parameters)], dtype=np.int64),
         at=np.zeros((DEGREE + 1, max(count, count * q))),
         rows=np.zeros((count, w)),
@@ -151,8 +149,8 @@ def grow(arrays: Arrays, table: Ints) -> None:
     SimulationError where that would be too much.
     """
     history = arrays.history
-    if 2 * sum(getattr(history, name).size for name in GROWING) > MOST_NUMBERS:
-        what = f"the past of what is delayed takes more than {8e-9 * MOST_NUMBERS:.0f} GB"
+    if 2 * sum(getattr(history, name).size for name in GROWING) > MEMORY.past:
+        what = f"the past of what is delayed takes more than {8e-9 * MEMORY.past:.0f} GB"
         t = arrays.progress.now[T]
         hint = "Loosen rtol, or shorten the longest delay."
         raise SimulationError([Problem(f"{what} at t = {t:.9g} s", hint=hint)])

@@ -33,6 +33,7 @@ from tracewire.solve.event_log import Log
 from tracewire.solve.failures import failure, too_long, too_many_events
 from tracewire.solve.history import grow
 from tracewire.solve.interrupt import Halt, Interrupted, until_interrupted
+from tracewire.solve.limits import PAUSE
 from tracewire.solve.problem import InitialValueProblem
 from tracewire.solve.progress import Tell
 from tracewire.solve.run import EventLog, Run, Statistics
@@ -42,20 +43,17 @@ from tracewire.solve.workspace import Workspace, acquire, give_back
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-PAUSE = 0.1  # s between two pauses, about
-FIRST_WORK = 20_000  # signals times steps before the first pause
-GROWTH = 8
 
 
 def first_budget(model: Model) -> int:
     """The steps before the first pause, when nothing is known of how long a step takes."""
-    return max(1, FIRST_WORK // (1 + len(model.flat.signals)))
+    return max(1, PAUSE.first_work // (1 + len(model.flat.signals)))
 
 
 def next_budget(budget: int, steps: int, seconds: float) -> int:
     """The steps before the next pause, after `steps` took `seconds`."""
-    fitting = PAUSE * max(steps, 1) / max(seconds, 1e-9)
-    return max(1, int(min(fitting, GROWTH * budget)))
+    fitting = PAUSE.seconds * max(steps, 1) / max(seconds, 1e-9)
+    return max(1, int(min(fitting, PAUSE.growth * budget)))
 
 
 class Integrator:
@@ -147,7 +145,7 @@ class Integrator:
         began = time.perf_counter() - self.seconds
         ints, now, limits = self.arrays.progress.ints, self.arrays.progress.now, self.problem.limits
         code, core = library(), self.workspace.address
-        budget, last = first_budget(self.model), -PAUSE
+        budget, last = first_budget(self.model), -PAUSE.seconds
         while not halt.asked:
             before, done = self.seconds, int(ints[STEPS])
             ints[BUDGET] = min(budget, limits.steps - done)
@@ -167,7 +165,7 @@ class Integrator:
             self.arrays.flow.address[:] = self.model.addresses(FUNCTIONS)
             budget = next_budget(budget, int(ints[STEPS]) - done, self.seconds - before)
             status = None
-            if self.tell is not None and self.seconds - last >= PAUSE:
+            if self.tell is not None and self.seconds - last >= PAUSE.seconds:
                 last, part = self.seconds, float((now[T] - self.begin) / now[LENGTH])
                 self.tell(part, self.seconds * (1 - part) / part if part > 0 else np.inf)
         return False

@@ -13,12 +13,11 @@ from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, SimulationError, unknown
 from tracewire.formula import CONSTANTS, evaluate, names_of, parse
 from tracewire.solve.core.codes import LOG_HEAD
+from tracewire.solve.limits import SAMPLE
 from tracewire.solve.run import Run
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-MOST_POINTS = 10_000_000
-CLOSE = 1e-12  # of a period: what an instant may lack to be within the span
 
 
 @dataclass(frozen=True)
@@ -70,12 +69,12 @@ def instants(
     if section.period is None:
         return np.empty(0), since
     period = _number(section.period, values)
-    if not period > 0 or (end - begin) / period > MOST_POINTS:
+    if not period > 0 or (end - begin) / period > SAMPLE.most:
         what = f"a period of {period:g} s from {begin:g} to {end:g} s has no use"
         raise OptionError([Problem(what, hint="Give a larger period, above 0.")])
-    last = np.floor((end - begin) / period + CLOSE)
+    last = np.floor((end - begin) / period + SAMPLE.close)
     times = np.minimum(begin + period * np.arange(last + 1), end)
-    return times[times >= since - CLOSE * period], since
+    return times[times >= since - SAMPLE.close * period], since
 
 
 def crossings(model: Model, section: Section, log: Matrix, since: float) -> Matrix:

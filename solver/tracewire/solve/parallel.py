@@ -27,6 +27,7 @@ from typing import Any, Generic, TypeVar
 
 from tracewire.errors import OptionError, Problem, SimulationError, TracewireError
 from tracewire.solve.interrupt import Halt, Interrupted, until_interrupted
+from tracewire.solve.limits import PARALLEL
 from tracewire.solve.progress import PartProgress
 
 T = TypeVar("T")
@@ -35,10 +36,6 @@ Job = Callable[..., T]
 
 Arguments = tuple[Any, ...]
 """Those of a job, but for the `Halt`."""
-CHUNK = 0.5  # s of work that an executor is given at a time
-AHEAD = 2  # tasks that wait, for each worker
-JOBS = 8  # that a process keeps
-PATIENCE = 2.0  # s until a worker is looked for that was killed while it wrote what it had done
 
 
 class WorkerEnded(SimulationError):
@@ -58,12 +55,12 @@ class Crew(Generic[T]):
     @property
     def has_room(self) -> bool:
         """Whether another task would not only wait."""
-        return len(self.waiting) < max(1, AHEAD * self.workers)
+        return len(self.waiting) < max(1, PARALLEL.ahead * self.workers)
 
     @property
     def chunk(self) -> int:
         """How many tasks are handed out at once."""
-        return max(1, int(CHUNK / self.seconds)) if self.content and self.seconds else 1
+        return max(1, int(PARALLEL.chunk / self.seconds)) if self.content and self.seconds else 1
 
     def submit(self, tasks: Sequence[tuple[Any, ...]]) -> None:
         """Hand out some tasks, each with the arguments of the job."""
@@ -83,10 +80,10 @@ class Crew(Generic[T]):
 
         Raises WorkerEnded where a worker has ended that the executor does not replace.
         """
-        ended, _ = wait(self.waiting, PATIENCE, FIRST_COMPLETED)
+        ended, _ = wait(self.waiting, PARALLEL.patience, FIRST_COMPLETED)
         while self.waiting and not ended:
             _end_where_one_was_killed(self.pool)
-            ended, _ = wait(self.waiting, PATIENCE, FIRST_COMPLETED)
+            ended, _ = wait(self.waiting, PARALLEL.patience, FIRST_COMPLETED)
         for future in ended:
             tasks = self.waiting.pop(future)
             try:
@@ -232,6 +229,6 @@ def _elsewhere(
     return _here(_job(key, content), tasks, Halt())
 
 
-@lru_cache(maxsize=JOBS)
+@lru_cache(maxsize=PARALLEL.jobs)
 def _job(key: bytes, content: bytes) -> Job[Any]:
     return pickle.loads(content)  # type: ignore[no-any-return]

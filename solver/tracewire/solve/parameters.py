@@ -8,11 +8,11 @@ from collections.abc import Mapping
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, SimulationError, unknown
 from tracewire.formula import evaluate, names_of, to_text
+from tracewire.solve.limits import MEMORY
 from tracewire.solve.once_per_model import once_per_model
 
 Given = tuple[str, tuple[str, ...]]
 """A preset, and the names of the parameters that are given beside it."""
-MOST_KEPT = 100  # kinds of Given
 
 
 @once_per_model
@@ -62,7 +62,7 @@ def parameter_values(
                 following.append(name)
         changing = {*given, *following}
         same = {name: value for name, value in values.items() if name not in changing}
-        if len(kept) < MOST_KEPT:
+        if len(kept) < MEMORY.given:
             kept[key] = same, following
     else:
         same, following = known

@@ -32,6 +32,7 @@ from tracewire.solve.failures import failure
 from tracewire.solve.history import refuse_delays
 from tracewire.solve.integrator import Integrator
 from tracewire.solve.interrupt import Halt, Interrupted
+from tracewire.solve.limits import STEP
 from tracewire.solve.options import START
 from tracewire.solve.problem import initial_value_problem
 from tracewire.solve.setup import start_of
@@ -39,7 +40,6 @@ from tracewire.solve.workspace import set_to
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-LONG = 10.0  # lengths to which instants are resolved and of which a step is a tenth at most
 
 
 class Passage:
@@ -84,7 +84,7 @@ class Passage:
             model,
             asked,
             sampled=False,
-            span=(begin, begin + LONG * length),
+            span=(begin, begin + STEP.passage * length),
             parameters=parameters,
             start=start,
             method=method,
@@ -109,7 +109,8 @@ class Passage:
         """Begin anew at the start values with other values of parameters, over those of the first
         beginning. Raises OptionError and SimulationError.
         """
-        self._problem = self._problem.with_values(parameters, (begin, begin + LONG * length))
+        span = (begin, begin + STEP.passage * length)
+        self._problem = self._problem.with_values(parameters, span)
         self._integrator.workspace.renew()
         set_to(self.arrays, replace(self._problem, times=np.zeros(self._inner)))
         self._integrator.workspace.keep()

@@ -5,9 +5,10 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
+from tracewire.solve.limits import PAUSE
+
 Tell = Callable[[float, float], object]
 """Is told how far the work is: the part that is done, 0 to 1, and the seconds that are left."""
-OFTEN = 0.1  # s between two tellings, at least
 
 
 class PartProgress:
@@ -21,7 +22,7 @@ class PartProgress:
         """One more is done."""
         self.done += 1
         seconds = time.monotonic() - self.began
-        if self.tell is None or (seconds - self.told < OFTEN and self.done < self.total):
+        if self.tell is None or (seconds - self.told < PAUSE.told_every and self.done < self.total):
             return
         self.told = seconds
         left = seconds * (self.total - self.done) / (self.done - self.first)

@@ -12,11 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem
 from tracewire.formula import evaluate
+from tracewire.solve.limits import MEMORY, SAMPLE
 
 Vector = NDArray[np.float64]
 DEFAULT_SAMPLES = 1001
-MOST_SAMPLES = 10_000_000
-MOST_SPANS = 64  # whose default times are kept
 
 
 def ascending(times: ArrayLike) -> Vector:
@@ -61,7 +60,7 @@ def samples_of(
     if model.flat.every is None:
         return _default_times(begin, end).copy()
     every = evaluate(model.flat.every, values)
-    if not every > 0 or (end - begin) / every > MOST_SAMPLES:
+    if not every > 0 or (end - begin) / every > SAMPLE.most:
         what = f"an output every {every:g} s from {begin:g} to {end:g} s cannot be kept"
         raise OptionError([Problem(what, hint="Give a larger `every`.")])
     if every > (end - begin) * (1 + 1e-12):  # a run of one sample would say nothing of its end
@@ -71,7 +70,7 @@ def samples_of(
     return np.asarray(np.minimum(begin + every * np.arange(count + 1), end))
 
 
-@lru_cache(maxsize=MOST_SPANS)
+@lru_cache(maxsize=MEMORY.times)
 def _default_times(begin: float, end: float) -> Vector:
     return np.linspace(begin, end, DEFAULT_SAMPLES)
 

@@ -15,14 +15,13 @@ from tracewire.solve.core.arrays import Progress, Sensitivity
 from tracewire.solve.core.codes import FLAGS, GRAZES, LOST, SIMULTANEOUS, TOUCHES, ZENO
 from tracewire.solve.core.flow import FREE
 from tracewire.solve.core.variation import DERIVATIVES
+from tracewire.solve.limits import MEMORY, STEP
 from tracewire.solve.once_per_model import once_per_model
 from tracewire.solve.options import START
 from tracewire.solve.run import Sensitivities
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-MOST_KEPT = 200  # kinds of what is asked for, of which a model keeps what moves
-STEP = 1e-3  # of a parameter that others follow; what is left of the error is of order 6
 WEIGHTS = ((1.0, 3 / 4), (2.0, -3 / 20), (3.0, 1 / 60))
 SAID = {
     ZENO: "takes the impacts of {guard} up to its rest for all there are: they are without end",
@@ -90,7 +89,7 @@ def moving_with(
     known = kept.get(key)
     if known is None:
         known = _following(model, asked, given, preset)
-        if len(kept) < MOST_KEPT:
+        if len(kept) < MEMORY.sensitivities:
             kept[key] = known
     if not known.order:
         return known.moving
@@ -172,7 +171,7 @@ def _partial(formula: Expression, values: Mapping[str, float], name: str) -> flo
     """d formula / d name, by differences of order 6."""
     if formula == Name(name):
         return 1.0
-    step = STEP * (abs(values[name]) or 1.0)
+    step = STEP.difference * (abs(values[name]) or 1.0)
     total = 0.0
     for times, weight in WEIGHTS:
         up = evaluate(formula, {**values, name: values[name] + times * step})

@@ -34,15 +34,13 @@ from tracewire.solve.core.locate import SAMPLES
 from tracewire.solve.core.memory import MODEL_FUNCTION
 from tracewire.solve.core.methods import METHODS
 from tracewire.solve.history import Past, new_history
+from tracewire.solve.limits import MEMORY
 from tracewire.solve.once_per_model import once_per_model
 from tracewire.solve.sensitivities import new_sensitivity
 
 Vector = NDArray[np.float64]
-MOST_STIFF = 64  # mode combinations of a run that are remembered as stiff
-LOG_VALUES = 1_000_000  # numbers that the log of the core may hold before it is emptied
 UNREAD: Vector = np.zeros(1)  # an argument that a function of the model does not read
 ADDRESSED = ctypes.c_char * 0
-MOST_FUNCTIONS = 256  # of models that are called in turn
 
 
 Records = Literal["signals", "states", "both"]
@@ -140,7 +138,7 @@ def _call(address: int, x: Vector, m: Vector, c: Vector, k: Vector, out: Vector)
     _function_at(address)(0.0, *data)
 
 
-@lru_cache(maxsize=MOST_FUNCTIONS)
+@lru_cache(maxsize=MEMORY.functions)
 def _function_at(address: int) -> Callable[..., None]:
     """What Python calls; to make it takes longer than the call."""
     return MODEL_FUNCTION(address)
@@ -179,8 +177,8 @@ def _new_progress(model: Model, count: int, columns: int) -> Progress:
         ints=np.zeros(15, dtype=np.int64),
         times=np.zeros(count),
         samples=np.full((count, columns), np.nan),
-        log=np.empty((max(4 * modes + 16, LOG_VALUES // width), width)),
-        stiff=np.empty((MOST_STIFF, 3 * modes)),
+        log=np.empty((max(4 * modes + 16, MEMORY.log // width), width)),
+        stiff=np.empty((MEMORY.stiff, 3 * modes)),
         recent=np.zeros((CHATTER_EVENTS, 2)),
         flights=np.tile([np.inf, 0.0], (modes, 1)),
         info=np.zeros(4),

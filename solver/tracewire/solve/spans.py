@@ -22,7 +22,7 @@ from tracewire.solve.failures import failure
 from tracewire.solve.history import refuse_delays
 from tracewire.solve.integrator import Integrator
 from tracewire.solve.interrupt import Halt, Interrupted
-from tracewire.solve.limits import Limits, beyond_budget
+from tracewire.solve.limits import PAUSE, Limits, beyond_budget
 from tracewire.solve.options import START
 from tracewire.solve.problem import InitialValueProblem, initial_value_problem
 from tracewire.solve.run import Sensitivities
@@ -32,8 +32,6 @@ from tracewire.solve.workspace import Workspace, least_peak
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-PAUSE_STEPS = 50_000
-"""Steps of all spans before Ctrl-C is heard."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,7 +112,7 @@ def simulate_spans(
     )
     integrator = Integrator(problem, halt=halt or Halt())
     space = integrator.workspace
-    integrator.progress.ints[BUDGET] = min(problem.limits.steps, PAUSE_STEPS)
+    integrator.progress.ints[BUDGET] = min(problem.limits.steps, PAUSE.steps)
     space.keep()
     many = _spans(problem, space, spans)
     many.floor[:] = least_peak(space.arrays, problem)
@@ -204,7 +202,7 @@ def _executed(
             beyond = beyond_budget(budget)
             errors |= dict.fromkeys(range(int(at[SPAN]), len(many.ends)), beyond)
             break
-        at[LEFT] = min(PAUSE_STEPS, budget - taken + 1)
+        at[LEFT] = min(PAUSE.steps, budget - taken + 1)
         status = code.advance_spans(*addresses)
         code.check()
         if not at[INSIDE]:

@@ -13,10 +13,9 @@ from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.formula import evaluate
 from tracewire.solve.core.methods import STEPPED
-from tracewire.solve.limits import Limits
+from tracewire.solve.limits import STEP, Limits
 
 Vector = NDArray[np.float64]
-KNOWN_PAST = 0.98  # of a delay: a step to a known time may be a little longer
 
 
 @dataclass(frozen=True)
@@ -77,7 +76,7 @@ def longest_step(model: Model, values: Mapping[str, float], limits: Limits) -> f
         if not 0 < time < math.inf:
             what = f"'{delay.text}' is delayed by {time:g} s"
             raise OptionError([Problem(what, hint="Give a delay above 0.")])
-        longest = min(longest, KNOWN_PAST * time)
+        longest = min(longest, STEP.known_past * time)
     if not longest > 0:
         what = f"steps of {longest:g} s at most lead nowhere"
         raise OptionError([Problem(what, hint="Give a max_step above 0.")])

@@ -15,6 +15,7 @@ from tracewire.solve.core.memory import invoke
 from tracewire.solve.core.methods import NAMES
 from tracewire.solve.core.variation import OF_STARTS
 from tracewire.solve.history import GROWING, has_grown
+from tracewire.solve.limits import MEMORY
 from tracewire.solve.once_per_model import once_per_model
 from tracewire.solve.options import START
 from tracewire.solve.problem import InitialValueProblem
@@ -22,8 +23,6 @@ from tracewire.solve.setup import Kind, Records, new_arrays
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-MOST = 16  # kinds of workspaces that a model keeps
-MOST_NUMBERS = 500_000  # of samples and tables; larger arrays are not kept
 ONLY_WRITTEN = ("address", "c", "k", "log", "stiff", "times", *GROWING)
 """What is written before each run, or not read before the run has written it."""
 
@@ -131,9 +130,9 @@ def give_back(model: Model, space: Workspace) -> None:
     """Let the next run have a workspace; nobody may look into its arrays any more."""
     kept = _kept(model)
     size = space.arrays.progress.samples.size + space.arrays.sensitivity.samples.size
-    if size + space.kind.tables > MOST_NUMBERS or has_grown(space.arrays):
+    if size + space.kind.tables > MEMORY.workspace or has_grown(space.arrays):
         return
-    if space.kind not in kept and len(kept) >= MOST:
+    if space.kind not in kept and len(kept) >= MEMORY.workspaces:
         kept.clear()
     kept.setdefault(space.kind, []).append(space)
 

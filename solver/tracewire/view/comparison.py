@@ -15,15 +15,12 @@ from numpy.typing import NDArray
 from tracewire.compile import Model
 from tracewire.solve import Limits
 from tracewire.view.frame import Arrays
+from tracewire.view.limits import VIEW
 
 if TYPE_CHECKING:
     from tracewire.residual import Measured, Segment
 
 Vector = NDArray[np.float64]
-QUICK = 0.5
-"""Seconds that a run may take whose start is fitted: a page waits for some ten of them."""
-MOST_DOTS = 3000
-"""Samples of a series that are drawn; of more, evenly chosen ones."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +47,7 @@ def conditions_of(model: Model, series: str, limits: Limits) -> SeriesConditions
 
     measured = measured_series(model, series)
     segment = whole_segment(model, measured)
-    quick = replace(limits, seconds=min(limits.seconds, QUICK))
+    quick = replace(limits, seconds=min(limits.seconds, VIEW.quick))
     alone = Criterion(model, [segment], (), measured.parameters, limits=quick)
     begin = alone.initial_unknowns()
     alone.residuals(begin)
@@ -87,7 +84,7 @@ def comparison_of(
     if criterion.failure is not None:
         raise criterion.failure
     head["criterion"] = half_square(criterion.weigh(weighed))
-    chosen = np.unique(np.linspace(0, len(rows) - 1, min(len(rows), MOST_DOTS)).astype(int))
+    chosen = np.unique(np.linspace(0, len(rows) - 1, min(len(rows), VIEW.most_dots)).astype(int))
     t = arrays.keep(measured.t[rows][chosen], exact=True)
     for n, name in enumerate(signals):
         look = model.flat.shown.get(name)

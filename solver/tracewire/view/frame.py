@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 from tracewire.errors import TracewireError
 from tracewire.show import Moved, extent_of, group_signals, held_intervals, jump_times, moved_parts
 from tracewire.solve import Run
+from tracewire.view.limits import VIEW
 
 Vector = NDArray[np.float64]
-MOST_EVENTS = 2000
-"""More of them are counted, and not sent."""
 
 
 class Arrays:
@@ -63,13 +62,13 @@ def frame_of(run: Run, panels: Sequence[Sequence[str]], arrays: Arrays) -> dict[
     head["panels"] = [
         {
             "unit": run.look(names[0]).unit,
-            "jumps": jump_times(run, names)[:MOST_EVENTS],
+            "jumps": jump_times(run, names)[: VIEW.sent_events],
             "lines": [
                 {
                     "name": name,
                     "label": run.look(name).label,
                     "values": arrays.keep(run.as_shown(name)),
-                    "held": held.get(name, [])[:MOST_EVENTS],
+                    "held": held.get(name, [])[: VIEW.sent_events],
                 }
                 for name in names
             ],
@@ -78,7 +77,7 @@ def frame_of(run: Run, panels: Sequence[Sequence[str]], arrays: Arrays) -> dict[
     ]
     head["events"] = [
         {"t": event.time, "kind": event.kind, "block": event.block}
-        for event in run.events[:MOST_EVENTS]
+        for event in run.events[: VIEW.sent_events]
     ]
     head["event_count"] = len(run.events)
     head["warnings"] = list(run.warnings)

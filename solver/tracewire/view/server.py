@@ -22,16 +22,13 @@ from urllib.parse import urlsplit
 
 from tracewire.errors import OptionError, TracewireError
 from tracewire.view.assets import KINDS, POLICY, Asset, assets, report_policy
+from tracewire.view.limits import VIEW
 from tracewire.view.service import Service
 
 HOST = "127.0.0.1"
 NAMES = (HOST, "localhost")
 SITES = (None, "same-origin", "none")
 """What a browser may say of the page that asks: itself, or the user's own hand."""
-MOST_OF_BODY = 4_000_000
-"""Bytes of the body of a request."""
-IDLE = 60.0
-"""Seconds after which a connection without a request is closed."""
 REPORT = re.compile(r"report-([0-9a-f]{1,64})\.html")
 """The name of the report of a fit or a trace, by the id of that."""
 HEADERS = {
@@ -106,7 +103,7 @@ class Handler(BaseHTTPRequestHandler):
     server_version, sys_version = "tracewire", ""
     disable_nagle_algorithm = True
     wbufsize = -1
-    timeout = IDLE
+    timeout = VIEW.idle
     assets: ClassVar[Mapping[str, Asset]] = assets()
 
     def do_GET(self) -> None:
@@ -126,7 +123,7 @@ class Handler(BaseHTTPRequestHandler):
     def do_POST(self) -> None:
         """A request of the page, in JSON."""
         length = self.headers.get("Content-Length", "")
-        if not length.isdigit() or int(length) > MOST_OF_BODY:
+        if not length.isdigit() or int(length) > VIEW.most_of_body:
             self.close_connection = True
             self._say(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, "The request is too large.")
             return

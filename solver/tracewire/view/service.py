@@ -10,7 +10,7 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-from tracewire.diagram import MOST_BYTES, complete, load_text, set_values, word_before
+from tracewire.diagram import LIMITS, complete, load_text, set_values, word_before
 from tracewire.draw import draw
 from tracewire.errors import DiagramError, OptionError, Problem, TracewireError, unknown
 from tracewire.files import write_file, writing
@@ -20,15 +20,13 @@ from tracewire.view.comparison import comparison_of, conditions_of
 from tracewire.view.export import DRAWING, figure_of, script_of
 from tracewire.view.frame import Arrays, frame_of, packed, panels_of
 from tracewire.view.job import Job
+from tracewire.view.limits import VIEW
 from tracewire.view.setting import Setting, setting_of
 from tracewire.view.sliders import in_si, sliders_of
 from tracewire.view.version import Version, read_version, stamp_of
 
 Request = Mapping[str, Any]
 Answer = Mapping[str, Any] | bytes
-MOST_EVENTS = 100_000
-MOST_VERSIONS = 12
-MOST_TABS = 100
 PRESENTED = "this page was started with --present, and changes no file"
 
 
@@ -53,7 +51,7 @@ class Service:
         seconds: float = 5.0,
     ) -> None:
         self.file, self.present = Path(file), present
-        self.limits = Limits(seconds=seconds, events=MOST_EVENTS)
+        self.limits = Limits(seconds=seconds, events=VIEW.most_events)
         self.library = load_library(libraries)
         self._versions: OrderedDict[str, Version] = OrderedDict()
         self._latest: OrderedDict[str, int] = OrderedDict()
@@ -196,7 +194,7 @@ class Service:
         with self._lock:
             self._latest[tab] = max(number, self._latest.get(tab, 0))
             self._latest.move_to_end(tab)
-            while len(self._latest) > MOST_TABS:
+            while len(self._latest) > VIEW.most_tabs:
                 self._latest.popitem(last=False)
 
         def go_on(part: float = 0.0, left: float = 0.0) -> None:
@@ -317,7 +315,7 @@ class Service:
         with self._lock:
             version = self._versions.setdefault(version.key, version)
             self._versions.move_to_end(version.key)
-            while len(self._versions) > MOST_VERSIONS:
+            while len(self._versions) > VIEW.most_versions:
                 self._versions.popitem(last=False)
         return version
 
@@ -361,7 +359,7 @@ def _is_text(value: object) -> bool:
 
 def _text_in(request: Request) -> str:
     text = request.get("text")
-    if not isinstance(text, str) or len(text.encode(errors="replace")) > MOST_BYTES:
-        what = f"a text of at most {MOST_BYTES // 1_000_000} MB is needed"
+    if not isinstance(text, str) or len(text.encode(errors="replace")) > LIMITS.most_bytes:
+        what = f"a text of at most {LIMITS.most_bytes // 1_000_000} MB is needed"
         raise OptionError.one(what, hint="Put subsystems into files of their own.")
     return text

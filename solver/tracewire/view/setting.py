@@ -11,9 +11,7 @@ from tracewire.compile import Model
 from tracewire.formula import Name, evaluate
 from tracewire.solve import Limits, Run, parameter_values, simulate
 from tracewire.view.comparison import SeriesConditions
-
-POINTS = 1501
-"""Samples of a run, evenly over its span: more than a curve has pixels."""
+from tracewire.view.limits import VIEW
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +54,7 @@ class Setting:
             start=None if known is None else known.segment.start,
             inputs=None if known is None else known.measured.inputs,
             span=(begin, end),
-            times=np.linspace(begin, end, POINTS) if begin < end else None,
+            times=np.linspace(begin, end, VIEW.samples) if begin < end else None,
             limits=limits,
             progress=progress,
         )

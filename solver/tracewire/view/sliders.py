@@ -11,9 +11,7 @@ from tracewire.diagram import is_count, written_units
 from tracewire.errors import OptionError
 from tracewire.formula import names_of, to_text
 from tracewire.solve import parameter_values
-
-DECADES = 2.0
-"""A range above zero that spans so many is logarithmic."""
+from tracewire.view.limits import VIEW
 
 
 @dataclass(frozen=True)
@@ -64,7 +62,7 @@ def sliders_of(model: Model, preset: str = "") -> list[Slider]:
                 value=value,
                 low=low,
                 high=high,
-                logarithmic=low > 0 and math.log10(high / low) >= DECADES,
+                logarithmic=low > 0 and math.log10(high / low) >= VIEW.decades,
                 free=parameter.fit is not None,
                 follows=to_text(formulas[name]) if read else "",
                 line=parameter.place.line if own else 0,

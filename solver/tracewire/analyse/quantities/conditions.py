@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 
+from tracewire.analyse.limits import QUANTITY
 from tracewire.analyse.plane import span_of
 from tracewire.compile import Model
 from tracewire.diagram import Setting, Value
@@ -12,9 +13,6 @@ from tracewire.errors import OptionError, unknown
 from tracewire.formula import evaluate
 from tracewire.residual import measured_series
 from tracewire.solve import Options, parameter_values
-
-RTOL = 1e-9
-"""The relative tolerance of a run that a statement is measured on, unless it says another one."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +38,7 @@ def conditions_of(model: Model, setting: Setting, full: bool = False) -> Conditi
     there, a value that is not finite or that the diagram does not allow.
     """
     given = with_full(setting) if full else setting
-    options = Options(rtol=RTOL)
+    options = Options(rtol=QUANTITY.rtol)
     if given.series:
         options |= measured_series(model, given.series).conditions
     preset = given.preset or options.get("preset", "")

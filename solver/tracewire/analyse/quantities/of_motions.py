@@ -9,17 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from tracewire.analyse.limits import QUANTITY
 from tracewire.analyse.quantities.evaluate import At, Value, full_name
 from tracewire.errors import AnalysisError, Problem
 from tracewire.formula import Call, Name, to_text
 
 Vector = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
-XTOL = 1e-9  # of an edge, in parts of where it is looked for
-APART = 1e-2  # rad, or the unit of a state: motions whose section points differ by it are two
 SEED = 0
-MOST_STARTS = 10_000
-LARGEST = 1e100
 
 
 def _multiplier(read: Callable[[At, int], float]) -> Callable[[At, Call], float]:
@@ -41,7 +38,7 @@ def _edge(at: At, node: Call) -> float:
     if first == last or margin(first) * margin(last) > 0:
         what = f"'{over}' has the same stability at {first:g} and at {last:g}"
         raise AnalysisError([Problem(what, hint="Give two values with the edge between them.")])
-    return float(brentq(margin, first, last, xtol=XTOL * abs(last - first)))
+    return float(brentq(margin, first, last, xtol=QUANTITY.xtol * abs(last - first)))
 
 
 def _orbit_multiplier(at: At, node: Call) -> float:
@@ -116,8 +113,8 @@ def _motions(at: At, node: Call) -> float:
     count, size, *names = node.arguments
     model, modulo = at.subject.model, at.subject.conditions.modulo
     states = [full_name(model, to_text(name)) for name in names]
-    wide, many = at.number(size), at.whole(count, MOST_STARTS, "number of starts") + 1
-    if not 0 < wide < LARGEST:
+    wide, many = at.number(size), at.whole(count, QUANTITY.most_starts, "number of starts") + 1
+    if not 0 < wide < QUANTITY.largest_start:
         raise AnalysisError([Problem(f"starts within {wide:g} of zero have no use")])
     columns = [model.states.index(name) for name in states]
     turn = np.array([modulo.get(name, np.inf) for name in states])
@@ -125,7 +122,7 @@ def _motions(at: At, node: Call) -> float:
     for start in np.random.default_rng(SEED).uniform(-wide, wide, (many, len(states))):
         point = at.subject.section_from(dict(zip(states, start, strict=True)), 2).points[-1]
         end = _on_circle(point[columns], turn)
-        if not any(float(np.max(np.abs(end - other))) < APART for other in ends):
+        if not any(float(np.max(np.abs(end - other))) < QUANTITY.apart for other in ends):
             ends.append(end)
     return float(len(ends))
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy import special
 
 from tracewire.analyse.growth import growth_rate
+from tracewire.analyse.limits import QUANTITY
 from tracewire.analyse.quantities.evaluate import (
     At,
     Value,
@@ -24,8 +25,6 @@ from tracewire.formula import CONSTANTS, Call, Expression, is_condition, names_o
 from tracewire.solve import Event, Run
 
 Vector = NDArray[np.float64]
-FEWEST_RISES = 2
-MOST_LINES = 1000
 
 
 def of_signal(reduce: Callable[[Vector, Vector], float]) -> Callable[[At, Call], Value]:
@@ -99,7 +98,7 @@ def _period(at: At, node: Call) -> float:
     t, values = _along(at, node.arguments[0])
     off = values - values.mean()
     at_rise = np.flatnonzero((off[:-1] < 0) & (off[1:] >= 0))
-    if len(at_rise) < FEWEST_RISES:
+    if len(at_rise) < QUANTITY.fewest_rises:
         what = f"'{to_text(node.arguments[0])}' rises through its mean {len(at_rise)} times"
         raise AnalysisError([Problem(what, hint="A period needs two: take a longer time.")])
     part = off[at_rise] / (off[at_rise] - off[at_rise + 1])
@@ -120,7 +119,7 @@ def _growth(at: At, node: Call) -> float:
 
 def _line(at: At, node: Call) -> float:
     signal, n, count = node.arguments
-    most = at.whole(count, MOST_LINES, "number of lines") + 1
+    most = at.whole(count, QUANTITY.most_lines, "number of lines") + 1
     found = spectrum(*_as_run(at, signal), lines=most).lines
     return sorted(line.frequency for line in found)[at.whole(n, len(found), "line")]
 

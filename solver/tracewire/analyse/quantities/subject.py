@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from tracewire.analyse.bifurcation import Bifurcation, bifurcation
 from tracewire.analyse.floquet import Floquet, floquet
+from tracewire.analyse.limits import QUANTITY
 from tracewire.analyse.lyapunov import Lyapunov, lyapunov
 from tracewire.analyse.orbit import PeriodicOrbit, periodic_orbit
 from tracewire.analyse.plane import Plane, span_of
@@ -24,7 +25,6 @@ from tracewire.fit import Fit, fit
 from tracewire.solve import Run, parameter_values, sample_times, simulate
 
 Vector = NDArray[np.float64]
-NEAR = 1e-12  # of the span: a sample that begins with `since`
 
 
 class Recorder:
@@ -92,11 +92,11 @@ class Subject:
             return np.linspace(first, end, c.samples)
         if times is None:
             times = sample_times(self.model, self.parameters, (begin, end))
-            if "span" in c.options and times[-1] < end - NEAR * abs(end - begin):
+            if "span" in c.options and times[-1] < end - QUANTITY.same_time * abs(end - begin):
                 times = np.append(times, end)
         found = np.asarray(times, dtype=float).ravel()
         if c.since is not None:
-            found = found[found >= c.since - NEAR * abs(end - begin)]
+            found = found[found >= c.since - QUANTITY.same_time * abs(end - begin)]
         if len(found) < 2:
             since = "the begin" if c.since is None else f"{c.since:g} s"
             what = f"there are fewer than two samples from {since} on"

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.errors import FitError, Problem
-from tracewire.fit.methods.tracking import PARTS, count_tracked, spread_of
+from tracewire.fit.limits import SEGMENTS, TRACKING
+from tracewire.fit.methods.tracking import count_tracked, spread_of
 from tracewire.formula import evaluate
 from tracewire.residual import (
     Criterion,
@@ -23,12 +24,6 @@ from tracewire.solve import parameter_values
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-FEWEST = 10
-"""Samples of a segment, at least."""
-MOST = 300
-"""Segments of a series, at most."""
-LONGER = 4
-"""How many times longer than the longest so far the next segment may be."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,8 +130,8 @@ def _cut(whole: Criterion, n: int) -> list[Segment]:
     rows, measured = segment.rows, segment.measured
     if whole.weighting == "mean":
         measured = replace(measured, weight=measured.weight / len(rows))
-    sigma, spread = whole.sigma[measured.name], spread_of(segment, PARTS)
-    least = max(FEWEST, -(-len(rows) // MOST))
+    sigma, spread = whole.sigma[measured.name], spread_of(segment, TRACKING.parts)
+    least = max(SEGMENTS.fewest_samples, -(-len(rows) // SEGMENTS.most_segments))
     known = parameter_values(
         model, of_diagram({**whole.parameters, **named}, measured), measured.preset
     )
@@ -150,7 +145,7 @@ def _cut(whole: Criterion, n: int) -> list[Segment]:
         return whole.on_segments([part]).linearise(named, {0: {}}, slopes=False)[0]
 
     while first + least < len(rows):
-        last = min(first + LONGER * longest, len(rows) - 1)
+        last = min(first + SEGMENTS.longer * longest, len(rows) - 1)
         length = max(least, count_tracked(followed_to(last).residual * sigma, spread))
         longest = max(longest, min(length, last - first))
         after = min(first + length, last)

@@ -11,27 +11,14 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.fit.methods.tracking import PARTS, count_tracked, spread_of
+from tracewire.fit.limits import GROWING, TRACKING
+from tracewire.fit.methods.tracking import count_tracked, spread_of
 from tracewire.fit.search import MethodResult, Search
 from tracewire.residual import Criterion, half_square, solve_least_squares
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 Counts = NDArray[np.intp]
-
-LEAST = 8
-"""Samples in the first part of a series, at least."""
-ASTRAY = 0.3
-"""A search has gone astray on a part where this part of its spread remains."""
-SLOWEST, FASTEST = 1.1, 4.0
-"""By which factors a part grows."""
-WIDTH = 0.3
-"""How far unknowns may go on one part, as a part of their size: a standard deviation."""
-STEPS, ENOUGH = 20, 1e-3
-"""Of least squares on a part: the most steps, and the relative change that ends it."""
-LAST_STEPS, LAST_ENOUGH = 100, 1e-8
-"""The same on the whole series."""
-MOST_PARTS = 200
 
 
 def by_growing_windows(search: Search) -> MethodResult:
@@ -43,18 +30,22 @@ def by_growing_windows(search: Search) -> MethodResult:
     part, it goes back and tries a shorter one. At the end comes least squares on the whole series.
     """
     windows = _Windows(search)
-    while not windows.is_whole() and windows.number < MOST_PARTS:
+    while not windows.is_whole() and windows.number < GROWING.most_parts:
         windows.next()
     search.set_stage(0.9, "the whole series")
     result = solve_least_squares(
-        search, windows.z, steps=LAST_STEPS, tolerance=LAST_ENOUGH, callback=search.count_iteration
+        search,
+        windows.z,
+        steps=GROWING.last_steps,
+        tolerance=GROWING.last_ftol,
+        callback=search.count_iteration,
     )
     if search.best_value < 0.5 * result.cost:  # an earlier part has led to a better minimum
         result = solve_least_squares(
             search,
             search.best,
-            steps=LAST_STEPS,
-            tolerance=LAST_ENOUGH,
+            steps=GROWING.last_steps,
+            tolerance=GROWING.last_ftol,
             callback=search.count_iteration,
         )
     parts = f"after {windows.number} growing parts"
@@ -71,13 +62,14 @@ class _Windows:
         self.search = search
         segments = search.criterion.segments
         self.sizes = np.array([len(s.rows) for s in segments])
-        self.spreads = [spread_of(s, PARTS) for s in segments]
+        self.spreads = [spread_of(s, TRACKING.parts) for s in segments]
         kept = search.resumed
         self.z = np.array(kept["z"]) / search.criterion.scales if kept else search.begin
         self.value = search.best_value  # of the whole series at z
         self.number = int(kept["number"]) if kept else 0
-        least = np.minimum(LEAST, self.sizes)
-        self.reached = np.array(kept["reached"]) if kept else np.minimum(LEAST // 2, self.sizes)
+        least = np.minimum(GROWING.fewest_samples, self.sizes)
+        first = np.minimum(GROWING.fewest_samples // 2, self.sizes)
+        self.reached = np.array(kept["reached"]) if kept else first
         self.counts = (
             np.array(kept["counts"]) if kept else np.maximum(self.count_tracked(self.z), least)
         )
@@ -93,15 +85,15 @@ class _Windows:
         share = float(np.mean(self.counts / self.sizes))
         search.set_stage(0.9 * share, f"part {self.number}, {100 * share:.2g} % of the series")
         part = _Part(search, self.counts, self.z)
-        result = solve_least_squares(part, self.z, steps=STEPS, tolerance=ENOUGH)
+        result = solve_least_squares(part, self.z, steps=GROWING.steps, tolerance=GROWING.ftol)
         longest = self.counts.copy()
         between = np.sqrt(self.reached * self.counts).astype(int)
-        if part.is_astray(result.z) and np.any(self.counts > SLOWEST * between):
+        if part.is_astray(result.z) and np.any(self.counts > GROWING.slowest * between):
             self.counts = np.maximum(between, 1)
         else:
             self.z, self.reached = result.z, longest
-            most = np.ceil(FASTEST * longest).astype(int)
-            least = np.ceil(SLOWEST * longest).astype(int)
+            most = np.ceil(GROWING.fastest * longest).astype(int)
+            least = np.ceil(GROWING.slowest * longest).astype(int)
             tracked = np.clip(self.count_tracked(self.z), least, most)
             self.counts = np.minimum(tracked, self.sizes)
         search.checkpoint(
@@ -143,7 +135,7 @@ class _Part:
         self.criterion: Criterion = search.criterion.on_segments(shorter)
         before = search.vector(around, self.criterion)
         noise = 2 * half_square(before) / max(len(before), 1)
-        self.pull = np.sqrt(noise) / (WIDTH * np.maximum(np.abs(around), 1.0))
+        self.pull = np.sqrt(noise) / (GROWING.width * np.maximum(np.abs(around), 1.0))
 
     def bounds(self) -> tuple[Vector, Vector]:
         """Those of the search."""
@@ -167,6 +159,6 @@ class _Part:
         for segment, residual in zip(self.criterion.segments, residuals, strict=True):
             off = np.sqrt(np.mean(residual**2, axis=0))
             sigma = self.criterion.sigma[segment.measured.name]
-            if np.any(off * sigma > ASTRAY * spread_of(segment)):
+            if np.any(off * sigma > GROWING.diverged * spread_of(segment)):
                 return True
         return False

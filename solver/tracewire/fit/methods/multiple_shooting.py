@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.fit.limits import SEGMENTS
 from tracewire.fit.methods.chain import Chain
 from tracewire.fit.search import MethodResult, Search, Stopped
 from tracewire.residual import solve_least_squares
@@ -17,18 +18,6 @@ from tracewire.residual import solve_least_squares
 Vector = NDArray[np.float64]
 WEIGHTS = tuple(10.0**k for k in range(-1, 7))
 """Of the gaps in the criterion, as a part of what the data spread, one stage after the other."""
-STEPS, ENOUGH = 15, 1e-3
-"""Of a stage: the most steps, and the relative change that ends it."""
-LAST_STEPS, LAST_ENOUGH = 40, 1e-6
-"""The same of the last stage."""
-CLOSED = 1e-5
-"""Gaps of this part of what states change from one start to the next are closed."""
-DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-12, 1e10
-ALIKE = 2.0
-"""One run is as good as the segments where its criterion is at most so many times theirs."""
-
-NOTHING = 1e-6
-"""And where it is this part of what the data spread, it is as good as none."""
 
 
 def by_multiple_shooting(search: Search) -> MethodResult:
@@ -78,15 +67,16 @@ class _Shooting:
         for stage in range(self.stage, len(WEIGHTS)):
             self.stage = stage
             last = stage == len(WEIGHTS) - 1
-            steps, enough = (LAST_STEPS, LAST_ENOUGH) if last else (STEPS, ENOUGH)
-            self.minimise(WEIGHTS[stage] * self.unit, steps, enough)
+            steps = SEGMENTS.last_steps if last else SEGMENTS.steps
+            ftol = SEGMENTS.last_ftol if last else SEGMENTS.ftol
+            self.minimise(WEIGHTS[stage] * self.unit, steps, ftol)
             self.search.checkpoint({"stage": stage + 1, "z": (self.z * self.scales).tolist()})
-            if self.gap < CLOSED:
+            if self.gap < SEGMENTS.closed:
                 return
 
     def minimise(self, weight: float, steps: int, enough: float) -> None:
         """Levenberg-Marquardt steps with one weight of the gaps."""
-        search, chain, damping = self.search, self.chain, DAMPING
+        search, chain, damping = self.search, self.chain, SEGMENTS.first_damping
         for number in range(steps):
             share = (self.stage + number / steps) / len(WEIGHTS)
             search.set_stage(share, f"{self.segments}, gaps up to {self.gap:.2g}")
@@ -96,7 +86,7 @@ class _Shooting:
             outward |= (self.z >= self.high) & (normal.gradient < 0)
             free = np.flatnonzero(~outward)
             diagonal = np.maximum(np.diag(normal.matrix), 1e-12 * np.diag(normal.matrix).max())
-            while damping <= MOST_DAMPING:
+            while damping <= SEGMENTS.most_damping:
                 damped = normal.matrix + damping * np.diag(diagonal)
                 step = np.zeros(len(self.z))
                 step[free] = -np.linalg.solve(damped[np.ix_(free, free)], normal.gradient[free])
@@ -108,7 +98,7 @@ class _Shooting:
                 damping *= 5.0
             else:
                 return
-            damping = max(damping / 5.0, LEAST_DAMPING)
+            damping = max(damping / 5.0, SEGMENTS.least_damping)
             self.z, self.gap = trial, gap
             search.count_iteration(self._search_unknowns(), value, f"gaps up to {gap:.2g}")
             if value > (1 - enough) * normal.value:
@@ -118,11 +108,11 @@ class _Shooting:
         """The end, on one run over the whole series where that is as good as the segments."""
         search, z = self.search, self._search_unknowns()
         apart = self.criterion.value(self.z)
-        if search.value(z) <= ALIKE * apart + NOTHING * self.unit:
+        if search.value(z) <= SEGMENTS.alike * apart + SEGMENTS.nothing * self.unit:
             result = solve_least_squares(search, z, callback=search.count_iteration)
             message = f"{result.message}; {self.segments} have grown together"
             return MethodResult(result.z, search.iterations, int(result.converged), message)
-        closed = self.gap < CLOSED
+        closed = self.gap < SEGMENTS.closed
         return self.result(int(closed), "converged" if closed else "the gaps did not close")
 
     def result(self, exitflag: int, message: str, interrupted: bool = False) -> MethodResult:

@@ -9,22 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.errors import OptionError, Problem
+from tracewire.fit.limits import MULTISTART
 from tracewire.fit.methods.parallel import evaluate_parallel
 from tracewire.fit.search import MethodResult, Search
 from tracewire.residual import solve_least_squares
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-POINTS, MOST_POINTS = 32, 4096
-"""Points for each unknown, rounded up to a power of two, and how many at most."""
-BATCH = 32
-POLISHED = 6
-STEPS, ENOUGH = 60, 1e-8
-"""Of least squares: the most steps, and the relative change that ends it."""
-APART = 0.05
-"""Two points are one start where they are nearer than this part of the bounds in every unknown."""
-SAME = 1e-3
-"""Two ends are one minimum where their criteria differ by less than this part."""
 
 
 def by_multistart(search: Search) -> MethodResult:
@@ -41,26 +32,31 @@ def by_multistart(search: Search) -> MethodResult:
     kept: Mapping[str, Any] = search.resumed
     values: list[float] = list(kept.get("values", []))
     ends: list[tuple[float, list[float]]] = [(v, z) for v, z in kept.get("ends", [])]
-    total = len(points) + POLISHED * STEPS * (search.size + 2)  # of evaluations, at most
+    each = MULTISTART.steps * (search.size + 2)  # evaluations of least squares, at most
+    total = len(points) + MULTISTART.polished * each
 
     def report(stage: str) -> None:
-        done = min(len(values), len(points)) + len(ends) * STEPS * (search.size + 2)
+        done = min(len(values), len(points)) + len(ends) * each
         search.set_stage(done / total, stage)
         search.checkpoint({"values": values, "ends": [list(end) for end in ends]})
 
     while len(values) < len(points):
         report(f"{len(values)} of {len(points)} points")
-        values += evaluate_parallel(search, points[len(values) : len(values) + BATCH])
+        values += evaluate_parallel(search, points[len(values) : len(values) + MULTISTART.batch])
     starts = _best(search, points, values)
     for number in range(len(ends), len(starts)):
         report(f"least squares from point {number + 1} of {len(starts)}")
         result = solve_least_squares(
-            search, starts[number], steps=STEPS, tolerance=ENOUGH, callback=search.count_iteration
+            search,
+            starts[number],
+            steps=MULTISTART.steps,
+            tolerance=MULTISTART.ftol,
+            callback=search.count_iteration,
         )
         ends.append((result.cost, (result.z * search.criterion.scales).tolist()))
     report("done")
     value, best = min(ends)
-    same = sum(end <= value + SAME * abs(value) for end, _ in ends)
+    same = sum(end <= value + MULTISTART.same * abs(value) for end, _ in ends)
     message = (
         f"{same} of the {len(ends)} best of {len(points)} points led to the best minimum"
         if same > 1
@@ -87,7 +83,7 @@ def _points(search: Search) -> Matrix:
         return np.empty((0, search.size))
     from scipy.stats import qmc  # half a second: only this method pays for it
 
-    exponent = int(np.ceil(np.log2(min(POINTS * count, MOST_POINTS))))
+    exponent = int(np.ceil(np.log2(min(MULTISTART.points * count, MULTISTART.most_points))))
     cube = qmc.Sobol(count, scramble=False).random_base2(exponent)
     cube = (cube + search.rng().uniform(size=count)) % 1.0
     low, high = search.low[:count], search.high[:count]
@@ -106,9 +102,11 @@ def _best(search: Search, points: list[Vector], values: list[float]) -> list[Vec
     chosen: list[Vector] = []
     for number in np.argsort(values, kind="stable"):
         point = points[number]
-        near = [np.all(np.abs(point - other)[:count] < APART * width) for other in chosen]
+        near = [
+            np.all(np.abs(point - other)[:count] < MULTISTART.apart * width) for other in chosen
+        ]
         if not any(near):
             chosen.append(point)
-        if len(chosen) == POLISHED:
+        if len(chosen) == MULTISTART.polished:
             break
     return chosen

@@ -15,39 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.fit.fminsearch import CONVERGED, fminsearch
+from tracewire.fit.limits import SHOOTING
 from tracewire.fit.methods.parallel import evaluate_parallel
 from tracewire.fit.optimset import OptimValues, Options
 from tracewire.fit.search import MethodResult, Search
 from tracewire.residual import solve_least_squares
 
 Vector = NDArray[np.float64]
-FIRST_RADIUS = 0.05
-"""Of the shots, as a part of the size of each unknown: a standard deviation."""
-NEAREST = 0.2
-"""A shot has the radius of its round, or one that is smaller, down to this part of it."""
-LEAST_RADIUS = 1e-5
-SHOTS, LEAST_SHOTS = 2, 10
-"""Shots in a round, for each unknown, and at least; twice as many where there is no simplex."""
-PATIENCE, STALLED = 5, 0.8
-"""A simplex is left where so many evaluations for each unknown leave this part of the criterion."""
-EDGE = 0.05
-"""Of the simplex of fminsearch, as a part of each unknown."""
-GAIN = 1e-3
-"""A round that gains less than this part of the criterion has gained nothing."""
-ZERO = 0.02
-"""The least size of an unknown, as a part of what it is scaled by."""
-LEAST_EDGE = 1e-4
-"""A simplex ends where it has shrunk to this part of its first edges, or its values have."""
-LONGEST = 8.0
-"""Shots along the simplex are as long as it is, and up to so many times longer."""
-POLISHING, POLISHED = 10, 0.9
-"""Steps of least squares; where they leave more than this part of the criterion they are not tried
-again before a shot is better."""
-ENOUGH = 1e-6
-"""The relative change that ends them."""
 KEPT = ("vertices", "values", "iteration", "procedure", "evaluations")
-LOST = 8
-"""So many rounds without gain end the search."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +34,7 @@ class _State:
     z: tuple[float, ...]
     value: float
     number: int = 0
-    radius: float = FIRST_RADIUS
+    radius: float = SHOOTING.first_radius
     lost: int = 0
     simplex: Mapping[str, Any] | None = None
     is_polished: bool = False
@@ -79,7 +54,7 @@ def by_shooting(search: Search) -> MethodResult:
         state = _State(**search.resumed)
     else:
         state = _State(tuple(search.begin * scales), search.value(search.begin))
-    while state.lost < LOST:
+    while state.lost < SHOOTING.lost:
         before = state.value
         search.set_stage(0.0, f"round {state.number + 1}, shots of {100 * state.radius:.2g} %")
         state = _with_shots(search, state)
@@ -88,11 +63,11 @@ def by_shooting(search: Search) -> MethodResult:
         if not state.is_polished:
             search.set_stage(0.0, f"round {state.number + 1}, least squares")
             state = _with_least_squares(search, state)
-        lost = 0 if state.value < (1 - GAIN) * before else state.lost + 1
+        lost = 0 if state.value < (1 - SHOOTING.gain) * before else state.lost + 1
         state = replace(state, number=state.number + 1, lost=lost)
         search.checkpoint(asdict(state))
         search.count_iteration(np.array(state.z) / scales, state.value, f"round {state.number}")
-    message = f"converged: {LOST} rounds of shots and of the simplex have gained nothing"
+    message = f"converged: {SHOOTING.lost} rounds of shots and of the simplex have gained nothing"
     return MethodResult(np.array(state.z) / scales, search.iterations, 1, message)
 
 
@@ -100,18 +75,19 @@ def _with_shots(search: Search, state: _State) -> _State:
     """The state after shots: the best point of them and of before, and the radius that follows."""
     rng, scales = search.rng(state.number), search.criterion.scales
     z = np.array(state.z) / scales
-    count = max(SHOTS * search.size, LEAST_SHOTS) * (2 if state.simplex is None else 1)
-    radii = state.radius * NEAREST ** rng.uniform(0.0, 1.0, count)
+    count = max(SHOOTING.shots * search.size, SHOOTING.least_shots)
+    count *= 2 if state.simplex is None else 1
+    radii = state.radius * SHOOTING.nearest ** rng.uniform(0.0, 1.0, count)
     moves = rng.standard_normal((count, search.size)) * radii[:, None] * _sizes(z)
     points = [search.reflect(z + move) for move in moves]
     values = np.array(list(evaluate_parallel(search, points)))
     best = int(np.argmin(values))
     if values[best] < state.value:  # another motion, or far from the end: a new simplex
-        radius = float(np.clip(2 * radii[best], state.radius / 2, 2 * FIRST_RADIUS))
+        radius = float(np.clip(2 * radii[best], state.radius / 2, 2 * SHOOTING.first_radius))
         there = tuple((points[best] * scales).tolist())
         value = float(values[best])
         return replace(state, z=there, value=value, radius=radius, simplex=None, is_polished=False)
-    radius = state.radius / 2 if state.radius > 2 * LEAST_RADIUS else FIRST_RADIUS
+    radius = state.radius / 2 if state.radius > 2 * SHOOTING.least_radius else SHOOTING.first_radius
     state = replace(state, radius=radius)
     return state if state.simplex is None else _with_long_shots(search, state, state.simplex, rng)
 
@@ -122,7 +98,7 @@ def _with_long_shots(
     """The state after shots along the simplex, and beyond it; the best join it for its worst."""
     vertices, known = np.array(simplex["vertices"]), np.array(simplex["values"])
     spread = (vertices - vertices.mean(axis=0)) / np.sqrt(search.size)
-    stretch = LONGEST ** rng.uniform(0.0, 1.0, (search.size, 1))
+    stretch = SHOOTING.longest ** rng.uniform(0.0, 1.0, (search.size, 1))
     shots = vertices[0] + stretch * rng.standard_normal((search.size, len(vertices))) @ spread
     values = np.array(list(evaluate_parallel(search, [_point(search, simplex, x) for x in shots])))
     vertices, known = np.vstack([vertices, shots]), np.concatenate([known, values])
@@ -144,16 +120,16 @@ def _with_simplex(search: Search, state: _State) -> _State:
     """The state after moves of the simplex, the kept one or a new one, until it stalls."""
     scales = search.criterion.scales
     z = np.array(state.z) / scales
-    unit = state.radius / EDGE * _sizes(z)
+    unit = state.radius / SHOOTING.edge * _sizes(z)
     kept = state.simplex or {"centre": z.tolist(), "unit": unit.tolist()}
     last = {key: kept[key] for key in KEPT if key in kept}
     values_so_far: list[tuple[int, float]] = []
 
     def stalls(x: Vector, values: OptimValues, when: str) -> bool:
         values_so_far.append((values.funccount, values.fval))
-        since = values.funccount - PATIENCE * search.size
+        since = values.funccount - SHOOTING.patience * search.size
         old = [value for count, value in values_so_far if count <= since]
-        return when == "iter" and bool(old) and values.fval > STALLED * old[-1]
+        return when == "iter" and bool(old) and values.fval > SHOOTING.stalled * old[-1]
 
     found = fminsearch(
         lambda x: search.value(_point(search, kept, x)),
@@ -162,8 +138,8 @@ def _with_simplex(search: Search, state: _State) -> _State:
             Display="off",
             MaxIter=np.inf,
             MaxFunEvals=np.inf,
-            TolX=LEAST_EDGE * EDGE,
-            TolFun=LEAST_EDGE * state.value,
+            TolX=SHOOTING.least_edge * SHOOTING.edge,
+            TolFun=SHOOTING.least_edge * state.value,
             OutputFcn=stalls,
         ),
         resumed=last,
@@ -180,9 +156,9 @@ def _with_least_squares(search: Search, state: _State) -> _State:
     """The state after some steps of least squares."""
     scales = search.criterion.scales
     result = solve_least_squares(
-        search, np.array(state.z) / scales, steps=POLISHING, tolerance=ENOUGH
+        search, np.array(state.z) / scales, steps=SHOOTING.polishing, tolerance=SHOOTING.polish_ftol
     )
-    is_polished = result.cost > POLISHED * state.value
+    is_polished = result.cost > SHOOTING.polished * state.value
     if result.cost >= state.value:
         return replace(state, is_polished=is_polished)
     there = tuple((result.z * scales).tolist())
@@ -191,4 +167,4 @@ def _with_least_squares(search: Search, state: _State) -> _State:
 
 def _sizes(z: Vector) -> Vector:
     """The size of each unknown: its value, or a part of what it is scaled by where that is more."""
-    return np.maximum(np.abs(z), ZERO)
+    return np.maximum(np.abs(z), SHOOTING.zero)

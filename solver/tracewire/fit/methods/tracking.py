@@ -5,21 +5,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.fit.limits import TRACKING
 from tracewire.residual import Segment, noise_level
 
 Vector = NDArray[np.float64]
-TRACKED = 0.2
-"""A model follows a series where it is off by less than this part of the series' spread."""
-PARTS = 10
-"""Of a series, to see what it usually swings."""
-NOISE = 4.0
-"""A spread of data is at least this many times their noise."""
 
 
 def count_tracked(off: Vector, spread: Vector) -> int:
     """The number of first samples that are followed, of those that are `off` (N, signals), in
     SI."""
-    lost = np.any(np.abs(off) > TRACKED * spread, axis=1)
+    lost = np.any(np.abs(off) > TRACKING.tracked * spread, axis=1)
     return int(np.argmax(lost)) if lost.any() else len(lost)
 
 
@@ -33,4 +28,4 @@ def spread_of(segment: Segment, parts: int = 1) -> Vector:
     samples = segment.samples()
     pieces = np.array_split(samples, min(parts, max(len(samples) // 10, 1)))
     spread = np.median([np.std(piece, axis=0) for piece in pieces], axis=0)
-    return np.asarray(np.maximum(np.maximum(spread, NOISE * noise), 1e-300))
+    return np.asarray(np.maximum(np.maximum(spread, TRACKING.noise * noise), 1e-300))

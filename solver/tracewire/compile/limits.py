@@ -1,0 +1,79 @@
+"""How large models may be, and from when on a model is compiled in another way.
+
+Where no source stands, a number was found by timing, or is a judgement.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class ModelLimits:
+    """Of what is solved in each evaluation."""
+
+    most_unknowns: int = 60
+    """Signals of algebraic loops that depend on each other."""
+    most_full: int = 60
+    """Unknowns of a linear system without zeros, as a message says it."""
+    most_work: int = 300_000
+    """Entries of the elimination of a linear system."""
+    most_periods: float = 1e9
+    """The offset of a clock in its periods: beyond, offset + k*period is the same for many k."""
+
+
+MODEL = ModelLimits()
+
+
+@dataclass(frozen=True)
+class SearchLimits:
+    """Of Newton's method on a loop that is solved by search; see `tape`."""
+
+    most_steps: int = 100
+    """After which the result is NaN."""
+    least_share: float = 2.0**-10
+    """Of a step that went too far."""
+    close: float = 1e-10
+    """Of the size of each unknown: a step that is shorter is the last one."""
+
+
+SEARCH = SearchLimits()
+
+
+@dataclass(frozen=True)
+class CodeLimits:
+    """Of the texts that are compiled."""
+
+    large: int = 1_000_000
+    """Characters of IR, about 6000 blocks, from which on a quick compiler is better: it takes a
+    tenth of the time, and what it makes is 20 % slower."""
+    kept: int = 256
+    """Compiled models that a process keeps."""
+    longest_run: int = 8
+    """Stores of one value to neighbours, beyond which a loop does them."""
+    part: int = 400
+    """Lines of IR in a part of a function."""
+    longest_inline: int = 60
+    """Characters of an expression that stands where it is used, once."""
+    longest_fold: int = 100
+    """Terms in a row; more are added by halves, as a formula may not nest as deep as that."""
+
+
+CODE = CodeLimits()
+
+
+@dataclass(frozen=True)
+class RemarkLimits:
+    """From when on a number or a sign of a model is remarked upon."""
+
+    large: float = 360.0
+    """In degrees, mm and so on: of a number in SI that shows as more another unit may be meant."""
+    most_values: int = 300_000
+    """Signals times evaluations, a second of work; larger models are not looked at."""
+    step: float = 1e-2
+    """Of a state to each side, in its SI unit, by which its force is looked at."""
+    bent: float = 1e-6
+    """Of the values of a function: what a straight line is not off by."""
+
+
+REMARK = RemarkLimits()

@@ -1,0 +1,247 @@
+"""The thresholds of a fit: how its methods search, and from when on its result is doubted.
+
+Where no source stands, a number is a judgement, checked on made and measured records by the tests.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class SearchLimits:
+    """Of every search: how often it reports, and when least squares ends."""
+
+    report_every: float = 0.1
+    """Wall time between two reports of progress, s."""
+    keep_every: float = 2.0
+    """Wall time between two writings of the file from which a fit goes on, s."""
+    most_steps: int = 1_000_000
+    """Steps of least squares, whatever the options allow."""
+    exact: float = 1e-14
+    """Its relative tolerance on formulas alone."""
+    noisy: float = 1e-2
+    """The same on runs, in units of their rtol."""
+
+
+SEARCH = SearchLimits()
+
+
+@dataclass(frozen=True)
+class TrackingLimits:
+    """Of how far a model follows a measured series."""
+
+    tracked: float = 0.2
+    """A model follows a series where it is off by less than this part of the series' spread."""
+    parts: int = 10
+    """Parts of a series whose median spread is what it usually swings."""
+    noise: float = 4.0
+    """A spread of data is at least this many times their noise."""
+
+
+TRACKING = TrackingLimits()
+
+
+@dataclass(frozen=True)
+class GrowingWindowLimits:
+    """Of least squares on the first samples, then on more and more of them."""
+
+    fewest_samples: int = 8
+    """Samples in the first part of a series, at least."""
+    diverged: float = 0.3
+    """A search has diverged on a part where this part of its spread remains."""
+    slowest: float = 1.1
+    """By which factor a part grows at least."""
+    fastest: float = 4.0
+    """By which factor a part grows at most."""
+    width: float = 0.3
+    """How far unknowns may go on one part, as a part of their size: a standard deviation."""
+    steps: int = 20
+    """Of least squares on a part, at most."""
+    ftol: float = 1e-3
+    """The relative change that ends it."""
+    last_steps: int = 100
+    """The same on the whole series ..."""
+    last_ftol: float = 1e-8
+    """... and the change that ends that."""
+    most_parts: int = 200
+    """Parts on which least squares is tried before it goes to the whole series."""
+
+
+GROWING = GrowingWindowLimits()
+
+
+@dataclass(frozen=True)
+class MultipleShootingLimits:
+    """Of segments with initial states of their own, whose gaps are closed stage by stage."""
+
+    fewest_samples: int = 10
+    """Samples of a segment, at least."""
+    most_segments: int = 300
+    """Segments of a series, at most."""
+    longer: int = 4
+    """How many times longer than the longest so far the next segment may be."""
+    steps: int = 15
+    """Of a stage, at most."""
+    ftol: float = 1e-3
+    """The relative change that ends it."""
+    last_steps: int = 40
+    """The same of the last stage ..."""
+    last_ftol: float = 1e-6
+    """... and the change that ends that."""
+    closed: float = 1e-5
+    """Gaps of this part of what states change from one start to the next are closed."""
+    first_damping: float = 1e-3
+    """Damping of the first step, in squared column lengths of the derivatives."""
+    least_damping: float = 1e-12
+    """Damping does not fall below it."""
+    most_damping: float = 1e10
+    """Damping from which on a stage ends."""
+    alike: float = 2.0
+    """One run is as good as the segments where its criterion is at most so many times theirs ..."""
+    nothing: float = 1e-6
+    """... or is this part of what the data spread: as good as none."""
+
+
+SEGMENTS = MultipleShootingLimits()
+
+
+@dataclass(frozen=True)
+class MultistartLimits:
+    """Of the search from many points."""
+
+    points: int = 32
+    """For each unknown, rounded up to a power of two."""
+    most_points: int = 4096
+    """In all, at most."""
+    batch: int = 32
+    """Points that are evaluated together."""
+    polished: int = 6
+    """Of the best points: how many least squares goes on from."""
+    steps: int = 60
+    """Of least squares, at most."""
+    ftol: float = 1e-8
+    """The relative change that ends it."""
+    apart: float = 0.05
+    """Two points are one start where they are nearer than this part of the bounds in every
+    unknown."""
+    same: float = 1e-3
+    """Two ends are one minimum where their criteria differ by less than this part."""
+
+
+MULTISTART = MultistartLimits()
+
+
+@dataclass(frozen=True)
+class ShootingLimits:
+    """Of rounds of random shots and of the simplex."""
+
+    first_radius: float = 0.05
+    """Of the shots, as a part of the size of each unknown: a standard deviation."""
+    nearest: float = 0.2
+    """A shot has the radius of its round, or one that is smaller, down to this part of it."""
+    least_radius: float = 1e-5
+    """A radius that would be smaller begins again at the first."""
+    shots: int = 2
+    """In a round, for each unknown; twice as many where there is no simplex."""
+    least_shots: int = 10
+    """In a round, at least."""
+    longest: float = 8.0
+    """Shots along the simplex are as long as it is, and up to so many times longer."""
+    patience: int = 5
+    """A simplex is left where so many evaluations for each unknown ..."""
+    stalled: float = 0.8
+    """... leave this part of the criterion."""
+    edge: float = 0.05
+    """Of the simplex of fminsearch, as a part of each unknown."""
+    least_edge: float = 1e-4
+    """A simplex ends where it has shrunk to this part of its first edges, or its values have."""
+    zero: float = 0.02
+    """The least size of an unknown, as a part of what it is scaled by."""
+    polishing: int = 10
+    """Steps of least squares after a round."""
+    polished: float = 0.9
+    """Where they leave more than this part of the criterion they are not tried again before a shot
+    is better."""
+    polish_ftol: float = 1e-6
+    """The relative change that ends them."""
+    gain: float = 1e-3
+    """A round that gains less than this part of the criterion has gained nothing."""
+    lost: int = 8
+    """So many rounds without gain end the search."""
+
+
+SHOOTING = ShootingLimits()
+
+
+@dataclass(frozen=True)
+class DiagnosisLimits:
+    """Of what is left after a fit: from when on it is no noise."""
+
+    at_noise: float = 1.3**0.5
+    """Times the noise up to which a residual is at it: the noise itself is known to 8 % or so."""
+    doubt: float = 0.01
+    """Probability below which chance is no explanation."""
+    notable: float = 0.1
+    """Autocorrelation that matters; less may be significant in long records and is not
+    important."""
+    far: float = 4.0
+    """Robust standard deviations from which a sample is an outlier; chance has 6 in 100 000."""
+    fewest_samples: int = 10
+    """Samples that are diagnosed, and signs among which runs are counted."""
+    lags: int = 20
+    """So many last samples of a drive may show in a residual ..."""
+    components: int = 6
+    """... and so many combinations of these."""
+    elsewhere: float = 0.2
+    """Of the range of a measured state: a first sample so far from the run's is another start."""
+    promised: float = 0.9
+    """The part of the residual that a Gauss-Newton step promises to leave, below which a search has
+    ended before a minimum."""
+
+
+DIAGNOSIS = DiagnosisLimits()
+
+
+@dataclass(frozen=True)
+class UncertaintyLimits:
+    """Of standard errors, and of parameters that the data do not determine."""
+
+    at_bound: float = 1e-6
+    """Part of the width between bounds within which a value sits on one."""
+    far: float = 3.0
+    """In sigma: beyond it a robust loss takes a residual for an outlier."""
+    unmoved: float = 10.0
+    """Relative standard error of a parameter, all others known, from which the data do not move
+    it."""
+    loose: float = 0.5
+    """Relative standard error from which two of them reach the value itself: 100 %."""
+    collinear: float = 100.0
+    """Brun's collinearity index from which the others stand in for a parameter. Brun calls 10 to 20
+    critical; NIST certifies errors at 50 (Nelson), and 500 is what a product of parameters has."""
+    part: float = 0.1
+    """Share of a direction from which a parameter takes part in it."""
+    trace: float = 1e-3
+    """The same where the direction is exactly flat: less is within the derivatives' error."""
+
+
+UNCERTAINTY = UncertaintyLimits()
+
+
+@dataclass(frozen=True)
+class ProfileLimits:
+    """Of the profile of a likelihood, followed to both sides of a value."""
+
+    first: float = 0.6
+    """The first step, in standard errors."""
+    growth: float = 1.4
+    """How much longer each next step is."""
+    beyond: float = 1.5
+    """Times the level at which a side has been followed far enough."""
+    finer: int = 3
+    """How many more values may be tried where a step has gone far beyond the level."""
+    fell: float = 1.0
+    """How much lower -2 log likelihood must be elsewhere before a fit counts as not converged."""
+
+
+PROFILE = ProfileLimits()
