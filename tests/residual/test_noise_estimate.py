@@ -225,3 +225,8 @@ def test_a_constant_or_a_few_samples_do_no_harm(count: int) -> None:
     for values in (np.full(count, 2.5), np.arange(float(count))):
         measured = Measured("run", "train", np.arange(float(count)), {"x": values})
         assert 0 < channel_noise([measured])["x"] < 1
+
+
+@pytest.mark.parametrize("value", [0.0, 1.0, 1e-310])
+def test_a_signal_that_stands_still_has_no_noise(value: float) -> None:
+    assert noise_of_signal(np.full(500, value)).level == 0.0

@@ -68,6 +68,8 @@ def noise_of_signal(values: Vector, t: Vector | None = None) -> NoiseEstimate:
         clean = replace_outliers(values)
         spectrum = spectrum_of(clean)
         local = _of_differences(values, None if even else t)
+        if not len(spectrum.density):  # nothing moves
+            return replace(local, step=step)
         found = _of_spectrum(spectrum, clean, step, local)
         # events in most stretches: between them differences see less than the highest band
         disturbed = local.level < NOISE.disturbed * float(spectrum.density[0]) ** 0.5

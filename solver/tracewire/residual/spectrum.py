@@ -39,8 +39,6 @@ def spectrum_of(values: Vector) -> Spectrum:
     take most of what is slow away beforehand. Each band has the median over the stretches, so that
     a few jumps, outliers or rests do not count; stretches that stand still are left out.
     """
-    from scipy.signal.windows import kaiser
-
     length = SPECTRUM.long if len(values) >= SPECTRUM.enough else SPECTRUM.short
     bent = np.diff(values - np.mean(values), 2)
     high: list[float] = []
@@ -49,7 +47,7 @@ def spectrum_of(values: Vector) -> Spectrum:
     calm: list[float] = []
     top = 0.5
     while len(bent) >= length + (SPECTRUM.fewest - 1) * length // SPECTRUM.overlap or not density:
-        window = kaiser(length, SPECTRUM.shape)
+        window = np.kaiser(length, SPECTRUM.shape)
         rows = sliding_window_view(bent, length)[:: max(length // SPECTRUM.overlap, 1)]
         rows = rows[np.ptp(rows, axis=1) > 0]
         if not len(rows):
