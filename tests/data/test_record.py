@@ -68,6 +68,15 @@ def test_brackets_without_a_unit_are_told_and_not_used(tmp_path: Path) -> None:
     )
 
 
+def test_a_temperature_in_degrees_celsius_is_told_what_to_say(tmp_path: Path) -> None:
+    made = read_record(file_of(tmp_path, "t,T [degC]"), {"T": "T"}, "t")
+    assert made.columns["T"].tolist() == [180, 90]
+    assert made.remarks == (
+        "'T': the header has 'degC', which is no unit: a temperature is in K; say unit: K where"
+        " only differences count",
+    )
+
+
 def test_a_torque_in_newton_metres_is_no_number_of_metres(tmp_path: Path) -> None:
     made = read_record(file_of(tmp_path, "t,M [mNm]"), {"M": "M"}, "t")
     assert made.columns["M"] == pytest.approx([0.18, 0.09])

@@ -15,7 +15,7 @@ from tracewire.data.formats import opened
 from tracewire.data.record import Record
 from tracewire.data.request import Found, Request, Vector
 from tracewire.errors import DataError, FormulaError, OptionError, Place, Problem
-from tracewire.formula import Unit, read_unit, same_quantity
+from tracewire.formula import Unit, has_offset, read_unit, same_quantity
 
 
 @dataclass(frozen=True, eq=False)
@@ -263,7 +263,10 @@ class _Said:
         by_header = _unit_or_none(header) if header else None
         if by_header is None:
             if header and declared is None:
-                self.remarks.append(f"{what}: the header has '{header}', which is no unit")
+                remark = f"{what}: the header has '{header}', which is no unit"
+                if has_offset(header):
+                    remark += ": a temperature is in K; say unit: K where only differences count"
+                self.remarks.append(remark)
             text = default if declared is None else declared
         else:
             text = header if declared is None else declared

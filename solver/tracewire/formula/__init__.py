@@ -36,7 +36,7 @@ from tracewire.formula.parse import (
 from tracewire.formula.quantities import QUANTITIES, Quantity
 from tracewire.formula.text import number_text, to_text
 from tracewire.formula.unit_rules import Term, times, unit_term
-from tracewire.formula.units import Unit, quantity_hint, read_unit, same_quantity
+from tracewire.formula.units import Unit, has_offset, quantity_hint, read_unit, same_quantity
 
 if TYPE_CHECKING:
     from tracewire.formula.arrays import ALONG, evaluate_along
@@ -60,6 +60,7 @@ __all__ = [
     "evaluate_along",
     "evaluation_order",
     "has_delay",
+    "has_offset",
     "is_condition",
     "is_name",
     "name_hint",

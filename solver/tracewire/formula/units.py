@@ -92,9 +92,14 @@ def read_unit(text: str, place: Place = Place()) -> Unit:
         return _convert(text.strip())
     except ValueError:
         hint = "Write it like 'kg m^2', 'N m s/rad', 'deg' or '1/s'."
-        if OFFSET.search(text):
+        if has_offset(text):
             hint = "A temperature is in K: 20 degC are 293.15 K. A difference of 1 degC is 1 K."
         raise FormulaError([Problem(f"'{text[:60]}' is not a unit", place, (), hint)]) from None
+
+
+def has_offset(text: str) -> bool:
+    """Whether a text is a scale of temperature whose zero is not zero, such as degC."""
+    return bool(OFFSET.search(text))
 
 
 def same_quantity(one: str, other: str) -> bool:

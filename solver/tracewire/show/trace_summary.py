@@ -166,7 +166,8 @@ def noisy_words(found: Found) -> str:
     if found.effects or not found.noisy_inputs:
         return ""
     parts = [
-        f"noise of the input '{one.name}' of {one.sigma:.2g} {found.units.get(one.name, '')}"
+        f"noise of the input '{one.name}' of "
+        + f"{one.sigma:.2g} {found.units.get(one.name, '')}".rstrip()
         for one in found.noisy_inputs
     ]
     return f"{' or '.join(parts)} would explain the residual"
