@@ -149,6 +149,8 @@ class WindowLimits:
     remembered: float = 0.1
     """The part of a series by which a run begins ahead of a window, so that what a model remembers
     is what the record has made it: two time constants of a lag that the record shows ten times."""
+    remembered_windows: int = 2
+    """The same in lengths of the window, at most: what a short window ignores is soon forgotten."""
     initial_state_steps: int = 8
     """Gauss-Newton steps of initial states, at most."""
     far_off: float = 100.0

@@ -86,19 +86,19 @@ def with_memory(model: Model, segments: Sequence[Segment]) -> list[Segment]:
     """Windows whose runs find what a model remembers beside the states that are free at a start.
 
     A lag or a hysteresis begins as its block says, which is wrong inside a record. So the run of a
-    window that follows no other begins ahead of it by a tenth of the series, or where that does.
+    window that follows no other begins ahead of it, by twice its length or a tenth of the series.
     """
     found: list[Segment] = []
     for n, segment in enumerate(segments):
         known = set(model.states) <= set(segment.free)
         known &= not any(mode.kind == "memory" for mode in model.modes)
         follows = n > 0 and segment.continues(segments[n - 1])
-        row = max(int(segment.rows[0]) - 1 - int(WINDOW.remembered * len(segment.measured.t)), 0)
-        ahead = segment.measured.t[row] < segment.begin
-        if known or not segment.free or follows or not ahead:
+        t, row = segment.measured.t, int(segment.rows[0]) - 1
+        if known or not segment.free or follows or row <= 0 or segment.begin < t[row]:
             found.append(segment)
-        else:
-            found.append(_begun_at(model, segment, row))
+            continue
+        ahead = min(int(WINDOW.remembered * len(t)), WINDOW.remembered_windows * len(segment.rows))
+        found.append(_begun_at(model, segment, max(row - ahead, 0)))
     return found
 
 

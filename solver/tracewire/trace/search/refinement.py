@@ -101,7 +101,8 @@ def _exchange_effect(
     """The best model with the best of the rivals of one effect, and the other rivals.
 
     A wave, a drift or their kin takes the place of a common effect only where it takes that much
-    more of what is missing.
+    more of what is missing; and a law goes before one that imitates it with more numbers, as
+    Coulomb friction before a Stribeck curve, where it leaves next to nothing more.
     """
     effect = best.effects[number]
     search.tell(f"comparing {effect} with its rivals")
@@ -138,6 +139,11 @@ def _exchange_effect(
         if uncommon(trial, options) <= uncommon(best, options)
         or best.reduced_chi2 - trial.reduced_chi2 > least_part(trial, options) * missing
     )
+    trifle = options.search.trifle * (declared.reduced_chi2 - winner.reduced_chi2) * winner.count
+    for bic, trial, added in results:  # a law that it imitates, and that is next to nothing behind
+        fewer = trial.unknowns < winner.unknowns
+        if str(added) in chosen.candidate.imitated and fewer and trial.rss < winner.rss + trifle:
+            quality, winner, chosen = bic, trial, added
     correlation = {str(added): value for added, value in known} | {str(effect): 1.0}
     if str(chosen) != str(effect):
         correlation = {str(added): value for added, value in _known_rivals(search, chosen)}

@@ -240,7 +240,7 @@ class TraceProblem:
         criterion = self._criterion(
             model, self.with_series_values(segments, effects), unknowns, fixed
         )
-        criterion.budget = budget
+        criterion.budget = budget * _time_of(criterion.segments) / _time_of(segments)
         windows = evaluate_windows(criterion, inlier_limit)
         _refuse_failed(criterion, windows)
         windows, converged = fit_windows(windows, steps, target, ftol, initial_state_steps)
@@ -442,6 +442,11 @@ def with_starts_of(segments: Sequence[Segment], trial: Trial, rows: Sequence[int
     for n, segment in zip(rows, trial.windows.segments, strict=True):
         found[n] = segment
     return found
+
+
+def _time_of(segments: Sequence[Segment]) -> float:
+    """The time in s that the runs of windows take together."""
+    return sum(float(segment.t[-1]) - segment.begin for segment in segments)
 
 
 def _refuse_failed(criterion: Criterion, windows: Windows) -> None:
