@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from oracles.oscillator import DIAGRAM, NOISE, exact, model_of, problem_of, record, trial_of
 from scipy.optimize import least_squares
-from tracewire.compile import compile
+from tracewire.compile import Model, compile
 from tracewire.diagram import read_text
 from tracewire.residual import Criterion, Measured, Segment
 from tracewire.residual.initial_states import fit_initial_states
@@ -16,7 +16,9 @@ from tracewire.residual.windows import (
     cut_windows,
     evaluate_windows,
     project_out_initial_states,
+    with_memory,
 )
+from tracewire.solve import simulate
 
 BALL = """\
 span: [0, 2]
@@ -160,3 +162,49 @@ def test_without_unknowns_a_fit_settles_the_starts() -> None:
     windows, converged = fit_windows(evaluate_windows(criterion))
     assert converged
     assert windows.rss == pytest.approx(len(m.t), rel=0.2)
+
+
+HEATER = """\
+span: [0, 300]
+inputs: {power: {}}
+blocks:
+  T: {type: integrator, of: rate, start: 20}
+  late: {type: drive_lag, of: power, tau: 8}
+  rate: {type: expression, formula: "0.02*(power + late - (T - 20))"}
+"""
+
+
+def heater() -> tuple[Model, Measured]:
+    """A body that a heater warms, which is late by 8 s, switched on before the record begins."""
+    model = compile(read_text(HEATER), record=["T"])
+    t = np.arange(0.0, 300.0, 2.0)
+    drive = {"power": (t, np.where((t // 60) % 2 == 0, 50.0, 20.0))}
+    run = simulate(model, times=t, inputs=drive, rtol=1e-9)
+    return model, Measured("run", "train", t, {"T": run["T"]}, inputs=drive, start={"T": None})
+
+
+def test_a_run_inside_a_record_begins_ahead_so_that_what_it_remembers_is_right() -> None:
+    model, m = heater()
+    segments = cut_windows(model, Section(m, 40, 60), 20, ("T",))
+    errors = []
+    for windows in (segments, with_memory(model, segments)):
+        criterion = Criterion(model, windows, [], {}, sigma={"T": 1.0}, weighting="sum")
+        fitted = fit_initial_states(evaluate_windows(criterion))
+        errors.append(float(np.abs(fitted.residuals[0]).max()))
+    assert errors[0] > 1.0, "the lag begins at a power of 0"
+    assert errors[1] < 0.2, "30 s before are nearly four time constants"
+
+
+def test_a_run_begins_ahead_once_and_only_where_a_model_remembers() -> None:
+    model, m = heater()
+    segments = cut_windows(model, Section(m, 40, 60), 10, ("T",))
+    ahead = with_memory(model, segments)
+    assert [one.rows.tolist() for one in ahead] == [one.rows.tolist() for one in segments]
+    assert ahead[0].begin == m.t[39 - 15], "a tenth of the series before"
+    assert ahead[1].begin == segments[1].begin, "it goes on where the first one ends"
+    again = with_memory(model, ahead)
+    assert [one.begin for one in again] == [one.begin for one in ahead]
+    free = cut_windows(model, Section(m, 40, 60), 10, model.states)
+    assert with_memory(model, free) == free
+    first = cut_windows(model, Section(m, 0, 60), 10, ("T",))
+    assert with_memory(model, first)[0].begin == first[0].begin, "the series has no more"

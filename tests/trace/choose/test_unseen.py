@@ -13,11 +13,13 @@ from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.choose.unseen import (
     better_unseen,
     lowers_no_claim,
+    lowers_unseen,
     prune_by_other_runs,
     raises_whole_runs,
     share_of_whole_runs,
 )
 from tracewire.trace.options import TraceOptions
+from tracewire.trace.search.refinement import FinalModels
 
 BLOCKS = 8
 DRY, DRIFT = "coulomb @ forces", "sensor_drift @ sensor.v"
@@ -252,7 +254,7 @@ def test_an_effect_whose_coefficient_may_be_zero_is_not_named(
     left: float, verdict: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     there = run_of({})
-    there.words = []
+    there.words, there.short_length = [], 50
     declared: Any = SimpleNamespace(reduced_chi2=left, effects=())
     final: Any = SimpleNamespace(declared=declared, best=Names((DRY,)))
     monkeypatch.setattr(safeguards, "is_loose", lambda problem, trial: False)
@@ -261,3 +263,43 @@ def test_an_effect_whose_coefficient_may_be_zero_is_not_named(
     assert (found.verdict, found.final.best) == (verdict, declared)
     told = f"{DRY} is not named: the 95% interval of its coefficient holds zero"
     assert there.words == [told]
+
+
+DELAY = "sensor_delay @ sensor.v"
+
+
+@pytest.mark.parametrize(
+    ("left", "in_windows", "kept"),
+    [
+        (60.0, 10.0, {DRY}),
+        (60.0, 9.0, {DRY, DELAY}),  # windows say otherwise
+        (50.5, 10.0, {DRY, DELAY}),  # by chance
+        (40.0, 10.0, {DRY, DELAY}),
+    ],
+)
+def test_an_effect_beside_others_that_harms_whole_unseen_runs_is_not_named(
+    left: float, in_windows: float, kept: set[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = {(DRY,): 50.0, (DELAY,): 400.0, (DRY, DELAY): left}
+    windowed = {(DRY,): 10.0, (DELAY,): 10.0, (DRY, DELAY): in_windows}
+    there = run_of({})
+    there.words, there.short_length = [], 50
+    there.problem.residuals_on = lambda names, windows: [
+        np.full(windows[0], (whole if windows[0] == WHOLE else windowed)[tuple(names)])
+    ]
+    monkeypatch.setattr(
+        safeguards, "_refitted_with", lambda search, best, names: Names(tuple(names))
+    )
+    none: Any = Names(())
+    both: Any = Names((DRY, DELAY))
+    found: Any = safeguards._without_harmful(there, FinalModels(none, both, {}, ()))
+    assert set(found.best) == kept
+    told = f"{DELAY} is not named beside {DRY}: it multiplies the error of whole unseen runs by 1.2"
+    assert there.words == ([told] if kept == {DRY} else [])
+
+
+@pytest.mark.parametrize(("after", "lowers"), [(9.0, True), (9.9, False), (11.0, False)])
+def test_an_unseen_error_is_lower_by_more_than_chance(after: float, lowers: bool) -> None:
+    fewer: Any = ()
+    more: Any = (DRY,)
+    assert lowers_unseen(run_of({(): 10.0, (DRY,): after}), fewer, more, 50) == lowers
