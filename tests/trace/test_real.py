@@ -60,7 +60,8 @@ def test_a_small_swing_sticks(folder: Path) -> None:
     found = traced("multiarm_pendulum/small.yaml", folder)
     assert found.verdict == "effect"
     dry = {"coulomb", "lugre", "dahl", "hysteresis", "bouc_wen"}
-    assert {effect.name for effect in found.effects} <= dry, "dry friction that sticks"
+    for effect in found.effects:  # or a tie: the play of an elastic friction is as near
+        assert {effect.name, *(tie.name for tie in effect.ties)} & dry, "dry friction that sticks"
     assert found.dropped == ("c",), "the declared viscous friction stood in for it"
     assert found.explained is not None and found.explained.low > 0.9
     (swing,) = (e for e in found.errors if (e.use, e.kind) == ("train", "free run"))

@@ -182,9 +182,11 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
 
 def _is_enough(prediction: Prediction, share: float, surely: float) -> bool:
     """Whether the named effects explain enough of the excess error, and leave little enough of the
-    error on held-out blocks; at the noise no model leaves less."""
-    options = prediction.options
-    at_noise = prediction.chosen.trials[-1].reduced_chi2 <= options.at_noise
+    error on held-out blocks; at the noise of all horizons they explain all there is."""
+    options, trials = prediction.options, prediction.chosen.trials
+    if all(trial.reduced_chi2 <= options.at_noise for trial in trials):
+        return share >= options.explained
+    at_noise = trials[-1].reduced_chi2 <= options.at_noise
     little = at_noise or error_left(prediction) <= options.error_left
     return share >= options.explained and surely >= options.explained_surely and little
 
