@@ -307,7 +307,7 @@ def _drop_trifles(
     """The best model without effects that explain next to nothing of what was missing and may stand
     for anything: waves, drifts and their kin, and those with rivals that do as well. What is left
     of laws that are only nearly right has the shape of some effect. One of z standard errors takes
-    about z^2 variances off the sum of squares."""
+    about z^2 variances off the sum of squares; what takes more than the noise has is no trifle."""
     options = search.options
     while len(best.effects) > 1:
         excess = (declared.reduced_chi2 - best.reduced_chi2) * best.count
@@ -315,7 +315,7 @@ def _drop_trifles(
             taken = _errors_from_nothing(best, effect) ** 2 * best.reduced_chi2
             ties = [str(rival.effect) for rival in rivals.get(str(effect), ()) if rival.tied]
             unsure = effect.candidate.effect in options.uncommon or ties
-            if unsure and taken < options.search.trifle * excess:
+            if unsure and taken < min(options.search.trifle * excess, best.rss):
                 effective_fraction = (
                     f"{100 * taken / excess:.2g} % of the squared error that was missing"
                 )
