@@ -24,7 +24,11 @@ Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 MOST = 16  # kinds of workspaces that a model keeps
 MOST_NUMBERS = 500_000  # of samples and tables; larger arrays are not kept
-ONLY_WRITTEN = ("address", "c", "k", "log", "stiff", "times", *GROWING)
+ONLY_WRITTEN = (
+    *("address", "c", "k", "log", "stiff", "times"),
+    *("change", "between", "right", "parts", "system"),  # of sensitivities
+    *GROWING,
+)
 """What is written before each run, or not read before the run has written it."""
 
 

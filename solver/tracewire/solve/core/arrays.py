@@ -185,8 +185,8 @@ class Sensitivity(NamedTuple):
     one that is not yet taken (0: none is), the tolerance of the estimate, the error inside and its
     tolerance, and whether the first slopes are known.
     `instants` (M, q): how the instant moves at which each mode changes, of those that do so now.
-    `bound` (M,): what was held after the last event. `right` and `parts` (3n, q), `system`
-    (3n, 3n), `pivots` (3n,), `order` (n + 2,), `weights` and `picks` (n,) and `at` (n,) are work
+    `bound` (M,): what was held after the last event. `right`, `parts` (3n, q; at least one row),
+    `system` (3n, 3n), `pivots` (3n,), `order` (n + 2,), `weights`, `picks` and `at` (n,) are work
     space.
     """
 

@@ -11,10 +11,18 @@ import math
 import numpy as np
 
 from tracewire.solve.core import methods
-from tracewire.solve.core.arrays import Matrix, copy, flow_of, history_of, sensitivity_of, trial_of
+from tracewire.solve.core.arrays import (
+    Matrix,
+    Vector,
+    copy,
+    flow_of,
+    history_of,
+    sensitivity_of,
+    trial_of,
+)
 from tracewire.solve.core.flow import RESTING, SLIDING
 from tracewire.solve.core.history import find_lags, is_delayed, recall
-from tracewire.solve.core.linear import add_rows, factor, substitute_all
+from tracewire.solve.core.linear import factor, put_rows, substitute_all
 from tracewire.solve.core.rows import add_row, add_two, put_three
 from tracewire.solve.core.stages import NODES, RADAU, eliminate, solve_stages
 from tracewire.solve.core.units import helper, unit
@@ -54,9 +62,8 @@ def _slopes(core: int, node: int, t: float) -> None:
     What is the same at all nodes is filled in at the first one only.
     """
     sensitivity = sensitivity_of(core)
-    s, chain, out, nodes = sensitivity.s, sensitivity.chain, sensitivity.slopes, sensitivity.nodes
-    filled, weights, picks = sensitivity.filled, sensitivity.weights, sensitivity.picks
-    order, reads, (n, q) = sensitivity.order, sensitivity.reads, s.shape
+    order = sensitivity.order
+    n, a = len(sensitivity.s), len(sensitivity.chain)
     counts = flow_of(core).counts
     some_held = counts[SLIDING] + counts[RESTING] > 0
     if is_delayed(core):
@@ -65,22 +72,39 @@ def _slopes(core: int, node: int, t: float) -> None:
             history.lag[j] = history.node_lags[node, j]
         recall(core, t)
     for place in range(order[n] if node > 1 and order[n + 1] > 0 else 0, n):
-        row, count = node * n + order[place], 0
-        for j in range(q):
-            out[row, j] = 0.0
-        for k in range(n):
-            if nodes[row, k] != 0.0:
-                weights[count], picks[count] = nodes[row, k], k
-                count += 1
-        add_rows(count, weights, picks, s, out, row)
-        begin, behind = 0, chain.shape[0]
+        state = order[place]
+        row, begin, behind = node * n + state, 0, a
         if not some_held:
-            begin, behind = reads[order[place], 0], reads[order[place], 1]
-        for k in range(begin, behind):
-            part = nodes[row, n + 1 + k]
-            if part != 0.0:
-                for j in range(filled[k, 0], filled[k, 1]):
-                    out[row, j] += part * chain[k, j]
+            begin, behind = sensitivity.reads[state, 0], sensitivity.reads[state, 1]
+        derivatives, s = sensitivity.nodes[row], sensitivity.s
+        put_total(core, derivatives, begin, behind, s, sensitivity.slopes, row)
+
+
+@helper
+def put_total(
+    core: int, derivatives: Vector, begin: int, behind: int, s: Matrix, out: Matrix, into: int
+) -> None:
+    """Let a row of `out` be what derivatives (w,) in x, t and parameters are in all, t fixed.
+
+    Those in the parameters from `begin` to `behind`; of the others they are zero.
+    """
+    sensitivity = sensitivity_of(core)
+    chain, filled = sensitivity.chain, sensitivity.filled
+    weights, picks, n, count = sensitivity.weights, sensitivity.picks, len(s), 0
+    for k in range(n):
+        if derivatives[k] != 0.0:
+            weights[count], picks[count] = derivatives[k], k
+            count += 1
+    put_rows(count, weights, picks, s, out, into)
+    for k in range(begin, behind):
+        part = derivatives[n + 1 + k]
+        if part != 0.0:
+            first, end = filled[k, 0], filled[k, 1]
+            if end == first + 1:  # of most parameters: what is asked for is the parameter itself
+                out[into, first] += part * chain[k, first]
+            else:
+                for j in range(first, end):
+                    out[into, j] += part * chain[k, j]
 
 
 @unit

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.solve.core.rows import add_row, add_two
+from tracewire.solve.core.rows import add_row, add_two, put_three
 from tracewire.solve.core.units import helper, inlined, unit
 
 Vector = NDArray[np.float64]
@@ -157,7 +157,21 @@ def solved(matrix: Matrix, right: Vector) -> Vector:
 @unit
 def substitute_all(factors: Matrix, pivots: Ints, right: Matrix) -> None:
     """Replace right sides (n, q), one in each column, by the solutions."""
-    n, q = right.shape
+    n = len(right)
+    if n == 3:
+        _substitute_all(factors, pivots, right, 3)
+    elif n == 4:
+        _substitute_all(factors, pivots, right, 4)
+    elif n == 6:
+        _substitute_all(factors, pivots, right, 6)
+    else:
+        _substitute_all(factors, pivots, right, n)
+
+
+@inlined
+def _substitute_all(factors: Matrix, pivots: Ints, right: Matrix, n: int) -> None:
+    """The same, built in with its size."""
+    q = right.shape[1]
     for i in range(n):
         row = pivots[i]
         if row != i:
@@ -172,7 +186,7 @@ def substitute_all(factors: Matrix, pivots: Ints, right: Matrix) -> None:
             right[i, j] *= inverse
 
 
-@helper
+@inlined
 def _take_rows(factors: Matrix, i: int, begin: int, end: int, right: Matrix) -> None:
     k = begin
     while k + 1 < end:
@@ -180,6 +194,25 @@ def _take_rows(factors: Matrix, i: int, begin: int, end: int, right: Matrix) -> 
         k += 2
     if k < end:
         add_row(right, i, -factors[i, k], right, k)
+
+
+@helper
+def put_rows(
+    count: int, weights: Vector, picks: Ints, rows: Matrix, out: Matrix, into: int
+) -> None:
+    """Let a row of `out` be a sum of multiples of some rows."""
+    if count == 0:
+        for j in range(out.shape[1]):
+            out[into, j] = 0.0
+        return
+    one, first = weights[0], picks[0]
+    two, second = (weights[1], picks[1]) if count > 1 else (0.0, first)
+    three, third = (weights[2], picks[2]) if count > 2 else (0.0, first)
+    put_three(out, into, one, rows, first, two, second, three, third)
+    if count == 4:
+        add_row(out, into, weights[3], rows, picks[3])
+    elif count > 4:
+        add_rows(count - 3, weights[3:], picks[3:], rows, out, into)
 
 
 @helper

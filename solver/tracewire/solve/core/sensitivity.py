@@ -2,7 +2,8 @@
 
 Between events S' = J(t) S + f_p(t), by the collocation method Radau IIA of order 5 on the dense
 output of the states, in intervals of its own where S moves faster than x (E. Hairer, G. Wanner,
-Solving ODEs II, sections IV.5 and IV.8). At an event g(t, x, p) = 0 that moves by dtau:
+Solving ODEs II, sections IV.5 and IV.8), with a dense output of its own for samples inside. At an
+event g(t, x, p) = 0 that moves by dtau:
 
     dtau = -(g_x S- + g_p)/g'      D = S- + f- dtau
     D+ = R_x D + R_p + R_t dtau    S+ = D+ - f+ dtau
@@ -43,6 +44,7 @@ from tracewire.solve.core.collocation import (
     UNCHECKED,
     collocate,
     fill_between,
+    put_total,
 )
 from tracewire.solve.core.flow import OUTPUTS, RESTING, SLIDING, held, patterns
 from tracewire.solve.core.history import find_lags, is_delayed, recall
@@ -162,7 +164,7 @@ def _try(core: int, method: int, sample: float, end: float) -> None:
         return
     beyond = now[INSIDE_ERROR] / now[INSIDE_TOLERANCE]
     now[DENSE] = max(h * _longer(beyond), least)
-    if inside and beyond > 1.0:
+    if inside and beyond > 1.0 and h > least:
         return
     now[UNCHECKED] = SURE if error < FAR_WITHIN else 0.0
     now[LONGEST] = 1.5 * h
@@ -202,7 +204,6 @@ def sample(core: int, row: int, t: float, x: Vector, s: Matrix) -> None:
     """Fill in how the recorded signals change, for S (n, q) at this time."""
     flow, plan = flow_of(core), plan_of(core)
     sensitivity = sensitivity_of(core)
-    chain = sensitivity.chain
     if is_delayed(core):
         find_lags(core, t, x)
         recall(core, t)
@@ -219,12 +220,15 @@ def sample(core: int, row: int, t: float, x: Vector, s: Matrix) -> None:
                     rows[column] += moves[1 + k, column] * parts[k]
         else:
             derive(core, OF_OUTPUTS, t, x, rows)
-    for j in range(q):
-        for column in range(count):
-            if plan.direct[column] >= 0:
-                value = s[plan.direct[column], j]
-            else:
-                value = total_of(rows[column], s, chain, j)
+    one = sensitivity.parts  # of its rows, the first
+    for column in range(count):
+        state = plan.direct[column]
+        if state >= 0:
+            copy(s[state], one[0])
+        else:
+            put_total(core, rows[column], 0, len(sensitivity.chain), s, one, 0)
+        for j in range(q):
+            value = one[0, j]
             if not math.isfinite(value):
                 flag(core, LOST, 0, t)
                 value = 0.0

@@ -15,7 +15,7 @@ from tracewire.solve.core.arrays import Ints, Matrix, sensitivity_of
 from tracewire.solve.core.history import is_delayed
 from tracewire.solve.core.linear import add_rows, factor, substitute_all
 from tracewire.solve.core.rows import put_three
-from tracewire.solve.core.units import helper, unit
+from tracewire.solve.core.units import helper, inlined, unit
 
 ROOT = math.sqrt(6.0)
 NODES = np.array([(4 - ROOT) / 10, (4 + ROOT) / 10, 1.0])
@@ -35,16 +35,29 @@ def solve_stages(core: int, h: float) -> bool:
 
     The states are sorted by `eliminate`.
     """
+    n = len(sensitivity_of(core).s)
+    first = sensitivity_of(core).order[n]
+    if n == 2 and first == 1:
+        found = _solve(core, h, 2, 1)
+    elif n == 4 and first == 2:
+        found = _solve(core, h, 4, 2)
+    else:
+        found = _solve(core, h, n, first)
+    return found
+
+
+@inlined
+def _solve(core: int, h: float, n: int, first: int) -> bool:
+    """The same, built in with its size: short loops are faster where the compiler knows them."""
     sensitivity = sensitivity_of(core)
-    n = sensitivity.s.shape[0]
-    size = 3 * (n - sensitivity.order[n])
+    size = 3 * (n - first)
     matrix, pivots = sensitivity.system[:size], sensitivity.pivots[:size]
-    _fill_right(core, h)
-    _fill(core, h, matrix)
+    _fill_right(core, h, n, first)
+    _fill(core, h, matrix, n, first)
     if factor(matrix, pivots) == 0.0:
         return False
     substitute_all(matrix, pivots, sensitivity.right[:size])
-    _fill_slopes(core, h)
+    _fill_slopes(core, h, n, first)
     return True
 
 
@@ -78,14 +91,14 @@ def eliminate(core: int) -> None:
     order[n], order[n + 1] = count, int(steady)
 
 
-@unit
-def _fill_right(core: int, h: float) -> None:
+@inlined
+def _fill_right(core: int, h: float, n: int, first: int) -> None:
     """The right sides of the states that are left: r, and what r of the others adds to it."""
     sensitivity = sensitivity_of(core)
     nodes, slopes, order = sensitivity.nodes, sensitivity.slopes, sensitivity.order
     right, parts, weights = sensitivity.right, sensitivity.parts, sensitivity.weights
-    picks, (n, q) = sensitivity.picks, sensitivity.s.shape
-    first, steady = order[n], order[n + 1] > 0
+    picks, q = sensitivity.picks, sensitivity.s.shape[1]
+    steady = order[n + 1] > 0
     m = n - first
     for b in range(3):
         if not steady:
@@ -106,14 +119,14 @@ def _fill_right(core: int, h: float) -> None:
             add_rows(count, weights, picks, slopes if steady else parts, right, into)
 
 
-@unit
-def _fill_slopes(core: int, h: float) -> None:
+@inlined
+def _fill_slopes(core: int, h: float, n: int, first: int) -> None:
     """K of the states that are left from the solution, and K of the others that follows."""
     sensitivity = sensitivity_of(core)
     nodes, slopes, order = sensitivity.nodes, sensitivity.slopes, sensitivity.order
     right, parts, weights = sensitivity.right, sensitivity.parts, sensitivity.weights
-    picks, (n, q) = sensitivity.picks, sensitivity.s.shape
-    first, steady = order[n], order[n + 1] > 0
+    picks, q = sensitivity.picks, sensitivity.s.shape[1]
+    steady = order[n + 1] > 0
     m = n - first
     for b in range(2, -1, -1):  # where r is the same at all nodes, the first of them has it
         one, two, three = h * RADAU[b, 0], h * RADAU[b, 1], h * RADAU[b, 2]
@@ -135,12 +148,12 @@ def _fill_slopes(core: int, h: float) -> None:
             add_rows(count, weights, picks, parts, slopes, row)
 
 
-@unit
-def _fill(core: int, h: float, matrix: Matrix) -> None:
+@inlined
+def _fill(core: int, h: float, matrix: Matrix, n: int, first: int) -> None:
     """The matrix of the stages of the states that are left."""
     sensitivity = sensitivity_of(core)
-    nodes, order, n = sensitivity.nodes, sensitivity.order, sensitivity.s.shape[0]
-    first, steady = order[n], order[n + 1] > 0
+    nodes, order = sensitivity.nodes, sensitivity.order
+    steady = order[n + 1] > 0
     m = n - first
     for b in range(3):
         for v in range(m):
