@@ -191,6 +191,40 @@ blocks:
     assert found["instant"]["y"][elsewhere] == pytest.approx(moved[elsewhere], abs=1e-7)
 
 
+@pytest.mark.parametrize("method", ["auto", "dormand_prince", "dop853", "rosenbrock"])
+@pytest.mark.parametrize("rtol", [1e-5, 1e-8])
+def test_samples_inside_of_steps_are_as_good_as_those_at_their_ends(
+    method: str, rtol: float
+) -> None:
+    """x = cos(w t): dx/dk = -t sin(w t)/(2 w); many samples lie in each step."""
+    w, t = math.sqrt(2.0), np.linspace(0, 10, 4001)
+    options: dict[str, Any] = {"parameters": {"c": 0.0}, "method": method, "rtol": rtol}
+    run = simulate(made(SPRING), sensitivities=["k"], times=t, **options)
+    assert run.statistics.steps < 800
+    apart = run.sensitivities["k"]["x"] + t * np.sin(w * t) / (2 * w)
+    coarse = simulate(made(SPRING), sensitivities=["k"], times=t[::400], **options)
+    least = np.max(np.abs(coarse.sensitivities["k"]["x"] + (t * np.sin(w * t))[::400] / (2 * w)))
+    assert np.max(np.abs(apart)) < 3 * least + 20 * rtol
+
+
+@pytest.mark.parametrize("names", [["p"], ["p", "q"], ["p", "q", "start.x"]])
+def test_what_fades_at_once_is_known_inside_of_a_step(names: list[str]) -> None:
+    """x' = -1e6 (x - p - q t): x is p + q (t - 1e-6) as soon as what it began with has faded."""
+    text = """
+span: [0, 1]
+parameters: {p: 2, q: 3}
+blocks:
+  x: {type: integrator, of: rate, start: 5}
+  rate: {type: expression, formula: -1000000*(x - p - q*t)}
+"""
+    t = np.linspace(0, 1, 1001)
+    run = simulate(made(text), sensitivities=names, times=t, rtol=1e-6)
+    exact = {"p": 1 - np.exp(-1e6 * t), "start.x": np.exp(-1e6 * t)}
+    exact["q"] = t - 1e-6 * exact["p"]
+    for name in names:
+        assert run.sensitivities[name]["x"] == pytest.approx(exact[name], abs=1e-5)
+
+
 def test_what_rests_still_has_sensitivities_that_swing() -> None:
     """The steps of the states are as long as they may be; those of S follow S."""
     run = simulate(

@@ -255,6 +255,10 @@ class Model:
             leaves += [self.lowered.tape.push(op, payload=number) for number in delays]
         return self._routines.add_derivative(of, leaves)
 
+    def places(self, function: str) -> tuple[int, ...]:
+        """Which entries of `out` a function may make other than 0."""
+        return tuple(self._routines.routine(function).roots)
+
     def all_signals(
         self,
         t: float,

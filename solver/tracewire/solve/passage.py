@@ -24,6 +24,7 @@ from tracewire.solve.core.codes import (
     STEPS,
     T,
 )
+from tracewire.solve.core.collocation import SLOPED
 from tracewire.solve.core.flow import FREE, FUNCTIONS
 from tracewire.solve.core.memory import invoke
 from tracewire.solve.core.methods import NAMES, STEPPED
@@ -156,6 +157,7 @@ class Passage:
         sensitivity = self.arrays.sensitivity
         sensitivity.s[:] = columns
         sensitivity.peak[:] = np.maximum(np.abs(columns), self.arrays.progress.atol[:, None])
+        sensitivity.now[SLOPED] = 0.0
 
     @property
     def declared_start(self) -> Vector:

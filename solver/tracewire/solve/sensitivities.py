@@ -14,7 +14,7 @@ from tracewire.formula import Expression, Name, evaluate, names_of
 from tracewire.solve.core.arrays import Progress, Sensitivity
 from tracewire.solve.core.codes import FLAGS, GRAZES, LOST, SIMULTANEOUS, TOUCHES, ZENO
 from tracewire.solve.core.flow import FREE
-from tracewire.solve.core.variation import DERIVATIVES
+from tracewire.solve.core.variation import DERIVATIVES, OF_RHS
 from tracewire.solve.limits import MEMORY, STEP
 from tracewire.solve.once_per_model import once_per_model
 from tracewire.solve.options import START
@@ -200,6 +200,8 @@ def new_sensitivity(
     return Sensitivity(
         address=np.array(address, dtype=np.int64),
         chain=np.zeros((a, q)),
+        filled=np.zeros((a, 2), dtype=np.int64),
+        reads=_read_by(model, functions[OF_RHS], n, a) if q else np.zeros((n, 2), dtype=np.int64),
         s=np.zeros((n, q)),
         moved=np.zeros(q),
         peak=np.zeros((n, q)),
@@ -209,15 +211,32 @@ def new_sensitivity(
         push=np.zeros((modes, n * a)),
         flags=np.zeros((FLAGS, 2), dtype=np.int64),
         flag_times=np.zeros(FLAGS),
-        now=np.zeros(6),
+        now=np.zeros(13),
         instants=np.zeros((modes, q)),
         bound=np.full(modes, FREE, dtype=np.int64),
-        change=np.zeros((3 * n, q)),
-        slopes=np.zeros((3 * n, q)),
-        real=np.zeros((n, n)),
-        real_pivots=np.zeros(n, dtype=np.int64),
-        order=np.zeros(n + 1, dtype=np.int64),
+        change=np.zeros((n, q)),
+        slopes=np.zeros((4 * n, q)),
+        between=np.zeros((n, q)),
+        right=np.zeros((3 * n, q)),
+        parts=np.zeros((max(3 * n, 1), q)),
+        system=np.zeros((3 * n, 3 * n) if q else (0, 0)),
+        pivots=np.zeros(3 * n, dtype=np.int64),
+        order=np.zeros(n + 2, dtype=np.int64),
+        weights=np.zeros(n),
+        picks=np.zeros(n, dtype=np.int64),
+        at=np.zeros(n),
     )
+
+
+def _read_by(model: Model, function: str, n: int, a: int) -> NDArray[np.int64]:
+    """Where among a parameters those begin and end that each of n rates reads."""
+    places, w = np.array(model.places(function), dtype=np.int64), n + 1 + a
+    found = np.zeros((n, 2), dtype=np.int64)
+    for state in range(n):
+        mine = places[places // w == state] % w - (n + 1)
+        if len(mine := mine[mine >= 0]):
+            found[state] = mine.min(), mine.max() + 1
+    return found
 
 
 def recorded(

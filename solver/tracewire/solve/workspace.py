@@ -23,7 +23,11 @@ from tracewire.solve.setup import Kind, Records, new_arrays
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-ONLY_WRITTEN = ("address", "c", "k", "log", "stiff", "times", *GROWING)
+ONLY_WRITTEN = (
+    *("address", "c", "k", "log", "stiff", "times"),
+    *("change", "between", "right", "parts", "system"),  # of sensitivities
+    *GROWING,
+)
 """What is written before each run, or not read before the run has written it."""
 
 

@@ -173,19 +173,27 @@ class Sensitivity(NamedTuple):
     all, in the order of DERIVATIVES. `chain` (a, q): of these parameters in the numbers. `s`
     (n, q): of the states at the time in `now`, but inside of an event the change of the states at
     the event, which moves by `moved` (q,) with it. `peak` (n, q): the largest values so far.
-    `nodes` (4n, w): derivatives of the rates where the interval begins and at its nodes.
+    `filled` (a, 2): where in each row of `chain` the numbers begin and end that are not zero;
+    `reads` (n, 2): which parameters the rate of a state may read, unless something is held.
+    `nodes` (4n, w): derivatives of the rates where the interval begins and at its nodes, `slopes`
+    (4n, q): S' there, `change` (n, q): of S over the interval, `between` (n, q): S inside of it.
     `samples` (N, R*q), `times` (rows of the log, q). `push` (M, n*a): of the push of a contact in
     the parameters. `flags` and `flag_times`: per kind of FLAGS how often, the mode and the time of
-    the first. `now` holds that time, the next interval, whether the first nodes are
-    known, how many intervals need no estimate, how long these may be, and whether only tables of t
-    go on to their next points.
+    the first. `now` holds that time, the next interval, whether the first nodes are known, how many
+    intervals need no estimate, how long these may be, whether only tables of t go on to their next
+    points, how long an interval may be inside of which S is known, too, the end and the length of
+    one that is not yet taken (0: none is), the tolerance of the estimate, the error inside and its
+    tolerance, and whether the first slopes are known.
     `instants` (M, q): how the instant moves at which each mode changes, of those that do so now.
-    `bound` (M,): what was held after the last event. `change` (3n, q), `slopes` (3n, q),
-    `real` (n, n), `real_pivots` and `order` (n + 1,) are work space.
+    `bound` (M,): what was held after the last event. `right`, `parts` (3n, q; at least one row),
+    `system` (3n, 3n), `pivots` (3n,), `order` (n + 2,), `weights`, `picks` and `at` (n,) are work
+    space.
     """
 
     address: Ints
     chain: Matrix
+    filled: IntMatrix
+    reads: IntMatrix
     s: Matrix
     moved: Vector
     peak: Matrix
@@ -200,9 +208,15 @@ class Sensitivity(NamedTuple):
     bound: Ints
     change: Matrix
     slopes: Matrix
-    real: Matrix
-    real_pivots: Ints
+    between: Matrix
+    right: Matrix
+    parts: Matrix
+    system: Matrix
+    pivots: Ints
     order: Ints
+    weights: Vector
+    picks: Ints
+    at: Vector
 
 
 class Spans(NamedTuple):

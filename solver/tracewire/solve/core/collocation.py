@@ -11,58 +11,99 @@ import math
 import numpy as np
 
 from tracewire.solve.core import methods
-from tracewire.solve.core.arrays import Ints, Matrix, flow_of, history_of, sensitivity_of, trial_of
+from tracewire.solve.core.arrays import (
+    Matrix,
+    Vector,
+    copy,
+    flow_of,
+    history_of,
+    sensitivity_of,
+    trial_of,
+)
 from tracewire.solve.core.flow import RESTING, SLIDING
 from tracewire.solve.core.history import find_lags, is_delayed, recall
-from tracewire.solve.core.linear import factor, substitute_all
+from tracewire.solve.core.linear import factor, put_rows, substitute_all
+from tracewire.solve.core.rows import add_row, add_two, put_three
+from tracewire.solve.core.stages import NODES, RADAU, eliminate, solve_stages
 from tracewire.solve.core.units import helper, unit
 from tracewire.solve.core.variation import field
 
 ROOT = math.sqrt(6.0)
-NODES = np.array([(4 - ROOT) / 10, (4 + ROOT) / 10, 1.0])
-RADAU = np.array(
-    [
-        [(88 - 7 * ROOT) / 360, (296 - 169 * ROOT) / 1800, (-2 + 3 * ROOT) / 225],
-        [(296 + 169 * ROOT) / 1800, (88 + 7 * ROOT) / 360, (-2 - 3 * ROOT) / 225],
-        [(16 - ROOT) / 36, (16 + ROOT) / 36, 1 / 9],
-    ]
-)
-ERROR = np.array([-(13 + 7 * ROOT) / 3, (-13 + 7 * ROOT) / 3, -1 / 3])
+OF_CHANGES = np.array([-(13 + 7 * ROOT) / 3, (-13 + 7 * ROOT) / 3, -1 / 3])
+ERROR = OF_CHANGES @ RADAU  # of the slopes at the nodes, beside that where the interval begins
 REAL = 30.0 / (6.0 + 81 ** (1 / 3) - 9 ** (1 / 3))  # the real eigenvalue of the inverse of RADAU
 NOTHING = 1e-7
 """Of the largest part of a column of S: what is smaller is rounding where a slide holds it."""
 STILL = 1e-10
 """A column of S that is this small while something is held: what holds it cancels what moves it,
 and what is left is rounding, which no shorter interval makes less."""
-TIME, INTERVAL, KNOWN, UNCHECKED, LONGEST, SMOOTH = range(6)  # places in Sensitivity.now
+# places in Sensitivity.now
+TIME, INTERVAL, KNOWN, UNCHECKED, LONGEST, SMOOTH = range(6)
+DENSE, AHEAD, PENDING, TOLERANCE, INSIDE_ERROR, INSIDE_TOLERANCE, SLOPED = range(6, 13)
+
+
+def _weights_inside() -> Matrix:
+    """The integrals from 0 to theta of the Lagrange polynomials of 0 and the nodes, by the powers
+    1 to 4 of theta."""
+    places, rows = np.array([0.0, *NODES]), np.zeros((4, 4))
+    for k in range(4):
+        others = np.delete(places, k)
+        rows[k] = np.poly(others)[::-1] / np.prod(places[k] - others) / np.arange(1, 5)
+    return rows
+
+
+INSIDE = _weights_inside()
 
 
 @unit
-def _slopes(core: int, node: int, place: int, t: float) -> None:
-    """J S + f_p at a node, at the time t, with S where the interval begins, as one of three parts
-    of `slopes`."""
+def _slopes(core: int, node: int, t: float) -> None:
+    """J S + f_p at a node, at the time t, with S where the interval begins.
+
+    What is the same at all nodes is filled in at the first one only.
+    """
     sensitivity = sensitivity_of(core)
-    s, chain, out = sensitivity.s, sensitivity.chain, sensitivity.slopes
-    nodes = sensitivity.nodes
-    n, q = s.shape
+    order = sensitivity.order
+    n, a = len(sensitivity.s), len(sensitivity.chain)
+    counts = flow_of(core).counts
+    some_held = counts[SLIDING] + counts[RESTING] > 0
     if is_delayed(core):
         history = history_of(core)
         for j in range(len(history.mode)):
             history.lag[j] = history.node_lags[node, j]
         recall(core, t)
-    for i in range(n):
-        row, into = node * n + i, place * n + i
-        for j in range(q):
-            out[into, j] = 0.0
-        for k in range(n):
-            part = nodes[row, k]
-            if part != 0.0:
-                for j in range(q):
-                    out[into, j] += part * s[k, j]
-        for k in range(chain.shape[0]):
-            part = nodes[row, n + 1 + k]
-            if part != 0.0:
-                for j in range(q):
+    for place in range(order[n] if node > 1 and order[n + 1] > 0 else 0, n):
+        state = order[place]
+        row, begin, behind = node * n + state, 0, a
+        if not some_held:
+            begin, behind = sensitivity.reads[state, 0], sensitivity.reads[state, 1]
+        derivatives, s = sensitivity.nodes[row], sensitivity.s
+        put_total(core, derivatives, begin, behind, s, sensitivity.slopes, row)
+
+
+@helper
+def put_total(
+    core: int, derivatives: Vector, begin: int, behind: int, s: Matrix, out: Matrix, into: int
+) -> None:
+    """Let a row of `out` be what derivatives (w,) in x, t and parameters are in all, t fixed.
+
+    Those in the parameters from `begin` to `behind`; of the others they are zero.
+    """
+    sensitivity = sensitivity_of(core)
+    chain, filled = sensitivity.chain, sensitivity.filled
+    weights, picks, n, count = sensitivity.weights, sensitivity.picks, len(s), 0
+    for k in range(n):
+        if derivatives[k] != 0.0:
+            weights[count], picks[count] = derivatives[k], k
+            count += 1
+    put_rows(count, weights, picks, s, out, into)
+    for k in range(begin, behind):
+        part = derivatives[n + 1 + k]
+        if part != 0.0:
+            first, end = filled[k, 0], filled[k, 1]
+            if end == first + 1:  # of most parameters: what is asked for is the parameter itself
+                out[into, first] += part * chain[k, first]
+            else:
+                for j in range(first, end):
                     out[into, j] += part * chain[k, j]
 
 
@@ -73,8 +114,10 @@ def _fill_nodes(core: int, method: int, h: float) -> None:
     nodes, begin = sensitivity.nodes, sensitivity.now[TIME]
     n = len(trial.x)
     for node in range(4):
-        if node == 0 and sensitivity.now[KNOWN] > 0.0:
-            continue
+        if node == 0:
+            if sensitivity.now[KNOWN] > 0.0:
+                continue
+            sensitivity.now[SLOPED] = 0.0
         time = begin + (h * NODES[node - 1] if node else 0.0)
         theta = min(1.0, max(0.0, (time - trial.ends[0]) / trial.ends[1]))
         methods.inside(core, method, theta, trial.at)
@@ -88,164 +131,93 @@ def _fill_nodes(core: int, method: int, h: float) -> None:
 
 
 @unit
-def collocate(core: int, method: int, h: float, check: bool) -> float:
-    """Fill in the change of S over an interval at its nodes; its error over the size of S.
+def collocate(core: int, method: int, h: float, check: bool, inside: bool) -> float:
+    """Fill in S' at the nodes of an interval and the change of S over it; its error over the size
+    of S.
 
-    0 where the error is not to be looked at.
+    0 where the error is not to be looked at. `inside`: S' where it begins, too.
     """
     sensitivity = sensitivity_of(core)
     change, slopes = sensitivity.change, sensitivity.slopes
-    n, q = sensitivity.s.shape
+    n = len(sensitivity.s)
     _fill_nodes(core, method, h)
-    for node in range(3):
-        _slopes(core, node + 1, node, sensitivity.now[TIME] + h * NODES[node])
-    for a in range(3):
-        first, second, third = h * RADAU[a, 0], h * RADAU[a, 1], h * RADAU[a, 2]
-        for i in range(n):
-            for j in range(q):
-                total = first * slopes[i, j] + second * slopes[n + i, j]
-                change[a * n + i, j] = total + third * slopes[2 * n + i, j]
-    if not _solve(core, h):
+    eliminate(core)
+    for node in range(1, 4):
+        _slopes(core, node, sensitivity.now[TIME] + h * NODES[node - 1])
+    if not solve_stages(core, h):
         return np.nan
+    first, second, third = h * RADAU[2, 0], h * RADAU[2, 1], h * RADAU[2, 2]
+    for i in range(n):
+        put_three(change, i, first, slopes, n + i, second, 2 * n + i, third, 3 * n + i)
+    if (check or inside) and sensitivity.now[SLOPED] == 0.0:
+        _slopes(core, 0, sensitivity.now[TIME])
+        sensitivity.now[SLOPED] = 1.0
     return _error(core, h) if check else 0.0
 
 
 @unit
-def _eliminated(core: int) -> None:
-    """Sort the states: first those whose rates read none of each other, as those of positions."""
-    sensitivity = sensitivity_of(core)
-    order, nodes, n = sensitivity.order, sensitivity.nodes, sensitivity.s.shape[0]
-    count, behind = 0, n
-    for i in range(n):
-        free = True
-        for node in range(1, 4):
-            free = free and nodes[node * n + i, i] == 0.0
-            for k in range(count):
-                other = order[k]
-                free = free and nodes[node * n + i, other] == 0.0
-                free = free and nodes[node * n + other, i] == 0.0
-        if free:
-            order[count] = i
-            count += 1
-        else:
-            behind -= 1
-            order[behind] = i
-    order[n] = count
+def _error(core: int, h: float) -> float:
+    """The largest error over the size of S, as RADAU5 estimates it; NaN where it is not finite.
 
-
-@unit
-def _solve(core: int, h: float) -> bool:
-    """Solve Z_a - h sum_b RADAU_ab J_b Z_b = right_a for Z (3n, q) in place of the right sides.
-
-    The states P that read none of each other are eliminated by hand: for mechanical systems, whose
-    positions are such states, half of the unknowns are left.
+    That is damped as stiff parts of S are at the end of the interval. Inside of it they are not.
     """
     sensitivity = sensitivity_of(core)
-    nodes, change, order = sensitivity.nodes, sensitivity.change, sensitivity.order
-    n, q = sensitivity.s.shape
-    _eliminated(core)
-    first = order[n]
-    m = n - first
-    matrix, right, inner = np.empty((3 * m, 3 * m)), np.empty((3 * m, q)), sensitivity.slopes
-    pivots = np.empty(3 * m, dtype=np.int64)
-    for b in range(3):
-        for v in range(m):
-            row, into = (b + 1) * n + order[first + v], b * m + v
-            for j in range(q):
-                inner[into, j] = 0.0
-            for p in range(first):
-                part, source = h * nodes[row, order[p]], b * n + order[p]
-                if part != 0.0:
-                    for j in range(q):
-                        inner[into, j] += part * change[source, j]
-    for a in range(3):
-        for v in range(m):
-            into, source = a * m + v, a * n + order[first + v]
-            for j in range(q):
-                more = RADAU[a, 0] * inner[v, j] + RADAU[a, 1] * inner[m + v, j]
-                right[into, j] = change[source, j] + more + RADAU[a, 2] * inner[2 * m + v, j]
-    for c in range(3):
-        for v in range(m):
-            for k in range(m):
-                column = order[first + k]
-                own = h * nodes[(c + 1) * n + order[first + v], column]
-                by_first = _through(nodes, order, n, first, 1, c + 1, v, column) * h * h
-                by_second = _through(nodes, order, n, first, 2, c + 1, v, column) * h * h
-                by_third = _through(nodes, order, n, first, 3, c + 1, v, column) * h * h
-                for a in range(3):
-                    whole = RADAU[a, c] * own + RADAU[a, 0] * RADAU[0, c] * by_first
-                    whole += RADAU[a, 1] * RADAU[1, c] * by_second
-                    whole += RADAU[a, 2] * RADAU[2, c] * by_third
-                    same = 1.0 if a == c and v == k else 0.0
-                    matrix[a * m + v, c * m + k] = same - whole
-    if factor(matrix, pivots) == 0.0:
-        return False
-    substitute_all(matrix, pivots, right)
-    for a in range(3):
-        for v in range(m):
-            for j in range(q):
-                change[a * n + order[first + v], j] = right[a * m + v, j]
-    for b in range(3):
-        for p in range(first):
-            row, into = (b + 1) * n + order[p], b * first + p
-            for j in range(q):
-                inner[into, j] = 0.0
-            for k in range(m):
-                part = h * nodes[row, order[first + k]]
-                if part != 0.0:
-                    for j in range(q):
-                        inner[into, j] += part * right[b * m + k, j]
-    for a in range(3):
-        for p in range(first):
-            into = a * n + order[p]
-            for j in range(q):
-                more = RADAU[a, 0] * inner[p, j] + RADAU[a, 1] * inner[first + p, j]
-                change[into, j] += more + RADAU[a, 2] * inner[2 * first + p, j]
-    return True
-
-
-@helper
-def _through(
-    nodes: Matrix, order: Ints, n: int, first: int, outer: int, inner: int, v: int, column: int
-) -> float:
-    """How a state acts on another through those that are eliminated."""
-    total = 0.0
-    for p in range(first):
-        total += nodes[outer * n + order[first + v], order[p]] * nodes[inner * n + order[p], column]
-    return total
-
-
-@unit
-def _error(core: int, h: float) -> float:
-    """The largest error over the size of S, as RADAU5 estimates it; NaN where it is not finite."""
-    sensitivity = sensitivity_of(core)
     s, peak, change = sensitivity.s, sensitivity.peak, sensitivity.change
+    slopes, error, plain = sensitivity.slopes, sensitivity.right, sensitivity.parts
     n, q = s.shape
-    real, error = sensitivity.real, sensitivity.slopes[:n]
-    _slopes(core, 0, 0, sensitivity.now[TIME])
+    real, pivots = sensitivity.system[:n], sensitivity.pivots[:n]
     for i in range(n):
         for k in range(n):
             real[i, k] = -sensitivity.nodes[i, k]
         real[i, i] += REAL / h
-        first, second, third = ERROR[0] / h, ERROR[1] / h, ERROR[2] / h
+        put_three(error, i, ERROR[0], slopes, n + i, ERROR[1], 2 * n + i, ERROR[2], 3 * n + i)
+        add_row(error, i, 1.0, slopes, i)
         for j in range(q):
-            more = first * change[i, j] + second * change[n + i, j]
-            error[i, j] += more + third * change[2 * n + i, j]
-    if factor(real, sensitivity.real_pivots) == 0.0:
+            plain[i, j] = h / REAL * error[i, j]
+    if factor(real, pivots) == 0.0:
         return np.nan
-    substitute_all(real, sensitivity.real_pivots, error)
-    worst, counts = 0.0, flow_of(core).counts
+    substitute_all(real, pivots, error[:n])
+    worst, inside, counts = 0.0, 0.0, flow_of(core).counts
     some_held = counts[SLIDING] + counts[RESTING] > 0
     for j in range(q):
         largest = 0.0
         for i in range(n):
-            largest = max(largest, peak[i, j], abs(change[2 * n + i, j]))
+            largest = max(largest, peak[i, j], abs(change[i, j]))
         if some_held and largest < STILL:
             continue
         for i in range(n):
-            size = max(peak[i, j], abs(s[i, j] + change[2 * n + i, j])) + NOTHING * largest
+            size = max(peak[i, j], abs(s[i, j] + change[i, j])) + NOTHING * largest
+            if abs(plain[i, j]) > inside * size:
+                inside = abs(plain[i, j]) / size
             if abs(error[i, j]) > worst * size:
                 worst = abs(error[i, j]) / size
             elif not abs(error[i, j]) < np.inf:
                 return np.nan
+    sensitivity.now[INSIDE_ERROR] = inside
     return worst
+
+
+@unit
+def fill_between(core: int, h: float, theta: float) -> None:
+    """Fill in S inside of an interval whose error was looked at, theta in [0, 1].
+
+    The polynomial of degree 4 whose slopes are those where the interval begins and at its nodes;
+    at the end it is S there, as the nodes integrate it exactly. Its error is of order 5.
+    """
+    sensitivity = sensitivity_of(core)
+    s, slopes, out = sensitivity.s, sensitivity.slopes, sensitivity.between
+    n = len(s)
+    begin, first = h * _weight(0, theta), h * _weight(1, theta)
+    second, third = h * _weight(2, theta), h * _weight(3, theta)
+    for i in range(n):
+        copy(s[i], out[i])
+        add_two(out, i, begin, slopes, i, first, n + i)
+        add_two(out, i, second, slopes, 2 * n + i, third, 3 * n + i)
+
+
+@helper
+def _weight(k: int, theta: float) -> float:
+    total = 0.0
+    for power in range(3, -1, -1):
+        total = (total + INSIDE[k, power]) * theta
+    return total

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.solve.core.rows import add_row, add_two, put_three
 from tracewire.solve.core.units import helper, inlined, unit
 
 Vector = NDArray[np.float64]
@@ -38,9 +39,23 @@ def dot(first: Vector, second: Vector) -> float:
 def factor(matrix: Matrix, pivots: Ints) -> float:
     """Replace a matrix (n, n) by its factors P A = L U; the smallest over the largest |pivot|.
 
-    0 where the matrix is singular or not finite.
+    0 where the matrix is singular or not finite. Its rows may be longer: the rest of them stays.
     """
     n = len(matrix)
+    if n == 3:
+        found = _factor(matrix, pivots, 3)
+    elif n == 4:
+        found = _factor(matrix, pivots, 4)
+    elif n == 6:
+        found = _factor(matrix, pivots, 6)
+    else:
+        found = _factor(matrix, pivots, n)
+    return found
+
+
+@inlined
+def _factor(matrix: Matrix, pivots: Ints, n: int) -> float:
+    """The same, built in with its size."""
     smallest, largest = np.inf, 0.0
     for j in range(n):
         best, row = abs(matrix[j, j]), j
@@ -142,24 +157,72 @@ def solved(matrix: Matrix, right: Vector) -> Vector:
 @unit
 def substitute_all(factors: Matrix, pivots: Ints, right: Matrix) -> None:
     """Replace right sides (n, q), one in each column, by the solutions."""
-    n, q = right.shape
+    n = len(right)
+    if n == 3:
+        _substitute_all(factors, pivots, right, 3)
+    elif n == 4:
+        _substitute_all(factors, pivots, right, 4)
+    elif n == 6:
+        _substitute_all(factors, pivots, right, 6)
+    else:
+        _substitute_all(factors, pivots, right, n)
+
+
+@inlined
+def _substitute_all(factors: Matrix, pivots: Ints, right: Matrix, n: int) -> None:
+    """The same, built in with its size."""
+    q = right.shape[1]
     for i in range(n):
         row = pivots[i]
         if row != i:
             for j in range(q):
                 right[i, j], right[row, j] = right[row, j], right[i, j]
     for i in range(n):
-        for k in range(i):
-            part = factors[i, k]
-            if part != 0.0:
-                for j in range(q):
-                    right[i, j] -= part * right[k, j]
+        _take_rows(factors, i, 0, i, right)
     for i in range(n - 1, -1, -1):
-        for k in range(i + 1, n):
-            part = factors[i, k]
-            if part != 0.0:
-                for j in range(q):
-                    right[i, j] -= part * right[k, j]
+        _take_rows(factors, i, i + 1, n, right)
         inverse = 1.0 / factors[i, i]
         for j in range(q):
             right[i, j] *= inverse
+
+
+@inlined
+def _take_rows(factors: Matrix, i: int, begin: int, end: int, right: Matrix) -> None:
+    k = begin
+    while k + 1 < end:
+        add_two(right, i, -factors[i, k], right, k, -factors[i, k + 1], k + 1)
+        k += 2
+    if k < end:
+        add_row(right, i, -factors[i, k], right, k)
+
+
+@helper
+def put_rows(
+    count: int, weights: Vector, picks: Ints, rows: Matrix, out: Matrix, into: int
+) -> None:
+    """Let a row of `out` be a sum of multiples of some rows."""
+    if count == 0:
+        for j in range(out.shape[1]):
+            out[into, j] = 0.0
+        return
+    one, first = weights[0], picks[0]
+    two, second = (weights[1], picks[1]) if count > 1 else (0.0, first)
+    three, third = (weights[2], picks[2]) if count > 2 else (0.0, first)
+    put_three(out, into, one, rows, first, two, second, three, third)
+    if count == 4:
+        add_row(out, into, weights[3], rows, picks[3])
+    elif count > 4:
+        add_rows(count - 3, weights[3:], picks[3:], rows, out, into)
+
+
+@helper
+def add_rows(
+    count: int, weights: Vector, picks: Ints, rows: Matrix, out: Matrix, into: int
+) -> None:
+    """Add multiples of some rows to a row of `out`."""
+    k = 0
+    while k + 1 < count:
+        add_two(out, into, weights[k], rows, picks[k], weights[k + 1], picks[k + 1])
+        k += 2
+    if k < count:
+        add_row(out, into, weights[k], rows, picks[k])

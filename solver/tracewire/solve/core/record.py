@@ -19,7 +19,7 @@ from tracewire.solve.core.codes import LOG_HEAD, LOGGED, SAMPLED
 from tracewire.solve.core.flow import RESTING, SLIDING, outputs
 from tracewire.solve.core.history import is_delayed, record_step
 from tracewire.solve.core.history_moves import follow_all
-from tracewire.solve.core.sensitivity import sample
+from tracewire.solve.core.sensitivity import reach, sample
 from tracewire.solve.core.surface import pin
 from tracewire.solve.core.units import unit
 
@@ -37,14 +37,18 @@ def sample_inside(core: int, method: int, end: float) -> None:
             follow_all(core, method, end)
         return
     # what follows sensitivities has its own use for trial.at
-    at = np.empty(len(trial.x)) if is_sensitive(core) else trial.at
+    at = sensitivity_of(core).at if is_sensitive(core) else trial.at
     while row < len(progress.times) and progress.times[row] < end:
         time = progress.times[row]
         methods.inside(core, method, (time - trial.ends[0]) / trial.ends[1], at)
         _fill(core, row, time, at)
         if is_sensitive(core):
-            follow_all(core, method, time)
-            sample(core, row, time, at)
+            if is_delayed(core):
+                follow_all(core, method, time)
+                sample(core, row, time, at, sensitivity_of(core).s)
+            else:
+                reach(core, method, time, end)
+                sample(core, row, time, at, sensitivity_of(core).between)
         row += 1
     progress.ints[SAMPLED] = row
     if is_sensitive(core):
@@ -58,7 +62,7 @@ def sample_end(core: int, t: float, x: Vector) -> None:
     for row in range(progress.ints[SAMPLED], len(progress.times)):
         _fill(core, row, t, x)
         if is_sensitive(core):
-            sample(core, row, t, x)
+            sample(core, row, t, x, sensitivity_of(core).s)
     progress.ints[SAMPLED] = len(progress.times)
 
 

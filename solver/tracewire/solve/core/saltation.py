@@ -48,7 +48,7 @@ from tracewire.solve.core.history import find_lags, is_delayed, jump_moves, reca
 from tracewire.solve.core.linear import dot, factor, substitute
 from tracewire.solve.core.modes import levels
 from tracewire.solve.core.readings import guard_rates
-from tracewire.solve.core.sensitivity import flag, total_of
+from tracewire.solve.core.sensitivity import begin_to_follow, flag, total_of
 from tracewire.solve.core.units import helper, unit
 from tracewire.solve.core.variation import (
     OF_GUARD_RATES,
@@ -72,6 +72,7 @@ def begin_sensitivities(core: int) -> None:
     if not is_sensitive(core):
         return
     sensitivity, progress = sensitivity_of(core), progress_of(core)
+    begin_to_follow(core)
     _settle(core, progress.now[T], progress.x)
     sensitivity.now[TIME_REACHED] = progress.now[T]
 

@@ -2,7 +2,8 @@
 
 Between events S' = J(t) S + f_p(t), by the collocation method Radau IIA of order 5 on the dense
 output of the states, in intervals of its own where S moves faster than x (E. Hairer, G. Wanner,
-Solving ODEs II, sections IV.5 and IV.8). At an event g(t, x, p) = 0 that moves by dtau:
+Solving ODEs II, sections IV.5 and IV.8), with a dense output of its own for samples inside. At an
+event g(t, x, p) = 0 that moves by dtau:
 
     dtau = -(g_x S- + g_p)/g'      D = S- + f- dtau
     D+ = R_x D + R_p + R_t dtau    S+ = D+ - f+ dtau
@@ -29,12 +30,21 @@ from tracewire.solve.core.arrays import (
 )
 from tracewire.solve.core.codes import LOST, RTOL, STEPS
 from tracewire.solve.core.collocation import (
+    AHEAD,
+    DENSE,
+    INSIDE_ERROR,
+    INSIDE_TOLERANCE,
     INTERVAL,
     KNOWN,
     LONGEST,
+    PENDING,
+    SLOPED,
     TIME,
+    TOLERANCE,
     UNCHECKED,
     collocate,
+    fill_between,
+    put_total,
 )
 from tracewire.solve.core.flow import OUTPUTS, RESTING, SLIDING, held, patterns
 from tracewire.solve.core.history import find_lags, is_delayed, recall
@@ -46,6 +56,8 @@ MANY = 100  # intervals of a step: more of them count as steps, for which a run 
 ROUNDING = 1e-14  # of the time: what a step must be to end later than it began
 FAR_WITHIN = 0.05  # then an interval may be longer by a half, and its error not looked at
 SURE = 3.0  # so often
+SHORT = 0.8  # of the longest interval inside of which S is known, where nothing is checked
+CAREFUL = 0.1  # of what the orders say: the estimate that is small enough for samples inside
 
 
 @helper
@@ -59,42 +71,111 @@ def flag(core: int, kind: int, mode: int, t: float) -> None:
 
 
 @unit
+def begin_to_follow(core: int) -> None:
+    """Set what a run does not change."""
+    sensitivity, rtol = sensitivity_of(core), progress_of(core).now[RTOL]
+    chain, filled, now = sensitivity.chain, sensitivity.filled, sensitivity.now
+    a, q = chain.shape
+    # the estimate is of order 4 in the interval, the error of order 6
+    now[TOLERANCE] = rtol ** (2.0 / 3.0)
+    # and inside of it of order 5
+    now[INSIDE_TOLERANCE] = CAREFUL * rtol**0.8
+    delayed = 2 * len(history_of(core).mode)  # their rows are others at each time
+    for k in range(a):
+        filled[k, 0], filled[k, 1] = 0, q
+        if k < a - delayed:
+            while filled[k, 1] > 0 and chain[k, filled[k, 1] - 1] == 0.0:
+                filled[k, 1] -= 1
+            while filled[k, 0] < filled[k, 1] and chain[k, filled[k, 0]] == 0.0:
+                filled[k, 0] += 1
+
+
+@unit
 def follow(core: int, method: int, end: float) -> None:
     """Go on to the time `end`, which lies in the trial step."""
-    sensitivity = sensitivity_of(core)
-    now, whole = sensitivity.now, trial_of(core).ends[1]
-    # the estimate is of order 4 in the interval, the error of order 6
-    tolerance = progress_of(core).now[RTOL] ** (2.0 / 3.0)
-    intervals = 0
+    now, intervals = sensitivity_of(core).now, 0
     while now[TIME] < end:
-        intervals += 1
-        if intervals > MANY:
-            progress_of(core).ints[STEPS] += 1
-        left = end - now[TIME]
-        least = max(SMALLEST * whole, ROUNDING * abs(now[TIME]))
-        h = now[INTERVAL]
-        if not 0.0 < h < 0.99 * left:
-            h = left
-        h = min(max(h, least), left)
-        sure = now[UNCHECKED] > 0.0 and h <= now[LONGEST]
-        error = collocate(core, method, h, not sure) / tolerance
-        if not math.isfinite(error):
-            flag(core, LOST, 0, now[TIME])
-            sensitivity.change[:] = 0.0
-            error = 1.0
-        longer = h * min(5.0, max(0.2, 0.9 * max(error, 1e-9) ** -0.25))
-        if error > 1.0 and h > least:
-            now[INTERVAL] = longer
-            continue
-        _accept(core)
-        if sure:  # the interval is as long as the last one that was far within the tolerance
-            now[UNCHECKED] -= 1.0
-            now[TIME] = end if h == left else now[TIME] + h
-            continue
-        now[UNCHECKED] = SURE if error < FAR_WITHIN else 0.0
-        now[LONGEST] = 1.5 * h
-        now[TIME] = end if h == left else now[TIME] + h
-        now[INTERVAL] = max(now[INTERVAL], longer) if h == left and error <= 1.0 else longer
+        if now[PENDING] == 0.0:
+            intervals += 1
+            if intervals > MANY:
+                progress_of(core).ints[STEPS] += 1
+            _try(core, method, np.inf, end)
+        if now[PENDING] > 0.0:
+            _accept(core)
+
+
+@unit
+def reach(core: int, method: int, t: float, end: float) -> None:
+    """Fill in S in `between` at the time `t` of a sample, on the way to `end` in the trial step.
+
+    An interval goes on behind the sample where S is known inside of it as well as at its end.
+    """
+    sensitivity, intervals = sensitivity_of(core), 0
+    now = sensitivity.now
+    while now[TIME] < t:
+        if now[PENDING] == 0.0:
+            intervals += 1
+            if intervals > MANY:
+                progress_of(core).ints[STEPS] += 1
+            _try(core, method, t, end)
+        if now[PENDING] > 0.0:
+            if t < now[AHEAD]:
+                fill_between(core, now[PENDING], (t - now[TIME]) / now[PENDING])
+                return
+            _accept(core)
+    for i in range(len(sensitivity.s)):
+        copy(sensitivity.s[i], sensitivity.between[i])
+
+
+@unit
+def _try(core: int, method: int, sample: float, end: float) -> None:
+    """Try an interval that ends at `end` or before, and is taken next where its error is small.
+
+    It ends behind the next sample only where the error inside is small, too.
+    """
+    now, whole = sensitivity_of(core).now, trial_of(core).ends[1]
+    left = end - now[TIME]
+    least = max(SMALLEST * whole, ROUNDING * abs(now[TIME]))
+    h = now[INTERVAL]
+    if not 0.0 < h < 0.99 * left:
+        h = left
+    h = min(max(h, least), left)
+    until, stop = sample - now[TIME], end
+    if h > until and 0.0 < now[DENSE] < h:
+        h = max(now[DENSE], until)
+    inside = h > until
+    if h < left:
+        stop = now[TIME] + h if h != until else sample
+    sure = now[UNCHECKED] > 0.0 and h <= now[LONGEST] and not (inside and h > SHORT * now[DENSE])
+    error = collocate(core, method, h, not sure, inside) / now[TOLERANCE]
+    if sure:  # the interval is as long as the last one that was far within the tolerance
+        now[UNCHECKED] -= 1.0
+        now[PENDING], now[AHEAD] = h, stop
+        return
+    if not math.isfinite(error):
+        flag(core, LOST, 0, now[TIME])
+        sensitivity_of(core).change[:] = 0.0
+        sensitivity_of(core).slopes[:] = 0.0
+        error = 1.0
+        now[INSIDE_ERROR] = np.inf
+    longer = h * min(5.0, max(0.2, _longer(error)))
+    if error > 1.0 and h > least:
+        now[INTERVAL] = longer
+        return
+    beyond = now[INSIDE_ERROR] / now[INSIDE_TOLERANCE]
+    now[DENSE] = max(h * _longer(beyond), least)
+    if inside and beyond > 1.0 and h > least:
+        return
+    now[UNCHECKED] = SURE if error < FAR_WITHIN else 0.0
+    now[LONGEST] = 1.5 * h
+    now[INTERVAL] = max(now[INTERVAL], longer) if h == left and error <= 1.0 else longer
+    now[PENDING], now[AHEAD] = h, stop
+
+
+@helper
+def _longer(error: float) -> float:
+    """By what an interval may be longer whose estimate is that large, in parts of the tolerance."""
+    return 0.9 / math.sqrt(math.sqrt(max(error, 1e-9)))
 
 
 @unit
@@ -102,25 +183,27 @@ def _accept(core: int) -> None:
     """Take the change of an interval; its end is the next one's beginning."""
     sensitivity = sensitivity_of(core)
     s, peak, nodes = sensitivity.s, sensitivity.peak, sensitivity.nodes
+    change, slopes, now = sensitivity.change, sensitivity.slopes, sensitivity.now
     n, q = s.shape
     for i in range(n):
         for j in range(q):
-            s[i, j] += sensitivity.change[2 * n + i, j]
+            s[i, j] += change[i, j]
             peak[i, j] = max(peak[i, j], abs(s[i, j]))
+            slopes[i, j] = slopes[3 * n + i, j]
         for k in range(nodes.shape[1]):
             nodes[i, k] = nodes[3 * n + i, k]
     if is_delayed(core):
         node_lags = history_of(core).node_lags
         copy(node_lags[3], node_lags[0])
-    sensitivity.now[KNOWN] = 1.0
+    now[KNOWN], now[TIME], now[PENDING] = 1.0, now[AHEAD], 0.0
+    now[SLOPED] = 1.0 if now[INSIDE_ERROR] < np.inf else 0.0
 
 
 @unit
-def sample(core: int, row: int, t: float, x: Vector) -> None:
-    """Fill in how the recorded signals change, for S at this time."""
+def sample(core: int, row: int, t: float, x: Vector, s: Matrix) -> None:
+    """Fill in how the recorded signals change, for S (n, q) at this time."""
     flow, plan = flow_of(core), plan_of(core)
     sensitivity = sensitivity_of(core)
-    s, chain = sensitivity.s, sensitivity.chain
     if is_delayed(core):
         find_lags(core, t, x)
         recall(core, t)
@@ -137,12 +220,15 @@ def sample(core: int, row: int, t: float, x: Vector) -> None:
                     rows[column] += moves[1 + k, column] * parts[k]
         else:
             derive(core, OF_OUTPUTS, t, x, rows)
-    for j in range(q):
-        for column in range(count):
-            if plan.direct[column] >= 0:
-                value = s[plan.direct[column], j]
-            else:
-                value = total_of(rows[column], s, chain, j)
+    one = sensitivity.parts  # of its rows, the first
+    for column in range(count):
+        state = plan.direct[column]
+        if state >= 0:
+            copy(s[state], one[0])
+        else:
+            put_total(core, rows[column], 0, len(sensitivity.chain), s, one, 0)
+        for j in range(q):
+            value = one[0, j]
             if not math.isfinite(value):
                 flag(core, LOST, 0, t)
                 value = 0.0

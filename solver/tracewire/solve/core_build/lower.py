@@ -8,6 +8,7 @@ it, which costs more than many of the functions.
 from __future__ import annotations
 
 import importlib
+import inspect
 import pkgutil
 from collections.abc import Callable
 from typing import Any
@@ -22,7 +23,7 @@ from numba.extending import intrinsic
 
 from tracewire.solve import core
 from tracewire.solve.core import arrays, memory, units
-from tracewire.solve.core_build import without_python
+from tracewire.solve.core_build import rows, without_python
 from tracewire.solve.core_build.groups import KINDS, reader_of
 
 FAULT = "tracewire_core_fault"  # not zero where a unit met an error; support.ll has it
@@ -132,6 +133,13 @@ class Unit:
         return context.get_dummy_value() if self.result is types.void else value
 
 
+def _by_name(function: Callable[..., Any], typing: Callable[..., Any]) -> Any:
+    """An intrinsic whose arguments have the names of a function's: numba wants them."""
+    names = ", ".join(inspect.signature(function).parameters)
+    text = f"def {function.__name__}(typing, {names}):\n    return given(typing, {names})\n"
+    return intrinsic(_written(function.__name__, text, {"given": typing}))
+
+
 def _written(name: str, text: str, names: dict[str, Any], file: str = "<core>") -> Any:
     exec(compile(text, file, "exec"), names)
     return names[name]
@@ -183,6 +191,7 @@ def read_core() -> dict[str, Unit]:
         memory.floats_at: _array_at(types.float64),
         memory.ints_at: _array_at(types.int64),
     }
+    made |= {function: _by_name(function, typing) for function, typing in rows.typings().items()}
     made |= {unit.function: unit.stub for unit in found.values()}
     made |= {helper: numba.njit(helper, **OPTIONS) for helper in units.HELPERS}
     made |= {part: numba.njit(part, forceinline=True, **OPTIONS) for part in units.INLINED}
