@@ -20,6 +20,7 @@ from tracewire.compile import Model
 from tracewire.errors import OptionError
 from tracewire.solve import Run, simulate
 
+SERVO = Path(__file__).parents[2] / "diagrams/gallery/servo_with_play.yaml"
 PENDULUM = Path(__file__).parents[2] / "diagrams/papers/a_torsion/pendulum.yaml"
 TIGHT = {"rtol": 1e-11}
 PART = 1e-5
@@ -395,3 +396,28 @@ def test_the_run_itself_is_the_same_with_sensitivities() -> None:
 def test_unknown_names_say_what_exists() -> None:
     with pytest.raises(OptionError, match=r"unknown sensitivity 'kk'; there are: .*start\.x"):
         simulate(made(SPRING), sensitivities=["kk"])
+
+
+def test_a_guard_that_passes_by_between_steps_moves_its_instant() -> None:
+    """A seal that slips goes by its level so slowly, once, that only the next step finds it: how
+    its instant moves was read from memory that nobody had written."""
+    model = tw.compile(tw.read(SERVO))
+    value = simulate(model).parameters["driving.kp"]
+    times = np.arange(0.0, 6.01, 0.25)
+    runs = []
+    for size in (10, 3000, 70, 900):  # other memory for each run
+        junk = [np.full(size + n, 1e9) for n in range(100)]
+        del junk
+        runs.append(simulate(model, rtol=1e-8, times=times, sensitivities=["driving.kp"]))
+    first, *others = (run.sensitivities.array for run in runs)
+    for other in others:
+        np.testing.assert_array_equal(other, first)
+    part = PART * value
+    above, below = (
+        simulate(model, rtol=1e-10, times=times, parameters={"driving.kp": value + change})
+        for change in (part, -part)
+    )
+    for signal in ("turned", "load.angle"):
+        row = runs[0].sensitivities.signals.index(signal)
+        wanted = (above[signal] - below[signal]) / (2 * part)
+        np.testing.assert_allclose(first[0, row], wanted, atol=1e-5 * np.abs(wanted).max())

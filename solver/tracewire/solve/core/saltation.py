@@ -20,6 +20,7 @@ from tracewire.solve.core.codes import (
     GRAZES,
     GUARD,
     LOST,
+    PASSED,
     SEGMENT,
     SIMULTANEOUS,
     TIME,
@@ -192,7 +193,7 @@ def _instant(core: int, t: float, x: Vector, rate: Vector, i: int, out: Vector) 
         derive(core, OF_TIMED, t, x, rows)
         row[n + 1 :] = t * rows[2 * line, n + 1 :] + rows[2 * line + 1, n + 1 :]
         speed = lines[2 * line]
-    elif how == GUARD:
+    elif how in (GUARD, PASSED):  # PASSED: it went by so slowly that no step has seen it
         rows, along, bends = np.empty((modes, w)), np.empty(modes), np.empty(modes)
         level = np.empty(modes)
         levels(core, t, x, level)
