@@ -390,8 +390,8 @@ class SearchOptions:
     of a wave, 6e-6 of a drive's gain, 2e-4 of a play, 4e-4 of a bias, where other names were
     right."""
     slight: float = 0.1
-    """The part of the squared error of the noise below which a wave or a drift beside others is a
-    part of what is left, where that is no noise either. Seen on three rigs: 0.02 to 0.06."""
+    """The part of the squared error of the noise below which an effect beside others is a part of
+    what is left, where that is no noise either. Seen on four rigs: 0.02 to 0.06."""
     related: float = 0.9
     """The likeness from which on an effect is a rival of another one."""
     related_together: float = 0.5

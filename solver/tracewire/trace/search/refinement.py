@@ -307,7 +307,8 @@ def _drop_trifles(
     """The best model without effects that explain next to nothing of what was missing and may stand
     for anything: waves, drifts and their kin, and those with rivals that do as well. What is left
     of laws that are only nearly right has the shape of some effect. One of z standard errors takes
-    about z^2 variances off the sum of squares; what takes more than the noise has is no trifle."""
+    about z^2 variances off the sum of squares. What takes more than the noise has, and leaves
+    nothing, is no trifle."""
     options = search.options
     while len(best.effects) > 1:
         excess = (declared.reduced_chi2 - best.reduced_chi2) * best.count
@@ -315,14 +316,15 @@ def _drop_trifles(
             taken = _errors_from_nothing(best, effect) ** 2 * best.reduced_chi2
             ties = [str(rival.effect) for rival in rivals.get(str(effect), ()) if rival.tied]
             unsure = effect.candidate.effect in options.uncommon or ties
-            if unsure and taken < min(options.search.trifle * excess, best.rss):
+            small = unsure and taken < options.search.trifle * excess
+            if small and not (taken > best.rss and _is_complete(search, best)):
                 effective_fraction = (
                     f"{100 * taken / excess:.2g} % of the squared error that was missing"
                 )
                 as_well = f", as {' and '.join(ties)} would" if ties else ""
                 words = f"it takes only {effective_fraction}{as_well}, so it may stand for anything"
                 break
-            if _is_part_of_remainder(search, best, effect, taken):
+            if _is_part_of_remainder(search, best, taken):
                 effective_fraction = (
                     f"{100 * taken / best.rss:.2g} % of the squared error of the noise"
                 )
@@ -339,19 +341,19 @@ def _drop_trifles(
     return best
 
 
-def _is_part_of_remainder(search: Search, best: Trial, effect: PlacedEffect, taken: float) -> bool:
-    """Whether a wave or a drift takes little beside the noise and leaves what is no noise: it is
-    the part with its shape of a small law that no block has."""
+def _is_part_of_remainder(search: Search, best: Trial, taken: float) -> bool:
+    """Whether an effect beside others takes little beside the noise, and what is left is no noise:
+    it is the part with its shape of a small law that no block has."""
     options = search.options
-    if (
-        effect.candidate.effect not in options.uncommon
-        or best.reduced_chi2 >= options.trial.gate_noise
-    ):
+    if best.reduced_chi2 >= options.trial.gate_noise or taken >= options.search.slight * best.rss:
         return False
-    if taken >= options.search.slight * best.rss:
-        return False
-    search.tell(f"looking for what is left beside {effect}")
-    return search.screen(best).p_value() <= options.screen.chance
+    return not _is_complete(search, best)
+
+
+def _is_complete(search: Search, best: Trial) -> bool:
+    """Whether no effect stands out of what a model leaves."""
+    search.tell("looking for what is left")
+    return search.screen(best).p_value() > search.options.screen.chance
 
 
 def order_effects(best: Trial) -> Trial:
