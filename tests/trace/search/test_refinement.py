@@ -187,11 +187,11 @@ def test_what_explains_next_to_nothing_and_may_be_another_law_is_a_refinement(
         ("harmonic", 8.0, 1.0, 1e-6, False),
         ("harmonic", 8.0, 1.0, 0.2, True),  # what is left is noise
         ("harmonic", 15.0, 1.0, 1e-6, True),  # 22 % of the squared error of the noise
-        ("backlash", 8.0, 1.0, 1e-6, True),  # no effect that others imitate
+        ("backlash", 8.0, 1.0, 1e-6, False),
         ("harmonic", 8.0, 3.0, 1e-6, True),  # far above the noise
     ],
 )
-def test_a_slight_wave_beside_what_is_no_noise_is_a_part_of_that(
+def test_a_slight_effect_beside_what_is_no_noise_is_a_part_of_that(
     second: str,
     errors: float,
     s2: float,
@@ -202,9 +202,9 @@ def test_a_slight_wave_beside_what_is_no_noise_is_a_part_of_that(
     effects = [
         SimpleNamespace(
             candidate=SimpleNamespace(effect=name, coefficient=name, neutral=0.0),
-            coefficient=errors,
+            coefficient=size,
         )
-        for name in ("coulomb", second)
+        for name, size in (("coulomb", 100.0), (second, errors))
     ]
     best = SimpleNamespace(
         effects=effects,
@@ -225,5 +225,38 @@ def test_a_slight_wave_beside_what_is_no_noise_is_a_part_of_that(
     )
     declared = SimpleNamespace(reduced_chi2=2.0 + s2)
     found = _drop_trifles(search, best, declared, {})  # type: ignore[arg-type]
-    assert len(found.effects) == 1 + stays
+    kept = [effect.candidate.effect for effect in found.effects]
+    assert kept == ["coulomb", second][: 1 + stays]
     assert len(search.words) == 1 - stays
+
+
+@pytest.mark.parametrize(("errors", "chance", "stays"), [(40.0, 0.2, True), (40.0, 1e-6, False)])
+def test_a_wave_above_the_noise_that_leaves_nothing_is_no_trifle(
+    errors: float, chance: float, stays: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It takes 1600 variances of 1e7 that were missing, and the noise has 1000."""
+    effects = [
+        SimpleNamespace(
+            candidate=SimpleNamespace(effect=name, coefficient=name, neutral=0.0),
+            coefficient=size,
+        )
+        for name, size in (("quad_stiffness", 3000.0), ("harmonic", errors))
+    ]
+    best = SimpleNamespace(
+        effects=effects,
+        reduced_chi2=1.0,
+        count=1000,
+        rss=1000.0,
+        standard_errors={"quad_stiffness": 1.0, "harmonic": 1.0},
+    )
+    screen = SimpleNamespace(p_value=lambda: chance)
+    search = SimpleNamespace(
+        options=OPTIONS, tell=lambda _: None, words=[], screen=lambda _: screen
+    )
+    refinement = import_module("tracewire.trace.search.refinement")
+    monkeypatch.setattr(
+        refinement, "_run_refit", lambda search, best, kept: SimpleNamespace(effects=kept)
+    )
+    declared = SimpleNamespace(reduced_chi2=10001.0)
+    found = _drop_trifles(search, best, declared, {})  # type: ignore[arg-type]
+    assert len(found.effects) == 1 + stays

@@ -3,7 +3,7 @@ superfluous."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -312,7 +312,7 @@ def _drop_trifles(
     options = search.options
     while len(best.effects) > 1:
         excess = (declared.reduced_chi2 - best.reduced_chi2) * best.count
-        for effect in best.effects:
+        for effect in _least_first(best, options.uncommon):
             taken = _errors_from_nothing(best, effect) ** 2 * best.reduced_chi2
             ties = [str(rival.effect) for rival in rivals.get(str(effect), ()) if rival.tied]
             unsure = effect.candidate.effect in options.uncommon or ties
@@ -339,6 +339,17 @@ def _drop_trifles(
         best = smaller
         search.words.append(f"{effect} would be a refinement: {words}, and is not named")
     return best
+
+
+def _least_first(best: Trial, uncommon: Collection[str]) -> list[PlacedEffect]:
+    """The effects of a trial, waves and drifts and their kin first, then the least sure."""
+    return sorted(
+        best.effects,
+        key=lambda effect: (
+            effect.candidate.effect not in uncommon,
+            _errors_from_nothing(best, effect),
+        ),
+    )
 
 
 def _is_part_of_remainder(search: Search, best: Trial, taken: float) -> bool:
