@@ -12,7 +12,7 @@ from tracewire.residual.input_noise import (
 )
 from tracewire.residual.input_response import InputNoise
 from tracewire.residual.levenberg_marquardt import bounded_step, fit_windows
-from tracewire.residual.limits import FTOL, INITIAL_STATE_STEPS, LEAST_DAMPING
+from tracewire.residual.limits import DESCENT, WINDOW
 from tracewire.residual.linearisation import Linearisation, Projection, wrap_to_period
 from tracewire.residual.loss import LOSSES
 from tracewire.residual.measured import (
@@ -56,13 +56,12 @@ from tracewire.residual.windows import (
 )
 
 __all__ = [
-    "FTOL",
-    "INITIAL_STATE_STEPS",
-    "LEAST_DAMPING",
+    "DESCENT",
     "LIMITS",
     "LOSSES",
     "OWN",
     "SENSED",
+    "WINDOW",
     "Criterion",
     "InputCovariance",
     "InputNoise",

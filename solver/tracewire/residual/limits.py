@@ -250,7 +250,3 @@ class RemarkLimits:
 
 
 REMARK = RemarkLimits()
-
-FTOL, LEAST_DAMPING = DESCENT.ftol, DESCENT.least_damping
-INITIAL_STATE_STEPS = WINDOW.initial_state_steps
-"""The same by name, for who passes them on."""

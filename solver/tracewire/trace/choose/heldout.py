@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tracewire.errors import FitError
 from tracewire.residual import (
-    LEAST_DAMPING,
+    DESCENT,
     bounded_step,
     evaluate_windows,
     fit_initial_states,
@@ -170,7 +170,7 @@ class _Newton:
         room = (low - now) / self.scales, (high - now) / self.scales
         reduced = np.concatenate((self.reduced[kept], self.ridge))
         residual = np.concatenate((self.residual[kept], np.zeros(len(unknowns))))
-        step = bounded_step(reduced, residual, LEAST_DAMPING, room)
+        step = bounded_step(reduced, residual, DESCENT.least_damping, room)
         moved = np.clip(now + step * self.scales, low, high)
         return dict(zip((u.name for u in unknowns), moved.tolist(), strict=True))
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tracewire.errors import TracewireError
-from tracewire.residual import FTOL, INITIAL_STATE_STEPS, Segment
+from tracewire.residual import DESCENT, WINDOW, Segment
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal
 from tracewire.trace.search.workers import RefitTask, Workers
@@ -162,8 +162,8 @@ class Refits:
         fixed: Mapping[str, float] | None = None,
         steps: int | None = None,
         target: float = np.inf,
-        ftol: float = FTOL,
-        initial_state_steps: int = INITIAL_STATE_STEPS,
+        ftol: float = DESCENT.ftol,
+        initial_state_steps: int = WINDOW.initial_state_steps,
         values: Mapping[str, float] | None = None,
         words: str = "",
     ) -> RefitTask:

@@ -14,8 +14,8 @@ from tracewire.compile import Model, compile
 from tracewire.diagram import Diagram, apply, patch
 from tracewire.errors import DiagramError, FitError, OptionError, TracewireError
 from tracewire.residual import (
-    FTOL,
-    INITIAL_STATE_STEPS,
+    DESCENT,
+    WINDOW,
     Criterion,
     InputCovariance,
     Measured,
@@ -214,8 +214,8 @@ class TraceProblem:
         budget: float = np.inf,
         target: float = np.inf,
         inlier_limit: float | None = None,
-        ftol: float = FTOL,
-        initial_state_steps: int = INITIAL_STATE_STEPS,
+        ftol: float = DESCENT.ftol,
+        initial_state_steps: int = WINDOW.initial_state_steps,
     ) -> Trial:
         """The declared diagram with effects fitted to windows, from the values given.
 
