@@ -259,6 +259,7 @@ def test_an_effect_whose_coefficient_may_be_zero_is_not_named(
     final: Any = SimpleNamespace(declared=declared, best=Names((DRY,)))
     monkeypatch.setattr(safeguards, "is_loose", lambda problem, trial: False)
     monkeypatch.setattr(safeguards, "undetermined_effects", lambda trial, confidence: [DRY])
+    monkeypatch.setattr(safeguards, "residual_map", lambda search, trial: ((), None))
     found = safeguards.safeguard(there, safeguards.Judgement("effect", final))
     assert (found.verdict, found.final.best) == (verdict, declared)
     told = f"{DRY} is not named: the 95% interval of its coefficient holds zero"

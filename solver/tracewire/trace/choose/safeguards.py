@@ -17,7 +17,6 @@ from tracewire.trace.choose.unseen import (
     share_of_whole_runs,
 )
 from tracewire.trace.choose.verdict import Judgement, residual_map
-from tracewire.trace.found import Verdict
 from tracewire.trace.search.refinement import FinalModels
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.intervals import undetermined_effects
@@ -57,7 +56,8 @@ def safeguard(search: Search, judgement: Judgement) -> Judgement:
         )
         final = replace(final, declared=declared, best=best)
     judgement, final = _without_undetermined(search, judgement, final)
-    final = _without_harmful(search, final)
+    if judgement.explained is None:  # at the noise; else other runs have been asked already
+        final = _without_harmful(search, final)
     if final.best.effects:
         lengths = sorted({min(search.short_length, final.best.length), final.best.length})
         harm = raises_unseen(search, final.declared, final.best, lengths)
@@ -79,20 +79,24 @@ def _without_undetermined(
 ) -> tuple[Judgement, FinalModels]:
     """The judgement and the models without effects whose coefficient may as well be zero."""
     names = undetermined_effects(final.best, search.options.confidence)
+    kept = [effect for effect in final.best.effects if str(effect) not in names]
+    try:
+        fewer = _refitted_with(search, final.best, kept) if names and kept else None
+    except FitError:
+        names = []
     if not names:
         return judgement, final
     search.words.append(
         f"{join_names(names)} is not named: the {search.options.confidence:.0%} interval of its"
         " coefficient holds zero"
     )
-    kept = [effect for effect in final.best.effects if str(effect) not in names]
-    if not kept:
-        at_noise = final.declared.reduced_chi2 <= search.options.at_noise
-        verdict: Verdict = "null" if at_noise else "unexplained"
-        alone = FinalModels(final.declared, final.declared, {}, ())
-        return replace(judgement, verdict=verdict, final=alone), alone
-    final = _with_effects(final, _refitted_with(search, final.best, kept))
-    return replace(judgement, final=final), final
+    if fewer is not None:
+        final = _with_effects(final, fewer)
+        return replace(judgement, final=final), final
+    alone = FinalModels(final.declared, final.declared, {}, ())
+    if final.declared.reduced_chi2 <= search.options.at_noise:
+        return Judgement("null", alone), alone
+    return Judgement("unexplained", alone, *residual_map(search, final.declared)), alone
 
 
 def _without_harmful(search: Search, final: FinalModels) -> FinalModels:
@@ -114,7 +118,7 @@ def _without_harmful(search: Search, final: FinalModels) -> FinalModels:
 
 
 def _refitted_with(search: Search, best: Trial, kept: Sequence[PlacedEffect]) -> Trial:
-    """A trial with some of its effects, fitted to its windows."""
+    """A trial with some of its effects, fitted to its windows. Raises FitError."""
     windows, fixed = best.windows.segments, best.windows.criterion.parameters
     return search.problem.fit(kept, windows, best.length, best.values, fixed=fixed)
 
