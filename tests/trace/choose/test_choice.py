@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tracewire.trace.choose.choice import Choice, Entrant, choose, floor_of, log_scores
+from tracewire.trace.choose.choice import Choice, Entrant, choose, floor_of, is_sure, log_scores
 from tracewire.trace.options import TraceOptions
 
 BLOCKS = 10
@@ -70,6 +70,14 @@ def test_one_block_that_is_extrapolated_does_not_hide_a_law() -> None:
     assert raw < OPTIONS.sure
     found = chosen([model(), model("coulomb")], plateau, 0.0)
     assert (found.chosen, found.sure) == (1, True)
+
+
+@pytest.mark.parametrize("blocks", [1, 2, 3, 6])
+def test_of_few_blocks_none_is_left_out(blocks: int) -> None:
+    """One that is left of three has no standard error to be sure by."""
+    change = np.r_[-0.5, np.full(blocks - 1, 0.5)] if blocks > 1 else np.array([-0.5])
+    totals = np.stack([1.0 + change, np.ones(blocks)])
+    assert not is_sure(totals, 0, 1, OPTIONS)
 
 
 def test_a_model_that_has_more_squared_error_is_not_taken() -> None:

@@ -12,7 +12,7 @@ from tracewire.trace.choose.choice import Entrant, choose, log_scores
 from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.choose.unseen import (
     better_unseen,
-    lowers_no_claim,
+    is_no_better_on_claim,
     lowers_unseen,
     prune_by_other_runs,
     raises_whole_runs,
@@ -185,7 +185,7 @@ def test_effects_that_hardly_help_on_whole_unseen_runs_are_an_approximation(
 ) -> None:
     there = run_of({(): 50.0, (DRY,): after})
     there.words, there.short_length = [], WHOLE
-    monkeypatch.setattr(safeguards, "lowers_no_claim", lambda search, fewer, more: False)
+    monkeypatch.setattr(safeguards, "is_no_better_on_claim", lambda search, fewer, more: False)
     final: Any = SimpleNamespace(declared=(), best=Names((DRY,)))
     monkeypatch.setattr(safeguards, "is_loose", lambda problem, trial: False)
     monkeypatch.setattr(safeguards, "undetermined_effects", lambda trial, confidence: [])
@@ -198,7 +198,7 @@ def test_effects_that_hardly_help_on_whole_unseen_runs_are_an_approximation(
 
 
 @pytest.mark.parametrize(
-    ("before", "after", "in_windows", "lowers_none"),
+    ("before", "after", "in_windows", "no_better"),
     [
         (50.0, 58.0, 1.04, True),
         (50.0, 50.0, 1.0, True),
@@ -213,7 +213,7 @@ def test_an_effect_lowers_some_error_where_the_claim_is_made(
     before: float,
     after: float,
     in_windows: float,
-    lowers_none: bool,
+    no_better: bool,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     fewer: Any = Names(())
@@ -228,7 +228,7 @@ def test_an_effect_lowers_some_error_where_the_claim_is_made(
         return np.full(WHOLE, free[tuple(names)])
 
     monkeypatch.setattr(unseen, "free_run", run_freely)
-    assert lowers_no_claim(there, fewer, more) == lowers_none
+    assert is_no_better_on_claim(there, fewer, more) == no_better
 
 
 def test_effects_that_do_not_help_where_the_claim_is_made_are_an_approximation(
@@ -239,7 +239,7 @@ def test_effects_that_do_not_help_where_the_claim_is_made_are_an_approximation(
     final: Any = SimpleNamespace(declared=(), best=Names((DRY,)))
     monkeypatch.setattr(safeguards, "is_loose", lambda problem, trial: False)
     monkeypatch.setattr(safeguards, "undetermined_effects", lambda trial, confidence: [])
-    monkeypatch.setattr(safeguards, "lowers_no_claim", lambda search, fewer, more: True)
+    monkeypatch.setattr(safeguards, "is_no_better_on_claim", lambda search, fewer, more: True)
     monkeypatch.setattr(safeguards, "residual_map", lambda search, trial: ((), None))
     found = safeguards.safeguard(there, safeguards.Judgement("effect", final))
     assert (found.verdict, found.final) == ("unexplained", final)

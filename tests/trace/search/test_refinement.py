@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -128,6 +129,55 @@ def test_effects_are_told_the_surest_first() -> None:
     assert sure == sorted(sure, reverse=True)
 
 
+class Sized(SimpleNamespace):
+    """An effect by its name, whose coefficient is so many standard errors."""
+
+    def __str__(self) -> str:
+        return str(self.candidate.effect)
+
+
+def sized(s2: float, **errors: float) -> Any:
+    """A model of effects, each so many standard errors large, that leaves 1000 residuals."""
+    effects = [
+        Sized(
+            candidate=SimpleNamespace(effect=name, coefficient=name, neutral=0.0), coefficient=size
+        )
+        for name, size in errors.items()
+    ]
+    return SimpleNamespace(
+        effects=effects,
+        reduced_chi2=s2,
+        count=1000,
+        rss=1000.0 * s2,
+        standard_errors=dict.fromkeys(errors, 1.0),
+    )
+
+
+def without_trifles(
+    best: Any,
+    missing: float,
+    monkeypatch: pytest.MonkeyPatch,
+    chance: float = 1.0,
+    rivals: Mapping[str, Sequence[Any]] | None = None,
+) -> tuple[list[str], list[str]]:
+    """The effects that stay and what is said, where the declared model leaves so much more and what
+    is left has this chance to be noise."""
+    search: Any = SimpleNamespace(
+        options=OPTIONS,
+        tell=lambda _: None,
+        words=[],
+        screen=lambda _: SimpleNamespace(p_value=lambda: chance),
+    )
+    monkeypatch.setattr(
+        import_module("tracewire.trace.search.refinement"),
+        "_run_refit",
+        lambda search, best, kept: SimpleNamespace(effects=kept),
+    )
+    declared: Any = SimpleNamespace(reduced_chi2=best.reduced_chi2 + missing)
+    found = _drop_trifles(search, best, declared, rivals or {})
+    return [str(effect) for effect in found.effects], search.words
+
+
 @pytest.mark.parametrize(
     ("errors", "second", "ties", "told"),
     [
@@ -146,39 +196,15 @@ def test_what_explains_next_to_nothing_and_may_be_another_law_is_a_refinement(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Of 1e6 variances 10 standard errors explain 1e-4, 300 errors 9 %."""
-
-    class Effect(SimpleNamespace):
-        def __str__(self) -> str:
-            return str(self.candidate.effect)
-
-    effects = [
-        Effect(
-            candidate=SimpleNamespace(effect=name, coefficient=name, neutral=0.0),
-            coefficient=errors,
-        )
-        for name in ("coulomb", second)
-    ]
-    best = SimpleNamespace(
-        effects=effects,
-        reduced_chi2=1.0,
-        count=1000,
-        rss=1000.0,
-        standard_errors={"coulomb": 1.0, second: 1.0},
-    )
-    search = SimpleNamespace(options=OPTIONS, tell=lambda _: None, words=[])
-    refinement = import_module("tracewire.trace.search.refinement")
-    monkeypatch.setattr(
-        refinement, "_run_refit", lambda search, best, kept: SimpleNamespace(effects=kept)
-    )
+    best = sized(1.0, coulomb=errors, **{second: errors})
     rivals = {second: [SimpleNamespace(effect=name, tied=True) for name in ties]}
-    declared = SimpleNamespace(reduced_chi2=1001.0)
-    found = _drop_trifles(search, best, declared, rivals)  # type: ignore[arg-type]
-    assert [str(e) for e in found.effects] == ["coulomb", second][: 1 if told is not None else 2]
+    kept, said = without_trifles(best, 1000.0, monkeypatch, rivals=rivals)
+    assert kept == ["coulomb", second][: 1 if told is not None else 2]
     words = (
         f"{second} would be a refinement: it takes only 0.01 % of the squared error that was"
         f" missing{told}, so it may stand for anything, and is not named"
     )
-    assert search.words == ([words] if told is not None else [])
+    assert said == ([words] if told is not None else [])
 
 
 @pytest.mark.parametrize(
@@ -199,64 +225,17 @@ def test_a_slight_effect_beside_what_is_no_noise_is_a_part_of_that(
     stays: bool,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    effects = [
-        SimpleNamespace(
-            candidate=SimpleNamespace(effect=name, coefficient=name, neutral=0.0),
-            coefficient=size,
-        )
-        for name, size in (("coulomb", 100.0), (second, errors))
-    ]
-    best = SimpleNamespace(
-        effects=effects,
-        reduced_chi2=s2,
-        count=1000,
-        rss=1000.0 * s2,
-        standard_errors={"coulomb": 1.0, second: 1.0},
-    )
-    search = SimpleNamespace(
-        options=OPTIONS,
-        tell=lambda _: None,
-        words=[],
-        screen=lambda _: SimpleNamespace(p_value=lambda: chance),
-    )
-    refinement = import_module("tracewire.trace.search.refinement")
-    monkeypatch.setattr(
-        refinement, "_run_refit", lambda search, best, kept: SimpleNamespace(effects=kept)
-    )
-    declared = SimpleNamespace(reduced_chi2=2.0 + s2)
-    found = _drop_trifles(search, best, declared, {})  # type: ignore[arg-type]
-    kept = [effect.candidate.effect for effect in found.effects]
+    best = sized(s2, coulomb=100.0, **{second: errors})
+    kept, said = without_trifles(best, 2.0, monkeypatch, chance)
     assert kept == ["coulomb", second][: 1 + stays]
-    assert len(search.words) == 1 - stays
+    assert len(said) == 1 - stays
 
 
-@pytest.mark.parametrize(("errors", "chance", "stays"), [(40.0, 0.2, True), (40.0, 1e-6, False)])
+@pytest.mark.parametrize(("chance", "stays"), [(0.2, True), (1e-6, False)])
 def test_a_wave_above_the_noise_that_leaves_nothing_is_no_trifle(
-    errors: float, chance: float, stays: bool, monkeypatch: pytest.MonkeyPatch
+    chance: float, stays: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It takes 1600 variances of 1e7 that were missing, and the noise has 1000."""
-    effects = [
-        SimpleNamespace(
-            candidate=SimpleNamespace(effect=name, coefficient=name, neutral=0.0),
-            coefficient=size,
-        )
-        for name, size in (("quad_stiffness", 3000.0), ("harmonic", errors))
-    ]
-    best = SimpleNamespace(
-        effects=effects,
-        reduced_chi2=1.0,
-        count=1000,
-        rss=1000.0,
-        standard_errors={"quad_stiffness": 1.0, "harmonic": 1.0},
-    )
-    screen = SimpleNamespace(p_value=lambda: chance)
-    search = SimpleNamespace(
-        options=OPTIONS, tell=lambda _: None, words=[], screen=lambda _: screen
-    )
-    refinement = import_module("tracewire.trace.search.refinement")
-    monkeypatch.setattr(
-        refinement, "_run_refit", lambda search, best, kept: SimpleNamespace(effects=kept)
-    )
-    declared = SimpleNamespace(reduced_chi2=10001.0)
-    found = _drop_trifles(search, best, declared, {})  # type: ignore[arg-type]
-    assert len(found.effects) == 1 + stays
+    best = sized(1.0, quad_stiffness=3000.0, harmonic=40.0)
+    kept, _ = without_trifles(best, 10000.0, monkeypatch, chance)
+    assert kept == ["quad_stiffness", "harmonic"][: 1 + stays]

@@ -204,12 +204,12 @@ def is_sure(totals: Array, one: int, other: int, options: TraceOptions) -> bool:
     """Whether one model is worse than another by the tolerance and so many standard errors.
 
     Also of differences that are cut: a decay shows nearly all in its first blocks, and that these
-    differ from the later ones is no doubt about the sign. And also without the largest and the
-    smallest: a block that no other one is like is predicted by extrapolation, where a right model
-    with one number more may be far off.
+    differ from the later ones is no doubt about the sign. And also, of blocks enough, without the
+    largest and the smallest: a block that no other one is like is predicted by extrapolation, where
+    a right model with one number more may be far off.
     """
     change, most = totals[one] - totals[other], np.log1p(options.block_counts)
-    inner = np.sort(change)[1:-1]
+    inner = np.sort(change)[1:-1] if len(change) >= options.least_blocks else change
     errors = max(map(_in_errors, (change, np.clip(change, -most, most), inner)))
     return bool(np.mean(change) >= np.log1p(options.near) and errors >= options.sure)
 

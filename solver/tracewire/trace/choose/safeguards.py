@@ -9,8 +9,8 @@ from tracewire.errors import FitError
 from tracewire.trace.check.mistakes import refuse_mistakes
 from tracewire.trace.check.tolerance import is_loose, tighten_tolerance
 from tracewire.trace.choose.unseen import (
+    is_no_better_on_claim,
     join_names,
-    lowers_no_claim,
     lowers_unseen,
     raises_unseen,
     raises_whole_runs,
@@ -140,7 +140,7 @@ def _confirmed(search: Search, judgement: Judgement, final: FinalModels) -> Judg
     if share < search.options.whole_runs:
         what = f"takes {max(share, 0):.0%} of the excess squared error of whole unseen runs away,"
         what += " which is too little"
-    elif lowers_no_claim(search, declared, best):
+    elif is_no_better_on_claim(search, declared, best):
         what = "lowers the error neither of windows nor of free runs in the part of the data that"
         what += " played no part"
     else:

@@ -75,7 +75,7 @@ def lowers_unseen(search: Search, fewer: Trial, more: Trial, length: int) -> boo
     return (1 + search.options.harm) ** 2 * after < before
 
 
-def lowers_no_claim(search: Search, fewer: Trial, more: Trial) -> bool:
+def is_no_better_on_claim(search: Search, fewer: Trial, more: Trial) -> bool:
     """Whether a model has no less error than one with fewer effects in the part of the data that is
     kept for the claim, neither in windows nor in free runs; false where the latter are at the
     noise. Where they have lost track of the data, windows must show a rise that is no chance."""
