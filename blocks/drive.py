@@ -52,12 +52,7 @@ drive_delay = Block(
     doc="What a drive that acts after a dead time lacks: a delay, less the record.",
     inputs=(OF,),
     parameters=(Parameter("tau", "s", "the dead time", low=0.0),),
-    # Pade, of second order: N(-s)/N(s) - 1 with N = 1 + s tau/2 + (s tau)^2/12; w is of behind 1/N
-    states=(
-        State("w", "wdot", "0"),
-        State("wdot", "(12*(of - w)/tau - 6*wdot)/tau if tau > 0 else of - w - wdot", "0"),
-    ),
-    outputs=(Output("y", "-tau*wdot", doc="is added to the drive"),),
+    outputs=(Output("y", "shifted(of, tau) - of", doc="is added to the drive"),),
     effect=Effect(
         "tau",
         {"of": "u"},

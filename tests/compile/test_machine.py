@@ -64,12 +64,13 @@ GIVEN = {
 
 
 def use(block: Block) -> str:
-    """A use of a shipped block that reads the states x and y."""
+    """A use of a shipped block that reads the states x and y; what reads a drive, the time."""
     parts = [f"type: {block.name}"]
+    signals = ("now", "now") if block.effect and block.effect.place == "drive" else ("x", "y")
     for number, port in enumerate(block.inputs):
         if port.name == "past":  # of a delay: a signal of t alone
             continue
-        wire = "[x, -y]" if port.many else ("x", "y")[number % 2]
+        wire = "[x, -y]" if port.many else signals[number % 2]
         parts.append(f"{port.name}: {wire}")
     for number, parameter in enumerate(block.parameters):
         if parameter.default is None:
@@ -88,7 +89,10 @@ SCALAR = [
 
 @pytest.mark.parametrize("block", SCALAR, ids=[block.name for block in SCALAR])
 def test_every_shipped_block_is_the_same_in_both_back_ends(block: Block) -> None:
-    text = PLANE.format("y - 0.1*x", "sin(t) - x") + f"  block: {{{use(block)}}}\n"
+    text = (
+        PLANE.format("y - 0.1*x", "sin(t) - x")
+        + f"  now: {{type: time}}\n  block: {{{use(block)}}}\n"
+    )
     outputs = [block.outputs[0].name] if len(block.outputs) == 1 else []
     record = ("block",) if outputs else tuple(f"block.{output.name}" for output in block.outputs)
     agree(text, range(5), record)

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from library.values import library, output
+from tracewire.formula import has_delay
 from tracewire.library import SENSOR_TERMS, Block
 
 POSITIVE_ONLY = (
@@ -25,7 +26,11 @@ OF_EITHER_SIGN = (
 )
 EFFECTS = library().effects()
 EACH = pytest.mark.parametrize("block", EFFECTS.values(), ids=EFFECTS)
-FREE = tuple(name for name, block in EFFECTS.items() if not block.states)
+FREE = tuple(
+    name
+    for name, block in EFFECTS.items()
+    if not block.states and not any(map(has_delay, block.formulas.values()))
+)
 Q, V = st.floats(-3, 3), st.floats(-9, 9)
 
 

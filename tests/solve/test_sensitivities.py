@@ -92,6 +92,15 @@ blocks:
 events:
   - {when: x, crosses: down, set: {v: -0.5*v, w: w - mass*v}}
 """
+CAM = """
+span: [0, 3]
+parameters: {late: 0.1371, tall: 2}
+blocks:
+  x: {type: integrator, of: rate}
+  time: {type: expression, formula: t - late}
+  cam: {type: table, of: time, points: [[0, 0], [0.7, 1], [0.9, 2], [1.7, -1], [2.2, 3]]}
+  rate: {type: expression, formula: tall*cam - x}
+"""
 STIFF = """
 span: [0, 3]
 parameters: {mu: 4, b: 0.5}
@@ -253,8 +262,9 @@ def test_what_rests_still_has_sensitivities_that_swing() -> None:
         (LIMITED, ["m", "k", "omega"]),
         (BALL.replace("12]", "6]"), ["restitution", "start.x"]),
         (STIFF, ["mu", "b", "start.v"]),
+        (CAM, ["late", "tall"]),
     ],
-    ids=["spring", "stick", "breakaway", "square", "reset", "limit", "ball", "stiff"],
+    ids=["spring", "stick", "breakaway", "square", "reset", "limit", "ball", "stiff", "cam"],
 )
 @pytest.mark.parametrize("method", ["auto", "dop853", "rosenbrock"])
 def test_sensitivities_are_those_of_differences(text: str, names: list[str], method: str) -> None:

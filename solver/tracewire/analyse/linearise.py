@@ -129,7 +129,7 @@ def linearise(
     Raises AnalysisError at a nonsmooth point, with the guards that are at their level there;
     OptionError for names that do not exist.
     """
-    rest = at_rest(model) if model.lowered.delays else None
+    rest = at_rest(model) if model.reads_past else None
     settled, cut = (model, model) if rest is None else (rest.settled, rest.opened)
     shown = with_outputs(cut, outputs)
     names = _inputs(cut, inputs)

@@ -66,7 +66,7 @@ def steady_state(
     Raises AnalysisError: a model whose rates change with time by themselves has none, the start
     lies beyond a contact, or the search has not found one, with the rates that are left.
     """
-    rest = at_rest(model).settled if model.lowered.delays else model
+    rest = at_rest(model).settled if model.reads_past else model
     passage = Passage(
         rest, length=1.0, begin=t, parameters=parameters, start=guess, preset=preset, rtol=1e-9
     )

@@ -22,7 +22,7 @@ from tracewire.errors import FormulaError, Place, Problem
 from tracewire.formula import Call, Expression, Name, Number, evaluate, names_of
 
 PASSED = ("+", "-", "neg", "stack", "[]", "sum", "join")
-FIRST = ("delayed", "/")
+FIRST = ("delayed", "shifted", "/")
 """Functions of which the first argument alone counts."""
 
 

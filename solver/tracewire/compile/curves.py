@@ -67,3 +67,11 @@ def lower_curve(tape: Tape, value: int, line: int, parts: Mapping[str, int]) -> 
     right = push("*", s, push("-", d_right, m))
     size = push("*", length, push("*", s, rest))
     return push("+", line, push("*", size, push("-", left, right)))
+
+
+def table_name(arguments: tuple[Expression, ...]) -> str:
+    """The name of the table that a function of points reads."""
+    table = arguments[-1]
+    if not isinstance(table, Name):
+        raise AssertionError("a function of points reads a table by its name")
+    return table.name

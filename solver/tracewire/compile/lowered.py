@@ -103,7 +103,8 @@ class Lowered:
 
     The resets of `flat.events` come first, in their order, and then those of transitions. `loops`
     holds the modes inside of each algebraic loop: their guards read the solution, which jumps with
-    them, so that they are decided together. `delays` are the signals that are read with a delay.
+    them, so that they are decided together. `delays` are the signals that are read with a delay,
+    `shifts` tells whether a signal of t alone is read at another time.
     """
 
     tape: Tape = field(default_factory=Tape)
@@ -117,3 +118,4 @@ class Lowered:
     transitions: list[Transition] = field(default_factory=list)
     loops: list[tuple[int, ...]] = field(default_factory=list)
     delays: list[Delay] = field(default_factory=list)
+    shifts: bool = False

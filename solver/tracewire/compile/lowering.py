@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 from dataclasses import replace
 
-from tracewire.compile.curves import PARTS, lower_curve
+from tracewire.compile.curves import PARTS, lower_curve, table_name
 from tracewire.compile.differentiate import differentiate, linear_in_t, substitute
 from tracewire.compile.draws import lower_random
 from tracewire.compile.flat import Flat
@@ -14,6 +14,7 @@ from tracewire.compile.kept import kept_states
 from tracewire.compile.limits import MODEL
 from tracewire.compile.linear import solve_linear, work
 from tracewire.compile.lowered import Delay, Lowered, Mode, ModeKind
+from tracewire.compile.shifting import ShiftError, shift_signals
 from tracewire.compile.tape import BINARY, UNARY, Entry
 from tracewire.errors import DiagramError, Place, Problem
 from tracewire.formula import Call, Expression, Name, Number, to_text
@@ -152,6 +153,7 @@ class Lowering:
             "dry": self.dry,
             "is_held": self.is_held,
             "delayed": self.delay,
+            "shifted": self.shift,
             "interp": self.interp,
             "cubic_spline": self.curve,
             "monotone_cubic": self.curve,
@@ -468,8 +470,20 @@ class Lowering:
         self.delayed[arguments] = entry
         return entry
 
+    def shift(self, arguments: tuple[Expression, ...]) -> int:
+        """What a signal of t alone was."""
+        try:
+            signals = shift_signals(self.flat, *arguments)
+        except ShiftError as error:
+            raise self.refused(str(error), error.hint) from None
+        self.out.shifts = True
+        for name, formula in signals.items():
+            if name not in self.out.entries:
+                self.out.entries[name] = self.lower(formula)
+        return self.out.entries[name]
+
     def interp(self, arguments: tuple[Expression, ...]) -> int:
-        return self.interpolated(self.lower(arguments[0]), _table(arguments))
+        return self.interpolated(self.lower(arguments[0]), table_name(arguments))
 
     def interpolated(self, value: int, name: str) -> int:
         table = self.out.tables.index(name)
@@ -477,17 +491,9 @@ class Lowering:
         return self.tape.push("segment", self.table(name), value, self.out.modes[mode].leaf)
 
     def curve(self, arguments: tuple[Expression, ...]) -> int:
-        value, name = self.lower(arguments[0]), _table(arguments)
+        value, name = self.lower(arguments[0]), table_name(arguments)
         parts = {part: self.table(f"{name}.{part}") for part in PARTS}
         return lower_curve(self.tape, value, self.interpolated(value, name), parts)
 
     def table(self, name: str) -> int:
         return self.tape.push("table", payload=self.out.tables.index(name))
-
-
-def _table(arguments: tuple[Expression, ...]) -> str:
-    """The name of the table that a function of points reads."""
-    table = arguments[-1]
-    if not isinstance(table, Name):
-        raise AssertionError("a function of points reads a table by its name")
-    return table.name

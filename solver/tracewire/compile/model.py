@@ -132,6 +132,11 @@ class Model:
         read = set(low.tape.needed(roots))
         return frozenset(name for name in self.parameters if low.entries[name] in read)
 
+    @property
+    def reads_past(self) -> bool:
+        """Whether a signal is read as it was some time ago."""
+        return bool(self.lowered.delays) or self.lowered.shifts
+
     @cached_property
     def watched_delays(self) -> frozenset[int]:
         """The numbers of the delays that guards read, or what a slide may hold: steps follow these,

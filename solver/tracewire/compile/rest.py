@@ -14,7 +14,7 @@ from tracewire.compile.flat import Flat, FlatParameter
 from tracewire.compile.loops import order_signals
 from tracewire.compile.lower import lower
 from tracewire.compile.model import Model
-from tracewire.formula import Call, Expression, Name, Number
+from tracewire.formula import DELAYS, Call, Expression, Name, Number
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ def at_rest(model: Model) -> AtRest:
         if isinstance(node, Call):
             for part in node.arguments:
                 note(part)
-            if node.function == "delayed":
+            if node.function in DELAYS:
                 delays.setdefault(node.arguments, len(delays))
         return node
 
@@ -74,7 +74,7 @@ def _without(node: Expression, change: Callable[[Call], Expression]) -> Expressi
     """A formula with something else in place of each signal that it reads with a delay."""
     if not isinstance(node, Call):
         return node
-    if node.function == "delayed":
+    if node.function in DELAYS:
         return change(node)
     return Call(node.function, tuple(_without(part, change) for part in node.arguments))
 

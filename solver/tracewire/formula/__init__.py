@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from tracewire.formula.dimension import dimension_of, dimension_text
 from tracewire.formula.evaluate import evaluate
 from tracewire.formula.expression import (
+    DELAYS,
     Call,
     Expression,
     Name,
@@ -44,6 +45,7 @@ if TYPE_CHECKING:
 __all__ = [
     "ALONG",
     "CONSTANTS",
+    "DELAYS",
     "FUNCTIONS",
     "OPERATIONS",
     "QUANTITIES",

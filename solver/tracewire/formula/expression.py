@@ -32,6 +32,8 @@ class Call:
 
 
 Expression = Number | Name | Call
+DELAYS = ("delayed", "shifted")
+"""Functions that read their first argument as it was."""
 
 
 def names_of(expression: Expression) -> tuple[str, ...]:
@@ -53,7 +55,7 @@ def has_delay(expression: Expression) -> bool:
     """Whether a part of the formula is read with a delay."""
     if not isinstance(expression, Call):
         return False
-    return expression.function == "delayed" or any(map(has_delay, expression.arguments))
+    return expression.function in DELAYS or any(map(has_delay, expression.arguments))
 
 
 def read_at_once(expression: Expression, also_before: bool = False) -> tuple[str, ...]:

@@ -42,8 +42,8 @@ class Function:
     unit: a `number` of numbers; of arguments of the `same` unit, which the value has, too; of those
     that are `compared`, the value has none; of `levels` behind the first argument, which the value
     has; of a signal `delayed` by a time, the value has the unit of the first and third argument; of
-    `any`, nothing is known of the value. Of one argument: its unit is `kept`, or `lost`, or the
-    value is its `root`. Of two: their `product`, `quotient` or `power`.
+    `any`, nothing is known of the value. Of one argument, or the first: its unit is `kept`, or
+    `lost`, or the value is its `root`. Of two: their `product`, `quotient` or `power`.
 
     slope: of one argument u, the derivative, a formula of u and of the value f. pace: whether it
     `turns` again and again as u grows, as a sine does, or `fades` where u is large.
@@ -145,6 +145,9 @@ FUNCTIONS = {
         "delayed(u, time, before): u as it was so long ago, and before the start what `before` is;"
         " delayed(u, time, before, shortest, longest): with a time that changes between these",
         unit="delayed", instead="Use a block of type delay or variable_delay."),
+    "shifted": Function(2, 2,
+        "shifted(u, time): u, a signal of t alone, as it was so long ago, before the start, too",
+        unit="kept", instead="Use a block of type delay."),
     "interp": Function(2, 2, "interp(u, points): straight lines through points, held beyond them",
         reads="points", instead="Use a block that has a table of points."),
     "cubic_spline": Function(2, 2,

@@ -266,8 +266,8 @@ def leave(core: int, t: float, before: Vector, x: Vector, old: Vector, waits: Ve
         for i in range(len(plan.kind)):
             same = same and (plan.kind[i] == SEGMENT or flow.m[i] == old[i])
             same = same and flow.bound[i] == sensitivity.bound[i]
-        if same:
-            sensitivity.now[TIME_REACHED] = t
+        if same:  # the rates go on as they were, what moves them with parameters may jump
+            sensitivity.now[TIME_REACHED], sensitivity.now[KNOWN] = t, 0.0
             return
     rate = np.empty(len(x))
     rates(core, t, x, rate)
