@@ -202,9 +202,11 @@ def test_a_partial_approximation_is_not_called_an_explanation() -> None:
     partial = replace(
         UNEXPLAINED, effects=FOUND.effects, s2_after=16.0, explained=Explained(0.3, 0.1, 0.5)
     )
+    partial = replace(partial, reason="a model with it leaves a half")
     text = paragraph_of(partial)
     assert "The best approximation is 'coulomb' at the sum 'torque', level = 0.2500 N m" in text
     assert "4 σ are left. That is not enough." in text
+    assert "; the best approximation is not enough: a model with it leaves a half." in text
     assert "It explains 30 % (95 % interval: 10 to 50 %) of the excess error." in text
     assert "The diagram lacks" not in text
 

@@ -20,6 +20,7 @@ from tracewire.show.trace_tables import (
 )
 from tracewire.show.trace_text import answer_lines, step_lines
 from tracewire.trace import Found
+from tracewire.trace.found import Dependence
 
 
 def test_the_answer_to_an_effect() -> None:
@@ -52,8 +53,18 @@ def test_the_answer_where_nothing_explains_it() -> None:
         "coordinate theta (97 % of the excess; theta, omega @ torque 74 %; theta @ sensor.theta "
         "62 %), and no effect of the library explains it"
     )
+    assert UNEXPLAINED.missing is not None
+    alike = [Dependence("torque", (name,), 0.96) for name in ("v", "t", "history")]
+    found = replace(UNEXPLAINED, dependences=(*UNEXPLAINED.dependences, *alike))
+    assert (
+        "depends on the coordinate theta, the rate omega or the time t, which this record cannot "
+        "tell apart (97 % of the excess"
+    ) in answer_lines(found)[0]
     nowhere = answer_lines(replace(UNEXPLAINED, missing=None))[0]
     assert nowhere.endswith("something is missing, and no effect of the library explains it")
+    why = "a model with drive_lag @ drive.u multiplies the error on unseen windows by 2"
+    refused = answer_lines(replace(UNEXPLAINED, reason=why))[0]
+    assert refused.endswith(f"and no effect of the library explains it: {why}")
     cut = answer_lines(replace(UNEXPLAINED, interrupted=True))[0]
     assert cut.startswith("VERDICT unexplained (interrupted: what was known by then): something")
     assert cut.endswith("and no effect was accepted by then")

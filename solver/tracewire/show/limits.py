@@ -258,6 +258,8 @@ class WordLimits:
     """Of a number."""
     plain: tuple[float, float] = (1e-4, 1e6)
     """Numbers between these are written without an exponent."""
+    alike: float = 0.02
+    """Of the excess: variables whose shares differ by less explain as much."""
     little: float = 0.5
     """The share of the excess below which the variables found explain little of it."""
     far: float = 2.0

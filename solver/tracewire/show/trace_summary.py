@@ -13,6 +13,7 @@ from tracewire.show.trace_words import (
     error_words,
     few_of,
     in_sigma,
+    missing_words,
     moved_words,
     percent,
     place_words,
@@ -143,22 +144,27 @@ def _nothing(found: Found) -> str:
 
 def _open(found: Found) -> str:
     missing = found.missing
-    none = (
-        "no effect was accepted by then"
-        if found.interrupted
-        else "no effect of the library explains it"
-    )
+    none = explained_words(found)
     if noisy_words(found):
         return f"No effect of the library explains the residual; {noisy_words(found)}."
     if missing is None:
         where = "Something is missing, and its place is not known"
         return f"{where}; {none}{_wrong_by(found)}."
     where, share = place_words(missing.place), percent(missing.share)
-    variables = variables_words(found, missing.place, missing.variables)
     return (
-        f"Something is missing {where} that depends on {variables} ({share} of the excess error); "
+        f"Something is missing {where} that depends on {missing_words(found)} ({share} of the "
+        "excess error); "
         f"{none}{_wrong_by(found)}."
     )
+
+
+def explained_words(found: Found) -> str:
+    """Why a trace that ends `unexplained` names nothing as the explanation."""
+    if found.interrupted:
+        return "no effect was accepted by then"
+    if found.effects:
+        return f"the best approximation is not enough: {found.reason}".removesuffix(": ")
+    return f"no effect of the library explains it: {found.reason}".removesuffix(": ")
 
 
 def noisy_words(found: Found) -> str:

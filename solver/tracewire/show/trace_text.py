@@ -7,12 +7,13 @@ import math
 from tracewire.show.limits import WORD
 from tracewire.show.trace_experiments import experiment_words
 from tracewire.show.trace_steps import decided_words
-from tracewire.show.trace_summary import noisy_words, ties_words
+from tracewire.show.trace_summary import explained_words, noisy_words, ties_words
 from tracewire.show.trace_words import (
     chance_words,
     common_powers,
     error_words,
     in_sigma,
+    missing_words,
     moved_words,
     percent,
     place_words,
@@ -22,11 +23,8 @@ from tracewire.show.trace_words import (
     told_once,
     unseen_errors,
     value_words,
-    variables_words,
 )
 from tracewire.trace import Found, FoundEffect, SearchStep, coefficient_of, signal_of, unit_of_power
-
-NONE = "no effect of the library explains it"
 
 
 def answer_lines(found: Found) -> tuple[str, ...]:
@@ -83,7 +81,7 @@ def _verdict(found: Found) -> str:
         return f"nothing is missing that these data could show{so_far}"
     if found.verdict == "effect":
         return f"{' and '.join(map(str, found.effects))} {_is(len(found.effects))} missing"
-    none = "no effect was accepted by then" if found.interrupted else NONE
+    none = explained_words(found)
     if noisy_words(found):
         return f"{noisy_words(found)}, and {none}"
     if found.missing is None:
@@ -99,9 +97,8 @@ def _verdict(found: Found) -> str:
         if d.share > 0
     ]
     missing = found.missing
-    variables = variables_words(found, missing.place, missing.variables)
     text = (
-        f"something is missing {place_words(missing.place)}; it depends on {variables} "
+        f"something is missing {place_words(missing.place)}; it depends on {missing_words(found)} "
         f"({percent(missing.share)} of the excess"
     )
     return text + (f"; {'; '.join(beside)})" if beside else ")") + f", and {none}"

@@ -16,6 +16,7 @@ from tracewire.trace import (
     ParameterChange,
     Power,
     Remainder,
+    is_first_order,
     signal_of,
     unit_of,
     users_unit,
@@ -180,8 +181,34 @@ def place_words(place: str) -> str:
 
 def variables_words(found: Found, place: str, variables: Sequence[str]) -> str:
     """Variables at a place as a person would call them: `the rate omega`."""
-    known = [(VARIABLES.get(name, ""), signal_of(found, place, name)) for name in variables]
-    return both_of([f"{kind} {name}".strip() for kind, name in known])
+    return both_of([_variable_words(found, place, name) for name in variables])
+
+
+def _variable_words(found: Found, place: str, variable: str) -> str:
+    kinds = {**VARIABLES, "v": "", "a": "the rate"} if is_first_order(found, place) else VARIABLES
+    return f"{kinds.get(variable, '')} {signal_of(found, place, variable)}".strip()
+
+
+def missing_words(found: Found) -> str:
+    """On what the missing force depends; with all variables of which each alone explains as much,
+    as they do where the record goes one way."""
+    missing = found.missing
+    if missing is None:
+        return ""
+    alike = [
+        d.variables
+        for d in sorted(found.dependences, key=lambda d: -d.share)
+        if d.place == missing.place
+        and d.variables != missing.variables
+        and len(d.variables) == 1
+        and d.variables[0] in VARIABLES
+        and d.share >= missing.share - WORD.alike
+    ]
+    if len(missing.variables) > 1 or not alike:
+        return variables_words(found, missing.place, missing.variables)
+    names = [missing.variables, *alike]
+    texts = [variables_words(found, missing.place, variables) for variables in names]
+    return f"{both_of(texts, 'or')}, which this record cannot tell apart"
 
 
 def common_powers(found: Found) -> list[Power]:

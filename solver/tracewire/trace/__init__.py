@@ -36,6 +36,7 @@ from tracewire.trace.thresholds import (
 from tracewire.trace.trace import trace
 from tracewire.trace.units import (
     coefficient_of,
+    is_first_order,
     signal_of,
     unit_at,
     unit_of,
@@ -73,6 +74,7 @@ __all__ = [
     "check_options",
     "coefficient_of",
     "data_of",
+    "is_first_order",
     "load",
     "save",
     "signal_of",

@@ -22,7 +22,7 @@ RunKind = Literal["windowed", "free run"]
 IN_JSON = (
     "verdict interrupted effects dropped depends_on missing rmse_before rmse_after sigma s2_before "
     "s2_after declared moved errors steps power experiments explained remainder remainder_depends "
-    "held_out noisy_inputs options words"
+    "held_out noisy_inputs reason options words"
 )
 """What a result has in JSON by its own name."""
 
@@ -303,7 +303,8 @@ class Found(Result):
     `explained` is the share of the excess that the effects explain, `remainder` what is left of
     each signal, `remainder_depends` on what that depends (the map of the remainder, the best
     first), `held_out` the errors on held-out blocks at each horizon, all None or empty where the
-    residual is at the noise. `options` is what the user asked for, with every threshold;
+    residual is at the noise. `reason` says why what came near is not named, or is not enough; ''
+    where the verdict is another. `options` is what the user asked for, with every threshold;
     `interrupted`: the user stopped the trace, and this is what was known by then.
 
     `diagram` is the edited diagram, and `find_diagram` that with some of the effects; a trace that
@@ -342,6 +343,7 @@ class Found(Result):
     remainder_depends: tuple[Dependence, ...] = ()
     held_out: tuple[HeldOut, ...] = ()
     noisy_inputs: tuple[LikelyInput, ...] = ()
+    reason: str = ""
     options: TraceOptions = field(default_factory=TraceOptions)
     users_units: Mapping[str, tuple[str, float]] = field(default_factory=dict)
     find_diagram: Callable[[Collection[str]], Diagram] | None = field(default=None, repr=False)

@@ -47,10 +47,13 @@ def signal_of(found: Found, place: str, variable: str) -> str:
     known = _places(found).get(place)
     if known is None:
         return variable
-    names = {"q": known.q, "v": known.v, "a": known.a}
-    if len(known.drive) == 1:
-        names["u"] = known.drive[0]
-    return names.get(variable) or variable
+    return known.wires.get(variable) or variable
+
+
+def is_first_order(found: Found, place: str) -> bool:
+    """Whether a sum feeds a state that is the rate of nothing, as the level of a tank."""
+    known = _places(found).get(place)
+    return known is not None and known.kind == "sum" and not known.q
 
 
 def unit_of_effect(found: Found, effect: str, place: str, parameter: str) -> str:

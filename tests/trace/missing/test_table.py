@@ -12,7 +12,7 @@ from tracewire.errors import OptionError
 from tracewire.solve import simulate
 from tracewire.trace.candidates.places import Place, find_places
 from tracewire.trace.found import Missing
-from tracewire.trace.missing.table import add_table, missing_table, wires_of
+from tracewire.trace.missing.table import add_table, missing_table
 
 TEXT = """\
 span: [0, 3]
@@ -109,6 +109,6 @@ def test_a_torque_that_no_sample_is_near_has_no_table() -> None:
 
 def test_wires_of_several_drives_and_bodies() -> None:
     many = Place("f", "sum", "f", "q", "v", "a", (("q2", "v2"), ("q3", "v3")), ("u", "w"))
-    wires = wires_of(many)
+    wires = many.wires
     assert wires["u of w"] == "w"
     assert wires["other_q of v3"] == "q3"

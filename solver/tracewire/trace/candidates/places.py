@@ -49,6 +49,18 @@ class Place:
     element: tuple[int, int] | None = None
     own: str = ""
 
+    @property
+    def wires(self) -> dict[str, str]:
+        """The signal of each variable at the place that a block can be wired to."""
+        found = {"q": self.q, "v": self.v, "a": self.a, "t": "t"}
+        many = len(self.drive) > 1
+        found |= {f"u of {name}" if many else "u": name for name in self.drive}
+        several = len(self.others) > 1
+        for q, v in self.others:
+            of = f" of {v or q}" if several else ""
+            found |= {f"other_q{of}": q, f"other_v{of}": v}
+        return found
+
 
 def find_places(model: Model) -> list[Place]:
     """The places of a model: sums, then drives, then sensors.

@@ -12,6 +12,7 @@ from tracewire.trace.choose.unseen import (
     is_no_better_on_claim,
     join_names,
     lowers_unseen,
+    model_with,
     raises_unseen,
     raises_whole_runs,
     share_of_whole_runs,
@@ -66,11 +67,12 @@ def safeguard(search: Search, judgement: Judgement) -> Judgement:
         if not harm and judgement.verdict == "unexplained":
             harm = raises_whole_runs(search, final.declared, final.best)
         if harm:
-            names = join_names(map(str, final.best.effects))
-            search.words.append(f"{names} is not named: it {harm}")
+            names = list(map(str, final.best.effects))
+            search.words.append(f"{join_names(names)} is not named: it {harm}")
             final = FinalModels(final.declared, final.declared, {}, ())
             dependences, missing = residual_map(search, final.declared)
-            return Judgement("unexplained", final, dependences, missing)
+            reason = f"{model_with(names)} {harm}"
+            return Judgement("unexplained", final, dependences, missing, reason=reason)
     return replace(judgement, final=final)
 
 
@@ -138,16 +140,17 @@ def _confirmed(search: Search, judgement: Judgement, final: FinalModels) -> Judg
     declared, best = final.declared, final.best
     share = share_of_whole_runs(search, declared, best)
     if share < search.options.whole_runs:
-        what = f"takes {max(share, 0):.0%} of the excess squared error of whole unseen runs away,"
-        what += " which is too little"
+        what = f"takes {max(share, 0):.0%} of the excess squared error of whole unseen runs away"
     elif is_no_better_on_claim(search, declared, best):
         what = "lowers the error neither of windows nor of free runs in the part of the data that"
         what += " played no part"
     else:
         return judgement
-    search.words.append(f"{join_names(map(str, best.effects))} {what}")
+    reason = f"{model_with(map(str, best.effects))} {what}"
     dependences, missing = residual_map(search, declared)
-    return replace(judgement, verdict="unexplained", dependences=dependences, missing=missing)
+    return replace(
+        judgement, verdict="unexplained", dependences=dependences, missing=missing, reason=reason
+    )
 
 
 def refuse_mistaken(search: Search, declared: Trial, judgement: Judgement) -> None:

@@ -208,3 +208,8 @@ def _tracked(search: Search, sections: Sequence[Section]) -> float:
 def join_names(names: Iterable[str]) -> str:
     """Effects in words."""
     return " and ".join(sorted(names))
+
+
+def model_with(names: Iterable[str]) -> str:
+    """The diagram with some effects, in words."""
+    return f"a model with {join_names(names)}"

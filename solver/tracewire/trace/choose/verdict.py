@@ -16,6 +16,7 @@ from tracewire.trace.choose.remainder import error_left, explained_share, held_o
 from tracewire.trace.choose.unseen import (
     better_unseen,
     join_names,
+    model_with,
     prune_by_other_runs,
     raises_unseen,
 )
@@ -37,7 +38,8 @@ from tracewire.trace.trials.trial import Trial
 
 @dataclass(frozen=True, eq=False)
 class Judgement:
-    """The verdict, the models that it is about, and what it rests on."""
+    """The verdict, the models that it is about, and what it rests on. `reason`: why effects that
+    came near are not named, or do not explain what is missing."""
 
     verdict: Verdict
     final: FinalModels
@@ -48,6 +50,7 @@ class Judgement:
     remainder_depends: tuple[Dependence, ...] = ()
     held_out: tuple[HeldOut, ...] = ()
     noisy_inputs: tuple[LikelyInput, ...] = ()
+    reason: str = ""
 
 
 def noise_limit(search: Search, trial: Trial) -> float:
@@ -112,7 +115,7 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
     something is missing that no effect explains: `unexplained`.
     """
     options = search.options
-    prediction, harmed = _harmless(search, prediction)
+    prediction, reason = _harmless(search, prediction)
     declared = prediction.models[0].trials
     above = any(trial.reduced_chi2 > noise_limit(search, trial) for trial in declared)
     names = bool(prediction.chosen.names)  # not by dropped terms alone
@@ -134,7 +137,7 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
     share, error = explained_share(prediction, floors)
     if not named:
         gain = 0.5 * float(np.mean(-np.log(floors)))
-        missed = harmed or gain >= max(np.log1p(options.near), options.map_gain)
+        missed = bool(reason) or gain >= max(np.log1p(options.near), options.map_gain)
         verdict: Verdict = "unexplained" if missed else "null"
         dependences, missing = maps[0]
         if above and not missed:
@@ -144,18 +147,14 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
                 " disturbed otherwise"
             )
     else:
-        enough = _is_enough(prediction, share.share, share.share - error)
-        if _only_uncommon(chosen, options):
-            search.words.append(
-                f"{join_names(chosen.names)} together stand for a law of another form"
-            )
-            enough = False
         law = ""
         if search.has_revisits:  # else all that is left is a function of the one way
             law = _describe_law_left(chosen.trials[0], maps[0][0], share.share, options)
-        if law:
-            search.words.append(f"{join_names(chosen.names)} cannot be all: {law}")
-        verdict = "effect" if enough and not law else "unexplained"
+        short = law or _describe_shortfall(prediction, share.share, share.share - error)
+        if _only_uncommon(chosen, options):
+            short = "stands for a law of another form: it has waves, drifts and their kin alone"
+        reason = f"{model_with(chosen.names)} {short}" if short else ""
+        verdict = "unexplained" if reason else "effect"
         dependences, missing = (
             residual_map(
                 search, search.problem.on_some_windows(prediction.models[0].trials[0], spread[0])
@@ -177,18 +176,22 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
         maps[0][0],
         held_out(prediction, floors),
         noisy,
+        reason if verdict == "unexplained" else "",
     )
 
 
-def _is_enough(prediction: Prediction, share: float, surely: float) -> bool:
-    """Whether the named effects explain enough of the excess error, and leave little enough of the
-    error on held-out blocks; at the noise of all horizons they explain all there is."""
+def _describe_shortfall(prediction: Prediction, share: float, surely: float) -> str:
+    """In words, why the named effects are not enough: they explain too little of the excess error,
+    or leave too much of the error on held-out blocks; '' where they are. At the noise of all
+    horizons they explain all there is."""
     options, trials = prediction.options, prediction.chosen.trials
-    if all(trial.reduced_chi2 <= options.at_noise for trial in trials):
-        return share >= options.explained
-    at_noise = trials[-1].reduced_chi2 <= options.at_noise
-    little = at_noise or error_left(prediction) <= options.error_left
-    return share >= options.explained and surely >= options.explained_surely and little
+    at_all = all(trial.reduced_chi2 <= options.at_noise for trial in trials)
+    if share < options.explained or (surely < options.explained_surely and not at_all):
+        return f"takes {max(share, 0):.0%} of the excess error on held-out blocks away"
+    left = error_left(prediction)
+    if trials[-1].reduced_chi2 <= options.at_noise or left <= options.error_left:
+        return ""
+    return f"leaves {left:.0%} of the error on held-out blocks"
 
 
 def _only_uncommon(model: Finalist, options: TraceOptions) -> bool:
@@ -198,24 +201,27 @@ def _only_uncommon(model: Finalist, options: TraceOptions) -> bool:
     return len(names) > 1 and all(name in options.uncommon for name in names)
 
 
-def _harmless(search: Search, prediction: Prediction) -> tuple[Prediction, bool]:
-    """The prediction with the best choice that raises the error on no unseen data, and whether
-    another one was refused for that; what was refused goes into the search's words."""
+def _harmless(search: Search, prediction: Prediction) -> tuple[Prediction, str]:
+    """The prediction with the best choice that raises the error on no unseen data, and why the one
+    before was refused for that; what was refused goes into the search's words."""
+    reason = ""
     refused: list[frozenset[str]] = []
     lengths = [horizon.length for horizon in prediction.horizons.each]
     while prediction.choice.sure and len(refused) < search.options.refused:
         declared, chosen = (model.trials[-1] for model in (prediction.models[0], prediction.chosen))
         harm = raises_unseen(search, declared, chosen, lengths)
         if not harm:
-            return prune_by_other_runs(search, prediction), bool(refused)
+            return prune_by_other_runs(search, prediction), reason
         left_out = join_names(prediction.chosen.dropped)
-        what = join_names(prediction.chosen.names) or f"the model without {left_out}"
+        names = prediction.chosen.names
+        what = join_names(names) or f"the model without {left_out}"
         search.words.append(f"{what} is not named: it {harm}")
+        reason = reason or (f"{model_with(names)} {harm}" if names else f"{what} {harm}")
         refused.append(prediction.chosen.names)
         prediction = prediction.choose_again(refused)
     if refused and len(refused) == search.options.refused:
         prediction = replace(prediction, choice=replace(prediction.choice, sure=False))
-    return prediction, bool(refused)
+    return prediction, reason
 
 
 def final_of(search: Search, prediction: Prediction) -> FinalModels:
@@ -311,7 +317,10 @@ def _describe_law_left(
     if left > options.at_noise and best.share < options.law_share:
         return ""
     of = " and ".join(best.variables)
-    return f"{best.share:.1%} of the rest is a function of {of} at {best.place}, of no block's form"
+    return (
+        f"leaves a law of no block's form: {best.share:.1%} of the rest is a function of {of} at"
+        f" {best.place}"
+    )
 
 
 def _gate_mean_square(search: Search, best: Trial) -> float:

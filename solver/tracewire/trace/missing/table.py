@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from tracewire.diagram import Diagram, add_addend, add_to_drive, patch_own, quoted
@@ -56,7 +54,7 @@ def add_table(diagram: Diagram, place: Place, missing: Missing, file: str) -> Di
     Raises OptionError: the torque depends on more than one variable, or on none that a block can be
     wired to, or what is missing is no torque, but a sensor's.
     """
-    signals = wires_of(place)
+    signals = place.wires
     names = missing.variables
     if place.kind == "sensor":
         what = f"what is missing at '{place.name}' is no torque: a table cannot be added there"
@@ -85,15 +83,3 @@ def add_table(diagram: Diagram, place: Place, missing: Missing, file: str) -> Di
     if place.own:
         diagram, to = patch_own(diagram, place.own, to)
     return add_addend(diagram, to, name, line, element=place.element)
-
-
-def wires_of(place: Place) -> Mapping[str, str]:
-    """The signal of each variable at a place that a block can be wired to."""
-    found = {"q": place.q, "v": place.v, "a": place.a, "t": "t"}
-    many = len(place.drive) > 1
-    found |= {f"u of {name}" if many else "u": name for name in place.drive}
-    several = len(place.others) > 1
-    for q, v in place.others:
-        of = f" of {v or q}" if several else ""
-        found |= {f"other_q{of}": q, f"other_v{of}": v}
-    return found

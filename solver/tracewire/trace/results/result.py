@@ -86,6 +86,7 @@ def result_of(
         remainder_depends=judgement.remainder_depends,
         held_out=judgement.held_out,
         noisy_inputs=judgement.noisy_inputs,
+        reason=judgement.reason,
         find_diagram=partial(_apply_some, search, final, values),
     )
 
