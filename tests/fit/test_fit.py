@@ -412,8 +412,20 @@ def test_a_search_whose_last_slope_promises_much_says_so_though_errors_are_large
     criterion = SimpleNamespace(scales=np.array([1.0]))
     slope, vector = np.ones((50, 1)), np.ones(50)
     told = SimpleNamespace(names=("p",), at_bounds=(), errors={"p": 2.0})
-    (remark,) = unfinished(told, criterion, slope, vector)  # type: ignore[arg-type]
+    (remark,) = unfinished(told, criterion, slope, vector, "fminsearch")  # type: ignore[arg-type]
     assert remark.startswith("the search ended before a minimum: the slope there promises to ")
     assert remark.endswith("go on with --method least_squares")
     settled = np.tile([1.0, -1.0], 25)
-    assert unfinished(told, criterion, slope, settled) == []  # type: ignore[arg-type]
+    assert unfinished(told, criterion, slope, settled, "fminsearch") == []  # type: ignore[arg-type]
+    (again,) = unfinished(told, criterion, slope, vector, "least_squares")  # type: ignore[arg-type]
+    assert "least_squares gains nothing more from here: begin elsewhere" in again
+
+
+def test_a_fit_that_raises_the_error_of_what_it_has_not_seen_says_so() -> None:
+    """The stiffness of the other one is that with which the search begins."""
+    slower = oscillation(T * (3 / K) ** 0.5, 0.9)
+    train, other = series(oscillation(T, 0.9)), series(slower, "other", use="validate")
+    (remark,) = fitted(OSCILLATOR, train, other).remarks
+    assert remark.startswith("other: the fit raises the error of x, which it has not seen, ")
+    same = series(oscillation(T, 0.9), "other", use="validate")
+    assert fitted(OSCILLATOR, train, same).remarks == ()

@@ -83,3 +83,10 @@ def test_what_the_noise_of_an_input_would_explain_is_told_with_its_size(tmp_path
     assert noisy.sigma == pytest.approx(0.02, rel=0.15)
     told = f"noise of the input 'F' of {noisy.sigma:.2g} N would explain the residual"
     assert told in answer_lines(found)[0] and told in paragraph_of(found)
+    most = (
+        0.9
+        * noisy.sigma
+        / float(np.std(np.loadtxt(file.parent / "run.csv", delimiter=",", skiprows=1)[:, 2]))
+    )
+    found = trace(compile(read(file)), options={"effects": 1, "input_noise": most})
+    assert found.noisy_inputs == ()

@@ -260,9 +260,16 @@ def _with_words(found: Diagnosis, measured: Measured) -> Diagnosis:
         source += " of sensor and inputs"
     times = found.size / noise
     estimate = found.estimate
+    # a residual that the noise of inputs makes follows these as they are measured
+    of_inputs = found.driven is not None and DIAGNOSIS.at_noise * found.noise < found.size <= limit
+    known = set(measured.input_sigma) if of_inputs else set()
+    depends = [
+        name
+        for name, p in found.independence.items()
+        if p < DIAGNOSIS.doubt and name != found.signal and name not in known
+    ]
     doubtful = estimate is not None and not estimate.is_sure
     over = f"correlated over {found.memory:.2g} s"
-    of_inputs = found.driven is not None and DIAGNOSIS.at_noise * found.noise < found.size <= limit
     if of_inputs:
         names = " and ".join(f"'{name}'" for name in measured.input_sigma)
         words = f"at the noise of the measured input {names}, which explains it; "
@@ -273,9 +280,10 @@ def _with_words(found: Diagnosis, measured: Measured) -> Diagnosis:
         )
         words += f"between {estimate.low:.2g} and {estimate.high:.2g} (SI), {estimate.method}; "
         words += f"say its `sigma:` where it is known; {over}"
-    elif found.size > limit and not found.is_white:
-        words = f"the residual is {times:.2g} times the {source} and {over}: something is missing"
-        words += "; `tracewire trace` looks for it"
+    elif found.size > limit and not (found.is_white and not depends):
+        words = f"the residual is {times:.2g} times the {source}"
+        words += "" if found.is_white else f" and {over}"
+        words += ": something is missing; `tracewire trace` looks for it"
     elif found.size > limit:
         words = f"the residual is {times:.2g} times the {source}, yet white: the noise is larger"
         words += " than declared" if found.declared else " than its differences tell"
@@ -285,13 +293,6 @@ def _with_words(found: Diagnosis, measured: Measured) -> Diagnosis:
         words = f"white, and {times:.2g} times the declared noise: sigma is declared too large"
     else:
         words = f"white, at the {source}"
-    # a residual that the noise of inputs makes follows these as they are measured
-    known = set(measured.input_sigma) if of_inputs else set()
-    depends = [
-        name
-        for name, p in found.independence.items()
-        if p < DIAGNOSIS.doubt and name != found.signal and name not in known
-    ]
     if depends:
         words += f"; it depends on {' and '.join(depends)}, which drives the model"
     if found.outliers > 0.005:

@@ -24,7 +24,7 @@ from tracewire.fit.refusals import (
     refuse_presets_of_free,
     refuse_unusable,
 )
-from tracewire.fit.remarks import collect_remarks, starts_elsewhere, unfinished
+from tracewire.fit.remarks import collect_remarks, raises_unseen, starts_elsewhere, unfinished
 from tracewire.fit.result import Comparison, Fit, Improvement
 from tracewire.fit.search import MethodResult, Progress, Search, Stopped
 from tracewire.fit.uncertainty import uncertainty_of
@@ -163,7 +163,7 @@ def fit(
     follows = bool(model.states) if correlated is None else correlated
     uncertainty = uncertainty_of(last, z, residuals, derivatives, follows)
     matrix = last.weigh_jacobians(residuals, derivatives)
-    short = unfinished(uncertainty, last, matrix, last.weigh(residuals))
+    short = unfinished(uncertainty, last, matrix, last.weigh(residuals), method)
     shown = compare_series(model, series, before, outputs_by_series(last, z, others))
     return Fit(
         model=model,
@@ -192,6 +192,7 @@ def fit(
             *(store.remarks if store else ()),
             *short,
             *starts_elsewhere(model, series, shown),
+            *raises_unseen(shown),
             *collect_remarks(series, failures, last),
         ),
     )

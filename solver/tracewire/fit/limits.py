@@ -195,6 +195,8 @@ class DiagnosisLimits:
     """... and so many combinations of these."""
     elsewhere: float = 0.2
     """Of the range of a measured state: a first sample so far from the run's is another start."""
+    raised: float = 1.05
+    """By what factor the error of a series that was not fitted rises at least to be told."""
     promised: float = 0.9
     """The part of the residual that a Gauss-Newton step promises to leave, below which a search has
     ended before a minimum."""

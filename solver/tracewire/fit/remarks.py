@@ -17,8 +17,15 @@ Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 
 
+GO_ON = "go on with --method least_squares"
+BEGIN_ELSEWHERE = (
+    "least_squares gains nothing more from here: begin elsewhere, or fix a parameter that these "
+    "data do not determine"
+)
+
+
 def unfinished(
-    uncertainty: Uncertainty, criterion: Criterion, matrix: Matrix, vector: Vector
+    uncertainty: Uncertainty, criterion: Criterion, matrix: Matrix, vector: Vector, method: str
 ) -> list[str]:
     """That the search ended before a minimum: a Gauss-Newton step goes beyond the errors, or
     promises to take away much of the sum of squares."""
@@ -33,19 +40,40 @@ def unfinished(
         for name, move in zip(names, step * criterion.scales, strict=False)
         if (error := uncertainty.errors[name]) > 0 and abs(move) > error
     }
+    go_on = BEGIN_ELSEWHERE if method == "least_squares" else GO_ON
     promised = np.linalg.norm(vector + matrix @ step) / max(float(np.linalg.norm(vector)), 1e-300)
     if not far and promised < DIAGNOSIS.promised:
         return [
             "the search ended before a minimum: the slope there promises to lower the residual to "
-            f"{promised:.2g} of it; go on with --method least_squares"
+            f"{promised:.2g} of it; {go_on}"
         ]
     if not far:
         return []
     most = max(far, key=lambda name: far[name])
     return [
         f"the search ended before a minimum: the slope there leads {most} {far[most]:.2g} standard "
-        "errors further, so errors and intervals say nothing yet; go on with --method least_squares"
+        f"errors further, so errors and intervals say nothing yet; {go_on}"
     ]
+
+
+def raises_unseen(comparisons: Sequence[Comparison]) -> list[str]:
+    """Series that were not fitted, and of which a fit has raised the error."""
+    found = []
+    for c in comparisons:
+        if c.use == "train":
+            continue
+        before, after = (
+            float(np.sqrt(np.mean(residual[c.counts] ** 2)))
+            for residual in (c.residual_before, c.residual_after)
+        )
+        if before > 0 and after > DIAGNOSIS.raised * before:
+            found.append(
+                f"{c.series}: the fit raises the error of {c.signal}, which it has not seen, "
+                f"{after / before:.3g}-fold: the fitted data want other values than these, so that "
+                "something is missing (`tracewire trace`), or their runs are too long for this "
+                "model (--method multiple_shooting)"
+            )
+    return found
 
 
 def starts_elsewhere(

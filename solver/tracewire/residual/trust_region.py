@@ -78,7 +78,7 @@ def solve_least_squares(
                 max_nfev=max(left, 1),
             )
         except _Stalled:
-            z, message = jacobian.best, "converged: what is still to gain is far below the noise"
+            z, message = jacobian.best, "converged: many steps have gained next to nothing"
             break
         except _Refreshed:  # a trust region that corrected derivatives have narrowed is of no use
             # of no use at all where the way to here was lost again: scipy begins off the bounds,

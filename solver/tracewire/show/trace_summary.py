@@ -104,7 +104,12 @@ def _lacks(found: Found) -> str:
     parts = []
     if found.explained is not None:
         who = "it explains" if one else "together they explain"
-        parts.append(f"{who} {share_words(found.explained)} of the excess error")
+        left = max((part.share for part in found.remainder), default=0.0)
+        leaves = (
+            f" and {'leaves' if one else 'leave'} {percent(left)} of the error on held-out blocks"
+        )
+        whole = f"{share_words(found.explained)} of the excess error"
+        parts.append(f"{who} {whole}{leaves if left > 0 else ''}")
     errors = error_words(found, unseen_errors(found))
     if errors:
         goes = _goes(found)

@@ -125,6 +125,9 @@ class TraceOptions:
     white, likelihood is right, and BIC chooses."""
     input_windows: int = 40
     """Windows of a series on which the likely noise of an input is found."""
+    input_noise: float = 0.5
+    """The part of the standard deviation of an input that its noise may be: what is larger than the
+    input itself is no noise of it."""
     input_left: float = 2.0
     """The reduced chi-square below which the noise of an input explains a residual."""
     input_depends: float = 0.8

@@ -8,7 +8,7 @@ from concurrent.futures import Executor
 from typing import Any
 
 from tracewire.compile import Model
-from tracewire.errors import FitError, Problem
+from tracewire.errors import Problem, TracewireError
 from tracewire.fit import Fit
 from tracewire.options import options_of
 from tracewire.residual import Measured
@@ -78,8 +78,8 @@ def trace(
     return result_of(search, judgement, prediction, interrupted)
 
 
-class OutOfTime(FitError):
-    """A search has taken longer than the user allows."""
+class OutOfTime(TracewireError):
+    """A search has taken longer than the user allows: no refit that failed."""
 
 
 def limit_time(seconds: float, tell: Callable[[str], None]) -> Callable[[str], None]:

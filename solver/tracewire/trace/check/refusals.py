@@ -80,7 +80,10 @@ def _still(m: Measured, options: CheckOptions) -> Iterator[Problem]:
     if not constant and all(_is_noise(m, name, options) for name in m.values):
         names = " and ".join(f"'{name}'" for name in m.values)
         what = f"the series '{m.name}' shows nothing above the noise of {names}"
-        yield Problem(what, hint="Nothing moves in it, or the noise hides it: leave it out.")
+        hint = (
+            "Nothing moves in it, or it moves from sample to sample as noise does: leave it out, or"
+        )
+        yield Problem(what, hint=f"{hint} say its `sigma:` where the noise is smaller.")
 
 
 def _dead_channels(measured: Sequence[Measured], options: CheckOptions) -> Iterator[Problem]:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -70,13 +71,15 @@ class ModelPool:
             if refitted is not None:
                 self._keep_better(refitted)
         for smaller in self.without_terms(declared) if not self._takes_all(1) else ():
-            self._extend_without(smaller)
+            with suppress(FitError):
+                self._extend_without(smaller)
         for size, parents in zip(range(1, options.effects), options.parents, strict=False):
             if not self._improves(size) or self._takes_all(size):
                 break
             for parent in self.best(size, parents):
                 if self._is_near(parent, size):
-                    self._extend_beside(parent)
+                    with suppress(FitError):  # it does not run with its places open
+                        self._extend_beside(parent)
             if self._improves(size + 1):
                 self._exchange(size + 1)
         for size in range(1, options.effects + 1):
@@ -446,10 +449,11 @@ class ModelPool:
             bare = self.search.problem.fit(
                 kept, now.windows.segments, now.length, now.values, fixed=fixed, steps=0
             )
+            screen = self.search.screen(bare)
         except FitError:
             return []
         count = self.options.alike
-        proposals = self.select_promising(number, self.search.screen(bare), count + 1, 0)
+        proposals = self.select_promising(number, screen, count + 1, 0)
         found = [row.placed_effect for proposal in proposals for row in proposal.rows]
         return [one for one in found if str(one) not in model.names][:count]
 

@@ -65,6 +65,12 @@ class Finalist:
         return tuple(u.name for u in unknowns if u.low == 0.0 and is_zero(u.name, u.scale))
 
     @property
+    def has_idle_effect(self) -> bool:
+        """Whether the coefficient of an effect vanished: it is the model without that effect."""
+        coefficients = {effect.candidate.coefficient for effect in self.trials[0].effects}
+        return not coefficients.isdisjoint(self.vanished)
+
+    @property
     def numbers(self) -> int:
         """How many numbers are fitted beside the starts, without those that vanished."""
         return len(self.trials[0].windows.values) - len(self.vanished)

@@ -60,6 +60,6 @@ def _noises(
             noise = likely_input_noise(response, name, search.problem.sigma, parts)
         except SimulationError:
             continue
-        if noise.sigma > 0:
+        if 0 < noise.sigma <= search.options.input_noise * float(np.std(measured.inputs[name][1])):
             found[name] = noise.sigma, noise.after
     return found

@@ -238,8 +238,9 @@ def _predict_errors(pool: ModelPool, model: Finalist) -> Array:
 
 def _choose(pool: ModelPool, errors: dict[Key, Array]) -> Prediction:
     options = pool.options
-    models = tuple(pool.models[key] for key in errors)
-    stacked = np.stack([errors[key] for key in errors])
+    keys = [key for key in errors if not pool.models[key].has_idle_effect]
+    models = tuple(pool.models[key] for key in keys)
+    stacked = np.stack([errors[key] for key in keys])
     squares = stacked[:, :, 0].mean(axis=(2, 3))  # scattered blocks: the others extrapolate
     left = squares / np.maximum(squares[0], 1e-300)
     entrants = tuple(

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from tracewire.errors import FitError
+from tracewire.errors import FitError, SimulationError
 from tracewire.residual import Section, Segment
 from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.candidates import find_candidates
@@ -281,10 +281,14 @@ class Search:
 
     def linearise(self, trial: Trial) -> TorqueLinearisation:
         """The windows of a model linearised in torques at the places; that of the last one is
-        kept, as a screen and one along the data ask for the same."""
+        kept, as a screen and one along the data ask for the same. Raises FitError where it does not
+        run with its places open: a fit has stopped where runs are about to end."""
         if self._last is None or self._last[0] is not trial:
             args = trial.diagram, trial.windows, self.places, self.problem.rtol, self.options
-            self._last = trial, TorqueLinearisation(*args)
+            try:
+                self._last = trial, TorqueLinearisation(*args)
+            except SimulationError as error:
+                raise FitError(error.problems) from None
         return self._last[1]
 
     def candidates(
