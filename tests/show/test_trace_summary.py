@@ -44,8 +44,8 @@ def test_the_headline_has_effect_place_value_share_and_error_in_the_unit_of_the_
     assert headline_of(EXPLAINED) == (
         "The diagram lacks 'coulomb' at the sum 'torque', level = 0.2500 N m (95 %: 0.2430 to "
         "0.2570); it explains 98 % (95 % interval: 96 to 99 %) of the excess error and leaves 4 % "
-        "of the error on held-out blocks, and on unseen data the error of free runs falls for theta "
-        "from 0.184 to 0.00408 rad."
+        "of the error on held-out blocks, and on unseen data the error of free runs falls for "
+        "theta from 0.184 to 0.00408 rad."
     )
     assert paragraph_of(EXPLAINED).startswith(headline_of(EXPLAINED))
 
