@@ -14,7 +14,7 @@ from tracewire.trace.candidates.places import find_places
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal, screen_candidates
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
-from tracewire.trace.search.refinement import FinalModels, _drop_trifles, refine
+from tracewire.trace.search.refinement import FinalModels, _drop_trifles, _is_tied, refine
 from tracewire.trace.search.refits import RefitResult
 from tracewire.trace.search.search import Search, Step
 from tracewire.trace.trials.trial import PlacedEffect, Trial
@@ -78,6 +78,28 @@ def test_a_wrong_effect_is_exchanged_for_its_better_rival() -> None:
     (rival,) = final.rivals[DRAG]
     assert str(rival.effect) == CUBIC and not rival.tied
     assert 0.9 < rival.correlation < 1.0
+
+
+@pytest.mark.parametrize(
+    ("delta_bic", "where", "tied"),
+    [
+        (9.0, slice(None), True),  # next to nothing
+        (40.0, slice(None), False),  # everywhere
+        (40.0, slice(100, 150), True),  # in one block of time
+    ],
+)
+def test_a_rival_is_tied_that_is_not_surely_behind(
+    delta_bic: float, where: slice, tied: bool
+) -> None:
+    noise = np.random.default_rng(5).normal(size=(1000, 1))
+    law = np.zeros((1000, 1))
+    law[where] = np.sin(np.arange(1000.0))[where, None]
+    law *= (delta_bic / np.sum(law**2)) ** 0.5
+    best, rival = (
+        SimpleNamespace(windows=SimpleNamespace(residuals=[residual]))
+        for residual in (noise, noise + law)
+    )
+    assert _is_tied(best, rival, delta_bic, OPTIONS.search) is tied  # type: ignore[arg-type]
 
 
 def test_the_right_effect_stays_on_long_windows() -> None:

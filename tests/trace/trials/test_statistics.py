@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tracewire.trace.trials.statistics import CandidateColumns, bic, effective_fraction
+from tracewire.trace.trials.statistics import (
+    CandidateColumns,
+    bic,
+    effective_fraction,
+    errors_behind,
+)
 
 
 def test_white_residuals_count_fully_and_slow_ones_by_their_half_waves() -> None:
@@ -30,6 +35,23 @@ def test_bic_prefers_the_smaller_model_where_the_larger_gains_nothing() -> None:
 def test_a_fall_counts_less_where_fewer_residuals_are_independent() -> None:
     fall = bic(100.0, 1000, 1.0, 2) - bic(90.0, 1000, 1.0, 2)
     assert bic(100.0, 1000, 0.1, 2) - bic(90.0, 1000, 0.1, 2) == pytest.approx(fall / 10)
+
+
+def test_a_model_is_behind_by_half_the_root_of_what_it_leaves_more_in_white_noise() -> None:
+    rng = np.random.default_rng(9)
+    law = 0.2 * np.sin(np.linspace(0, 300, 2000))[:, None]
+    behind = []
+    for _ in range(50):
+        noise = rng.normal(size=(2000, 1))
+        behind.append(errors_behind([noise[:900], noise[900:]], [noise + law], 20))
+    assert np.median(behind) == pytest.approx(np.sum(law**2) ** 0.5 / 2, rel=0.25)
+
+
+def test_what_one_block_of_time_says_against_a_model_is_not_sure() -> None:
+    best = np.ones((1000, 1))
+    other = best.copy()
+    other[300:350] = 20.0
+    assert errors_behind([best], [other], 10) == pytest.approx(1.0, abs=0.1)
 
 
 N = 2000

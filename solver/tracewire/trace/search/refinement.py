@@ -14,6 +14,8 @@ from tracewire.trace.search.common import least_part, uncommon
 from tracewire.trace.search.refits import few_of, target_of
 from tracewire.trace.search.search import Search
 from tracewire.trace.search.workers import RefitTask
+from tracewire.trace.thresholds import SearchOptions
+from tracewire.trace.trials.statistics import errors_behind
 from tracewire.trace.trials.trial import PlacedEffect, Trial
 
 
@@ -153,12 +155,21 @@ def _exchange_effect(
             correlation.get(str(added), 0.0),
             trial,
             delta_bic - quality,
-            delta_bic - quality < options.search.tied,
+            _is_tied(winner, trial, delta_bic - quality, options.search),
         )
         for delta_bic, trial, added in results
         if trial is not winner
     ]
     return winner, tuple(found)
+
+
+def _is_tied(best: Trial, rival: Trial, delta_bic: float, options: SearchOptions) -> bool:
+    """Whether a rival is as good: BIC puts it next to nothing behind, or it is not surely behind
+    over blocks of time, as where all that speaks against it is in one of them."""
+    if delta_bic < options.tied:
+        return True
+    one, other = best.windows.residuals, rival.windows.residuals
+    return errors_behind(one, other, options.tie_blocks) < options.tie_errors
 
 
 def _fit_few_short_windows(search: Search, best: Trial) -> Trial | None:

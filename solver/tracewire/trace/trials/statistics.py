@@ -33,6 +33,17 @@ def effective_fraction(residuals: Sequence[Vector]) -> float:
     return max(2 * float(np.arccos(rho)) / np.pi, 1e-4)
 
 
+def errors_behind(residuals: Sequence[Vector], others: Sequence[Vector], blocks: int) -> float:
+    """By how many standard errors over blocks of time the squared residuals of another model are
+    larger than those of one, on the same windows; of white noise half the root of how much larger.
+    """
+    one, other = (np.concatenate([r.ravel() for r in each]) for each in (residuals, others))
+    count = min(blocks, len(one))
+    more = np.array([part.sum() for part in np.array_split(other**2 - one**2, count)])
+    spread = float(np.std(more, ddof=1)) * count**0.5 if count > 1 else 0.0
+    return float(more.sum()) / spread if spread > 0 else float(np.inf)
+
+
 def bic(rss: float, count: int, effective_fraction: float, unknowns: int) -> float:
     """N_eff ln(RSS/N) + k ln(N): smaller is better."""
     return count * effective_fraction * float(np.log(max(rss, 1e-300) / count)) + unknowns * float(
