@@ -147,6 +147,10 @@ def test_what_declared_parameters_had_absorbed_is_told() -> None:
         "Fitted parameters had absorbed part of the missing effect: 'k' moves from 4.01 to 9 N "
         "m/rad (5 standard errors) and 'c'" in paragraph_of(far)
     )
+    assert paragraph_of(far).endswith(
+        "'k' is 2.2 times as large and 'c' is 30 times as large with what was found: is that "
+        "possible? Fix what you know better, and trace again."
+    )
 
 
 def test_a_parameter_that_went_to_zero_is_told() -> None:

@@ -258,6 +258,8 @@ class WordLimits:
     """Of a number."""
     plain: tuple[float, float] = (1e-4, 1e6)
     """Numbers between these are written without an exponent."""
+    grown: float = 2.0
+    """How many times larger a declared parameter is with an effect, to be asked for."""
     alike: float = 0.02
     """Of the excess: variables whose shares differ by less explain as much."""
     little: float = 0.5

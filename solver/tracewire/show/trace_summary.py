@@ -10,6 +10,7 @@ from tracewire.show.trace_words import (
     SENSORS,
     both_of,
     common_powers,
+    doubt_words,
     error_words,
     few_of,
     in_sigma,
@@ -309,7 +310,10 @@ def _moved(found: Found) -> str:
         return ""
     shifts = few_of([moved_words(m) for m in large])
     who = "A fitted parameter" if len(large) == 1 else "Fitted parameters"
-    return f"{who} had absorbed part of the missing effect: {shifts}."
+    doubt = doubt_words(found)
+    return f"{who} had absorbed part of the missing effect: {shifts}." + (
+        f" {doubt}." if doubt else ""
+    )
 
 
 def _dropped(found: Found) -> str:

@@ -11,6 +11,7 @@ from tracewire.show.trace_summary import explained_words, noisy_words, ties_word
 from tracewire.show.trace_words import (
     chance_words,
     common_powers,
+    doubt_words,
     error_words,
     in_sigma,
     missing_words,
@@ -44,6 +45,8 @@ def answer_lines(found: Found) -> tuple[str, ...]:
     shifts = [moved_words(m) for m in found.moved if stood_in(m) and m.name not in found.dropped]
     if shifts:
         lines.append(f"  had absorbed part of the missing effect: {', '.join(shifts)}")
+    if doubt := doubt_words(found):
+        lines.append(f"  {doubt}")
     lines += [f"  {experiment_words(found, experiment)}" for experiment in found.experiments]
     if found.verdict == "null" and found.power:
         least = ", ".join(

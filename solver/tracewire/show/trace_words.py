@@ -157,6 +157,21 @@ def stood_in(moved: ParameterChange) -> bool:
     return moved.significant and change > WORD.worth_telling * size
 
 
+def doubt_words(found: Found) -> str:
+    """What to ask of declared parameters that grow far with the effects; '' where none does."""
+    grown = [
+        f"'{m.name}' is {m.after / m.before:.2g} times as large"
+        for m in found.moved
+        if stood_in(m) and m.before and abs(m.after) > WORD.grown * abs(m.before)
+    ]
+    if not grown or not found.effects:
+        return ""
+    return (
+        f"{both_of(grown)} with what was found: is that possible? Fix what you know better, and "
+        "trace again"
+    )
+
+
 def moved_words(moved: ParameterChange) -> str:
     """How a declared parameter moved: `'c' moves from 0.3 to 0.051 N m s/rad`, and by
     how many standard errors where these are few."""
