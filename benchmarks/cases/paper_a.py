@@ -67,6 +67,6 @@ def _oracle() -> ModuleType:
 
 def measure(options: Options) -> Iterator[Result]:
     """Both tables. The error is that of the angles, in rad."""
-    for c1, preset, lsoda, own in ((120.0, "consistent", 40.0, 2.0), (1.2, "teaching", 75.0, 2.0)):
+    for c1, preset, lsoda, own in ((120.0, "consistent", 40.0, 1.6), (1.2, "teaching", 75.0, 1.6)):
         promised = {"C, same algorithm": (own, True), "scipy LSODA": (lsoda, False), **COMMON}
         yield compare(problem(c1, preset), reference(c1), options, promised)

@@ -47,6 +47,16 @@ def test_series_and_signals_add_up_each_with_its_own_mean() -> None:
     assert criterion.value(at(criterion, a=1, b=0)) == pytest.approx(by_hand)
 
 
+def test_some_segments_are_as_they_are_among_all() -> None:
+    criterion = criterion_of(LINE_MODEL, series(T), series(2 * T, "other"), series(3 * T, "third"))
+    named = {"a": 0.5, "b": 0.25}
+    asked: list[tuple[int, ...]] = [(0, 1, 2), (1,), (2,), (0, 2), (0, 1, 2)]
+    for numbers in asked:  # one after the other: what is kept of the last must not be mistaken
+        found = criterion.linearise(named, {n: {} for n in numbers}, slopes=False)
+        for n in numbers:
+            assert found[n].residual[:, 0] == pytest.approx(0.5 * T + 0.25 - (n + 1) * T, abs=1e-9)
+
+
 def test_residuals_are_in_units_of_the_noise_of_their_own_series() -> None:
     first = series(0 * T + 1, "first", sigma={"x": 0.5})
     second = series(0 * T + 1, "second", sigma={"x": 0.1})

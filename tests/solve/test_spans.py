@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -12,7 +13,15 @@ from hypothesis import strategies as st
 from solve.models import BALL, OSCILLATOR, made
 from tracewire.compile import Model
 from tracewire.errors import OptionError, SimulationError
-from tracewire.solve import Limits, Span, SpanRuns, simulate, simulate_spans
+from tracewire.solve import (
+    Integrator,
+    Limits,
+    Span,
+    SpanRuns,
+    initial_value_problem,
+    simulate,
+    simulate_spans,
+)
 
 DRIVEN = """
 span: [0, 10]
@@ -91,6 +100,35 @@ def test_a_run_alone_in_between_changes_nothing() -> None:
     simulate(DRIVEN_MODEL, inputs=INPUTS, sensitivities=["k"])
     together = simulate_spans(DRIVEN_MODEL, spans, inputs=INPUTS, sensitivities=["k"])
     check(DRIVEN_MODEL, spans, together, inputs=INPUTS, sensitivities=["k"])
+
+
+def test_runs_in_used_arrays_are_as_the_first_and_leave_these_alone() -> None:
+    model, asked = made(LAGGED), ["tau"]
+    one = [Span(float(T[a]), float(T[a + 80]), T[a : a + 81], {"x": 1.0}) for a in (0, 80)]
+    two = [replace(span, start={"memory": 0.5}, follows=a > 0) for a, span in enumerate(one)]
+    ways = [one, two, [replace(span, start={}) for span in two]]
+    alone = [simulate_spans(made(LAGGED), spans, sensitivities=asked) for spans in ways]
+    found = [simulate_spans(model, spans, sensitivities=asked) for spans in (*ways, *ways)]
+    for runs, first in zip(found, [*alone, *alone], strict=True):
+        assert np.array_equal(runs["memory"], first["memory"])
+        assert np.array_equal(runs.sensitivities.array, first.sensitivities.array)
+        assert np.array_equal(runs.final, first.final)
+        assert np.array_equal(runs.final_slopes, first.final_slopes)
+        assert np.array_equal(runs.steps, first.steps)
+
+
+def test_a_run_without_samples_is_as_ever_after_spans() -> None:
+    def end() -> float:
+        problem = initial_value_problem(model, sampled=False, span=(0.0, 5.0), inputs=INPUTS)
+        integrator = Integrator(problem)
+        integrator.go_to()
+        assert integrator.run.t.size == 0
+        return float(integrator.x[0])
+
+    model = made(DRIVEN)
+    before = end()
+    simulate_spans(model, cut([0.0, 5.0, 10.0], [{}, {"x": 0.1, "v": 0.0}]), inputs=INPUTS)
+    assert end() == before
 
 
 def test_what_a_run_warns_of_its_span_warns_of() -> None:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from tracewire.compile import Model
 from tracewire.errors import DataError, OptionError, Problem, SimulationError, unknown
 from tracewire.residual.limits import CRITERION
-from tracewire.residual.linearisation import BatchLinearisation, Linearisation, SegmentBatch
+from tracewire.residual.linearisation import BatchLinearisation, Linearisation, Point, SegmentBatch
 from tracewire.residual.loss import LOSSES
 from tracewire.residual.segment import Segment, Unknown
 from tracewire.solve import Halt, Interrupted, Limits, beyond_budget, cores, until_interrupted
@@ -25,6 +25,7 @@ from tracewire.solve import Halt, Interrupted, Limits, beyond_budget, cores, unt
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 Weighting = Literal["mean", "sum"]
+Numbers = tuple[int, ...]
 LIMITS = Limits(steps=500_000, seconds=120.0)
 
 
@@ -87,6 +88,7 @@ class Criterion:
         )
         self._samples = [segment.samples() for segment in self.segments]
         self._weights: dict[int, Vector] = {}
+        self._batches: dict[int, tuple[Numbers, tuple[bool, ...], SegmentBatch]] = {}
         self._following = (
             {n for n, pair in enumerate(pairwise(segments), 1) if pair[1].continues(pair[0])}
             if chained
@@ -249,24 +251,26 @@ class Criterion:
 
         Without `slopes` from a plain run; one that fails counts as far away.
         """
-        rows = sum(len(self.segments[n].rows) for n in starts)  # about as many steps, at first
-        many = (len(starts) * self.steps / self.runs if self.runs else rows) > CRITERION.many
+        if self.runs:
+            steps = len(starts) * self.steps / self.runs
+        else:  # about as many as samples
+            steps = sum(len(self.segments[n].rows) for n in starts)
+        many = steps > CRITERION.many
         groups = self._groups(sorted(starts), halves=many and not self.remembers)
         with _interruptible() as halt:
 
-            def linearise_group(numbers: Sequence[int]) -> BatchLinearisation:
+            def linearise_group(group: int, numbers: Sequence[int]) -> BatchLinearisation:
                 if self.steps > self.budget:  # nothing more is run, and nothing counted
                     beyond = dict.fromkeys(range(len(numbers)), beyond_budget(self.budget))
                     return BatchLinearisation({}, beyond, 0, frozenset())
-                segments = [self.segments[n] for n in numbers]
-                follows = [self.follows(n) and n - 1 in starts for n in numbers]
-                batch = self._batch(segments, named, [starts[n] for n in numbers], follows)
-                samples = np.concatenate([self._samples[n] for n in numbers])
-                sigma = self.sigma[segments[0].measured.name]
-                return batch.linearise(samples, sigma, [*named] if slopes else None, halt)
+                follows = tuple(self.follows(n) and n - 1 in starts for n in numbers)
+                batch = self._batch(group, tuple(numbers), follows)
+                point = self._point(named, [starts[n] for n in numbers])
+                sigma = self.sigma[batch.segments[0].measured.name]
+                return batch.linearise(point, sigma, [*named] if slopes else None, halt)
 
             apart = _threads().map if many and cores() > 1 else map
-            done = list(apart(linearise_group, groups))
+            done = list(apart(linearise_group, range(len(groups)), groups))
         found: dict[int, Linearisation] = {}
         for numbers, group in zip(groups, done, strict=True):
             self.runs += len(numbers)
@@ -296,17 +300,20 @@ class Criterion:
         parts = [part for group, at in middles for part in (group[:at], group[at:])]
         return [part for part in parts if part]
 
-    def _batch(
-        self,
-        segments: Sequence[Segment],
-        named: Mapping[str, float],
-        starts: Sequence[Mapping[str, float]],
-        follows: Sequence[bool],
-    ) -> SegmentBatch:
-        values, left = {**self.parameters, **named}, self.budget - self.steps
-        return SegmentBatch(
-            self.model, segments, values, starts, follows, self.rtol, self.limits, left
-        )
+    def _batch(self, group: int, numbers: Numbers, follows: tuple[bool, ...]) -> SegmentBatch:
+        """A group of segments; that of the last time, where it is of the same ones."""
+        kept = self._batches.get(group)
+        if kept is not None and kept[:2] == (numbers, follows):
+            return kept[2]
+        batch = self._new_batch([self.segments[n] for n in numbers], follows)
+        self._batches[group] = numbers, follows, batch
+        return batch
+
+    def _new_batch(self, segments: Sequence[Segment], follows: Sequence[bool]) -> SegmentBatch:
+        return SegmentBatch(self.model, segments, follows, self.rtol, self.limits)
+
+    def _point(self, named: Mapping[str, float], starts: Sequence[Mapping[str, float]]) -> Point:
+        return Point({**self.parameters, **named}, starts, self.budget - self.steps)
 
     def outputs(
         self, segment: Segment, named: Mapping[str, float], start: Mapping[str, float]
@@ -317,7 +324,8 @@ class Criterion:
         stop.
         """
         with _interruptible() as halt:
-            runs, observation = self._batch([segment], named, [start], [False]).simulate(halt)
+            batch = self._new_batch([segment], [False])
+            runs, observation = batch.simulate(self._point(named, [start]), halt)
         for error in runs.errors.values():
             raise error
         return observation.observe(runs)

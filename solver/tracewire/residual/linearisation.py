@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +16,13 @@ from tracewire.errors import Problem, SimulationError
 from tracewire.residual.limits import WINDOW
 from tracewire.residual.measured import Measured
 from tracewire.residual.observation import ObservationModel
-from tracewire.residual.segment import Segment, absolute_tolerances, of_diagram, parameter_in
+from tracewire.residual.segment import (
+    SENSED,
+    Segment,
+    absolute_tolerances,
+    of_diagram,
+    parameter_in,
+)
 from tracewire.solve import Halt, Interrupted, Limits, Span, SpanRuns, simulate_spans
 
 Vector = NDArray[np.float64]
@@ -77,69 +85,90 @@ class BatchLinearisation:
     warnings: frozenset[str]
 
 
+class Point(NamedTuple):
+    """Where segments are run: the `values` of unknowns and fixed parameters by name, the free
+    `starts` of each segment, and the `budget` of steps of all runs."""
+
+    values: Mapping[str, float]
+    starts: Sequence[Mapping[str, float]]
+    budget: float
+
+
 @dataclass(frozen=True, eq=False)
 class SegmentBatch:
-    """Segments of one series to run together, with the `values` of unknowns and fixed parameters
-    by name and the free `starts` of each segment.
+    """Segments of one series that run together, at any values of unknowns.
 
     One that `follows` goes on with states that are not free where the one before has ended.
     """
 
     model: Model
     segments: Sequence[Segment]
-    values: Mapping[str, float]
-    starts: Sequence[Mapping[str, float]]
     follows: Sequence[bool]
     rtol: float
     limits: Limits
-    budget: float
+
+    @cached_property
+    def samples(self) -> Matrix:
+        """What was measured in the segments, one behind the other: (N, signals)."""
+        return np.concatenate([segment.samples() for segment in self.segments])
+
+    @cached_property
+    def _declared(self) -> ObservationModel:
+        """The sensors as they are where none of their terms is unknown."""
+        return ObservationModel(self.segments, {})
+
+    def _observation(self, values: Mapping[str, float], rates: bool) -> ObservationModel:
+        """The sensors with the values of unknowns."""
+        if rates or any(name.startswith(SENSED) for name in values):
+            return ObservationModel(self.segments, values, rates=rates)
+        return self._declared
 
     def simulate(
-        self, halt: Halt, asked: Sequence[str] | None = None, rates: bool = False
+        self, point: Point, halt: Halt, asked: Sequence[str] | None = None, rates: bool = False
     ) -> tuple[SpanRuns, ObservationModel]:
         """The runs, with the sensitivities that are `asked` for, and the sensors that look at them;
         `rates` of signals are for the derivatives by a delay. Raises Interrupted."""
         measured = self.segments[0].measured
-        observation = ObservationModel(self.segments, self.values, rates=rates)
+        observation = self._observation(point.values, rates)
         atol = None if asked is None else absolute_tolerances(self.model, measured, self.rtol)
         spans = [
             Span(begin, end, times, start if after else {**segment.start, **start}, after)
             for segment, begin, end, times, start, after in zip(
-                self.segments, observation.begins, observation.ends, observation.times, self.starts,
-                self.follows, strict=True,
+                self.segments, observation.begins, observation.ends, observation.times,
+                point.starts, self.follows, strict=True,
             )
         ]  # fmt: skip
         runs = simulate_spans(
             self.model,
             spans,
-            parameters=of_diagram(self.values, measured),
+            parameters=of_diagram(point.values, measured),
             rtol=self.rtol,
             atol=atol,
             preset=measured.preset,
             inputs=measured.inputs,
             past=measured.past,
             limits=self.limits,
-            budget=self.budget,
+            budget=point.budget,
             sensitivities=asked or (),
             halt=halt,
         )
         return runs, observation
 
     def linearise(
-        self, samples: Matrix, sigma: Vector, moving: Sequence[str] | None, halt: Halt
+        self, point: Point, sigma: Vector, moving: Sequence[str] | None, halt: Halt
     ) -> BatchLinearisation:
-        """The residuals of the segments' `samples` (N, signals) with the noise `sigma` (signals,),
-        and their derivatives by the unknowns `moving` and the free starts; None: without these."""
+        """The residuals of the segments with the noise `sigma` (signals,), and their derivatives by
+        the unknowns `moving` and the free starts; None: without these."""
         measured = self.segments[0].measured
         if moving is None:
             answers, asked = dict[str, str](), None
         else:
             answers = {name: parameter_in(name, measured) for name in moving}
-            answers |= {f"start.{name}": f"start.{name}" for one in self.starts for name in one}
+            answers |= {f"start.{name}": f"start.{name}" for one in point.starts for name in one}
             asked = [name for name in answers.values() if name]
         rates = any(name.startswith("delay.") for name in answers)
         try:
-            runs, observation = self.simulate(halt, asked, rates)
+            runs, observation = self.simulate(point, halt, asked, rates)
         except Interrupted:
             raise
         except SimulationError as error:  # values that the diagram does not allow: nothing runs
@@ -148,25 +177,25 @@ class SegmentBatch:
             return BatchLinearisation({}, errors, 0, frozenset())
         with np.errstate(over="ignore", invalid="ignore"):  # what overflows is not usable
             shown = observation.observe(runs)
-            slopes = observation.derivatives(runs, answers) / sigma[:, None]
-            residual = subtract_measured(measured, samples, shown) / sigma
-        rows = np.cumsum([0, *(len(segment.rows) for segment in self.segments)])
+            slopes = observation.derivatives(runs, answers)
+            slopes /= sigma[:, None]
+            residual = subtract_measured(measured, self.samples, shown)
+            residual /= sigma
+        rows = [*accumulate((len(segment.rows) for segment in self.segments), initial=0)]
         near, errors = dict[int, Linearisation](), dict(runs.errors)
         columns = {name: column for column, name in enumerate(answers)}
         moved = [column for column, name in enumerate(answers.values()) if name]
-        for number, (segment, start) in enumerate(zip(self.segments, self.starts, strict=True)):
-            mine = slice(int(rows[number]), int(rows[number + 1]))
+        for number, (segment, start) in enumerate(zip(self.segments, point.starts, strict=True)):
+            mine = slice(rows[number], rows[number + 1])
             if number in errors:
                 continue
-            # squares of what is larger would be no numbers
-            if not all(
-                (np.abs(some) < WINDOW.largest).all() for some in (shown[mine], slopes[mine])
-            ):
+            if not (_is_usable(shown[mine]) and _is_usable(slopes[mine])):
                 errors[number] = _huge(measured.name, shown[mine])
                 continue
             own = slopes[mine].reshape(residual[mine].size, len(answers))
             ends = np.zeros((len(self.model.states), len(answers)))
-            ends[:, moved] = runs.final_slopes[number]
+            if moved:
+                ends[:, moved] = runs.final_slopes[number]
             wanted = () if moving is None else (*moving, *(f"start.{name}" for name in start))
             kept = [columns[name] for name in wanted]
             if kept != [*columns.values()]:
@@ -179,6 +208,11 @@ class SegmentBatch:
         return BatchLinearisation(near, errors, steps, warnings)
 
 
+def _is_usable(values: Vector) -> bool:
+    """Whether they are numbers whose squares are some, too."""
+    return not values.size or bool(-WINDOW.largest < values.min() and values.max() < WINDOW.largest)
+
+
 def _huge(series: str, shown: Vector) -> SimulationError:
     largest = float(np.max(np.abs(shown)))
     what = f"the series '{series}' is simulated as large as {largest:.3g}"
@@ -187,10 +221,10 @@ def _huge(series: str, shown: Vector) -> SimulationError:
 
 def subtract_measured(measured: Measured, samples: Vector, shown: Vector) -> Vector:
     """What sensors show without what was measured, (N, signals): the shortest way around."""
-    columns = zip(measured.values, (shown - samples).T, strict=True)
-    return np.stack(
-        [wrap_to_period(x, measured.periods.get(name, 0.0)) for name, x in columns], axis=1
-    )
+    off = shown - samples
+    for column, name in enumerate(measured.values if measured.periods else ()):
+        off[:, column] = wrap_to_period(off[:, column], measured.periods.get(name, 0.0))
+    return off
 
 
 def wrap_to_period(off: Vector, period: float) -> Vector:

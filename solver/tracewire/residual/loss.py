@@ -22,7 +22,7 @@ class Lossy(NamedTuple):
 
 def linear(r: Array) -> Lossy:
     """rho = r^2: least squares."""
-    return Lossy(r, np.ones_like(r))
+    return Lossy(r, np.ones(r.shape))
 
 
 def huber(r: Array) -> Lossy:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -72,11 +73,11 @@ class ObservationModel:
 
     def observe(self, run: SpanRuns) -> Vector:
         """What the sensors show, shape (N, signals)."""
-        columns = [
-            sensor.observe(run[signal][at], self.since)
-            for signal, sensor, at in zip(self.signals, self.sensors, self.at, strict=False)
-        ]
-        return np.stack(columns, axis=1)
+        shown = np.empty((len(self.since), len(self.signals)))
+        columns = zip(self.signals, self.sensors, self.at, strict=False)
+        for number, (signal, sensor, at) in enumerate(columns):
+            shown[:, number] = sensor.observe(run[signal][at], self.since)
+        return shown
 
     def derivatives(self, run: SpanRuns, unknowns: Mapping[str, str]) -> Cube:
         """d shown/d unknowns, shape (N, signals, unknowns).
@@ -122,6 +123,14 @@ class ObservationModel:
 
 def _sensor(segment: Segment, signal: str, named: Mapping[str, float]) -> Sensor:
     own = segment.measured.sensor(signal)
-    names = {kind: f"{kind}.{signal}" for kind in SENSOR_TERMS}
-    changed: dict[str, Any] = {k: named[name] for k, name in names.items() if name in named}
-    return replace(own, **changed) if changed else own
+    names = _terms_of(signal)
+    if named.keys().isdisjoint(names):
+        return own
+    changed: dict[str, Any] = {k: named[name] for name, k in names.items() if name in named}
+    return replace(own, **changed)
+
+
+@cache
+def _terms_of(signal: str) -> dict[str, str]:
+    """The terms of the sensor of a signal, by the names of their unknowns."""
+    return {f"{term}.{signal}": term for term in SENSOR_TERMS}

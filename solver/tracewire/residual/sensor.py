@@ -33,7 +33,9 @@ class Sensor:
 
     def observe(self, delayed: Vector, since: Vector) -> Vector:
         """What the sensor shows (N,) of a signal y(t - delay), at the times t - t0."""
-        return (self.gain + self.quad * delayed) * delayed + self.offset + self.drift * since
+        gain = self.gain + self.quad * delayed if self.quad else self.gain
+        shown = gain * delayed + self.offset
+        return shown + self.drift * since if self.drift else shown
 
     def signal(self, shown: Vector, since: Vector) -> Vector:
         """y(t - delay), (N,), of what the sensor shows at the times t - t0.

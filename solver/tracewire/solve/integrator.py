@@ -211,7 +211,9 @@ class Integrator:
         said = []
         if progress.ints[WARNINGS] & NOT_UNIQUE:
             said.append(f"the start at t = {t:g} s is not unique: two modes fit it")
-        for reset in np.flatnonzero(progress.overlooked).tolist():
+        for reset, overlooked in enumerate(progress.overlooked.tolist()):
+            if not overlooked:
+                continue
             name = self.model.lowered.resets[reset].name
             said.append(
                 f"the start at t = {t:g} s lies on the guard of {name}, which does not fire there"
@@ -237,7 +239,7 @@ class Integrator:
     def run_at(self, t: Vector, samples: Matrix) -> Run:
         """The run with these sample times (N,) and samples (N, signals)."""
         problem, model, names = self.problem, self.model, self.model.states
-        sensitivity, log = self.arrays.sensitivity, self.log.copy()
+        answers, log = self.arrays.sensitivity.samples[: len(t)], self.log.copy()
         units = model.flat.units
         return Run(
             title=model.flat.title,
@@ -252,7 +254,7 @@ class Integrator:
             warnings=self.warnings,
             shown=model.flat.shown,
             model=model,
-            sensitivities=recorded(model, sensitivity, problem.sensitivities, len(t)),
+            sensitivities=recorded(model, answers, problem.sensitivities),
         )
 
     def give_back(self) -> None:

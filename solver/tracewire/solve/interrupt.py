@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -36,27 +35,33 @@ class Halt:
     asked: bool = False
 
 
-@contextmanager
-def until_interrupted() -> Iterator[Halt]:
+def until_interrupted() -> AbstractContextManager[Halt]:
     """Note Ctrl-C instead of raising it; the second one is a KeyboardInterrupt as ever.
 
     An exception that may come between any two lines could lose events, and inside of a callback it
     would be lost itself. A program that handles the signal in its own way keeps that.
     """
-    halt = Halt()
-    usual = signal.default_int_handler
-    main = threading.current_thread() is threading.main_thread()
-    if not main or signal.getsignal(signal.SIGINT) is not usual:
-        yield halt
-        return
+    return _Noted()
 
-    def note(number: int, frame: object) -> None:
-        if halt.asked:
+
+class _Noted:
+    """What `until_interrupted` gives; a generator would take as long as the rest of it."""
+
+    def __init__(self) -> None:
+        self.halt, self.noted = Halt(), False
+
+    def __enter__(self) -> Halt:
+        main = threading.current_thread() is threading.main_thread()
+        if main and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            self.noted = True
+            signal.signal(signal.SIGINT, self._note)
+        return self.halt
+
+    def __exit__(self, *_: object) -> None:
+        if self.noted:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
+
+    def _note(self, number: int, frame: object) -> None:
+        if self.halt.asked:
             raise KeyboardInterrupt
-        halt.asked = True
-
-    signal.signal(signal.SIGINT, note)
-    try:
-        yield halt
-    finally:
-        signal.signal(signal.SIGINT, usual)
+        self.halt.asked = True

@@ -55,7 +55,7 @@ class PauseLimits:
 
     seconds: float = 0.1
     """Between two pauses of a run, about."""
-    first_work: int = 20_000
+    first_work: int = 200_000
     """Signals times steps before the first one."""
     growth: int = 8
     """How many times more steps are taken before the next one, at most."""

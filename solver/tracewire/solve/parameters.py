@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, SimulationError, unknown
@@ -17,7 +17,8 @@ Given = tuple[str, tuple[str, ...]]
 
 @once_per_model
 def _known_values(model: Model) -> dict[Given, tuple[dict[str, float], list[str]]]:
-    """The values that follow from nothing that is given, and the names of those that do."""
+    """The values that follow from nothing that is given, the others as they were once, and the
+    names of those that follow from it."""
     return {}
 
 
@@ -41,14 +42,8 @@ def parameter_values(
         return met[preset].copy()
     if preset and preset not in flat.presets:
         raise OptionError([unknown("preset", preset, flat.presets)])
-    problems = [unknown("parameter", n, flat.parameters) for n in given if n not in flat.parameters]
-    problems += [
-        Problem(f"the parameter '{name}' is given as {value}, which is not a finite number")
-        for name, value in given.items()
-        if not math.isfinite(value)
-    ]
-    if problems:
-        raise OptionError(problems)
+    if not (given.keys() <= flat.parameters.keys() and all(map(math.isfinite, given.values()))):
+        raise OptionError([*_refused(model, given)])
     values = {name: float(value) for name, value in given.items()}
     kept, key = _known_values(model), (preset, tuple(values))
     known = kept.get(key)
@@ -60,21 +55,29 @@ def parameter_values(
             values[name] = evaluate(formula, values, flat.parameters[name].place)
             if any(read in given or read in following for read in names_of(formula)):
                 following.append(name)
-        changing = {*given, *following}
-        same = {name: value for name, value in values.items() if name not in changing}
+        values = {name: values[name] for name in flat.parameters}
         if len(kept) < MEMORY.given:
-            kept[key] = same, following
+            kept[key] = values.copy(), following
     else:
-        same, following = known
-        values |= same
+        before, following = known
+        values = {**before, **values}
         formulas = model.parameter_formulas(preset)
         for name in following:
             values[name] = evaluate(formulas[name], values, flat.parameters[name].place)
     refuse_unmet(model, values)
-    values = {name: values[name] for name in flat.parameters}
     if not given:
         met[preset] = values.copy()
     return values
+
+
+def _refused(model: Model, given: Mapping[str, float]) -> Iterator[Problem]:
+    """What is wrong with given values: names that do not exist, and numbers that are not finite."""
+    known = model.flat.parameters
+    yield from (unknown("parameter", name, known) for name in given if name not in known)
+    for name, value in given.items():
+        if not math.isfinite(value):
+            what = f"the parameter '{name}' is given as {value}, which is not a finite number"
+            yield Problem(what)
 
 
 def refuse_unmet(model: Model, values: Mapping[str, float]) -> None:

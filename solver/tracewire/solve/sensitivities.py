@@ -239,13 +239,10 @@ def _read_by(model: Model, function: str, n: int, a: int) -> NDArray[np.int64]:
     return found
 
 
-def recorded(
-    model: Model, sensitivity: Sensitivity, asked: tuple[str, ...], samples: int
-) -> Sensitivities:
-    """d signal/d name at the first samples."""
-    rows = np.array(sensitivity.samples[:samples].T, order="C")
-    shape = len(asked), len(model.recorded), samples
-    return Sensitivities(asked, model.recorded, rows.reshape(shape))
+def recorded(model: Model, samples: Matrix, asked: tuple[str, ...]) -> Sensitivities:
+    """d signal/d name at samples, as the core has them: (N, signals*names)."""
+    shape = len(asked), len(model.recorded), len(samples)
+    return Sensitivities(asked, model.recorded, samples.T.copy().reshape(shape))
 
 
 def undefined(model: Model, sensitivity: Sensitivity) -> Iterator[str]:

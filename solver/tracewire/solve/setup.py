@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ from tracewire.solve.core.arrays import (
     Flow,
     Plan,
     Progress,
+    Spans,
     Trial,
     Watch,
 )
@@ -39,9 +40,15 @@ from tracewire.solve.once_per_model import once_per_model
 from tracewire.solve.sensitivities import new_sensitivity
 
 Vector = NDArray[np.float64]
-UNREAD: Vector = np.zeros(1)  # an argument that a function of the model does not read
 ADDRESSED = ctypes.c_char * 0
 
+
+def _place(array: Vector) -> Any:
+    """An array as a function of C takes it: by far the fastest way to its address."""
+    return ADDRESSED.from_buffer(array.data)
+
+
+UNREAD = _place(np.zeros(1))  # an argument that a function of the model does not read
 
 Records = Literal["signals", "states", "both"]
 """What a sample has: the recorded signals, the states, or the states behind the signals."""
@@ -108,7 +115,8 @@ def constants_of(model: Model, values: Mapping[str, float], past: Past) -> Vecto
     """What a model computes from its parameters alone, and where the past of delayed signals is."""
     parameters = np.array([*values.values(), 0.0])  # never empty
     constants = np.zeros(max(1, model.sizes.constants))
-    _call(model.address("prepare"), parameters, UNREAD, UNREAD, UNREAD, constants)
+    data = _place(parameters), UNREAD, UNREAD, UNREAD, _place(constants)
+    _function_at(model.address("prepare"))(0.0, *data)
     if model.lowered.delays:
         first = len(model.parameters)
         constants[first : first + OF_THE_PAST] = 0.0, past.address, past.begin
@@ -120,7 +128,8 @@ def start_of(model: Model, constants: Vector, tables: Vector, given: Mapping[str
     names = model.states
     problems = [unknown("state", name, names) for name in given if name not in names]
     x = np.zeros(len(names))
-    _call(model.address("starts"), UNREAD, default_modes(model), constants, tables, x)
+    data = UNREAD, _place_of_modes(model), _place(constants), _place(tables), _place(x)
+    _function_at(model.address("starts"))(0.0, *data)
     for n, name in enumerate(names if given else ()):
         if name in given:
             x[n] = given[name]
@@ -131,11 +140,10 @@ def start_of(model: Model, constants: Vector, tables: Vector, given: Mapping[str
     return x
 
 
-def _call(address: int, x: Vector, m: Vector, c: Vector, k: Vector, out: Vector) -> None:
-    """Call the function of a model at an address, at t = 0."""
-    # by far the fastest way from an array to its address
-    data = [ADDRESSED.from_buffer(array.data) for array in (x, m, c, k, out)]
-    _function_at(address)(0.0, *data)
+@once_per_model
+def _place_of_modes(model: Model) -> Any:
+    """Where the default modes are."""
+    return _place(default_modes(model))
 
 
 @lru_cache(maxsize=MEMORY.functions)
@@ -247,3 +255,35 @@ def new_arrays(model: Model, kind: Kind) -> Arrays:
     )
     history = new_history(model, sensitivity)
     return Arrays(flow, plan, progress, trial, watch, crossings, sensitivity, history)
+
+
+def new_spans(arrays: Arrays, count: int, samples: int, block: Vector, first: Vector) -> Spans:
+    """The arrays of runs over `count` spans with so many samples in all; they are still to be set.
+
+    `arrays` are those of one run, `block` and `first` as `Spans` has them.
+    """
+    n, q = arrays.sensitivity.s.shape
+    columns = len(arrays.plan.direct)
+
+    def ints(size: int) -> NDArray[np.int64]:
+        return np.zeros(size, dtype=np.int64)
+
+    return Spans(
+        at=ints(5),
+        ends=np.zeros((count, 2)),
+        rows=ints(count + 1),
+        x=np.zeros((count, n)),
+        s=np.zeros((count, n * q)),
+        floor=np.zeros((n, q)),
+        follows=ints(count),
+        kept=ints(n),
+        lasting=ints(q),
+        times=np.zeros(samples),
+        samples=np.zeros((samples, columns)),
+        answers=np.zeros((samples, columns * q)),
+        final=np.zeros((count, n)),
+        final_s=np.zeros((count, n * q)),
+        steps=ints(count),
+        block=block,
+        first=first,
+    )

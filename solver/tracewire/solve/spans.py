@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, SimulationError, unknown
-from tracewire.solve.core.arrays import Spans, table_of
+from tracewire.solve.core.arrays import Arrays, Spans
 from tracewire.solve.core.codes import BUDGET, FINISHED, HISTORY_FULL, LOG_FULL, PAUSED
 from tracewire.solve.core.spans import INSIDE, LEFT, SPAN
 from tracewire.solve.core_library import library
@@ -28,7 +29,7 @@ from tracewire.solve.problem import InitialValueProblem, initial_value_problem
 from tracewire.solve.run import Sensitivities
 from tracewire.solve.sensitivities import recorded
 from tracewire.solve.simulate import refuse_nan
-from tracewire.solve.workspace import Workspace, least_peak
+from tracewire.solve.workspace import least_peak
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -114,22 +115,20 @@ def simulate_spans(
     space = integrator.workspace
     integrator.progress.ints[BUDGET] = min(problem.limits.steps, PAUSE.steps)
     space.keep()
-    many = _spans(problem, space, spans)
-    many.floor[:] = least_peak(space.arrays, problem)
+    many = space.for_spans(len(spans), sum(len(span.times) for span in spans))
+    _set_to(many, problem, space.arrays, spans)
     own_places = space.table.copy()
     errors, warnings = _executed(integrator, many, budget, halt or Halt())
     space.table[:] = own_places  # the core has set those of samples to what is in `many`
     errors |= _undefined(model, many, errors)
-    answers, asked = space.arrays.sensitivity._replace(samples=many.answers), problem.sensitivities
+    slopes = many.final_s.reshape(*many.final.shape, many.floor.shape[1])
     runs = SpanRuns(
         signals=dict(zip(model.recorded, many.samples.T.copy(), strict=True)),
-        sensitivities=recorded(model, answers, asked, len(many.times)),
-        rows=many.rows,
-        final=many.final,
-        final_slopes=many.final_s.reshape(*many.final.shape, many.floor.shape[1])[
-            :, :, : len(asked)
-        ],
-        steps=many.steps,
+        sensitivities=recorded(model, many.answers, problem.sensitivities),
+        rows=many.rows.copy(),
+        final=many.final.copy(),
+        final_slopes=slopes.copy(),
+        steps=many.steps.copy(),
         errors=errors,
         warnings=warnings,
     )
@@ -137,51 +136,47 @@ def simulate_spans(
     return runs
 
 
-def _spans(problem: InitialValueProblem, space: Workspace, spans: Sequence[Span]) -> Spans:
-    """The spans as the core takes them. Raises OptionError for starts that do not fit."""
-    model, base, asked = problem.model, space.arrays.sensitivity, problem.sensitivities
-    count, (n, q), position = len(spans), base.s.shape, {x: i for i, x in enumerate(model.states)}
-    x = np.tile(problem.start, (count, 1))
+def _set_to(many: Spans, problem: InitialValueProblem, base: Arrays, spans: Sequence[Span]) -> None:
+    """Let the arrays for spans be those of these: what a run of each begins with, and that nothing
+    has come of it yet. Raises OptionError for starts that do not fit."""
+    states, asked = problem.model.states, problem.sensitivities
+    count, (n, q) = len(spans), many.floor.shape
     given = np.zeros((count, n), dtype=bool)
+    many.x[:] = problem.start
     for number, span in enumerate(spans):
         for name, value in span.start.items():
-            if name not in position:
-                raise OptionError([unknown("state", name, model.states)])
-            x[number, position[name]] = value
-            given[number, position[name]] = True
-    if not np.isfinite(x).all():
-        number, state = np.argwhere(~np.isfinite(x))[0].tolist()
-        what = f"the start of '{model.states[state]}' is {x[number, state]}"
+            if name not in states:
+                raise OptionError([unknown("state", name, states)])
+            state = states.index(name)
+            many.x[number, state] = value
+            given[number, state] = True
+    if not np.isfinite(many.x).all():
+        number, state = np.argwhere(~np.isfinite(many.x))[0].tolist()
+        what = f"the start of '{states[state]}' is {many.x[number, state]}"
         raise OptionError([Problem(what)])
-    follows = np.array([span.follows for span in spans])
-    follows[0] = False
-    kept = np.empty(0, dtype=np.intp)  # states that go on from span to span
-    if follows.any():
-        kept = np.flatnonzero(~given[follows].any(axis=0))
-        given[np.ix_(follows, kept)] = True
-    is_start = np.array([name.startswith(START) for name in asked], dtype=bool)
-    set_here = given[:, :, None] & ~is_start  # what is set follows no parameter
-    rows = np.cumsum([0, *(len(span.times) for span in spans)])
-    total = int(rows[-1])
-    return Spans(
-        at=np.array([0, 0, 0, problem.limits.events, 0], dtype=np.int64),
-        ends=np.array([(span.begin, span.end) for span in spans], dtype=float),
-        rows=rows.astype(np.int64),
-        x=x,
-        s=np.where(set_here, 0.0, base.s).reshape(count, n * q),
-        floor=np.zeros((n, q)),
-        follows=follows.astype(np.int64),
-        kept=kept.astype(np.int64),
-        lasting=(~is_start).astype(np.int64),
-        times=np.concatenate([span.times for span in spans]),
-        samples=np.full((total, len(model.recorded)), np.nan),
-        answers=np.zeros((total, len(model.recorded) * q)),
-        final=np.full((count, n), np.nan),
-        final_s=np.zeros((count, n * q)),
-        steps=np.zeros(count, dtype=np.int64),
-        block=space.block,
-        first=space.first,
-    )
+    many.at[:] = 0, 0, 0, problem.limits.events, 0
+    many.ends[:] = [(span.begin, span.end) for span in spans]
+    many.rows[:] = [*accumulate((len(span.times) for span in spans), initial=0)]
+    np.concatenate([span.times for span in spans], out=many.times)
+    many.follows[:] = [n > 0 and span.follows for n, span in enumerate(spans)]
+    follows = many.follows.astype(bool)
+    if any(span.follows for span in spans[1:]):
+        many.kept[:] = ~given[follows].any(axis=0)  # states that go on from span to span
+        given |= follows[:, None] & many.kept.astype(bool)
+    if q:
+        is_start = np.array([name.startswith(START) for name in asked])
+        many.lasting[:] = ~is_start
+        set_here = given[:, :, None] & ~is_start  # what is set follows no parameter
+        many.s[:] = np.where(set_here, 0.0, base.sensitivity.s).reshape(count, n * q)
+        many.floor[:] = least_peak(base, problem)
+    for array, nothing in (
+        (many.samples, np.nan),
+        (many.answers, 0.0),
+        (many.final, np.nan),
+        (many.final_s, 0.0),
+        (many.steps, 0),
+    ):
+        array.fill(nothing)
 
 
 def _executed(
@@ -191,8 +186,7 @@ def _executed(
     errors: dict[int, SimulationError] = {}
     warnings: dict[int, tuple[str, ...]] = {}
     code, at = library(), many.at
-    table = table_of([many])
-    addresses = integrator.workspace.address, table.__array_interface__["data"][0]
+    addresses = integrator.workspace.address, integrator.workspace.address_of_spans
     limits = integrator.problem.limits
     while at[SPAN] < len(many.ends):
         if halt.asked:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
-from tracewire.solve.core.arrays import Arrays, table_of
+from tracewire.solve.core.arrays import Arrays, Spans, table_of
 from tracewire.solve.core.codes import ABSOLUTE, END, FIXED, LENGTH, LONGEST, METHOD, RTOL, H, T
 from tracewire.solve.core.flow import FUNCTIONS
 from tracewire.solve.core.memory import invoke
@@ -19,7 +19,7 @@ from tracewire.solve.limits import MEMORY
 from tracewire.solve.once_per_model import once_per_model
 from tracewire.solve.options import START
 from tracewire.solve.problem import InitialValueProblem
-from tracewire.solve.setup import Kind, Records, new_arrays
+from tracewire.solve.setup import Kind, Records, new_arrays, new_spans
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -32,7 +32,7 @@ ONLY_WRITTEN = (
 
 
 class Workspace:
-    """The arrays of one run, and their table for the core.
+    """The arrays of one run, and their table for the core; those of runs over spans, if it had any.
 
     `block` is the memory of all that a run changes, `first` what was there before.
     """
@@ -42,6 +42,11 @@ class Workspace:
         self.arrays, self.block = _in_one_block(arrays)
         self.table, self.first = table_of(self.arrays), self.block.copy()
         self.address: int = self.table.__array_interface__["data"][0]
+        self.spans: Spans | None = None
+        self._table_of_spans = np.empty(0, dtype=np.int64)
+        progress, sensitivity = self.arrays.progress, self.arrays.sensitivity
+        self.size = progress.samples.size + sensitivity.samples.size + kind.tables
+        """The numbers in its samples and tables."""
 
     def renew(self) -> None:
         """Let the arrays be as they were before their run."""
@@ -50,6 +55,21 @@ class Workspace:
     def keep(self) -> None:
         """Let them be before each further run as they are now."""
         self.first[:] = self.block
+
+    def for_spans(self, count: int, samples: int) -> Spans:
+        """The arrays for so many spans with so many samples in all; each of them is to be set."""
+        spans = self.spans
+        if spans is None or (len(spans.ends), len(spans.times)) != (count, samples):
+            spans = self.spans = new_spans(self.arrays, count, samples, self.block, self.first)
+            self._table_of_spans = table_of([spans])
+            self.size = spans.samples.size + spans.answers.size + self.kind.tables
+        return spans
+
+    @property
+    def address_of_spans(self) -> int:
+        """That of the table of what `for_spans` has given."""
+        address: int = self._table_of_spans.__array_interface__["data"][0]
+        return address
 
 
 def _in_one_block(arrays: Arrays) -> tuple[Arrays, Vector]:
@@ -95,8 +115,7 @@ def set_to(arrays: Arrays, problem: InitialValueProblem) -> None:
     progress.x[:], progress.times[:] = problem.start, problem.times
     progress.given[:] = tolerance.atol
     follows = ABSOLUTE * tolerance.rtol  # till the core knows of what size the states are
-    np.copyto(progress.atol, tolerance.atol)
-    progress.atol[tolerance.atol <= 0] = follows
+    progress.atol[:] = np.where(tolerance.atol > 0, tolerance.atol, follows)
     progress.ints[METHOD] = -1 if problem.method == "auto" else NAMES.index(problem.method)
     if problem.sensitivities:
         _set_sensitivities(arrays, problem)
@@ -133,8 +152,7 @@ def least_peak(arrays: Arrays, problem: InitialValueProblem) -> Matrix:
 def give_back(model: Model, space: Workspace) -> None:
     """Let the next run have a workspace; nobody may look into its arrays any more."""
     kept = _kept(model)
-    size = space.arrays.progress.samples.size + space.arrays.sensitivity.samples.size
-    if size + space.kind.tables > MEMORY.workspace or has_grown(space.arrays):
+    if space.size > MEMORY.workspace or has_grown(space.arrays):
         return
     if space.kind not in kept and len(kept) >= MEMORY.workspaces:
         kept.clear()

@@ -226,10 +226,10 @@ class Spans(NamedTuple):
     events that a span may have, the mode combinations that were found stiff. `ends` (W, 2): begin
     and end of each. `rows` (W + 1,): where its samples begin in `times` (M,), `samples` (M, R) and
     `answers` (M, R*q). `x` (W, n) and `s` (W, n*q): its start, and how that moves; `floor` (n, q)
-    the least `peak`. `follows` (W,): 1 where the states in `kept` go on from the span before, and
-    with them how they move, but for columns that are 0 in `lasting` (q,), which stand for the start
-    of that span. `final` (W, n), `final_s` (W, n*q) and `steps` (W,): the states at its end, how
-    these move, and what it took.
+    the least `peak`. `follows` (W,): 1 where the states that are 1 in `kept` (n,) go on from the
+    span before, and with them how they move, but for columns that are 0 in `lasting` (q,), which
+    stand for the start of that span. `final` (W, n), `final_s` (W, n*q) and `steps` (W,): the
+    states at its end, how these move, and what it took.
     `first` is what `block` holds, which is all that a run changes, before it.
     """
 

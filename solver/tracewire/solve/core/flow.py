@@ -221,11 +221,24 @@ def blended(core: int, which: int, t: float, x: Vector, fractions: Vector, out: 
 @unit
 def rates(core: int, t: float, x: Vector, out: Vector) -> None:
     """dx/dt with frozen modes; on a slide or in a contact the field that stays there."""
+    stage_rates(core, t, x, out)
+
+
+@helper
+def stage_rates(core: int, t: float, x: Vector, out: Vector) -> None:
+    """The same as a part of its caller: of a method, whose stages are most of the calls."""
     flow = flow_of(core)
     flow.counts[EVALUATIONS] += 1
     if flow.counts[SLIDING] + flow.counts[RESTING] == 0:
         evaluate(core, RHS, t, x, out)
-        return
+    else:
+        _held_rates(core, t, x, out)
+
+
+@unit
+def _held_rates(core: int, t: float, x: Vector, out: Vector) -> None:
+    """dx/dt on a slide or in a contact."""
+    flow = flow_of(core)
     both = held(core, t, x)
     blended(core, RHS, t, x, both, out)
     push(core, both[flow.counts[SLIDING] :], out)

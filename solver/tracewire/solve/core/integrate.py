@@ -203,7 +203,7 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
         if last or flow.counts[SLIDING] + flow.counts[RESTING]:
             locate.margins(core, now[T], x, start)
         else:  # the last sample is that of the same time and states
-            copy(watch_of(core).rows[locate.SAMPLES - 1], start)
+            locate.margins_at_end(core)
         if watch_stiffness(core):
             choose(core)
     if limit == due:

@@ -44,7 +44,7 @@ from tracewire.solve.core.flow import (
 from tracewire.solve.core.modes import held_levels, jump_time, levels, piece
 from tracewire.solve.core.readings import guard_rates, guard_values
 from tracewire.solve.core.surface import pin
-from tracewire.solve.core.units import helper, unit
+from tracewire.solve.core.units import helper, inlined, unit
 
 SAMPLES = 5  # of the margins over a step, both ends included
 SLACK = 0.25  # a parabola that stays above zero by less than bend/32 may be wrong about it
@@ -104,6 +104,20 @@ def watch(core: int) -> None:
 
 
 @helper
+def margins_at_end(core: int) -> None:
+    """Let the margins with which the next step begins be those of the last sample of this one."""
+    watched = watch_of(core)
+    _copy_watched(watched.rows[SAMPLES - 1], watched.start, watched_count(core))
+
+
+@helper
+def _copy_watched(values: Vector, to: Vector, count: int) -> None:
+    """Copy the margins that are watched: arrays have room for three times as many."""
+    for row in range(count):
+        to[row] = values[row]
+
+
+@helper
 def _add(core: int, row: int, mode: int, kind: int, to: float, level: float, sign: float) -> int:
     watched = watch_of(core)
     watched.mode[row], watched.kind[row], watched.to[row] = mode, kind, to
@@ -116,12 +130,15 @@ def passed(core: int, out: Ints) -> int:
     """Mark what is clearly beyond its level: guards that move away from it, and fractions, which
     have left so slowly that no step has seen it; how many."""
     watched, progress, count, beyond = watch_of(core), progress_of(core), 0, False
+    start = watched.start
+    if not _is_any_below(start, watched_count(core)):  # as nearly always
+        return 0
     for row in range(watched_count(core)):
         out[row] = 0
-        if watched.kind[row] == FRACTION and watched.start[row] < -CLEARLY * HELD_NOISE:
+        if watched.kind[row] == FRACTION and start[row] < -CLEARLY * HELD_NOISE:
             out[row] = 1
             count += 1
-        beyond = beyond or (watched.kind[row] == GUARD and watched.start[row] < 0.0)
+        beyond = beyond or (watched.kind[row] == GUARD and start[row] < 0.0)
     if not beyond:
         return count
     rates, level = trial_of(core).guards, np.empty(len(trial_of(core).guards))
@@ -129,12 +146,21 @@ def passed(core: int, out: Ints) -> int:
     guard_rates(core, progress.now[T], progress.x, rates)
     for row in range(watched_count(core)):
         clearly = -CLEARLY * level[watched.mode[row]]
-        if watched.kind[row] != GUARD or watched.start[row] >= clearly:
+        if watched.kind[row] != GUARD or start[row] >= clearly:
             continue
         if watched.sign[row] * rates[watched.mode[row]] < 0.0:
             out[row] = 1
             count += 1
     return count
+
+
+@helper
+def _is_any_below(values: Vector, count: int) -> bool:
+    """Whether one of the first values is below zero."""
+    below = False
+    for row in range(count):
+        below = below or values[row] < 0.0
+    return below
 
 
 @unit
@@ -147,7 +173,8 @@ def margins(core: int, t: float, x: Vector, out: Vector) -> None:
     some, total = flow.counts[SLIDING], watched_count(core)
     count = total - 2 * some - flow.counts[RESTING]
     for row in range(count):
-        out[row] = watched.sign[row] * (guards[watched.mode[row]] - watched.level[row])
+        guard = guards[np.uint64(watched.mode[row])]  # unsigned: no place is counted from the end
+        out[row] = watched.sign[row] * (guard - watched.level[row])
     if count < total:
         both = held(core, t, x)
         for slide in range(flow.counts[SLIDING]):
@@ -172,7 +199,7 @@ def find(core: int, method: int) -> int:
         return NOTHING
     for k in range(1, SAMPLES):
         _margins_inside(core, method, k / (SAMPLES - 1), rows[k])
-    copy(start, rows[0])
+    _copy_watched(start, rows[0], count)
     if _is_quiet(core, count):
         return NOTHING
     floors = np.empty(count)
@@ -282,7 +309,7 @@ def _stays_above(core: int, i: int, kind: int) -> bool:
     return True
 
 
-@unit
+@inlined
 def _margins_inside(core: int, method: int, theta: float, out: Vector) -> None:
     trial = trial_of(core)
     if theta == 1.0:

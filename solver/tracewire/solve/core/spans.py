@@ -114,8 +114,8 @@ def _begin(core: int, spans: int, number: int) -> None:
 def _go_on(core: int, spans: int, number: int) -> None:
     """Let states that are kept begin where the span before has ended, unless its run has failed."""
     many, x = spans_of(spans), progress_of(core).x
-    for state in many.kept:
-        if not math.isfinite(many.final[number - 1, state]):
+    for state in range(len(x)):
+        if not (many.kept[state] and math.isfinite(many.final[number - 1, state])):
             continue
         x[state] = many.final[number - 1, state]
         if is_sensitive(core):

@@ -27,7 +27,7 @@ def optimised(texts: Iterable[str], names: Iterable[str], target: Any) -> bytes:
         else:
             function.linkage = "internal"
     tuning = binding.create_pipeline_tuning_options(speed_level=SPEED)
-    tuning.loop_vectorization = tuning.slp_vectorization = False  # vectors of a few numbers
+    tuning.loop_vectorization, tuning.slp_vectorization = False, True  # vectors of a few numbers
     builder = binding.create_pass_builder(target, tuning)
     builder.getModulePassManager().run(module, builder)
     return bytes(module.as_bitcode())

@@ -10,11 +10,11 @@ import math
 
 import numpy as np
 
-from tracewire.solve.core.arrays import Vector, copy, trial_of
-from tracewire.solve.core.flow import rates
+from tracewire.solve.core.arrays import Vector, trial_of
+from tracewire.solve.core.flow import stage_rates
 from tracewire.solve.core.methods.method import Method
 from tracewire.solve.core.methods.trial import norm
-from tracewire.solve.core.units import unit
+from tracewire.solve.core.units import inlined, unit
 
 METHOD = Method("dormand_prince", stages=7, inner=3, edge=3.0)
 
@@ -47,31 +47,46 @@ D = np.array(
 @unit
 def step(core: int, t: float, x: Vector, rate: Vector, h: float) -> None:
     """A trial step: six evaluations, the last is the rate at the end."""
-    into = trial_of(core)
     n = len(x)
+    if n == 2:
+        _step(core, t, x, rate, h, 2)
+    elif n == 3:
+        _step(core, t, x, rate, h, 3)
+    elif n == 4:
+        _step(core, t, x, rate, h, 4)
+    elif n == 6:
+        _step(core, t, x, rate, h, 6)
+    else:
+        _step(core, t, x, rate, h, n)
+
+
+@inlined
+def _step(core: int, t: float, x: Vector, rate: Vector, h: float, n: int) -> None:
+    """The same, built in with the number of states: short loops are unrolled."""
+    into = trial_of(core)
     k, at, end = into.stages, into.error, into.x_end
-    copy(rate, k[0])
     for i in range(n):
+        k[0, i] = rate[i]
         end[i] = x[i] + h * (A[1, 0] * k[0, i])
-    rates(core, t + C[1] * h, end, k[1])
+    stage_rates(core, t + C[1] * h, end, k[1])
     for i in range(n):
         end[i] = x[i] + h * (A[2, 0] * k[0, i] + A[2, 1] * k[1, i])
-    rates(core, t + C[2] * h, end, k[2])
+    stage_rates(core, t + C[2] * h, end, k[2])
     for i in range(n):
         end[i] = x[i] + h * (A[3, 0] * k[0, i] + A[3, 1] * k[1, i] + A[3, 2] * k[2, i])
-    rates(core, t + C[3] * h, end, k[3])
+    stage_rates(core, t + C[3] * h, end, k[3])
     for i in range(n):
         total = A[4, 0] * k[0, i] + A[4, 1] * k[1, i] + A[4, 2] * k[2, i] + A[4, 3] * k[3, i]
         end[i] = x[i] + h * total
-    rates(core, t + C[4] * h, end, k[4])
+    stage_rates(core, t + C[4] * h, end, k[4])
     for i in range(n):
         total = A[5, 0] * k[0, i] + A[5, 1] * k[1, i] + A[5, 2] * k[2, i] + A[5, 3] * k[3, i]
         at[i] = x[i] + h * (total + A[5, 4] * k[4, i])
-    rates(core, t + h, at, k[5])
+    stage_rates(core, t + h, at, k[5])
     for i in range(n):
         total = A[6, 0] * k[0, i] + A[6, 2] * k[2, i] + A[6, 3] * k[3, i] + A[6, 4] * k[4, i]
         end[i] = x[i] + h * (total + A[6, 5] * k[5, i])
-    rates(core, t + h, end, k[6])
+    stage_rates(core, t + h, end, k[6])
     change = apart = 0.0
     for i in range(n):
         apart += (end[i] - at[i]) ** 2
@@ -99,7 +114,7 @@ def defect(core: int, rtol: float, atol: Vector) -> float:
     trial = trial_of(core)
     inner, rate, at = trial.inner, trial.stages[1], trial.at
     inside(core, 0.5, at)
-    rates(core, trial.ends[0] + 0.5 * trial.ends[1], at, rate)
+    stage_rates(core, trial.ends[0] + 0.5 * trial.ends[1], at, rate)
     for i in range(len(at)):
         slope = trial.x_end[i] - trial.x[i] + 0.25 * inner[1, i]
         trial.error[i] = slope - trial.ends[1] * rate[i]

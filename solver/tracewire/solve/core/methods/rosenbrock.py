@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracewire.solve.core.arrays import Vector, copy, progress_of, trial_of
-from tracewire.solve.core.flow import jacobian, rates
+from tracewire.solve.core.flow import jacobian, stage_rates
 from tracewire.solve.core.linear import factor, substitute, towards_one
 from tracewire.solve.core.methods.method import Method
 from tracewire.solve.core.units import inlined, unit
@@ -212,7 +212,7 @@ def _stage(core: int, stage: int, t: float, x: Vector, h: float) -> None:
             for k in range(stage):
                 total += A[stage, k] * stages[k, i]
             at[i] = x[i] + total
-        rates(core, t + C[stage] * h, at, slope)
+        stage_rates(core, t + C[stage] * h, at, slope)
     for i in range(n):
         total = 0.0
         for k in range(stage):
