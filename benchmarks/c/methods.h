@@ -85,6 +85,7 @@ static const double R_IN[3][8] = {
     {11.419903575922262, 2.8879645146136994, 72.92137995996029, 80.12511834622643,
      -52.072871366152654, -59.78993625266729, -0.15582684282751913, 4.883087185713722}};
 
+#ifndef OWN_FACTORS
 /* LU with row exchange in place; 0 where the matrix is singular. */
 static int factor(double a[N][N], int *pivot)
 {
@@ -124,6 +125,7 @@ static void substitute(double a[N][N], const int *pivot, double *b)
         b[i] /= a[i][i];
     }
 }
+#endif
 
 static void stiff_step(const double *p, const int *m, double t, const double *x,
                        const double *rate, double h, Step *s)

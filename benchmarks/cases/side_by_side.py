@@ -19,6 +19,7 @@ from benchmarks.table import Promise, Result, ratio, seconds
 
 PEERS: tuple[Peer, ...] = (
     Native(),
+    Native(name="C, leaner", source="lean.c", case="torsion.h"),
     Native("BDF"),
     Native("Adams"),
     Sundae("BDF"),

@@ -1,4 +1,4 @@
-"""Hand-written C, compiled on the spot: tracewire's algorithm, and SUNDIALS' CVODE with roots."""
+"""Hand-written C, compiled on the spot: our algorithm, a leaner one, and CVODE with roots."""
 
 from __future__ import annotations
 
@@ -56,12 +56,21 @@ def _library(source: str, case: str, *options: str) -> tuple[ctypes.CDLL | None,
 
 
 class Native:
-    """The same algorithm in C; `method` is BDF or Adams for CVODE, empty for our own."""
+    """The same algorithm in C; `method` is BDF or Adams for CVODE, empty for our own.
 
-    def __init__(self, method: str = "") -> None:
-        self.method = method
-        self.name = f"C, CVODE {method}" if method else "C, same algorithm"
-        self.source = "cvode.c" if method else "run.c"
+    `source` is ours; where it is written for one system, `case` is the header of that.
+    """
+
+    def __init__(
+        self,
+        method: str = "",
+        name: str = "C, same algorithm",
+        source: str = "run.c",
+        case: str = "",
+    ) -> None:
+        self.method, self.case = method, case
+        self.name = f"C, CVODE {method}" if method else name
+        self.source = "cvode.c" if method else source
         self.options = tuple(f"-l{name}" for name in SUNDIALS) if method else ()
 
     def missing(self, problem: Problem) -> str:
@@ -70,6 +79,8 @@ class Native:
             return "no C compiler"
         if self.method == "Adams" and problem.stiff:
             return "not for stiff problems"
+        if self.case and self.case != problem.system.file:
+            return "not for this problem"
         library, why = _library(self.source, problem.system.file, *self.options)
         if library is None and self.method:
             return "no SUNDIALS to compile with"

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 import tracewire as tw
 from numpy.typing import NDArray
-from solve.models import BALL, made
+from solve.models import BALL, made, one
 from tracewire.compile import Model
 from tracewire.errors import OptionError
 from tracewire.solve import Run, simulate
@@ -215,6 +215,48 @@ def test_samples_inside_of_steps_are_as_good_as_those_at_their_ends(
     coarse = simulate(made(SPRING), sensitivities=["k"], times=t[::400], **options)
     least = np.max(np.abs(coarse.sensitivities["k"]["x"] + (t * np.sin(w * t))[::400] / (2 * w)))
     assert np.max(np.abs(apart)) < 3 * least + 20 * rtol
+
+
+@pytest.mark.parametrize("method", ["dormand_prince", "dop853", "rosenbrock"])
+@pytest.mark.parametrize("count", [4, 333])
+def test_sensitivities_go_over_many_short_steps(method: str, count: int) -> None:
+    """x = cos(w t): dx/dk = -t sin(w t)/(2 w); each of their intervals has several steps inside."""
+    w, t = math.sqrt(2.0), np.linspace(0, 10, count)
+    options: dict[str, Any] = {"parameters": {"c": 0.0}, "times": t}
+    options["limits"] = {"max_step": 2e-3}
+    run = simulate(made(SPRING), sensitivities=["k", "start.v"], method=method, **options, **TIGHT)
+    assert run.statistics.steps > 4999
+    found = run.sensitivities
+    assert found["k"]["x"] == pytest.approx(-t * np.sin(w * t) / (2 * w), abs=1e-8)
+    assert found["start.v"]["v"] == pytest.approx(np.cos(w * t), abs=1e-8)
+
+
+def test_a_step_that_failed_is_not_followed() -> None:
+    """x' = -1 - p sqrt(x) is no number below zero, where an event is found: no step goes there."""
+    text = one("-1 - (p*sqrt(x) if x >= 0 else 0)", 1.0, "parameters: {p: 0.7}")
+    model, part = made(text), 1e-4
+    times = np.append(np.linspace(0, 0.6, 31), np.linspace(0.69, 1, 31))
+    run = simulate(model, times=times, sensitivities=["p"], rtol=1e-9)
+    assert len(run.events) == 1
+    above, below = (
+        simulate(model, times=times, parameters={"p": 0.7 + change}, **TIGHT)
+        for change in (part, -part)
+    )
+    wanted = (above["x"] - below["x"]) / (2 * part)
+    assert run.sensitivities["p"]["x"] == pytest.approx(wanted, abs=1e-6)
+    moved = (above.events[0].time - below.events[0].time) / (2 * part)
+    assert run.events[0].sensitivity["p"] == pytest.approx(moved, abs=1e-6)
+
+
+def test_states_inside_of_steps_are_the_same_with_sensitivities() -> None:
+    """These look again into steps that are over, and leave them as they were."""
+    model, times = made(RUBBED), np.linspace(0, 20, 1501)
+    for rtol in (1e-4, 1e-9):
+        plain = simulate(model, times=times, rtol=rtol)
+        run = simulate(model, times=times, rtol=rtol, sensitivities=["level", "k", "begin"])
+        assert run.statistics.steps == plain.statistics.steps
+        assert np.array_equal(plain["x"], run["x"])
+        assert np.array_equal(plain["v"], run["v"])
 
 
 @pytest.mark.parametrize("names", [["p"], ["p", "q"], ["p", "q", "start.x"]])

@@ -98,6 +98,8 @@ class MemoryLimits:
     """Rows for moves of a past at first; they double."""
     first_points: int = 512
     """The same of its points."""
+    steps: int = 32
+    """Steps of the states that sensitivities follow at once."""
     past: int = 250_000_000
     """Of the past of what is delayed: 2 GB."""
     workspaces: int = 16

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tracewire.compile import Model
 from tracewire.errors import OptionError, unknown
 from tracewire.formula import Expression, Name, evaluate, names_of
-from tracewire.solve.core.arrays import Progress, Sensitivity
+from tracewire.solve.core.arrays import Progress, Sensitivity, Trial
 from tracewire.solve.core.codes import FLAGS, GRAZES, LOST, SIMULTANEOUS, TOUCHES, ZENO
 from tracewire.solve.core.flow import FREE
 from tracewire.solve.core.variation import DERIVATIVES, OF_RHS
@@ -183,6 +183,7 @@ def _partial(formula: Expression, values: Mapping[str, float], name: str) -> flo
 def new_sensitivity(
     model: Model,
     progress: Progress,
+    trial: Trial,
     asked: tuple[str, ...],
     moved: tuple[str, ...],
     columns: int,
@@ -211,7 +212,7 @@ def new_sensitivity(
         push=np.zeros((modes, n * a)),
         flags=np.zeros((FLAGS, 2), dtype=np.int64),
         flag_times=np.zeros(FLAGS),
-        now=np.zeros(13),
+        now=np.zeros(11),
         instants=np.zeros((modes, q)),
         bound=np.full(modes, FREE, dtype=np.int64),
         change=np.zeros((n, q)),
@@ -225,6 +226,9 @@ def new_sensitivity(
         weights=np.zeros(n),
         picks=np.zeros(n, dtype=np.int64),
         at=np.zeros(n),
+        steps=np.zeros((MEMORY.steps if q else 0, len(trial.ends) + n * (2 + len(trial.inner)))),
+        methods=np.zeros(MEMORY.steps, dtype=np.int64),
+        kept=np.zeros(3, dtype=np.int64),
     )
 
 

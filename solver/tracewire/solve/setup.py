@@ -208,8 +208,6 @@ def new_arrays(model: Model, kind: Kind) -> Arrays:
     plan = _plan_for(model, kind.records)
     flow = _new_flow(model, kind.tables)
     progress = _new_progress(model, kind.samples, len(plan.direct))
-    columns = n if kind.records == "states" else len(model.recorded)
-    sensitivity = new_sensitivity(model, progress, kind.asked, kind.moved, columns)
     most = 3 * modes  # a guard has two levels at most, and held it has a force or two fractions
 
     def ints(size: int) -> NDArray[np.int64]:
@@ -253,6 +251,8 @@ def new_arrays(model: Model, kind: Kind) -> Arrays:
         due=ints(len(plan.resets)),
         known=ints(1),
     )
+    columns = n if kind.records == "states" else len(model.recorded)
+    sensitivity = new_sensitivity(model, progress, trial, kind.asked, kind.moved, columns)
     history = new_history(model, sensitivity)
     return Arrays(flow, plan, progress, trial, watch, crossings, sensitivity, history)
 

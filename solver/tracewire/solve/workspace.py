@@ -25,7 +25,7 @@ Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 ONLY_WRITTEN = (
     *("address", "c", "k", "log", "stiff", "times"),
-    *("change", "between", "right", "parts", "system"),  # of sensitivities
+    *("change", "between", "right", "parts", "system", "steps"),  # of sensitivities
     *GROWING,
 )
 """What is written before each run, or not read before the run has written it."""

@@ -179,15 +179,15 @@ class Sensitivity(NamedTuple):
     (4n, q): S' there, `change` (n, q): of S over the interval, `between` (n, q): S inside of it.
     `samples` (N, R*q), `times` (rows of the log, q). `push` (M, n*a): of the push of a contact in
     the parameters. `flags` and `flag_times`: per kind of FLAGS how often, the mode and the time of
-    the first. `now` holds that time, the next interval, whether the first nodes are known, how many
-    intervals need no estimate, how long these may be, whether only tables of t go on to their next
-    points, how long an interval may be inside of which S is known, too, the end and the length of
-    one that is not yet taken (0: none is), the tolerance of the estimate, the error inside and its
-    tolerance, and whether the first slopes are known.
+    the first. `now` holds that time, the next interval, whether the first nodes are known, whether
+    only tables of t go on to their next points, how long an interval may be inside of which S is
+    known, too, the end and the length of one that is not yet taken (0: none is), the tolerance of
+    the estimate, the error inside and its tolerance, and whether the first slopes are known.
     `instants` (M, q): how the instant moves at which each mode changes, of those that do so now.
-    `bound` (M,): what was held after the last event. `right`, `parts` (3n, q; at least one row),
-    `system` (3n, 3n), `pivots` (3n,), `order` (n + 2,), `weights`, `picks` and `at` (n,) are work
-    space.
+    `bound` (M,): what was held after the last event. `steps`: what `trial` has of those that S has
+    not followed yet, and the `methods` that made them; `kept`: how many, which one is in `trial`,
+    and the first sample in them. `right`, `parts` (3n, q; at least one row), `system` (3n, 3n),
+    `pivots` (3n,), `order` (n + 2,), `weights`, `picks` and `at` (n,) are work space.
     """
 
     address: Ints
@@ -217,6 +217,9 @@ class Sensitivity(NamedTuple):
     weights: Vector
     picks: Ints
     at: Vector
+    steps: Matrix
+    methods: Ints
+    kept: Ints
 
 
 class Spans(NamedTuple):

@@ -25,6 +25,7 @@ from tracewire.solve.core.history import find_lags, is_delayed, recall
 from tracewire.solve.core.linear import factor, put_rows, substitute_all
 from tracewire.solve.core.rows import add_row, add_two, put_three
 from tracewire.solve.core.stages import NODES, RADAU, eliminate, solve_stages
+from tracewire.solve.core.trail import step_at
 from tracewire.solve.core.units import helper, unit
 from tracewire.solve.core.variation import field
 
@@ -38,8 +39,8 @@ STILL = 1e-10
 """A column of S that is this small while something is held: what holds it cancels what moves it,
 and what is left is rounding, which no shorter interval makes less."""
 # places in Sensitivity.now
-TIME, INTERVAL, KNOWN, UNCHECKED, LONGEST, SMOOTH = range(6)
-DENSE, AHEAD, PENDING, TOLERANCE, INSIDE_ERROR, INSIDE_TOLERANCE, SLOPED = range(6, 13)
+TIME, INTERVAL, KNOWN, SMOOTH = range(4)
+DENSE, AHEAD, PENDING, TOLERANCE, INSIDE_ERROR, INSIDE_TOLERANCE, SLOPED = range(4, 11)
 
 
 def _weights_inside() -> Matrix:
@@ -108,7 +109,7 @@ def put_total(
 
 
 @unit
-def _fill_nodes(core: int, method: int, h: float) -> None:
+def _fill_nodes(core: int, h: float) -> None:
     """The derivatives of the rates at the nodes of an interval, and where it begins."""
     sensitivity, trial = sensitivity_of(core), trial_of(core)
     nodes, begin = sensitivity.nodes, sensitivity.now[TIME]
@@ -119,6 +120,7 @@ def _fill_nodes(core: int, method: int, h: float) -> None:
                 continue
             sensitivity.now[SLOPED] = 0.0
         time = begin + (h * NODES[node - 1] if node else 0.0)
+        method = step_at(core, time)
         theta = min(1.0, max(0.0, (time - trial.ends[0]) / trial.ends[1]))
         methods.inside(core, method, theta, trial.at)
         field(core, time, trial.at, nodes[node * n : node * n + n])
@@ -131,16 +133,13 @@ def _fill_nodes(core: int, method: int, h: float) -> None:
 
 
 @unit
-def collocate(core: int, method: int, h: float, check: bool, inside: bool) -> float:
-    """Fill in S' at the nodes of an interval and the change of S over it; its error over the size
-    of S.
-
-    0 where the error is not to be looked at. `inside`: S' where it begins, too.
-    """
+def collocate(core: int, h: float) -> float:
+    """Fill in S' where an interval begins and at its nodes, and the change of S over it; its error
+    over the size of S."""
     sensitivity = sensitivity_of(core)
     change, slopes = sensitivity.change, sensitivity.slopes
     n = len(sensitivity.s)
-    _fill_nodes(core, method, h)
+    _fill_nodes(core, h)
     eliminate(core)
     for node in range(1, 4):
         _slopes(core, node, sensitivity.now[TIME] + h * NODES[node - 1])
@@ -149,35 +148,48 @@ def collocate(core: int, method: int, h: float, check: bool, inside: bool) -> fl
     first, second, third = h * RADAU[2, 0], h * RADAU[2, 1], h * RADAU[2, 2]
     for i in range(n):
         put_three(change, i, first, slopes, n + i, second, 2 * n + i, third, 3 * n + i)
-    if (check or inside) and sensitivity.now[SLOPED] == 0.0:
+    if sensitivity.now[SLOPED] == 0.0:
         _slopes(core, 0, sensitivity.now[TIME])
         sensitivity.now[SLOPED] = 1.0
-    return _error(core, h) if check else 0.0
+    return _error(core, h)
 
 
 @unit
 def _error(core: int, h: float) -> float:
     """The largest error over the size of S, as RADAU5 estimates it; NaN where it is not finite.
 
-    That is damped as stiff parts of S are at the end of the interval. Inside of it they are not.
+    It is damped as stiff parts of S are at the end of the interval, unless it is small without
+    that. Inside of it they are not.
     """
     sensitivity = sensitivity_of(core)
-    s, peak, change = sensitivity.s, sensitivity.peak, sensitivity.change
-    slopes, error, plain = sensitivity.slopes, sensitivity.right, sensitivity.parts
-    n, q = s.shape
-    real, pivots = sensitivity.system[:n], sensitivity.pivots[:n]
+    slopes, error = sensitivity.slopes, sensitivity.right
+    n = len(sensitivity.s)
+    real, pivots, part = sensitivity.system[:n], sensitivity.pivots[:n], h / REAL
+    first, second, third = part * ERROR[0], part * ERROR[1], part * ERROR[2]
+    for i in range(n):
+        put_three(error, i, first, slopes, n + i, second, 2 * n + i, third, 3 * n + i)
+        add_row(error, i, part, slopes, i)
+    worst = _over_size(core, error)
+    sensitivity.now[INSIDE_ERROR] = worst
+    if worst <= sensitivity.now[TOLERANCE]:
+        return worst
     for i in range(n):
         for k in range(n):
-            real[i, k] = -sensitivity.nodes[i, k]
-        real[i, i] += REAL / h
-        put_three(error, i, ERROR[0], slopes, n + i, ERROR[1], 2 * n + i, ERROR[2], 3 * n + i)
-        add_row(error, i, 1.0, slopes, i)
-        for j in range(q):
-            plain[i, j] = h / REAL * error[i, j]
+            real[i, k] = -part * sensitivity.nodes[i, k]
+        real[i, i] += 1.0
     if factor(real, pivots) == 0.0:
         return np.nan
     substitute_all(real, pivots, error[:n])
-    worst, inside, counts = 0.0, 0.0, flow_of(core).counts
+    return _over_size(core, error)
+
+
+@unit
+def _over_size(core: int, error: Matrix) -> float:
+    """The largest part of an error over the size of S there; NaN where it is not finite."""
+    sensitivity, counts = sensitivity_of(core), flow_of(core).counts
+    s, peak, change = sensitivity.s, sensitivity.peak, sensitivity.change
+    n, q = s.shape
+    worst = 0.0
     some_held = counts[SLIDING] + counts[RESTING] > 0
     for j in range(q):
         largest = 0.0
@@ -187,19 +199,16 @@ def _error(core: int, h: float) -> float:
             continue
         for i in range(n):
             size = max(peak[i, j], abs(s[i, j] + change[i, j])) + NOTHING * largest
-            if abs(plain[i, j]) > inside * size:
-                inside = abs(plain[i, j]) / size
             if abs(error[i, j]) > worst * size:
                 worst = abs(error[i, j]) / size
             elif not abs(error[i, j]) < np.inf:
                 return np.nan
-    sensitivity.now[INSIDE_ERROR] = inside
     return worst
 
 
 @unit
 def fill_between(core: int, h: float, theta: float) -> None:
-    """Fill in S inside of an interval whose error was looked at, theta in [0, 1].
+    """Fill in S inside of an interval, theta in [0, 1].
 
     The polynomial of degree 4 whose slopes are those where the interval begins and at its nodes;
     at the end it is S there, as the nodes integrate it exactly. Its error is of order 5.

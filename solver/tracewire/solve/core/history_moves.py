@@ -17,6 +17,7 @@ from tracewire.solve.core.history import (
     stretch_now,
 )
 from tracewire.solve.core.sensitivity import follow, total_of
+from tracewire.solve.core.trail import step_at
 from tracewire.solve.core.units import unit
 from tracewire.solve.core.variation import OF_DELAYED, derive, derive_blended, held_parts
 
@@ -26,7 +27,7 @@ POWERS = powers_from_nodes(NODES)
 
 
 @unit
-def follow_all(core: int, method: int, end: float) -> None:
+def follow_all(core: int, end: float) -> None:
     """Follow the sensitivities to a time in the trial step, and keep those of delayed signals."""
     if is_delayed(core):
         history, trial = history_of(core), trial_of(core)
@@ -36,19 +37,19 @@ def follow_all(core: int, method: int, end: float) -> None:
             time = trial.ends[0] + (1.0 if node == DEGREE else theta) * trial.ends[1]
             if time > end:
                 break
-            follow(core, method, time)
-            _keep(core, method, node, time)
+            follow(core, time)
+            _keep(core, node, time)
             history.along[NODE] = node + 1
-    follow(core, method, end)
+    follow(core, end)
 
 
 @unit
-def _keep(core: int, method: int, node: int, t: float) -> None:
+def _keep(core: int, node: int, t: float) -> None:
     """Take the derivatives of the signals at a node; at the last one a piece is made of them."""
     history, trial, sensitivity = history_of(core), trial_of(core), sensitivity_of(core)
     flow, x, rows = flow_of(core), np.empty(len(trial.x)), history.rows
     count, q, w = len(history.mode), len(sensitivity.moved), rows.shape[1]
-    methods.inside(core, method, min(1.0, (t - trial.ends[0]) / trial.ends[1]), x)
+    methods.inside(core, step_at(core, t), min(1.0, (t - trial.ends[0]) / trial.ends[1]), x)
     find_lags(core, t, x)
     recall(core, t)
     some = flow.counts[SLIDING]

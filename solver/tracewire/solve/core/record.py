@@ -21,44 +21,66 @@ from tracewire.solve.core.history import is_delayed, record_step
 from tracewire.solve.core.history_moves import follow_all
 from tracewire.solve.core.sensitivity import reach, sample
 from tracewire.solve.core.surface import pin
+from tracewire.solve.core.trail import end_of_trail, keep_step, put_step, step_at
 from tracewire.solve.core.units import unit
 
 
 @unit
 def sample_inside(core: int, method: int, end: float) -> None:
-    """Fill the samples of a step that lie before its `end`, and keep what is read with a delay."""
+    """Fill the samples of a step that lie before its `end`, and keep what is read later of it."""
     if is_delayed(core):
         record_step(core, method)
     progress = progress_of(core)
     trial = trial_of(core)
-    row = progress.ints[SAMPLED]
-    if row == len(progress.times) or not progress.times[row] < end:
-        if is_sensitive(core):
-            follow_all(core, method, end)
-        return
-    # what follows sensitivities has its own use for trial.at
-    at = sensitivity_of(core).at if is_sensitive(core) else trial.at
+    first = progress.ints[SAMPLED]
+    row = first
     while row < len(progress.times) and progress.times[row] < end:
         time = progress.times[row]
-        methods.inside(core, method, (time - trial.ends[0]) / trial.ends[1], at)
-        _fill(core, row, time, at)
-        if is_sensitive(core):
-            if is_delayed(core):
-                follow_all(core, method, time)
-                sample(core, row, time, at, sensitivity_of(core).s)
-            else:
-                reach(core, method, time, end)
-                sample(core, row, time, at, sensitivity_of(core).between)
+        methods.inside(core, method, (time - trial.ends[0]) / trial.ends[1], trial.at)
+        _fill(core, row, time, trial.at)
         row += 1
     progress.ints[SAMPLED] = row
     if is_sensitive(core):
-        follow_all(core, method, end)
+        keep_step(core, method, first)
+        if is_delayed(core) or sensitivity_of(core).kept[0] == len(sensitivity_of(core).steps):
+            catch_up(core)
+
+
+@unit
+def catch_up(core: int) -> None:
+    """Let S follow the steps that are kept, and fill its samples in them.
+
+    The last step is in `trial` then; before, an attempt may be that has failed.
+    """
+    progress, sensitivity, trial = progress_of(core), sensitivity_of(core), trial_of(core)
+    kept, at, counts = sensitivity.kept, sensitivity.at, flow_of(core).counts
+    if kept[0] == 0:
+        return
+    end = end_of_trail(core)
+    put_step(core, kept[0] - 1)
+    for row in range(kept[2], progress.ints[SAMPLED]):
+        time, s = progress.times[row], sensitivity.s
+        if is_delayed(core):
+            follow_all(core, time)
+        else:
+            reach(core, time, end)
+            s = sensitivity.between
+        method = step_at(core, time)
+        methods.inside(core, method, (time - trial.ends[0]) / trial.ends[1], at)
+        if counts[SLIDING] + counts[RESTING]:
+            pin(core, time, at)
+        sample(core, row, time, at, s)
+    follow_all(core, end)
+    step_at(core, end)
+    kept[0] = 0
 
 
 @unit
 def sample_end(core: int, t: float, x: Vector) -> None:
     """Fill the samples that lie at the end of the run."""
     progress = progress_of(core)
+    if is_sensitive(core):
+        catch_up(core)
     for row in range(progress.ints[SAMPLED], len(progress.times)):
         _fill(core, row, t, x)
         if is_sensitive(core):

@@ -28,7 +28,7 @@ from tracewire.solve.core.codes import (
     ZENO,
     T,
 )
-from tracewire.solve.core.collocation import KNOWN, SMOOTH, UNCHECKED
+from tracewire.solve.core.collocation import KNOWN, SMOOTH
 from tracewire.solve.core.collocation import TIME as TIME_REACHED
 from tracewire.solve.core.contact import reset_jump, side_of
 from tracewire.solve.core.flow import (
@@ -49,6 +49,7 @@ from tracewire.solve.core.history import find_lags, is_delayed, jump_moves, reca
 from tracewire.solve.core.linear import dot, factor, substitute
 from tracewire.solve.core.modes import levels
 from tracewire.solve.core.readings import guard_rates
+from tracewire.solve.core.record import catch_up
 from tracewire.solve.core.sensitivity import begin_to_follow, flag, total_of
 from tracewire.solve.core.units import helper, unit
 from tracewire.solve.core.variation import (
@@ -83,6 +84,7 @@ def enter(core: int, t: float, x: Vector) -> None:
     """Before anything happens at an instant: S becomes the change of the states at the event."""
     if not is_sensitive(core):
         return
+    catch_up(core)
     flow, crossings = flow_of(core), crossings_of(core)
     sensitivity = sensitivity_of(core)
     s, moved, instants = sensitivity.s, sensitivity.moved, sensitivity.instants
@@ -279,7 +281,7 @@ def leave(core: int, t: float, before: Vector, x: Vector, old: Vector, waits: Ve
             flag(core, ZENO, i, t)
     _settle(core, t, x)
     sensitivity.moved[:] = 0.0
-    sensitivity.now[TIME_REACHED], sensitivity.now[KNOWN], sensitivity.now[UNCHECKED] = t, 0.0, 0.0
+    sensitivity.now[TIME_REACHED], sensitivity.now[KNOWN] = t, 0.0
 
 
 @unit

@@ -1,9 +1,9 @@
 """How the states change with parameters and start values, beside the states themselves.
 
 Between events S' = J(t) S + f_p(t), by the collocation method Radau IIA of order 5 on the dense
-output of the states, in intervals of its own where S moves faster than x (E. Hairer, G. Wanner,
-Solving ODEs II, sections IV.5 and IV.8), with a dense output of its own for samples inside. At an
-event g(t, x, p) = 0 that moves by dtau:
+output of the states, in intervals of its own, shorter than the steps or over several of them (E.
+Hairer, G. Wanner, Solving ODEs II, sections IV.5 and IV.8), with a dense output of its own for
+samples inside. At an event g(t, x, p) = 0 that moves by dtau:
 
     dtau = -(g_x S- + g_p)/g'      D = S- + f- dtau
     D+ = R_x D + R_p + R_t dtau    S+ = D+ - f+ dtau
@@ -36,28 +36,25 @@ from tracewire.solve.core.collocation import (
     INSIDE_TOLERANCE,
     INTERVAL,
     KNOWN,
-    LONGEST,
     PENDING,
     SLOPED,
     TIME,
     TOLERANCE,
-    UNCHECKED,
     collocate,
     fill_between,
     put_total,
 )
 from tracewire.solve.core.flow import OUTPUTS, RESTING, SLIDING, held, patterns
 from tracewire.solve.core.history import find_lags, is_delayed, recall
+from tracewire.solve.core.trail import step_at
 from tracewire.solve.core.units import helper, unit
 from tracewire.solve.core.variation import OF_OUTPUTS, derive, derive_blended, held_parts
 
 SMALLEST = 1e-5  # of a step of the states
 MANY = 100  # intervals of a step: more of them count as steps, for which a run has a limit
 ROUNDING = 1e-14  # of the time: what a step must be to end later than it began
-FAR_WITHIN = 0.05  # then an interval may be longer by a half, and its error not looked at
-SURE = 3.0  # so often
-SHORT = 0.8  # of the longest interval inside of which S is known, where nothing is checked
-CAREFUL = 0.1  # of what the orders say: the estimate that is small enough for samples inside
+FAR_WITHIN = 0.2  # then an interval was cut off: the next one may be as long as those before
+CAREFUL = 0.1  # of the tolerance of the states: most of the error of S is theirs then
 
 
 @helper
@@ -77,7 +74,7 @@ def begin_to_follow(core: int) -> None:
     chain, filled, now = sensitivity.chain, sensitivity.filled, sensitivity.now
     a, q = chain.shape
     # the estimate is of order 4 in the interval, the error of order 6
-    now[TOLERANCE] = rtol ** (2.0 / 3.0)
+    now[TOLERANCE] = (CAREFUL * rtol) ** (2.0 / 3.0)
     # and inside of it of order 5
     now[INSIDE_TOLERANCE] = CAREFUL * rtol**0.8
     delayed = 2 * len(history_of(core).mode)  # their rows are others at each time
@@ -91,22 +88,22 @@ def begin_to_follow(core: int) -> None:
 
 
 @unit
-def follow(core: int, method: int, end: float) -> None:
-    """Go on to the time `end`, which lies in the trial step."""
+def follow(core: int, end: float) -> None:
+    """Go on to the time `end`, which lies in the kept steps."""
     now, intervals = sensitivity_of(core).now, 0
     while now[TIME] < end:
         if now[PENDING] == 0.0:
             intervals += 1
             if intervals > MANY:
                 progress_of(core).ints[STEPS] += 1
-            _try(core, method, np.inf, end)
+            _try(core, np.inf, end)
         if now[PENDING] > 0.0:
             _accept(core)
 
 
 @unit
-def reach(core: int, method: int, t: float, end: float) -> None:
-    """Fill in S in `between` at the time `t` of a sample, on the way to `end` in the trial step.
+def reach(core: int, t: float, end: float) -> None:
+    """Fill in S in `between` at the time `t` of a sample, on the way to `end` in the kept steps.
 
     An interval goes on behind the sample where S is known inside of it as well as at its end.
     """
@@ -117,7 +114,7 @@ def reach(core: int, method: int, t: float, end: float) -> None:
             intervals += 1
             if intervals > MANY:
                 progress_of(core).ints[STEPS] += 1
-            _try(core, method, t, end)
+            _try(core, t, end)
         if now[PENDING] > 0.0:
             if t < now[AHEAD]:
                 fill_between(core, now[PENDING], (t - now[TIME]) / now[PENDING])
@@ -128,30 +125,26 @@ def reach(core: int, method: int, t: float, end: float) -> None:
 
 
 @unit
-def _try(core: int, method: int, sample: float, end: float) -> None:
+def _try(core: int, sample: float, end: float) -> None:
     """Try an interval that ends at `end` or before, and is taken next where its error is small.
 
     It ends behind the next sample only where the error inside is small, too.
     """
-    now, whole = sensitivity_of(core).now, trial_of(core).ends[1]
-    left = end - now[TIME]
-    least = max(SMALLEST * whole, ROUNDING * abs(now[TIME]))
-    h = now[INTERVAL]
-    if not 0.0 < h < 0.99 * left:
-        h = left
-    h = min(max(h, least), left)
+    now, left = sensitivity_of(core).now, end - sensitivity_of(core).now[TIME]
+    step_at(core, now[TIME])
+    step = trial_of(core).ends[1]  # its length says how fast all is where the interval begins
+    least = max(SMALLEST * step, ROUNDING * abs(now[TIME]))
+    h = min(now[INTERVAL], 3.0 * step) if now[INTERVAL] > 0.0 else step
     until, stop = sample - now[TIME], end
     if h > until and 0.0 < now[DENSE] < h:
-        h = max(now[DENSE], until)
+        h = min(max(now[DENSE], until), left)
+    else:  # as many of one length as it takes
+        goal = min(left, until) if 0.0 < now[DENSE] < h else left
+        h = min(max(goal / np.ceil(goal / h), least), left)
     inside = h > until
     if h < left:
         stop = now[TIME] + h if h != until else sample
-    sure = now[UNCHECKED] > 0.0 and h <= now[LONGEST] and not (inside and h > SHORT * now[DENSE])
-    error = collocate(core, method, h, not sure, inside) / now[TOLERANCE]
-    if sure:  # the interval is as long as the last one that was far within the tolerance
-        now[UNCHECKED] -= 1.0
-        now[PENDING], now[AHEAD] = h, stop
-        return
+    error = collocate(core, h) / now[TOLERANCE]
     if not math.isfinite(error):
         flag(core, LOST, 0, now[TIME])
         sensitivity_of(core).change[:] = 0.0
@@ -166,9 +159,7 @@ def _try(core: int, method: int, sample: float, end: float) -> None:
     now[DENSE] = max(h * _longer(beyond), least)
     if inside and beyond > 1.0 and h > least:
         return
-    now[UNCHECKED] = SURE if error < FAR_WITHIN else 0.0
-    now[LONGEST] = 1.5 * h
-    now[INTERVAL] = max(now[INTERVAL], longer) if h == left and error <= 1.0 else longer
+    now[INTERVAL] = max(now[INTERVAL], longer) if error < FAR_WITHIN else longer
     now[PENDING], now[AHEAD] = h, stop
 
 

@@ -13,6 +13,7 @@ NAMES = tuple(method.name for method in METHODS)
 STEPPED = tuple(method.name for method in METHODS if method.fixed)
 """The methods that take steps of a given length."""
 # what the core reads of a method by its number
+INNER = tuple(method.inner for method in METHODS)
 EXPONENT = tuple(method.exponent for method in METHODS)
 SAFETY = tuple(method.safety for method in METHODS)
 EDGE = tuple(method.edge for method in METHODS)
@@ -97,6 +98,7 @@ __all__ = [
     "EXPONENT",
     "FIXED_STEP",
     "IMPLICIT",
+    "INNER",
     "METHODS",
     "NAMES",
     "ROSENBROCK",
