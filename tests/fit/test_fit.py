@@ -11,7 +11,7 @@ import pytest
 from residual.models import LINE, OSCILLATOR, PENDULUM, C, K, T, made, oscillation, series, swing
 from tracewire.errors import DataError, FitError, OptionError
 from tracewire.fit import Fit, Progress, fit, optimset
-from tracewire.fit.remarks import unfinished
+from tracewire.fit.remarks import rises, unfinished
 from tracewire.residual import Measured, Sensor
 
 METHODS = ("fminsearch", "least_squares")
@@ -419,6 +419,12 @@ def test_a_search_whose_last_slope_promises_much_says_so_though_errors_are_large
     assert unfinished(told, criterion, slope, settled, "fminsearch") == []  # type: ignore[arg-type]
     (again,) = unfinished(told, criterion, slope, vector, "least_squares")  # type: ignore[arg-type]
     assert "least_squares gains nothing more from here: begin elsewhere" in again
+
+
+def test_a_search_that_ends_above_where_it_began_says_so() -> None:
+    (remark,) = rises(2.0, 5.0)
+    assert remark.startswith("the criterion is 2.5 times that of the values with which the search")
+    assert rises(2.0, 2.0) == rises(0.0, 0.0) == []
 
 
 def test_a_fit_that_raises_the_error_of_what_it_has_not_seen_says_so() -> None:

@@ -138,6 +138,7 @@ def test_multiple_shooting_recovers_them_from_a_chaotic_record(model: Model) -> 
     found = fit(model, measured, method="multiple_shooting", parameters=off(0.1, 0))
     assert worst(one) > 0.05
     assert one.evaluations < 1000, "it ends where no step lowers the sum"
+    assert one.criterion <= one.criterion_before or "(chaos)" in " ".join(one.remarks)
     assert worst(found) < 0.01
 
 

@@ -24,7 +24,13 @@ from tracewire.fit.refusals import (
     refuse_presets_of_free,
     refuse_unusable,
 )
-from tracewire.fit.remarks import collect_remarks, raises_unseen, starts_elsewhere, unfinished
+from tracewire.fit.remarks import (
+    collect_remarks,
+    raises_unseen,
+    rises,
+    starts_elsewhere,
+    unfinished,
+)
 from tracewire.fit.result import Comparison, Fit, Improvement
 from tracewire.fit.search import MethodResult, Progress, Search, Stopped
 from tracewire.fit.uncertainty import uncertainty_of
@@ -164,6 +170,7 @@ def fit(
     uncertainty = uncertainty_of(last, z, residuals, derivatives, follows)
     matrix = last.weigh_jacobians(residuals, derivatives)
     short = unfinished(uncertainty, last, matrix, last.weigh(residuals), method)
+    value = half_square(last.weigh(residuals))
     shown = compare_series(model, series, before, outputs_by_series(last, z, others))
     return Fit(
         model=model,
@@ -174,7 +181,7 @@ def fit(
         bounds={u.name: (u.low, u.high) for u in unknowns},
         starts=found_starts,
         criterion_before=criterion_before,
-        criterion=half_square(last.weigh(residuals)),
+        criterion=value,
         evaluations=evaluations,
         iterations=result.iterations,
         exitflag=result.exitflag,
@@ -191,6 +198,7 @@ def fit(
         remarks=(
             *(store.remarks if store else ()),
             *short,
+            *rises(criterion_before, value),
             *starts_elsewhere(model, series, shown),
             *raises_unseen(shown),
             *collect_remarks(series, failures, last),

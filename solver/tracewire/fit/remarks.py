@@ -56,6 +56,17 @@ def unfinished(
     ]
 
 
+def rises(before: float, after: float) -> list[str]:
+    """That a search ended above where it began, which only a criterion without slopes can do."""
+    if not after > DIAGNOSIS.raised * before:
+        return []
+    return [
+        f"the criterion is {after / before:.3g} times that of the values with which the search "
+        "began: a rounding of values changes runs as long as these (chaos); "
+        "--method multiple_shooting takes short ones"
+    ]
+
+
 def raises_unseen(comparisons: Sequence[Comparison]) -> list[str]:
     """Series that were not fitted, and of which a fit has raised the error."""
     found = []

@@ -64,6 +64,7 @@ def solve_least_squares(
         # derivatives that were corrected may end it early: only true ones tell the end
         jacobian.refresh(z)
         jacobian.trials = 1
+        least, was_frugal = jacobian.least, jacobian.frugal
         try:
             found = least_squares(
                 jacobian.vector,
@@ -90,8 +91,14 @@ def solve_least_squares(
         left -= jacobian.trials
         if ended and jacobian.is_true(z):
             message = "converged"
+        elif not jacobian.least < least:
+            if not was_frugal:
+                message = "converged: no step lowers the criterion"
+            jacobian.frugal = False  # only with true derivatives may one still be found
         elif left <= 0:
             message = f"stopped at the limit of {steps} steps"
+    if half_square(jacobian.vector(z)) > jacobian.least:  # what is chaotic is lost by a rounding
+        z = jacobian.best
     return LeastSquaresResult(
         z, half_square(jacobian.vector(z)), not message.startswith("stopped"), message
     )
@@ -126,6 +133,11 @@ class _Jacobian:
         self.values: list[float] = []
         self.best = np.empty(0)
 
+    @property
+    def least(self) -> float:
+        """The least value at a point from which a step was made."""
+        return self.values[-1] if self.values else np.inf
+
     def vector(self, z: Vector) -> Vector:
         """The criterion's vector."""
         if np.array_equal(self.at[0], z):
@@ -155,7 +167,7 @@ class _Jacobian:
                 renewed = not self.is_fresh
                 self.refresh(z)
         value = half_square(self.at[1])
-        if not self.values or value < self.values[-1]:
+        if value < self.least:
             self.values.append(value)
             self.best = z.copy()
             if self.callback is not None:
