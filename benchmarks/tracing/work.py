@@ -98,9 +98,10 @@ def _free_runs(
     inputs = {plant.drive: (fine, u)} if plant.drive else None
     count = len(t) - 1 if math.isinf(window) else max(8, round(window / (t[1] - t[0])))
     errors = {}
+    found_none = found.diagram.text == found.original.text
     for which, diagram in (("before", found.original), ("after", found.diagram)):
         model = tw.compile(diagram)
-        own = found.declared if which == "before" else found.values
+        own = found.declared if which == "before" or found_none else found.values
         values = {n: v for n, v in own.items() if n in model.flat.parameters}
         if "validate" in diagram.measured:  # what the series has of its own
             values |= series_parameters(model, diagram.measured["validate"])
@@ -119,7 +120,7 @@ def _free_runs(
             )
             for name, shown in given["shown"].items():
                 y = np.asarray(run[name])
-                if which == "after":
+                if which == "after" and not found_none:
                     y = _shown(found.json()["effects"], name, t[rows], y)
                 squares.append(((y - np.array(shown[rows])) / truth["sigma"][name]) ** 2)
         errors[which] = math.sqrt(float(np.mean(squares)) + 1.0)

@@ -68,6 +68,24 @@ def test_a_patch_of_a_file_without_a_last_line_end_applies(traced: Any, tmp_path
     assert (tmp_path / "swing.yaml").read_text(encoding="utf-8") == CHANGED.rstrip("\n")
 
 
+def test_what_only_approximates_is_written_where_it_is_asked_for(
+    traced: Any, tmp_path: Path
+) -> None:
+    approximation = replace(
+        UNEXPLAINED,
+        effects=FOUND.effects,
+        find_diagram=lambda effects: read_text(CHANGED, tmp_path / "swing.yaml"),
+    )
+    told = traced(approximation, "--apply")
+    assert told.code == 0
+    assert "the diagram stays as it is: --approximation writes what only approximates" in told.out
+    assert (tmp_path / "swing.yaml").read_text(encoding="utf-8") == TEXT
+    told = traced(approximation, "--apply", "--approximation")
+    assert told.code == 0
+    assert "+  coulomb: {type: coulomb" in told.out
+    assert (tmp_path / "swing.yaml").read_text(encoding="utf-8") == CHANGED
+
+
 def test_a_missing_torque_is_written_as_a_table_and_wired(traced: Any, tmp_path: Path) -> None:
     told = traced(UNEXPLAINED, "--table", "missing.csv", "--output", "with.yaml", "--json")
     assert told.code == 0

@@ -69,6 +69,16 @@ def test_effects_are_applied_by_choice(tmp_path: Path) -> None:
         again.apply(effects=[name])
 
 
+def test_what_only_approximates_is_applied_by_choice_alone() -> None:
+    found = replace(
+        UNEXPLAINED,
+        effects=FOUND.effects,
+        find_diagram=lambda effects: replace(FOUND.diagram, title=" and ".join(effects)),
+    )
+    assert found.apply() == found.diagram
+    assert found.apply(effects=["coulomb @ torque"]).title == "coulomb @ torque"
+
+
 def test_the_file_is_plain_json_without_nan(tmp_path: Path) -> None:
     def refuse(text: str) -> None:
         raise AssertionError(text)

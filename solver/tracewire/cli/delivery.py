@@ -50,6 +50,13 @@ class Targets:
         ),
     ] = None
     apply: Apply = False
+    approximation: Annotated[
+        bool,
+        typer.Option(
+            "--approximation",
+            help="Write what only approximates, too, where the verdict is `unexplained`.",
+        ),
+    ] = False
     output: Output = None
     patch: PatchFile = None
     table: TableFile = None
@@ -109,10 +116,13 @@ def _edit(found: Found, model: Model, own: Diagram, targets: Targets, *, quiet: 
         empirical = with_table(model, found, table, home.parent)
 
     def edited() -> Diagram:
-        new = empirical or found.apply()
+        chosen = [str(effect) for effect in found.effects] if targets.approximation else None
+        new = empirical or found.apply(effects=chosen)
         return with_series_of(new, own, Path(output) if output else None)
 
     change = "" if quiet else patch_of(own, edited())
     if change:
         print_text(f"the change of the diagram:\n{change.rstrip()}")
+    elif found.effects and not quiet:
+        print_text("the diagram stays as it is: --approximation writes what only approximates")
     return written + store(own, edited, targets.apply, output, targets.patch)

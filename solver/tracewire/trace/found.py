@@ -307,10 +307,12 @@ class Found(Result):
     where the verdict is another. `options` is what the user asked for, with every threshold;
     `interrupted`: the user stopped the trace, and this is what was known by then.
 
-    `diagram` is the edited diagram, and `find_diagram` that with some of the effects; a trace that
-    was loaded has none. `units` are the SI units of signals and parameters by name,
-    also of those that were added ('coulomb.level', 'offset.theta'), `users_units` the unit of a
-    signal in the user's files and its factor to SI, where they are not to be taken from `original`.
+    `diagram` is the edited diagram: the one as it was where the verdict is no `effect`, as partial
+    approximations may do worse on other data, unless the trace was interrupted. `find_diagram` is
+    that with some of the effects; a trace that was loaded has none. `units` are the SI units of
+    signals and parameters by name, also of those that were added ('coulomb.level',
+    'offset.theta'), `users_units` the unit of a signal in the user's files and its factor to SI,
+    where they are not to be taken from `original`.
     """
 
     verdict: Verdict
@@ -368,8 +370,9 @@ class Found(Result):
     ) -> Diagram:
         """The diagram with the effects added and its parameters refitted; comments are kept.
 
-        effects: those to add, by their texts (`coulomb @ torque`); None adds all. The parameters
-        were refitted with all of them: after a choice, fit again. Raises OptionError: no such
+        effects: those to add, by their texts (`coulomb @ torque`); None adds all that the verdict
+        names, and so no partial approximation. The parameters were refitted with all of them: after
+        a choice, fit again. Raises OptionError: no such
         effect, or a choice from a trace that was loaded; ValueError: another diagram.
         """
         if diagram is not None and diagram.text != self.original.text:
@@ -378,7 +381,8 @@ class Found(Result):
         wrong = [name for name in effects or () if name not in known]
         if wrong:
             raise OptionError([unknown("effect of the trace", name, known) for name in wrong])
-        if effects is None or set(effects) == set(known):
+        named = self.verdict == "effect" or self.interrupted
+        if effects is None or (named and set(effects) == set(known)):
             return self.diagram
         if not effects:
             return self.original

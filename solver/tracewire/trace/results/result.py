@@ -77,7 +77,11 @@ def result_of(
         find_forces=partial(_find_forces, search, best),
         words=tuple(search.words),
         original=problem.declared.diagram,
-        diagram=edit_diagram(problem.declared, best.effects, values),
+        diagram=(
+            edit_diagram(problem.declared, best.effects, values)
+            if judgement.verdict == "effect" or interrupted
+            else problem.declared.diagram  # an approximation is told, and written where one asks
+        ),
         units=units,
         interrupted=interrupted,
         options=search.options,
@@ -94,11 +98,12 @@ def result_of(
 def _apply_some(
     search: Search, final: FinalModels, values: Mapping[str, float], effects: Collection[str]
 ) -> Diagram:
-    """The diagram with some of the effects, by their texts. A parameter that was dropped has its
-    declared value: the effect that stands for it may be among those left out."""
+    """The diagram with some of the effects, by their texts. Where some are left out, a parameter
+    that was dropped has its declared value: the effect that stands for it may be among them."""
     pairs = zip(final.best.effects, build_effects(search, final), strict=True)
     kept = [added for added, effect in pairs if str(effect) in effects]
-    restored = {name: final.declared.values[name] for name in final.dropped}
+    left_out = final.dropped if len(kept) < len(final.best.effects) else ()
+    restored = {name: final.declared.values[name] for name in left_out}
     return edit_diagram(search.problem.declared, kept, {**values, **restored})
 
 
