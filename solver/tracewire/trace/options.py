@@ -83,6 +83,9 @@ class TraceOptions:
     negligible: float = 0.01
     """The part of the excess squared error that a model may leave at each horizon for no further
     effect to be looked for."""
+    many_effects: int = 3
+    """Effects that must predict held-out blocks, although together they come to the noise. On a
+    generated record with a floor alone, three small ones did."""
     explained: float = 0.6
     """The share of the excess error that named effects explain at least; a wrong single effect had
     a share of about 0, right models had more than 0.74."""

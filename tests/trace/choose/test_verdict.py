@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 import tracewire as tw
+from tracewire.trace.choose import verdict
 from tracewire.trace.choose.finalists import ModelPool
 from tracewire.trace.choose.remainder import error_left
-from tracewire.trace.choose.verdict import _only_uncommon
+from tracewire.trace.choose.verdict import _only_uncommon, judge_at_noise
 from tracewire.trace.options import TraceOptions
 
 from benchmarks.rigs.records import generate
@@ -101,3 +102,32 @@ def test_a_term_that_is_left_out_does_not_come_back_as_an_effect() -> None:
     smaller: Any = None
     ModelPool._extend_without(there, smaller)
     assert tried == [asked[1]]
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "effects", "length", "judged"),
+    [
+        (4.0, 1.1, 1, 900, "effect"),
+        (1.6, 1.4, 1, 900, None),  # a third of what was above the noise
+        (1.6, 1.4, 1, 100, "effect"),  # where the declared model does not bear such windows
+        (4.0, 1.1, 2, 900, "effect"),
+        (4.0, 1.1, 3, 900, None),  # three small laws follow any smooth force
+    ],
+)
+def test_at_the_noise_few_effects_take_most_of_what_was_above_it(
+    before: float,
+    after: float,
+    effects: int,
+    length: int,
+    judged: str | None,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    search: Any = SimpleNamespace(options=TraceOptions())
+    declared = SimpleNamespace(reduced_chi2=before, length=length, effects=())
+    best = SimpleNamespace(reduced_chi2=after, length=900, effects=("coulomb",) * effects)
+    final = SimpleNamespace(declared=declared, best=best)
+    monkeypatch.setattr(verdict, "is_slow_noise", lambda search, trial: False)
+    monkeypatch.setattr(verdict, "is_at_noise", lambda search, trial: True)
+    monkeypatch.setattr(verdict, "refine", lambda search, first, best: final)
+    found = judge_at_noise(search, declared, best)  # type: ignore[arg-type]
+    assert (found.verdict if found else None) == judged

@@ -94,16 +94,30 @@ def judge_at_noise(search: Search, first: Trial, best: Trial) -> Judgement | Non
     where neither is, so that models must be compared by what they predict.
 
     Windows whose starts are free swallow what is slower than they are: nothing is missing only
-    where the declared model is near the noise on the longest windows that it bears, too.
+    where the declared model is near the noise on the longest windows that it bears, too. Effects
+    must take the greater part of what was above the noise; and three small laws follow any smooth
+    force, so that three must predict.
     """
     slow = is_slow_noise(search, best)
     if not slow and not is_at_noise(search, best):
         return None
     final = refine(search, first, best)
     if final.best.effects:
-        return Judgement("effect", final)
+        few = len(final.best.effects) < search.options.many_effects
+        enough = _share_of_excess(final) >= search.options.explained
+        return Judgement("effect", final) if few and enough else None
     lost = final.best.length > best.length and final.best.reduced_chi2 > search.options.lost
     return Judgement("null", final) if slow or not lost else None
+
+
+def _share_of_excess(final: FinalModels) -> float:
+    """The share of what the declared model leaves above the noise that the best one takes away; all
+    where the declared one does not bear windows as long."""
+    before, after = final.declared, final.best
+    if before.length < after.length:
+        return 1.0
+    taken, above = before.reduced_chi2 - after.reduced_chi2, before.reduced_chi2 - 1
+    return taken / above if above > 0 else 0.0
 
 
 def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
