@@ -193,7 +193,7 @@ def test_effects_that_hardly_help_on_whole_unseen_runs_are_an_approximation(
     found = safeguards.safeguard(there, safeguards.Judgement("effect", final))
     assert found.verdict == verdict
     assert found.final is final
-    told = f"a model with {DRY} takes 8% of the excess squared error of whole unseen runs away"
+    told = f"a model with {DRY} takes 8 % of the excess squared error of whole unseen runs away"
     assert found.reason == (told if verdict == "unexplained" else "")
 
 

@@ -201,11 +201,11 @@ def _describe_shortfall(prediction: Prediction, share: float, surely: float) -> 
     options, trials = prediction.options, prediction.chosen.trials
     at_all = all(trial.reduced_chi2 <= options.at_noise for trial in trials)
     if share < options.explained or (surely < options.explained_surely and not at_all):
-        return f"takes {max(share, 0):.0%} of the excess error on held-out blocks away"
+        return f"takes {100 * max(share, 0):.0f} % of the excess error on held-out blocks away"
     left = error_left(prediction)
     if trials[-1].reduced_chi2 <= options.at_noise or left <= options.error_left:
         return ""
-    return f"leaves {left:.0%} of the error on held-out blocks"
+    return f"leaves {100 * left:.0f} % of the error on held-out blocks"
 
 
 def _only_uncommon(model: Finalist, options: TraceOptions) -> bool:
@@ -332,7 +332,7 @@ def _describe_law_left(
         return ""
     of = " and ".join(best.variables)
     return (
-        f"leaves a law of no block's form: {best.share:.1%} of the rest is a function of {of} at"
+        f"leaves a law of no block's form: {100 * best.share:.1f} % of the rest is a function of {of} at"
         f" {best.place}"
     )
 
