@@ -140,7 +140,8 @@ def _confirmed(search: Search, judgement: Judgement, final: FinalModels) -> Judg
     declared, best = final.declared, final.best
     share = share_of_whole_runs(search, declared, best)
     if share < search.options.whole_runs:
-        what = f"takes {100 * max(share, 0):.0f} % of the excess squared error of whole unseen runs away"
+        part = f"{100 * max(share, 0):.0f} %"
+        what = f"takes {part} of the excess squared error of whole unseen runs away"
     elif is_no_better_on_claim(search, declared, best):
         what = "lowers the error neither of windows nor of free runs in the part of the data that"
         what += " played no part"

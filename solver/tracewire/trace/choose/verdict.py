@@ -330,10 +330,9 @@ def _describe_law_left(
     left = 1 + (1 - best.share) * (trial.reduced_chi2 - 1)
     if left > options.at_noise and best.share < options.law_share:
         return ""
-    of = " and ".join(best.variables)
+    part, of = f"{100 * best.share:.1f} %", " and ".join(best.variables)
     return (
-        f"leaves a law of no block's form: {100 * best.share:.1f} % of the rest is a function of {of} at"
-        f" {best.place}"
+        f"leaves a law of no block's form: {part} of the rest is a function of {of} at {best.place}"
     )
 
 
