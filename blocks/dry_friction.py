@@ -72,6 +72,7 @@ asym_coulomb = Block(
         {"rate": "v"},
         shapes={"width": Shape((0.02, 0.1), of="V")},
         alias=("bias", "sensor_offset"),
+        both_signs=("v",),
     ),
 )
 

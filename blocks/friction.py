@@ -119,7 +119,7 @@ asym_viscous = Block(
         Parameter("c", doc="half the difference of the coefficients: N m s/rad, or N s/m"),
     ),
     outputs=(Output("force", "-c*abs(rate)", doc="acts on the body"),),
-    effect=Effect("c", {"rate": "v"}),
+    effect=Effect("c", {"rate": "v"}, both_signs=("v",)),
 )
 
 viscous_drift = Block(

@@ -56,7 +56,9 @@ asym_stiffness = Block(
     inputs=(OF,),
     parameters=(Parameter("k", doc="half the difference of the stiffnesses: N m/rad, or N/m"),),
     outputs=(Output("force", "-k*abs(of)", doc="acts on the body"),),
-    effect=Effect("k", {"of": "q"}, alias=("barrier_hi", "barrier_lo", "quad_stiffness")),
+    effect=Effect(
+        "k", {"of": "q"}, alias=("barrier_hi", "barrier_lo", "quad_stiffness"), both_signs=("q",)
+    ),
 )
 
 backlash = Block(

@@ -125,6 +125,7 @@ def test_a_program_is_told_the_same() -> None:
         "at": None,
         "alias": [],
         "lacking": [],
+        "both_signs": [],
     }
     effect = describe_json(library(), "backlash")["effect"]
     assert isinstance(effect, dict)

@@ -207,6 +207,8 @@ def _effect(block: Block) -> str:
             SYMBOLS[symbol].removesuffix(" of the place") for symbol in effect.lacking
         )
         parts.append(f"only where the place lacks {lacking}")
+    for symbol in effect.both_signs:
+        parts.append(f"only where {SYMBOLS[symbol]} takes both signs")
     told = f"An effect that a trace tries{where}: {'; '.join(parts)}."
     return told + (
         f"\nOn many records it looks like {', '.join(effect.alias)}." if effect.alias else ""
@@ -238,6 +240,7 @@ def _effect_json(effect: Effect) -> dict[str, object]:
         "at": None if effect.at is None else asdict(effect.at),
         "alias": list(effect.alias),
         "lacking": list(effect.lacking),
+        "both_signs": list(effect.both_signs),
     }
 
 

@@ -76,7 +76,9 @@ class Effect:
     each: shapes that every series has of its own, as the phase of a wave that no record follows.
     alias: names of other effects, or of a sensor's (`sensor_offset`), that imitate this one on many
     records; it counts both ways. lacking: the effect is tried only where a place has none of these
-    signals, since there is a better one for those that do.
+    signals, since there is a better one for those that do. both_signs: the effect is tried only
+    where these signals take both signs: elsewhere another law is the same, as a viscous friction is
+    where a body moves one way.
     """
 
     coefficient: str
@@ -89,3 +91,4 @@ class Effect:
     each: tuple[str, ...] = ()
     alias: tuple[str, ...] = ()
     lacking: tuple[Symbol, ...] = ()
+    both_signs: tuple[Symbol, ...] = ()

@@ -137,6 +137,9 @@ class CandidateOptions:
     """The least part of the largest rate that counts as resolved."""
     moves: float = 1e-3
     """Of the largest rate: what is slower rests."""
+    both_signs: float = 0.05
+    """Of the largest absolute value of a signal: what it reaches on the other side of zero, to take
+    both signs."""
     parts: tuple[float, ...] = (-1.3, -0.6, 0.4, 1.0, 1.4)
     """Of the root mean square of a signal: where the size of an effect is looked at."""
     variants: int = 160

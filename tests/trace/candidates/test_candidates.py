@@ -115,7 +115,7 @@ def test_levels_are_taken_over_all_series() -> None:
     long = Trajectory(np.array([5.0, 6, 7, 8]), {"x": np.array([0, 0, -4, 0.0])})
     levels = signal_scales_of([short, long], OPTIONS.candidate)
     assert levels.signals["x"] == SignalScale(
-        pytest.approx(5 / 7**0.5), 4.0, 4.0, 4.0, slowest=3.01
+        pytest.approx(5 / 7**0.5), 4.0, 4.0, 4.0, slowest=3.01, other_side=3.0
     )
     assert (levels.duration, levels.interval) == (3.0, 1.0)
     assert levels.of("unknown") == SignalScale(0.0, 0.0)
@@ -205,6 +205,25 @@ def test_levels_know_strokes_steps_and_slow_rates() -> None:
     assert levels.of("q").stroke == pytest.approx(3.0)
     assert levels.of("q").step == pytest.approx(0.003)
     assert levels.of("v").slowest == 3.0, "what rests is not slow"
+
+
+@pytest.mark.parametrize(
+    ("back", "tried"), [(1.0, True), (0.1, True), (0.01, False), (-0.5, False)]
+)
+def test_what_differs_by_direction_is_tried_where_a_body_moves_both_ways(
+    back: float, tried: bool
+) -> None:
+    """Elsewhere it is a friction like any other."""
+    t = np.linspace(0.0, 2.0, 200)
+    rate = np.where(t < 1, 1.0, -back) * (1 + 0.1 * np.sin(9 * t))
+    signals = {"theta": np.sin(t), "omega": rate, "torque": np.cos(t)}
+    levels = signal_scales_of([Trajectory(t, signals)], OPTIONS.candidate)
+    diagram = read_text(PENDULUM)
+    model, places = compile(diagram), find_places(compile(diagram))
+    known = named(find_candidates(model, places, levels, OPTIONS.candidate))
+    for name in ("asym_coulomb", "asym_viscous"):
+        assert (f"{name} @ torque" in known) is tried
+    assert "viscous @ torque" in known and "asym_stiffness @ torque" not in known
 
 
 def test_a_coupling_is_tried_with_each_other_body_and_names_are_unique() -> None:

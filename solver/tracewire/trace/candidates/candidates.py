@@ -131,6 +131,11 @@ def _candidate(
     own = own_values(effect.tone, sines.get(place.definition)) if effect.tone else {}
     if effect.tone and not own:
         return None
+    for port, symbol in effect.inputs.items():
+        read_there = signal_scales.of(signals[port])
+        least = options.both_signs * read_there.max
+        if symbol in effect.both_signs and read_there.other_side < least:
+            return None
     sizes = _sizes(effect, signals, place, signal_scales, options)
     shapes: dict[str, tuple[float, ...]] = {}
     limits: dict[str, tuple[float, float]] = {}

@@ -28,7 +28,8 @@ class SignalScale:
     """The size of a signal: its root mean square and its largest absolute value.
 
     stroke: the longest way in one direction. step: the way from one sample to the next, the median
-    of those that move. slowest: of a rate the smallest absolute value that is resolved.
+    of those that move. slowest: of a rate the smallest absolute value that is resolved. other_side:
+    the largest absolute value on the side of zero where it is smaller; infinite: not known.
     """
 
     rms: float
@@ -36,6 +37,7 @@ class SignalScale:
     stroke: float = 0.0
     step: float = 0.0
     slowest: float = 0.0
+    other_side: float = np.inf
 
 
 @dataclass(frozen=True)
@@ -85,6 +87,7 @@ def _signal_scale(parts: Sequence[Vector], options: CandidateOptions) -> SignalS
         float(np.max(ways, initial=0.0)),
         float(np.median(_moving(steps, options.moves))),
         float(np.quantile(_moving(np.abs(x), options.moves), options.resolved_rates)),
+        max(min(float(np.max(x)), -float(np.min(x))), 0.0),
     )
 
 
