@@ -14,6 +14,7 @@ from tracewire.trace.choose.finalists import ModelPool
 from tracewire.trace.choose.remainder import error_left
 from tracewire.trace.choose.verdict import _only_uncommon, judge_at_noise
 from tracewire.trace.options import TraceOptions
+from tracewire.trace.trials.bounds import AtBound
 
 from benchmarks.rigs.records import generate
 
@@ -131,3 +132,22 @@ def test_at_the_noise_few_effects_take_most_of_what_was_above_it(
     monkeypatch.setattr(verdict, "refine", lambda search, first, best: final)
     found = judge_at_noise(search, declared, best)  # type: ignore[arg-type]
     assert (found.verdict if found else None) == judged
+
+
+@pytest.mark.parametrize(
+    ("bound", "told"),
+    [
+        (AtBound("wave.pitch", "shape", 2.0, 0.1, 2.0, True, "rad", "wave @ torque"), True),
+        (AtBound("rub.width", "shape", 0.0, 0.0, 2.0, False, "rad/s", "rub @ torque"), False),
+        (AtBound("rub.level", "coefficient", 0.0, 0.0, 9.0, False, "N m", "rub @ torque"), False),
+        (AtBound("c", "parameter", 2.0, 0.0, 2.0, True), False),
+    ],
+)
+def test_an_effect_with_a_shape_on_its_bound_stands_for_another_law(
+    bound: AtBound, told: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """But a smoothing of 0, where the law is exact."""
+    monkeypatch.setattr(verdict, "at_bounds", lambda trial: [bound])
+    found = verdict._describe_shape_on_bound(SimpleNamespace())  # type: ignore[arg-type]
+    words = "stands for a law of another form: the pitch of wave @ torque sits on its bound"
+    assert found == (words if told else "")

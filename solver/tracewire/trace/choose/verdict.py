@@ -33,6 +33,7 @@ from tracewire.trace.missing.dependence import map_dependence
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.search.refinement import FinalModels, Rival, order_effects, refine
 from tracewire.trace.search.search import Search
+from tracewire.trace.trials.bounds import at_bounds
 from tracewire.trace.trials.trial import Trial
 
 
@@ -167,6 +168,7 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
         short = law or _describe_shortfall(prediction, share.share, share.share - error)
         if _only_uncommon(chosen, options):
             short = "stands for a law of another form: it has waves, drifts and their kin alone"
+        short = short or _describe_shape_on_bound(chosen.trials[-1])
         reason = f"{model_with(chosen.names)} {short}" if short else ""
         verdict = "unexplained" if reason else "effect"
         dependences, missing = (
@@ -192,6 +194,17 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
         noisy,
         reason if verdict == "unexplained" else "",
     )
+
+
+def _describe_shape_on_bound(trial: Trial) -> str:
+    """In words, that a shape of an effect sits on its bound, beyond which the record tells nothing:
+    the law has another form. '' where none does, or only where the law is exact."""
+    for one in at_bounds(trial):
+        if one.kind == "shape" and not one.exact:
+            shape = one.name.rpartition(".")[2]
+            what = f"the {shape} of {one.effect} sits on its bound"
+            return f"stands for a law of another form: {what}"
+    return ""
 
 
 def _describe_shortfall(prediction: Prediction, share: float, surely: float) -> str:
