@@ -139,15 +139,16 @@ def test_at_the_noise_few_effects_take_most_of_what_was_above_it(
     [
         (AtBound("wave.pitch", "shape", 2.0, 0.1, 2.0, True, "rad", "wave @ torque"), True),
         (AtBound("rub.width", "shape", 0.0, 0.0, 2.0, False, "rad/s", "rub @ torque"), False),
+        (AtBound("rub.way", "shape", 0.1, 0.1, 2.0, False, "rad", "rub @ torque"), False),
         (AtBound("rub.level", "coefficient", 0.0, 0.0, 9.0, False, "N m", "rub @ torque"), False),
         (AtBound("c", "parameter", 2.0, 0.0, 2.0, True), False),
     ],
 )
-def test_an_effect_with_a_shape_on_its_bound_stands_for_another_law(
+def test_an_effect_with_a_shape_on_its_upper_bound_stands_for_another_law(
     bound: AtBound, told: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """But a smoothing of 0, where the law is exact."""
+    """At a lower bound it is a simpler law, as an exact one where its smoothing is 0."""
     monkeypatch.setattr(verdict, "at_bounds", lambda trial: [bound])
     found = verdict._describe_shape_on_bound(SimpleNamespace())  # type: ignore[arg-type]
-    words = "stands for a law of another form: the pitch of wave @ torque sits on its bound"
+    words = "stands for a law of another form: the pitch of wave @ torque sits on its upper bound"
     assert found == (words if told else "")

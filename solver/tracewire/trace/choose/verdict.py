@@ -197,12 +197,12 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
 
 
 def _describe_shape_on_bound(trial: Trial) -> str:
-    """In words, that a shape of an effect sits on its bound, beyond which the record tells nothing:
-    the law has another form. '' where none does, or only where the law is exact."""
+    """In words, that a shape of an effect sits on its upper bound, beyond which the record tells
+    nothing: the law has another form. '' where none does. At a lower bound it is a simpler law."""
     for one in at_bounds(trial):
-        if one.kind == "shape" and not one.exact:
+        if one.kind == "shape" and one.upper:
             shape = one.name.rpartition(".")[2]
-            what = f"the {shape} of {one.effect} sits on its bound"
+            what = f"the {shape} of {one.effect} sits on its upper bound"
             return f"stands for a law of another form: {what}"
     return ""
 
