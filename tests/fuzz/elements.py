@@ -6,6 +6,7 @@ output of an element is linear in z, and so are the guards that end the mode.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
@@ -292,3 +293,44 @@ class System:
     start: Vector
     elements: Sequence[Element]
     clocks: Sequence[Clock] = ()
+
+
+def same(one: Vector, other: Vector) -> bool:
+    """Whether two rows have one surface."""
+    size = float(np.linalg.norm(one) * np.linalg.norm(other))
+    return bool(abs(abs(float(one @ other)) - size) < 1e-12 * size)
+
+
+def joined(elements: Sequence[Element]) -> list[Element]:
+    """The elements, with the switches on one surface that act alike as one.
+
+    It has one side, and one slide. Of two that do not act alike nobody knows the shares.
+    """
+    found: list[Element] = []
+    switches: list[Switch] = []
+    of: dict[int, tuple[Switch, float]] = {}
+    for element in elements:
+        if isinstance(element, Switch):
+            for known in switches:
+                alike = same(known.row, element.row) and same(known.into, element.into)
+                if alike and known.stick == element.stick:
+                    weight = element.level * math.copysign(1.0, float(known.row @ element.row))
+                    apart = float(known.into @ element.into) * weight < 0
+                    if apart and (known.friction or element.friction):
+                        raise Unclear("a friction holds what a relay drives away")
+                    known.into = known.into + weight * element.into
+                    of[id(element)] = known, weight
+                    break
+            else:
+                into, friction = element.level * element.into, element.friction
+                one = Switch(into, element.row, 1.0, element.stick, element.one, friction=friction)
+                switches.append(one)
+                found.append(one)
+                of[id(element)] = one, element.level
+        else:
+            found.append(element)
+    for element in found:
+        if isinstance(element, Reader) and element.of is not None:
+            element.of, weight = of[id(element.of)]
+            element.weight *= weight
+    return found

@@ -26,6 +26,8 @@ from fuzz.elements import (
     System,
     Unclear,
     Wave,
+    joined,
+    same,
 )
 from numpy.typing import NDArray
 
@@ -337,6 +339,7 @@ class Solution:
 
     def react(self) -> None:
         """What follows at the same instant: impacts, resets, plays that let go, modes."""
+        turned: set[int] = set()
         for _ in range(20):
             for element in self.system.elements:
                 if isinstance(element, Play) and element.leaves:
@@ -369,6 +372,7 @@ class Solution:
                     switch.met, switch.left = True, False
             self.hold()  # what a jump carries over zero fires when all modes stand still
             self.carry([e for e in self.system.elements if isinstance(e, Reset)])
+            self.turn(turned)
             if not self.due():
                 break
         else:
@@ -381,6 +385,21 @@ class Solution:
 
     def due(self) -> list[Reset]:
         return [e for e in self.system.elements if isinstance(e, Reset) and e.due]
+
+    def turn(self, turned: set[int]) -> None:
+        """Refuse to judge a guard at zero that is turned back and, at the same instant, forward.
+
+        `turned` are those that were turned back. The product lets such a guard fire again.
+        """
+        rate = self.field() @ self.z
+        for reset in (e for e in self.system.elements if isinstance(e, Reset)):
+            row = reset.guards()[0].row
+            if abs(float(row @ self.z)) > CLOSE:
+                continue
+            if float(row @ rate) < CLOSE:
+                turned.add(id(reset))
+            elif id(reset) in turned:
+                raise Unclear("a guard that is turned back and forward at one instant")
 
     def carry(self, elements: Sequence[Element]) -> None:
         """Let the guards act that a jump has carried over zero."""
@@ -455,44 +474,3 @@ def powers_of(matrix: Matrix) -> NDArray[np.float64]:
 def first(held: NDArray[np.bool_]) -> NDArray[np.int64]:
     """The first column of each row that holds; past the last one where none does."""
     return np.where(held.any(axis=1), held.argmax(axis=1), held.shape[1])
-
-
-def same(one: Vector, other: Vector) -> bool:
-    """Whether two rows have one surface."""
-    size = float(np.linalg.norm(one) * np.linalg.norm(other))
-    return bool(abs(abs(float(one @ other)) - size) < 1e-12 * size)
-
-
-def joined(elements: Sequence[Element]) -> list[Element]:
-    """The elements, with the switches on one surface that act alike as one.
-
-    It has one side, and one slide. Of two that do not act alike nobody knows the shares.
-    """
-    found: list[Element] = []
-    switches: list[Switch] = []
-    of: dict[int, tuple[Switch, float]] = {}
-    for element in elements:
-        if isinstance(element, Switch):
-            for known in switches:
-                alike = same(known.row, element.row) and same(known.into, element.into)
-                if alike and known.stick == element.stick:
-                    weight = element.level * math.copysign(1.0, float(known.row @ element.row))
-                    apart = float(known.into @ element.into) * weight < 0
-                    if apart and (known.friction or element.friction):
-                        raise Unclear("a friction holds what a relay drives away")
-                    known.into = known.into + weight * element.into
-                    of[id(element)] = known, weight
-                    break
-            else:
-                into, friction = element.level * element.into, element.friction
-                one = Switch(into, element.row, 1.0, element.stick, element.one, friction=friction)
-                switches.append(one)
-                found.append(one)
-                of[id(element)] = one, element.level
-        else:
-            found.append(element)
-    for element in found:
-        if isinstance(element, Reader) and element.of is not None:
-            element.of, weight = of[id(element.of)]
-            element.weight *= weight
-    return found

@@ -161,3 +161,26 @@ blocks:
   x: {{type: integrator, of: r}}
 """
     assert 0 <= run(text, method=method).final["x"] <= 2 * rate
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_body_that_is_struck_as_it_leaves_a_wall_meets_the_wall_again(method: str) -> None:
+    """A first impact turns it, a blow at the same instant sends it back: without a second impact
+    it would go through the wall."""
+    found = run(
+        """
+        span: [0, 2]
+        blocks:
+          x: {type: integrator, of: v, start: 1}
+          v: {type: integrator, of: none, start: -1}
+          impacts: {type: integrator, of: none}
+          blows: {type: integrator, of: none}
+          none: {type: constant, value: 0}
+          struck: {type: expression, formula: impacts - 0.5}
+        events:
+          - {when: x, crosses: down, set: {v: -0.5*v, impacts: impacts + 1}}
+          - {when: struck, crosses: up, set: {v: -v, blows: blows + 1}}
+        """,
+        method=method,
+    )
+    assert found.final == pytest.approx({"x": 0.25, "v": 0.25, "impacts": 2, "blows": 1}, abs=1e-9)
