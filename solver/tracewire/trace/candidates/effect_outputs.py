@@ -13,12 +13,13 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model, compile
 from tracewire.diagram import BlockUse, Diagram, InputPort, Value, Wire
+from tracewire.errors import FormulaError, TracewireError
 from tracewire.errors import Place as Spot
-from tracewire.errors import TracewireError
 from tracewire.formula import Number
 from tracewire.solve import Interrupted, simulate
 from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.signal_scales import Trajectory
+from tracewire.trace.candidates.static_outputs import is_static, static_outputs
 from tracewire.trace.thresholds import CandidateOptions
 
 Vector = NDArray[np.float64]
@@ -61,19 +62,25 @@ def effect_outputs(
     """The output of each variant of each candidate along each trajectory, shape (N,).
 
     The output is that of the coefficient 1; where it is not linear in the coefficient, that of
-    `candidate.at`, divided by it. The blocks run on the recorded signals, joined by straight
-    lines, memory and all. Candidates at sensors are passed over, and so are variants that put out
-    nothing, or cannot be computed; `tell` gets the reason where that is so of all variants of a
-    candidate. Raises Interrupted: Ctrl-C.
+    `candidate.at`, divided by it. Effects without memory are evaluated at the samples; other blocks
+    run on the recorded signals, joined by straight lines. Candidates at sensors are passed over,
+    and so are variants that put out nothing, or cannot be computed; `tell` gets the reason where
+    that is so of all variants of a candidate. Raises Interrupted: Ctrl-C.
     """
-    variants = [
-        v for c in candidates if c.place.kind != "sensor" for v in variants_of(c, options.variants)
-    ]
+    variants: list[Variant] = []
     found: dict[Variant, list[Vector]] = {}
     # memories need shorter steps, and may fail: the others shall not pay for that
     groups: dict[str, list[Variant]] = {}
-    for variant in variants:
-        groups.setdefault(_memory(model.diagram, variant.candidate.effect), []).append(variant)
+    for candidate in (c for c in candidates if c.place.kind != "sensor"):
+        own = variants_of(candidate, options.variants)
+        variants += own
+        try:
+            known = _evaluate_outputs(model.diagram, candidate, own, trajectories)
+        except FormulaError:  # a run says why, or can do it
+            known = {}
+        found |= known
+        if not known:
+            groups.setdefault(_memory(model.diagram, candidate.effect), []).extend(own)
     failed: dict[str, str] = {}
     queue = list(groups.values())
     while queue:
@@ -99,6 +106,20 @@ def _memory(diagram: Diagram, effect: str) -> str:
         return effect
     block = diagram.library[effect]
     return "modes" if block.modes else "states" if block.states else ""
+
+
+def _evaluate_outputs(
+    diagram: Diagram,
+    candidate: Candidate,
+    variants: Sequence[Variant],
+    trajectories: Sequence[Trajectory],
+) -> dict[Variant, list[Vector]]:
+    """The outputs of the variants of a candidate without memory; of one with memory nothing."""
+    if not is_static(diagram, candidate.effect):
+        return {}
+    choices = [dict(variant.shapes) for variant in variants]
+    outputs = [static_outputs(diagram, candidate, choices, run) for run in trajectories]
+    return {v: [run[:, n] for run in outputs] for n, v in enumerate(variants)}
 
 
 def _simulate_outputs(

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import TracewireError
-from tracewire.formula import evaluate_along
 from tracewire.residual import Windows
 from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.signal_scales import Trajectory
+from tracewire.trace.candidates.static_outputs import static_outputs
 from tracewire.trace.thresholds import CandidateOptions
 
 Vector = NDArray[np.float64]
@@ -88,7 +88,7 @@ def _peaks(
     angle = model.flat.units.get(candidate.place.q) == "rad"
     near = candidate.scan_grid.get(shape)
     lengths = np.array(near) if near else _lengths(*candidate.limits[shape], angle, options)
-    falls = []
+    parts = []
     for first in range(0, len(lengths), TOGETHER):
         some = lengths[first : first + TOGETHER]
         torques = [
@@ -96,8 +96,9 @@ def _peaks(
             for run, samples in zip(runs, used, strict=True)
         ]
         columns = answer(candidate.place.name, torques)
-        falls += [_rss_reduction(part, residual) for part in np.split(columns, len(some), axis=1)]
-    scores = np.array(falls)
+        groups = np.moveaxis(columns.reshape(len(columns), len(some), -1), 0, 1)
+        parts.append(_rss_reductions(groups, residual))
+    scores = np.concatenate(parts)
     ahead = np.r_[-np.inf, scores[:-1]], np.r_[scores[1:], -np.inf]
     peaks = np.flatnonzero((scores >= ahead[0]) & (scores >= ahead[1]))
     best = peaks[np.argsort(-scores[peaks])][: options.wave_peaks]
@@ -125,28 +126,21 @@ def _outputs(
 ) -> Matrix:
     """The outputs (N, lengths * phases) of the effect, with each length and each other shape; zero
     but at the samples asked for."""
-    block = model.diagram.library[candidate.effect]
-    (formula,) = block.formulas.values()
-    defaults = {p.name: p.default for p in block.parameters if isinstance(p.default, float | int)}
-    known: dict[str, float | Vector] = {**defaults, candidate.parameter: candidate.at}
-    known |= {port: run.signals[name][samples, None] for port, name in candidate.signals.items()}
-    known["t"] = run.t[samples, None]
     rest = {n: g for n, g in candidate.shapes.items() if n != shape}
     # all phases, which may be negative, but of a width only the first
     grids = [grid if candidate.limits[n][0] < 0 else grid[:1] for n, grid in rest.items()]
-    choices = np.array(list(product(lengths.tolist(), *grids)))
-    known |= dict(zip((shape, *rest), choices.T, strict=True))
-    found = np.zeros((len(run.t), len(choices)))
-    found[samples] = evaluate_along(formula, known, (len(samples), len(choices))) / candidate.at
-    return found
+    choices = [
+        dict(zip((shape, *rest), values, strict=True))
+        for values in product(lengths.tolist(), *grids)
+    ]
+    return static_outputs(model.diagram, candidate, choices, run, samples)
 
 
-def _rss_reduction(columns: Matrix, residual: Vector) -> float:
-    """By how much columns together lower the sum of squares of a residual."""
-    sizes = np.linalg.norm(columns, axis=0)
-    kept = columns[:, sizes > 0] / sizes[sizes > 0]
-    if not kept.size:
-        return 0.0
+def _rss_reductions(columns: Matrix, residual: Vector) -> Vector:
+    """By how much each group of columns (groups, M, k) together lowers the sum of squares of a
+    residual, (groups,)."""
+    sizes = np.linalg.norm(columns, axis=1, keepdims=True)
+    kept = np.divide(columns, sizes, out=np.zeros_like(columns), where=sizes > 0)
     left, singular, _ = np.linalg.svd(kept, full_matrices=False)
-    basis = left[:, singular > 1e-6 * singular[0]]
-    return float(np.sum((basis.T @ residual) ** 2))
+    parts = np.einsum("gmk,m->gk", left, residual) * (singular > 1e-6 * singular[:, :1])
+    return np.asarray(np.sum(parts**2, axis=1))
