@@ -141,6 +141,8 @@ def _rss_reductions(columns: Matrix, residual: Vector) -> Vector:
     residual, (groups,)."""
     sizes = np.linalg.norm(columns, axis=1, keepdims=True)
     kept = np.divide(columns, sizes, out=np.zeros_like(columns), where=sizes > 0)
-    left, singular, _ = np.linalg.svd(kept, full_matrices=False)
-    parts = np.einsum("gmk,m->gk", left, residual) * (singular > 1e-6 * singular[:, :1])
-    return np.asarray(np.sum(parts**2, axis=1))
+    across = np.swapaxes(kept, 1, 2)
+    squared, directions = np.linalg.eigh(across @ kept)  # few columns: their products are enough
+    parts = np.einsum("gkj,gk->gj", directions, across @ residual) ** 2
+    shown = squared > 1e-12 * squared[:, -1:]
+    return np.asarray(np.sum(np.divide(parts, squared, np.zeros_like(parts), where=shown), axis=1))
