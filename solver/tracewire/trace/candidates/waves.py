@@ -96,7 +96,7 @@ def _peaks(
             for run, samples in zip(runs, used, strict=True)
         ]
         columns = answer(candidate.place.name, torques)
-        groups = np.moveaxis(columns.reshape(len(columns), len(some), -1), 0, 1)
+        groups = columns.reshape(len(columns), len(some), -1)
         parts.append(_rss_reductions(groups, residual))
     scores = np.concatenate(parts)
     ahead = np.r_[-np.inf, scores[:-1]], np.r_[scores[1:], -np.inf]
@@ -137,12 +137,16 @@ def _outputs(
 
 
 def _rss_reductions(columns: Matrix, residual: Vector) -> Vector:
-    """By how much each group of columns (groups, M, k) together lowers the sum of squares of a
-    residual, (groups,)."""
-    sizes = np.linalg.norm(columns, axis=1, keepdims=True)
-    kept = np.divide(columns, sizes, out=np.zeros_like(columns), where=sizes > 0)
-    across = np.swapaxes(kept, 1, 2)
-    squared, directions = np.linalg.eigh(across @ kept)  # few columns: their products are enough
-    parts = np.einsum("gkj,gk->gj", directions, across @ residual) ** 2
+    """By how much each group of columns (M, groups, k) together lowers the sum of squares of a
+    residual, (groups,): by their products, as k is 1 or 2."""
+    count = range(columns.shape[2])
+    products = np.array(
+        [[np.einsum("mg,mg->g", columns[..., i], columns[..., j]) for i in count] for j in count]
+    ).transpose(2, 0, 1)
+    sizes = np.sqrt(np.einsum("gkk->gk", products))
+    sizes[sizes == 0] = 1.0
+    along = np.einsum("mgk,m->gk", columns, residual) / sizes
+    squared, directions = np.linalg.eigh(products / (sizes[:, :, None] * sizes[:, None, :]))
+    parts = np.einsum("gkj,gk->gj", directions, along) ** 2
     shown = squared > 1e-12 * squared[:, -1:]
     return np.asarray(np.sum(np.divide(parts, squared, np.zeros_like(parts), where=shown), axis=1))
