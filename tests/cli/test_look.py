@@ -95,6 +95,7 @@ def test_check_tells_what_is_done_to_the_data_and_what_is_odd(call: Any, swing: 
     (series,) = call("check", swing, "--json").data["measured"]
     assert series["steps"] == ["time: from ms to s, as the header says"]
     assert series["remarks"][0].startswith("the time step is not regular: 0.4 to 1 s, median 0.5 s")
+    assert series["remarks"][-1] == "4 samples: a trace needs 40 at least"
 
 
 def test_check_tells_the_noise_that_is_declared_in_si(call: Any, swing: Path) -> None:

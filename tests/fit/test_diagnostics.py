@@ -54,6 +54,14 @@ def test_an_effect_that_the_model_lacks_is_told_with_its_size_and_memory() -> No
     assert found.sign_changes < 1e-6
 
 
+def test_a_series_that_is_too_short_for_a_trace_is_not_sent_there() -> None:
+    t = np.linspace(0.0, 2.6, 39)
+    record = 2 * t + 1 + 0.5 * np.sin(2 * np.pi * t / 1.3)
+    found = fit(made(LINE), [series(record, t=t, sigma={"x": 0.01})], method="least_squares")
+    (told,) = diagnose(found)
+    assert "a series is too short for `tracewire trace` below 40 samples" in told.words
+
+
 def test_noise_larger_than_declared_is_no_missing_effect() -> None:
     found = one(0.1 * np.random.default_rng(3).standard_normal(601), sigma={"x": 0.02})
     assert found.declared

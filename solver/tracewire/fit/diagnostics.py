@@ -15,6 +15,7 @@ from tracewire.fit.limits import DIAGNOSIS
 from tracewire.fit.result import Comparison, Fit
 from tracewire.formula import Expression, evaluate, names_of
 from tracewire.residual import (
+    WINDOW,
     InputNoise,
     Measured,
     NoiseEstimate,
@@ -283,7 +284,11 @@ def _with_words(found: Diagnosis, measured: Measured) -> Diagnosis:
     elif found.size > limit and not (found.is_white and not depends):
         words = f"the residual is {times:.2g} times the {source}"
         words += "" if found.is_white else f" and {over}"
-        words += ": something is missing; `tracewire trace` looks for it"
+        words += ": something is missing; "
+        if len(measured.t) < WINDOW.traced:
+            words += f"a series is too short for `tracewire trace` below {WINDOW.traced} samples"
+        else:
+            words += "`tracewire trace` looks for it"
     elif found.size > limit:
         words = f"the residual is {times:.2g} times the {source}, yet white: the noise is larger"
         words += " than declared" if found.declared else " than its differences tell"

@@ -139,6 +139,8 @@ INPUT = InputLimits()
 class WindowLimits:
     """Of windows and their fitted initial states."""
 
+    traced: int = 40
+    """Samples of a series, at least, in which a missing effect can be traced."""
     points: int = 17
     """Samples around a start through which a polynomial is laid."""
     degree: int = 4

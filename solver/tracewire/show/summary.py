@@ -132,11 +132,17 @@ def contents(model: Model) -> dict[str, object]:
 
 def series_contents(series: Measured, units: Mapping[str, str]) -> dict[str, object]:
     """What is in a measured series; `units` are those of the signals in SI."""
+    from tracewire.residual import WINDOW  # a check without series reads no residuals
+
     noises = {**series.sigma, **series.input_sigma}
     sigma = {name: value for name, value in noises.items() if value is not None}
     told = [
         f"{name}: noise of σ = {s:.4g} {units.get(name, '')}".rstrip() for name, s in sigma.items()
     ]
+    short = []
+    if len(series.t) < WINDOW.traced:
+        words = f"{len(series.t)} samples: a trace needs {WINDOW.traced} at least"
+        short.append(words)
     return {
         "name": series.name,
         "series": series.series,
@@ -150,7 +156,7 @@ def series_contents(series: Measured, units: Mapping[str, str]) -> dict[str, obj
         "sigma": sigma,
         "steps": list(series.steps),
         "noise": told,
-        "remarks": list(series.remarks),
+        "remarks": [*series.remarks, *short],
     }
 
 

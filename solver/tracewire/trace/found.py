@@ -372,8 +372,8 @@ class Found(Result):
 
         effects: those to add, by their texts (`coulomb @ torque`); None adds all that the verdict
         names, and so no partial approximation. The parameters were refitted with all of them: after
-        a choice, fit again. Raises OptionError: no such
-        effect, or a choice from a trace that was loaded; ValueError: another diagram.
+        a choice, fit again. Raises OptionError: no such effect, or a choice from a trace that was
+        loaded; ValueError: another diagram.
         """
         if diagram is not None and diagram.text != self.original.text:
             raise ValueError("the diagram has changed since it was traced: trace it again")

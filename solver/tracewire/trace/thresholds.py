@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tracewire.residual import WINDOW
+
 
 @dataclass(frozen=True)
 class SplitOptions:
@@ -42,7 +44,7 @@ class SplitOptions:
 class CheckOptions:
     """From when on a record, or the declared model, is not fit to be traced."""
 
-    least_samples: int = 40
+    least_samples: int = WINDOW.traced
     """Samples of a series, at least."""
     above_noise: float = 1.5
     """A signal that spreads less than this many times its noise shows nothing else."""
