@@ -24,8 +24,8 @@ class SplitOptions:
     validated: float = 1 / 6
     """The part at the end of a series that is held back for the final claim."""
     moving: float = 0.02
-    """The part of its range in the rest of the run that a signal moves through in what is held
-    back; where all move less, the free runs there are said to tell little."""
+    """The part of its range that a signal still moves through at the end of a run; where all move
+    less, the run has come to rest."""
     shortest: int = 16
     """Samples of the shortest window, at least."""
     in_a_period: float = 5.0

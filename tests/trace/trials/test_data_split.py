@@ -33,13 +33,24 @@ def test_of_a_lone_series_no_sample_is_used_twice() -> None:
     )
 
 
-def test_a_run_that_ends_at_rest_is_told() -> None:
-    """The claim on its last sixth would be one about a body at rest."""
-    swing, still = record(damping=0.2), record(damping=3.0)
-    said = "nothing moves in the last sixth of 'swing', so that the free runs there tell little"
-    assert not [words for words in split_data([swing], OPTIONS.split).words if said in words]
-    (words,) = (words for words in split_data([still], OPTIONS.split).words if said in words)
-    assert words.endswith("name another run under `measured:`, with `use: validate`")
+def test_the_claim_on_a_run_that_ends_at_rest_is_made_where_it_moves() -> None:
+    """On the last sixth of all it would be one about a body at rest."""
+    still = record(damping=1.0)
+    found = split_data([still], OPTIONS.split)
+    (claim,) = found.validate
+    x = still.values["x"]
+    moving = next(n for n in range(len(x)) if np.ptp(x[n:]) <= 0.02 * np.ptp(x))
+    assert claim.first == pytest.approx(5 / 6 * moving, rel=0.1)
+    assert claim.end - claim.first == pytest.approx(2 / 6 * moving, rel=0.1)
+    assert max(rows(found.train).max(), rows(found.gate).max()) < claim.first
+    assert found.words[0].startswith("the last sixth of 'swing' before it rests, at ")
+
+
+def test_a_run_that_hardly_moves_before_it_rests_is_cut_as_a_whole() -> None:
+    hit = record()
+    hit.values["x"][:] = np.where(np.arange(len(hit.t)) < 20, 1.0, 0.0)
+    (claim,) = split_data([hit], OPTIONS.split).validate
+    assert claim.end == len(hit.t) and claim.first == int(len(hit.t) * 5 / 6)
 
 
 def test_series_that_have_a_use_keep_it_whole() -> None:

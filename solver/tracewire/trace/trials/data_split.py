@@ -65,7 +65,9 @@ def split_data(measured: Sequence[Measured], options: SplitOptions) -> DataSplit
     """The sections of the measured series.
 
     Without a series for it, every third ninth of the train series is the gate (the last third where
-    a ninth is too short for a window), and the last sixth is held back for the final claim.
+    a ninth is too short for a window), and the last sixth is held back for the final claim. Of a
+    run that ends at rest these are parts of its moving part, and the claim goes on into the rest
+    for as long again: that a model comes to rest counts, how long it lies there does not.
 
     Raises DataError where a gate or validate series measures what no train series does.
     """
@@ -80,16 +82,16 @@ def split_data(measured: Sequence[Measured], options: SplitOptions) -> DataSplit
     validate = [Section(m, 0, len(m.t)) for m in by_use["validate"]]
     words = []
     for m in by_use["train"]:
-        end = len(m.t) if by_use["validate"] else int(len(m.t) * (1 - options.validated))
+        end = len(m.t)
         if not by_use["validate"]:
+            moving = _moving_samples(m, options)
+            end, claimed = int(moving * (1 - options.validated)), len(m.t)
             last = f"the last {_part(options.validated)} of '{m.name}'"
+            if moving < len(m.t):
+                last += f" before it rests, at {m.t[moving]:.4g} s,"
+                claimed = min(2 * moving - end, claimed)
             words.append(f"{last} is held back for the final claim")
-            if not _moves(m, end, options.moving):
-                words.append(
-                    f"nothing moves in {last}, so that the free runs there tell little: name"
-                    " another run under `measured:`, with `use: validate`"
-                )
-            validate.append(Section(m, end, len(m.t)))
+            validate.append(Section(m, end, claimed))
         if by_use["gate"]:
             train.append(Section(m, 0, end))
             continue
@@ -123,10 +125,18 @@ def shortest_window(data_split: DataSplit, options: SplitOptions) -> int:
     return int(np.clip(np.median(lengths) / options.in_a_period, options.shortest, longest))
 
 
-def _moves(measured: Measured, end: int, least: float) -> bool:
-    """Whether any signal moves from a sample on, by a part of its range before."""
-    ranges = [(y[end:], usual_range(y[:end])) for y in measured.values.values()]
-    return any(np.ptp(rest) > least * (high - low) for rest, (low, high) in ranges)
+def _moving_samples(measured: Measured, options: SplitOptions) -> int:
+    """The samples before all signals rest: from there on each moves through no more than a part of
+    its range. All, where the rest is shorter than a claim, or too few would be left."""
+    last = 0
+    for y in measured.values.values():
+        low, high = usual_range(y)
+        behind = y[::-1]
+        ranges = (np.maximum.accumulate(behind) - np.minimum.accumulate(behind))[::-1]
+        last = max(last, int(np.count_nonzero(ranges > options.moving * (high - low))))
+    count, share = len(measured.t), 1 - options.validated
+    enough = share * last >= options.few_blocks * options.shortest
+    return last if enough and last <= share * count else count
 
 
 def _part(part: float) -> str:
