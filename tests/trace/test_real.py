@@ -66,7 +66,7 @@ def test_a_small_swing_sticks(folder: Path) -> None:
     assert found.explained is not None and found.explained.low > 0.9
     (swing,) = (e for e in found.errors if (e.use, e.kind) == ("train", "free run"))
     assert swing.after < 0.2 * swing.before
-    assert any("before it rests" in words for words in found.words)
+    assert any("before it settles" in words for words in found.words)
 
 
 def test_a_motor_has_seven_waves_of_torque_on_a_turn(folder: Path) -> None:

@@ -43,7 +43,7 @@ def test_the_claim_on_a_run_that_ends_at_rest_is_made_where_it_moves() -> None:
     assert claim.first == pytest.approx(5 / 6 * moving, rel=0.1)
     assert claim.end - claim.first == pytest.approx(2 / 6 * moving, rel=0.1)
     assert max(rows(found.train).max(), rows(found.gate).max()) < claim.first
-    assert found.words[0].startswith("the last sixth of 'swing' before it rests, at ")
+    assert found.words[0].startswith("the last sixth of 'swing' before it settles, at ")
 
 
 def test_a_run_that_hardly_moves_before_it_rests_is_cut_as_a_whole() -> None:

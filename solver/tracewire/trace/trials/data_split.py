@@ -88,7 +88,7 @@ def split_data(measured: Sequence[Measured], options: SplitOptions) -> DataSplit
             end, claimed = int(moving * (1 - options.validated)), len(m.t)
             last = f"the last {_part(options.validated)} of '{m.name}'"
             if moving < len(m.t):
-                last += f" before it rests, at {m.t[moving]:.4g} s,"
+                last += f" before it settles, at {m.t[moving]:.4g} s,"
                 claimed = min(2 * moving - end, claimed)
             words.append(f"{last} is held back for the final claim")
             validate.append(Section(m, end, claimed))
@@ -126,8 +126,8 @@ def shortest_window(data_split: DataSplit, options: SplitOptions) -> int:
 
 
 def _moving_samples(measured: Measured, options: SplitOptions) -> int:
-    """The samples before all signals rest: from there on each moves through no more than a part of
-    its range. All, where the rest is shorter than a claim, or too few would be left."""
+    """The samples before all signals settle: from there on each moves through no more than a part of
+    its range. All, where what follows is shorter than a claim, or too few would be left."""
     last = 0
     for y in measured.values.values():
         low, high = usual_range(y)
