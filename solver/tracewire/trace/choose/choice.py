@@ -126,18 +126,18 @@ def choose(
     """The simplest model that predicts as well as the best, pruned; model 0 is the declared one.
 
     Only models that are surely better than the declared one are compared, where there are any; none
-    that fits more numbers beyond those of the declared one than every second block can judge, and
+    that fits as many numbers more than the declared one as half of the blocks that judge them, and
     none that has more squared error at each horizon.
     scores: S, (models, horizons, families of folds, blocks); not finite where a model does not run.
     folds: the blocks that one fit predicts, by family.
     """
     tolerance = float(np.log1p(options.near))
     totals = scores.mean(axis=(1, 2))
-    most = entrants[0].numbers + options.numbers_a_block * totals.shape[-1]
+    many = entrants[0].numbers + options.numbers_a_block * totals.shape[-1]
     usable = [
         n
         for n in _usable(totals)
-        if n == 0 or (entrants[n].numbers <= most and min(entrants[n].left, default=0.0) < 1)
+        if n == 0 or (entrants[n].numbers < many and min(entrants[n].left, default=0.0) < 1)
     ]
     surer = [n for n in usable if n and is_sure(totals, 0, n, options)]
     among = surer or usable
