@@ -126,8 +126,8 @@ def shortest_window(data_split: DataSplit, options: SplitOptions) -> int:
 
 
 def _moving_samples(measured: Measured, options: SplitOptions) -> int:
-    """The samples before all signals settle: from there on each moves through no more than a part of
-    its range. All, where what follows is shorter than a claim, or too few would be left."""
+    """The samples before all signals settle: from there on each moves through no more than a part
+    of its range. All, where what follows is shorter than a claim, or too few would be left."""
     last = 0
     for y in measured.values.values():
         low, high = usual_range(y)
