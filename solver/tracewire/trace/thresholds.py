@@ -158,6 +158,9 @@ class CandidateOptions:
     """Waves in the longest way of the coordinate, at most."""
     lengths_a_wave: int = 2
     """Lengths that are scanned for each wave more on the way."""
+    scanned: int = 6000
+    """Residuals on which the lengths of waves are scanned; of a longer record those of windows that
+    are spread evenly over it."""
     wave_peaks: int = 6
     """Lengths of the best waves that are tried first."""
     line_chance: float = 1e-3

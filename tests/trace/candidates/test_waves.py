@@ -14,6 +14,7 @@ from tracewire.trace.candidates.signal_scales import signal_scales_of
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import ScreenRow, screen_candidates
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
+from tracewire.trace.thresholds import CandidateOptions
 
 OPTIONS = TraceOptions()
 
@@ -52,11 +53,13 @@ def turned(teeth: float, amplitude: float, rubbing: float = 0.0) -> Measured:
     return Measured("run", "train", T, {"x": x}, start={"x": None, "w": None}, inputs=inputs)
 
 
-def best_row(record: Measured, effect: str, unit: str = "rad") -> ScreenRow:
+def best_row(
+    record: Measured, effect: str, unit: str = "rad", options: TraceOptions = OPTIONS
+) -> ScreenRow:
     problem = problem_of(record, text=ROTOR.replace("UNIT", unit), sigma=5e-4)
     trial = trial_of(problem, length=40)
     places = find_places(problem.declared)
-    linearisation = TorqueLinearisation(trial.diagram, trial.windows, places, 1e-6, OPTIONS)
+    linearisation = TorqueLinearisation(trial.diagram, trial.windows, places, 1e-6, options)
     known: list[Candidate] = find_candidates(
         problem.declared,
         places,
@@ -82,3 +85,10 @@ def test_a_pitch_that_is_no_part_of_a_turn_is_found_nearly() -> None:
 def test_friction_that_comes_back_with_the_way_is_scanned_too() -> None:
     row = best_row(turned(5, 0.0, rubbing=1.5), "position_friction")
     assert row.shapes["pitch"] == pytest.approx(2 * np.pi / 5, rel=0.02)
+
+
+def test_in_a_long_record_a_part_of_the_windows_tells_the_length() -> None:
+    """A tenth of these residuals shows as many teeth as all of them."""
+    few = TraceOptions(candidate=CandidateOptions(scanned=len(T) // 10))
+    row = best_row(turned(12, 2.0), "cogging", options=few)
+    assert row.shapes["pitch"] == pytest.approx(2 * np.pi / 12, rel=1e-9)

@@ -21,16 +21,20 @@ def project_out_starts(
     views: Sequence[Projection],
     torques: Mapping[str, Sequence[Matrix]],
     every: int = 1,
+    chosen: Sequence[int] | None = None,
 ) -> tuple[Matrix, Vector]:
-    """What torques by place do to the residuals, as rows (K, M) without what the starts of windows
-    imitate, of every so many residuals of a window; and the squares (K,) of them with it.
+    """What torques by place do to the residuals of all windows, or of those `chosen`, as rows
+    (K, M) without what the starts of windows imitate, of every so many residuals of a window; and
+    the squares (K,) of them with it.
 
     Window by window: all of them are much memory. Rows are scaled so that squares stay the same.
     """
+    numbers = range(len(views)) if chosen is None else chosen
     count = sum(given[0].shape[1] for given in torques.values())
-    size = sum(-(-len(view.basis) // every) for view in views)
+    size = sum(-(-len(views[n].basis) // every) for n in numbers)
     rows, whole, first = np.empty((count, size)), np.zeros(count), 0
-    for window, view in zip(linearisation.window_pieces, views, strict=True):
+    for n in numbers:
+        window, view = linearisation.window_pieces[n], views[n]
         columns = linearisation.window_response(window, torques)
         whole += np.einsum("ij,ij->j", columns, columns)
         shown = view.project_out(columns)[::every] * every**0.5

@@ -229,24 +229,11 @@ def screen_candidates(
     basis, rest = orthonormal(unknowns), residual
     residual = residual - basis @ (basis.T @ residual)
 
-    def answer(place: str, torques: Sequence[Matrix]) -> Matrix:
-        rows, _ = project_out_starts(linearisation, windows.projections, {place: torques}, every)
-        return project_out(rows, basis).T
-
-    model = windows.criterion.model
     measured = as_measured(windows, linearisation.trajectories)
     options = linearisation.options
     candidates = with_lines(candidates, windows, measured, options.candidate)
     if scan:
-        candidates = scan_waves(
-            model,
-            candidates,
-            measured,
-            linearisation.used_samples,
-            residual,
-            answer,
-            options.candidate,
-        )
+        candidates = _scan(linearisation, candidates, measured, every, unknowns, rest)
     reduced, whole, variants = _rows(linearisation, candidates, measured, every, tell)
     with np.errstate(over="ignore", invalid="ignore"):  # answers that grow without bounds
         is_seen = _squares(reduced) >= SEEN * whole
@@ -267,6 +254,41 @@ def screen_candidates(
     names = tuple(run.series for run in linearisation.trajectories)
     rows = [_row(columns, group, names) for group in _groups(variants)]
     return Screen(columns, tuple(rows), kept, windows.values)
+
+
+def _scan(
+    linearisation: TorqueLinearisation,
+    candidates: Sequence[Candidate],
+    measured: Sequence[Trajectory],
+    every: int,
+    unknowns: Matrix,
+    residual: Vector,
+) -> list[Candidate]:
+    """The candidates, waves with the lengths that promise most on windows that are spread evenly
+    over the record, the first of each series among them. The rows of `unknowns` and `residual` are
+    every so many of each window."""
+    windows, options = linearisation.windows, linearisation.options.candidate
+    sizes = np.array([-(-near.residual.size // every) for near in windows.linearisations])
+    apart = -(-int(sizes.sum()) // options.scanned)
+    of_series = {number: n for n, number in reversed(list(enumerate(linearisation.series)))}
+    chosen = sorted({*range(0, len(sizes), apart), *of_series.values()})
+    used = np.isin(np.repeat(np.arange(len(sizes)), sizes), chosen)
+    basis = orthonormal(unknowns[used])
+
+    def answer(place: str, torques: Sequence[Matrix]) -> Matrix:
+        given = {place: torques}
+        rows, _ = project_out_starts(linearisation, windows.projections, given, every, chosen)
+        return project_out(rows, basis).T
+
+    return scan_waves(
+        windows.criterion.model,
+        candidates,
+        measured,
+        linearisation.samples_in(chosen),
+        residual[used] - basis @ (basis.T @ residual[used]),
+        answer,
+        options,
+    )
 
 
 def _with_bounds(

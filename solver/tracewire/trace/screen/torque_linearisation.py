@@ -121,12 +121,11 @@ class TorqueLinearisation:
         found.along_data = True
         return found
 
-    @property
-    def used_samples(self) -> list[NDArray[np.intp]]:
-        """The samples of each series in its windows."""
-        found: list[list[NDArray[np.intp]]] = [[] for _ in self.trajectories]
-        for window, number in zip(self.window_pieces, self.series, strict=True):
-            found[number].append(window.samples)
+    def samples_in(self, windows: Sequence[int]) -> list[NDArray[np.intp]]:
+        """The samples of each series in these windows, by number."""
+        found = [[np.zeros(0, dtype=np.intp)] for _ in self.trajectories]
+        for n in windows:
+            found[self.series[n]].append(self.window_pieces[n].samples)
         return [np.unique(np.concatenate(samples)) for samples in found]
 
     @property
