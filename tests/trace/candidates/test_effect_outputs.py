@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from tracewire.diagram import read_text
 from tracewire.solve import Interrupted
 from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.candidates import find_candidates
-from tracewire.trace.candidates.effect_outputs import effect_outputs, variants_of
+from tracewire.trace.candidates.effect_outputs import Variant, effect_outputs, variants_of
 from tracewire.trace.candidates.places import find_places
 from tracewire.trace.candidates.signal_scales import Trajectory, signal_scales_of
 from tracewire.trace.options import TraceOptions
@@ -50,6 +51,29 @@ def candidates_of(text: str, runs: list[Trajectory]) -> tuple[Model, dict[str, C
     return model, {str(candidate): candidate for candidate in found}
 
 
+def outputs_of(
+    model: Model,
+    candidates: list[Candidate],
+    runs: list[Trajectory],
+    tell: Callable[[str], None] = pytest.fail,
+) -> dict[Variant, list[np.ndarray]]:
+    """The outputs at all samples."""
+    samples = [np.arange(len(run.t)) for run in runs]
+    return effect_outputs(model, candidates, runs, samples, OPTIONS.candidate, tell)
+
+
+def test_outputs_at_some_samples_are_those_of_all() -> None:
+    """Those of memories, too, which begin where the record does."""
+    run, some = moving(), np.arange(700, 2401, 50)
+    model, known = candidates_of(TEXT, [run])
+    chosen = [known[f"{name} @ force"] for name in ("quad_drag", "hysteresis", "cogging")]
+    whole = outputs_of(model, chosen, [run])
+    part = effect_outputs(model, chosen, [run], [some], OPTIONS.candidate, pytest.fail)
+    assert part.keys() == whole.keys()
+    for variant, (values,) in part.items():
+        np.testing.assert_allclose(values, whole[variant][0][some], atol=1e-3, err_msg=str(variant))
+
+
 def test_memoryless_effects_follow_their_formulas() -> None:
     runs = [moving(), moving(1.0)]
     model, known = candidates_of(TEXT, runs)
@@ -64,7 +88,7 @@ def test_memoryless_effects_follow_their_formulas() -> None:
         "drive_gain @ drive.u": lambda x, v, a, u: u,
     }
     chosen = [known[name] for name in formulas]
-    found = effect_outputs(model, chosen, runs, OPTIONS.candidate, pytest.fail)
+    found = outputs_of(model, chosen, runs)
     for name, formula in formulas.items():
         first = next(v for v in found if str(v.candidate) == name)
         for run, values in zip(runs, found[first], strict=True):
@@ -75,7 +99,7 @@ def test_memoryless_effects_follow_their_formulas() -> None:
 def test_a_shape_is_a_variant_of_its_own() -> None:
     runs = [moving()]
     model, known = candidates_of(TEXT, runs)
-    found = effect_outputs(model, [known["coulomb @ force"]], runs, OPTIONS.candidate, pytest.fail)
+    found = outputs_of(model, [known["coulomb @ force"]], runs)
     assert [dict(variant.shapes)["width"] for variant in found] == pytest.approx(
         known["coulomb @ force"].shapes["width"]
     )
@@ -89,7 +113,7 @@ def test_a_memory_is_integrated_along_the_run() -> None:
     run = moving()
     model, known = candidates_of(TEXT, [run])
     dahl = known["hysteresis @ force"]
-    found = effect_outputs(model, [dahl], [run], OPTIONS.candidate, pytest.fail)
+    found = outputs_of(model, [dahl], [run])
     for variant, (values,) in found.items():
         (s,) = (value for _, value in variant.shapes)
 
@@ -106,7 +130,7 @@ def test_a_lag_is_that_of_its_coefficient_over_it() -> None:
     model, known = candidates_of(TEXT, [run])
     lag = known["drive_lag @ drive.u"]
     assert lag.at == pytest.approx(2 * 0.005)
-    ((values,),) = effect_outputs(model, [lag], [run], OPTIONS.candidate, pytest.fail).values()
+    ((values,),) = outputs_of(model, [lag], [run]).values()
     late = T > 0.2  # behind the start, a sine after a lag is known
     phase = np.arctan(3 * lag.at)
     expected = (np.cos(phase) * np.sin(3 * T - phase) - np.sin(3 * T)) / lag.at
@@ -118,7 +142,7 @@ def test_a_body_at_rest_neither_hangs_nor_fails() -> None:
     runs = [resting(), resting()]
     model, known = candidates_of(TEXT, runs)
     told: list[str] = []
-    found = effect_outputs(model, list(known.values()), runs, OPTIONS.candidate, told.append)
+    found = outputs_of(model, list(known.values()), runs, told.append)
     assert told == []
     assert {str(variant.candidate) for variant in found} == {
         name
@@ -142,9 +166,7 @@ subsystems:
     model, known = candidates_of(TEXT + bad, runs)
     told: list[str] = []
     names = ["viscous @ force", "root @ force", "stiffness @ force", "bias @ force"]
-    found = effect_outputs(
-        model, [known[name] for name in names], runs, OPTIONS.candidate, told.append
-    )
+    found = outputs_of(model, [known[name] for name in names], runs, told.append)
     assert [str(v.candidate) for v in found] == [n for n in names if n != "root @ force"]
     assert len(told) == 1 and told[0].startswith("root @ force was not tried: ")
 
@@ -174,4 +196,4 @@ def test_ctrl_c_is_no_reason_to_leave_one_out(monkeypatch: pytest.MonkeyPatch) -
     # the package has a function of its name, which hides the module from its path
     monkeypatch.setattr(sys.modules[effect_outputs.__module__], "simulate", stopped)
     with pytest.raises(Interrupted):
-        effect_outputs(model, list(known.values()), [moving()], OPTIONS.candidate, pytest.fail)
+        outputs_of(model, list(known.values()), [moving()])

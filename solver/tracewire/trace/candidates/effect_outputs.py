@@ -23,6 +23,7 @@ from tracewire.trace.candidates.static_outputs import is_static, static_outputs
 from tracewire.trace.thresholds import CandidateOptions
 
 Vector = NDArray[np.float64]
+Samples = NDArray[np.intp]
 
 
 @dataclass(frozen=True)
@@ -56,10 +57,11 @@ def effect_outputs(
     model: Model,
     candidates: Sequence[Candidate],
     trajectories: Sequence[Trajectory],
+    samples: Sequence[Samples],
     options: CandidateOptions,
     tell: Callable[[str], None],
 ) -> dict[Variant, list[Vector]]:
-    """The output of each variant of each candidate along each trajectory, shape (N,).
+    """The output of each variant of each candidate at the samples of each trajectory, (samples,).
 
     The output is that of the coefficient 1; where it is not linear in the coefficient, that of
     `candidate.at`, divided by it. Effects without memory are evaluated at the samples; other blocks
@@ -75,7 +77,7 @@ def effect_outputs(
         own = variants_of(candidate, options.variants)
         variants += own
         try:
-            known = _evaluate_outputs(model.diagram, candidate, own, trajectories)
+            known = _evaluate_outputs(model.diagram, candidate, own, trajectories, samples)
         except FormulaError:  # a run says why, or can do it
             known = {}
         found |= known
@@ -86,7 +88,9 @@ def effect_outputs(
     while queue:
         group = queue.pop()
         try:
-            found |= _simulate_outputs(model.diagram, group, trajectories, options.memory_tolerance)
+            found |= _simulate_outputs(
+                model.diagram, group, trajectories, samples, options.memory_tolerance
+            )
         except Interrupted:
             raise
         except TracewireError as error:
@@ -113,12 +117,16 @@ def _evaluate_outputs(
     candidate: Candidate,
     variants: Sequence[Variant],
     trajectories: Sequence[Trajectory],
+    samples: Sequence[Samples],
 ) -> dict[Variant, list[Vector]]:
     """The outputs of the variants of a candidate without memory; of one with memory nothing."""
     if not is_static(diagram, candidate.effect):
         return {}
     choices = [dict(variant.shapes) for variant in variants]
-    outputs = [static_outputs(diagram, candidate, choices, run) for run in trajectories]
+    outputs = [
+        static_outputs(diagram, candidate, choices, run, rows)
+        for run, rows in zip(trajectories, samples, strict=True)
+    ]
     return {v: [run[:, n] for run in outputs] for n, v in enumerate(variants)}
 
 
@@ -126,6 +134,7 @@ def _simulate_outputs(
     diagram: Diagram,
     variants: Sequence[Variant],
     trajectories: Sequence[Trajectory],
+    samples: Sequence[Samples],
     rtol: float,
 ) -> dict[Variant, list[Vector]]:
     """The outputs of several variants, in one small diagram whose inputs are the signals."""
@@ -148,7 +157,7 @@ def _simulate_outputs(
     small = Diagram(**{**vars(small), "record": dict.fromkeys(outputs, Spot())})
     model = compile(small, backend="quick")
     found: dict[Variant, list[Vector]] = {variant: [] for variant in variants}
-    for run in trajectories:
+    for run, rows in zip(trajectories, samples, strict=True):
         given = {name: (run.t, run.signals[signal]) for signal, name in inputs.items()}
         own = {
             f"{name}.{parameter}": value
@@ -157,12 +166,14 @@ def _simulate_outputs(
         }
         sizes = [float(np.max(np.abs(x))) for _, x in given.values()]
         least = min([1.0, *(size for size in sizes if size > 0)])
+        kept = np.union1d([0], rows)  # memories begin where the record does
         result = simulate(
-            model, parameters=own, times=run.t, inputs=given, rtol=rtol,
+            model, parameters=own, times=run.t[kept], inputs=given, rtol=rtol,
             atol=1e-3 * rtol * least,
         )  # fmt: skip
         for variant, name in zip(variants, outputs, strict=True):
-            found[variant].append(result.signals[name] / variant.candidate.at)
+            output = result.signals[name][np.searchsorted(kept, rows)]
+            found[variant].append(output / variant.candidate.at)
     return found
 
 

@@ -33,27 +33,24 @@ def static_outputs(
     candidate: Candidate,
     choices: Sequence[Mapping[str, float]],
     run: Trajectory,
-    samples: Samples | None = None,
+    samples: Samples,
 ) -> Matrix:
-    """The outputs (N, choices) along a run of an effect that `is_static`, with each choice of its
-    shapes, over the coefficient `candidate.at`; zero but at the `samples`, where these are given.
+    """The outputs (samples, choices) at samples of a run of an effect that `is_static`, with each
+    choice of its shapes, over the coefficient `candidate.at`.
 
     A sign of exactly 0 is 0. Raises FormulaError where a value is not finite, a condition of the
     block is not kept, or a function, as of a dead time, has no meaning for samples alone.
     """
     block = diagram.library[candidate.effect]
-    at = np.arange(len(run.t)) if samples is None else samples
-    shape = len(at), len(choices)
+    shape = len(samples), len(choices)
     known = _parameters(block, candidate, choices, run.series)
-    known |= {port: run.signals[name][at, None] for port, name in candidate.signals.items()}
-    known["t"] = run.t[at, None]
+    known |= {port: run.signals[name][samples, None] for port, name in candidate.signals.items()}
+    known["t"] = run.t[samples, None]
     for port, formula in block.port_defaults.items():
         if port not in known:
             known[port] = evaluate_along(formula, known, shape)
     (formula,) = block.formulas.values()
-    found = np.zeros((len(run.t), len(choices)))
-    found[at] = evaluate_along(formula, known, shape) / candidate.at
-    return found
+    return np.asarray(evaluate_along(formula, known, shape) / candidate.at)
 
 
 def _parameters(

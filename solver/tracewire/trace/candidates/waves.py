@@ -133,7 +133,9 @@ def _outputs(
         dict(zip((shape, *rest), values, strict=True))
         for values in product(lengths.tolist(), *grids)
     ]
-    return static_outputs(model.diagram, candidate, choices, run, samples)
+    found = np.zeros((len(run.t), len(choices)))
+    found[samples] = static_outputs(model.diagram, candidate, choices, run, samples)
+    return found
 
 
 def _rss_reductions(columns: Matrix, residual: Vector) -> Vector:

@@ -342,8 +342,10 @@ def _rows(
     sensors = [c for c in candidates if c.place.kind == "sensor"]
     model, options = windows.criterion.model, linearisation.options.candidate
     plain = [c for c in wired if not c.waves]
-    known = effect_outputs(model, plain, linearisation.trajectories, options, tell)
-    known |= effect_outputs(model, [c for c in wired if c.waves], measured, options, tell)
+    waves = [c for c in wired if c.waves]
+    samples = linearisation.samples_in(range(len(windows.linearisations)))
+    known = effect_outputs(model, plain, linearisation.trajectories, samples, options, tell)
+    known |= effect_outputs(model, waves, measured, samples, options, tell)
     by_place: dict[str, list[Variant]] = {}
     for variant in known:
         by_place.setdefault(variant.candidate.place.name, []).append(variant)
@@ -352,12 +354,10 @@ def _rows(
     rows, first = np.empty((len(variants) + len(sensors), size)), 0
     whole = np.empty(len(rows))
     for place, group in by_place.items():
-        given = [
-            np.stack([known[v][n] for v in group], axis=1)
-            for n in range(len(linearisation.trajectories))
-        ]
-        for variant in group:  # all of them twice are much memory
-            del known[variant]
+        given = [np.zeros((len(run.t), len(group))) for run in linearisation.trajectories]
+        for column, variant in enumerate(group):  # all of them twice are much memory
+            for torques, used, output in zip(given, samples, known.pop(variant), strict=True):
+                torques[used, column] = output
         mine = slice(first, first + len(group))
         rows[mine], whole[mine] = project_out_starts(
             linearisation, windows.projections, {place: given}, every
