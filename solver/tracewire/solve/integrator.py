@@ -162,7 +162,7 @@ class Integrator:
                 raise failure(self.model, self.arrays, status)
             self._check_limits()
             # what was compiled meanwhile is called without a detour
-            self.arrays.flow.address[:] = self.model.addresses(FUNCTIONS)
+            self.arrays.flow.address[:] = self.model.routines.addresses(FUNCTIONS)
             budget = next_budget(budget, int(ints[STEPS]) - done, self.seconds - before)
             status = None
             if self.tell is not None and self.seconds - last >= PAUSE.seconds:

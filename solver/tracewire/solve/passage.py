@@ -94,7 +94,7 @@ class Passage:
             preset=preset,
             inputs=inputs,
         )
-        model.compiled_addresses(FUNCTIONS)  # several passages may run in threads
+        model.routines.compiled_addresses(FUNCTIONS)  # several passages may run in threads
         problem = replace(self._problem, times=np.zeros(inner))
         self._integrator = Integrator(problem, records="states", halt=halt or Halt())
         self.arrays: Arrays = self._integrator.arrays
@@ -221,7 +221,7 @@ class Passage:
     def value(
         self, function: str, size: int, x: Vector, t: float, modes: Vector | None = None
     ) -> Vector:
-        """A function of the model (see `Model.address`) at a time and states, (size,).
+        """A function of the model (see `Routines.address`) at a time and states, (size,).
 
         `modes` (M,) in place of those at the stop.
         """
@@ -230,7 +230,7 @@ class Passage:
         if modes is not None:
             m = m.copy()
             m[: len(modes)] = modes
-        address = self.model.compiled_address(function)
+        address = self.model.routines.compiled_address(function)
         invoke(address, t, np.ascontiguousarray(x), m, flow.c, flow.k, out)
         return out
 

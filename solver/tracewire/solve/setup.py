@@ -114,9 +114,9 @@ def default_modes(model: Model) -> Vector:
 def constants_of(model: Model, values: Mapping[str, float], past: Past) -> Vector:
     """What a model computes from its parameters alone, and where the past of delayed signals is."""
     parameters = np.array([*values.values(), 0.0])  # never empty
-    constants = np.zeros(max(1, model.sizes.constants))
+    constants = np.zeros(max(1, model.routines.sizes.constants))
     data = _place(parameters), UNREAD, UNREAD, UNREAD, _place(constants)
-    _function_at(model.address("prepare"))(0.0, *data)
+    _function_at(model.routines.address("prepare"))(0.0, *data)
     if model.lowered.delays:
         first = len(model.parameters)
         constants[first : first + OF_THE_PAST] = 0.0, past.address, past.begin
@@ -129,7 +129,7 @@ def start_of(model: Model, constants: Vector, tables: Vector, given: Mapping[str
     problems = [unknown("state", name, names) for name in given if name not in names]
     x = np.zeros(len(names))
     data = UNREAD, _place_of_modes(model), _place(constants), _place(tables), _place(x)
-    _function_at(model.address("starts"))(0.0, *data)
+    _function_at(model.routines.address("starts"))(0.0, *data)
     for n, name in enumerate(names if given else ()):
         if name in given:
             x[n] = given[name]
@@ -162,7 +162,7 @@ def _plan_for(model: Model, records: Records) -> Plan:
 
 def _new_flow(model: Model, numbers: int) -> Flow:
     """The field of a model, with its modes as they are by default; its tables have `numbers`."""
-    sizes, count = model.sizes, len(model.modes)
+    sizes, count = model.routines.sizes, len(model.modes)
     return Flow(
         address=np.empty(len(FUNCTIONS), dtype=np.int64),
         m=default_modes(model).copy(),
@@ -170,13 +170,13 @@ def _new_flow(model: Model, numbers: int) -> Flow:
         k=np.zeros(numbers),
         bound=np.full(count, FREE, dtype=np.int64),
         push=np.zeros((count, sizes.states)),
-        counts=np.array([int(model.reads_held), 0, 0, 0], dtype=np.int64),
+        counts=np.array([int(model.routines.reads_held), 0, 0, 0], dtype=np.int64),
     )
 
 
 def _new_progress(model: Model, count: int, columns: int) -> Progress:
     """A run that has not begun, with `count` samples of `columns` numbers."""
-    n, modes = model.sizes.states, len(model.modes)
+    n, modes = model.routines.sizes.states, len(model.modes)
     width = LOG_HEAD + 2 * n
     progress = Progress(
         now=np.zeros(10),
@@ -198,7 +198,7 @@ def _new_progress(model: Model, count: int, columns: int) -> Progress:
         least=np.zeros(n),
         sizes=np.zeros(2 * n),
     )
-    progress.now[PACED] = float(model.has_pace)
+    progress.now[PACED] = float(model.routines.has_pace)
     return progress
 
 

@@ -60,7 +60,9 @@ class Task:
             check_section(model, self.section)
         self.criterion = next((o for o in observers if callable(o)), None)
         self.problem = self._any_problem()
-        model.compiled_addresses(FUNCTIONS)  # made during a run one would wait for Python's lock
+        model.routines.compiled_addresses(
+            FUNCTIONS
+        )  # made during a run one would wait for Python's lock
         self._check_times()
         library()  # not in a thread
 
