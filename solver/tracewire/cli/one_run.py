@@ -10,7 +10,6 @@ import typer
 from tracewire.cli.output import note, telling, working
 from tracewire.cli.records import Sampling
 from tracewire.cli.setting import Setting
-from tracewire.errors import OptionError, Problem
 
 if TYPE_CHECKING:
     import numpy as np
@@ -38,24 +37,13 @@ def evenly(
 
 def run_of(setting: Setting, sampling: Sampling, rtol: float, *, steps: int | None = None) -> Run:
     """The run of a setting, with its warnings told; in `steps` steps where nothing says another."""
-    import numpy as np
+    from tracewire.solve import Options, parameter_values, simulate
 
-    from tracewire.analyse.plane import span_of
-    from tracewire.solve import parameter_values, simulate
-
-    span, every, times = sampling.span, sampling.every, None
-    values = parameter_values(setting.model, setting.parameters, setting.preset)
-    if every is None and steps is not None and setting.model.flat.every is None:
-        times = evenly(setting.model, values, span, steps)
-    if every is not None:
-        begin, end = span or span_of(setting.model, values)
-        count = np.floor((end - begin) / every * (1 + 1e-12)) if every > 0 else 0
-        if not 1 <= count <= 10_000_000:
-            what = f"an output every {every:g} s from {begin:g} to {end:g} s cannot be kept"
-            raise OptionError([Problem(what, hint="Give another time between samples.")])
-        times = np.minimum(begin + every * np.arange(count + 1), end)
+    options = setting.run_options(sampling.span, rtol) | Options(every=sampling.every)
+    if steps is not None and sampling.every is None and setting.model.flat.every is None:
+        values = parameter_values(setting.model, setting.parameters, setting.preset)
+        options["times"] = evenly(setting.model, values, sampling.span, steps)
     with working("simulating") as show:
-        options = setting.run_options(span, rtol) | {"times": times}
         run = simulate(setting.model, **options, progress=telling("simulating", show))
     for warning in run.warnings:
         note(f"warning: {warning}")

@@ -54,17 +54,14 @@ def run(
     cases = cases_of(model, given.over or (), given.preset or ())
     if len(cases) > 1:
         target.check_several()
-    if sampling.every is not None:
-        from tracewire.formula import Number
-
-        model = replace(model, flat=replace(model.flat, every=Number(sampling.every)))
     from tracewire.solve import Options, with_options
 
     conditions, measured = read_series(model, given.series)
-    own = Options(parameters=parameters, start=starts, span=sampling.span)
+    own = Options(parameters=parameters, start=starts, span=sampling.span, every=sampling.every)
     options = with_options(conditions, own | accuracy.options)
     # a figure of a quick swing needs more points than a table of it
-    finer = bool(target.figure or target.report) and model.flat.every is None
+    is_spaced = sampling.every is not None or model.flat.every is not None
+    finer = bool(target.figure or target.report) and not is_spaced
     lost = target.output or f"{Path(diagram).stem}.interrupted.npz"
     runs = {}
     for case in cases:

@@ -99,7 +99,8 @@ def _problem(
     times = given.get("times")
     known = None if times is None else ascending(times)
     begin, end = span_of(model, values, given.get("span"), known)
-    samples = samples_of(model, values, begin, end, known) if sampled else np.empty(0)
+    every = given.get("every")
+    samples = samples_of(model, values, begin, end, known, every) if sampled else np.empty(0)
     method = given.get("method", "auto")
     if method != "auto" and method not in NAMES:
         raise OptionError([unknown("method", method, ["auto", *NAMES])])

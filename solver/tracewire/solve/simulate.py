@@ -28,6 +28,7 @@ def simulate(
     start: Mapping[str, float] | None = None,
     span: tuple[float, float] | None = None,
     times: ArrayLike | None = None,
+    every: float | None = None,
     method: str = "auto",
     rtol: float = 1e-6,
     atol: float | Mapping[str, float] | None = None,
@@ -42,8 +43,9 @@ def simulate(
     """Simulate a model: integrate x' = f(x, t) with frozen modes between located events.
 
     `parameters` and `start` override the diagram's values by name, in SI; `preset` is applied
-    before them. `span` is (from, to) in s, `times` (N,) the ascending sample times in s; without
-    them the diagram's span and its `every`, or 1001 samples. `method` is
+    before them. `span` is (from, to) in s, `times` (N,) the ascending sample times in s, or
+    `every` the time between two of them; without these the diagram's span and its `every`, or 1001
+    samples. `method` is
     `dormand_prince` (explicit, order 5), `dop853` (explicit, order 8), `rosenbrock` (stiff, order
     5), `rk4` (fixed `step` in s, order 4), or `auto`: dormand_prince, dop853 where rtol is
     1e-8 or less, and rosenbrock where a mode combination turns out to be stiff. `atol` is given as
@@ -68,6 +70,7 @@ def simulate(
         start=start,
         span=span,
         times=times,
+        every=every,
         method=method,
         rtol=rtol,
         atol=atol,

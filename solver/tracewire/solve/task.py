@@ -87,7 +87,8 @@ class Task:
     def _check_times(self) -> None:
         """Refuse samples that do not fit into one array, before the first run."""
         flat = self.model.flat
-        formulas = [*flat.span, *([flat.every] if flat.every is not None else [])]
+        every = flat.every if self.options.get("every") is None else None
+        formulas = [*flat.span, *([every] if every is not None else [])]
         if not self.sampled or not any(names_of(formula) for formula in formulas):
             return
         first: Vector | None = None

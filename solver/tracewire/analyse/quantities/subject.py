@@ -91,7 +91,8 @@ class Subject:
         if c.samples is not None and first < end:
             return np.linspace(first, end, c.samples)
         if times is None:
-            times = sample_times(self.model, self.parameters, (begin, end))
+            every = c.options.get("every")
+            times = sample_times(self.model, self.parameters, (begin, end), every)
             if "span" in c.options and times[-1] < end - QUANTITY.same_time * abs(end - begin):
                 times = np.append(times, end)
         found = np.asarray(times, dtype=float).ravel()
@@ -137,7 +138,8 @@ class Subject:
             what = f"a quantity reads a signal at {times[0]:g} s, and the run begins at {begin:g} s"
             raise OptionError([Problem(what, hint="Write run: {from: ...} in the statement.")])
         end = max(end, float(times[-1]))  # a signal may be read later than samples count
-        options = {key: value for key, value in c.options.items() if key not in ("span", "times")}
+        own = ("span", "times", "every")
+        options = {key: value for key, value in c.options.items() if key not in own}
         return simulate(model, **options, span=(begin, end), times=times)  # type: ignore[arg-type]
 
     # what analyses find
