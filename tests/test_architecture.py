@@ -40,7 +40,6 @@ STAGES += ["missing", "search", "choose", "experiment", "results", "saved", "tra
 # as often as said; a pair that is not here takes nothing more. The numbers only fall.
 DEEP = {
     "analyse -> solve": 1,
-    "cli -> analyse": 2,
     "cli -> data": 2,
     "cli -> paper": 7,
     "cli -> show": 11,

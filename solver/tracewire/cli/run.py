@@ -9,13 +9,11 @@ from typing import TYPE_CHECKING
 
 from tracewire.cli.cases import cases_of
 from tracewire.cli.limits import LIMITS
-from tracewire.cli.one_run import evenly
-from tracewire.cli.options import DiagramPath, load_model
+from tracewire.cli.options import DiagramPath, load_model, read_series
 from tracewire.cli.output import note, print_json, print_table, print_text, telling, working
 from tracewire.cli.records import Sampling
 from tracewire.cli.reporting import write_report
 from tracewire.cli.run_records import Accuracy, RunGiven, RunTarget
-from tracewire.cli.series import read_series
 from tracewire.cli.values import parameter_values_of, start_values_of, units_of
 from tracewire.errors import Problem
 from tracewire.files import writing
@@ -83,13 +81,19 @@ def _simulated(model: Model, options: Options, finer: bool, what: str, lost: str
     """The run, with ten times the samples where it is `finer`; what there is of one that the user
     stops goes into the file `lost`."""
     with working(what) as show:
-        from tracewire.solve import DEFAULT_SAMPLES, Interrupted, parameter_values, simulate
+        from tracewire.solve import (
+            DEFAULT_SAMPLES,
+            Interrupted,
+            even_times,
+            parameter_values,
+            simulate,
+        )
 
         if finer:
             preset = options.get("preset", "")
             known = parameter_values(model, options.get("parameters") or {}, preset)
             steps = LIMITS.finer * (DEFAULT_SAMPLES - 1)
-            options["times"] = evenly(model, known, options.get("span"), steps)
+            options["times"] = even_times(model, known, options.get("span"), steps)
         try:
             return simulate(model, **options, progress=telling(what, show))
         except Interrupted as error:

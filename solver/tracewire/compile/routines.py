@@ -8,17 +8,21 @@ from functools import cached_property, partial
 from threading import RLock
 from typing import Any, Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
 from tracewire.compile.constants import Constants
 from tracewire.compile.delays import jump_orders
 from tracewire.compile.differentiate import differentiate, gradients
 from tracewire.compile.holding import holding, may_rest, moving, reads
 from tracewire.compile.lowered import Lowered
-from tracewire.compile.machine import MachineWriter, machine_text
+from tracewire.compile.machine import MachineWriter
 from tracewire.compile.pace import pace
-from tracewire.compile.pointers import address_of, as_c, when_called
+from tracewire.compile.pointers import FORWARD, UNREAD, address_of, as_c, place_of, when_called
 from tracewire.compile.sizes import sizes
 from tracewire.compile.source import Function, Writer, guarded, load
 
+Vector = NDArray[np.float64]
 Backend = Literal["llvm", "quick", "python"]
 BACKENDS: tuple[Backend, ...] = ("llvm", "quick", "python")
 ORDERS = {"guard_second": 2, "guard_third": 3, "guard_fourth": 4}
@@ -246,6 +250,36 @@ class Routines:
                 found = self._made[name] = Routine(name.replace("_", " "), size, kept)
             return found
 
+    @cached_property
+    def usual_modes(self) -> Vector:
+        """The values of the modes before a run has decided them, and behind them that none is
+        held."""
+        usual = [mode.at_zero for mode in self.lowered.modes]
+        return np.array([*usual, *[0.0] * len(usual)], dtype=float)
+
+    def constants_from(self, parameters: Sequence[float]) -> Vector:
+        """What the model computes from its parameters alone, with room for the past of signals."""
+        given = np.array([*parameters, 0.0])  # never empty
+        out = np.zeros(max(1, self.sizes.constants))
+        self._prepare(0.0, place_of(given), UNREAD, UNREAD, UNREAD, place_of(out))
+        return out
+
+    def starts(self, constants: Vector, tables: Vector) -> Vector:
+        """The start states (n,) that the diagram has."""
+        out, modes = np.zeros(self.states), place_of(self.usual_modes)
+        self._starts(0.0, UNREAD, modes, place_of(constants), place_of(tables), place_of(out))
+        return out
+
+    # what Python calls; to make one takes longer than the call
+
+    @cached_property
+    def _prepare(self) -> Callable[..., None]:
+        return FORWARD(self.address(PREPARE))
+
+    @cached_property
+    def _starts(self) -> Callable[..., None]:
+        return FORWARD(self.address("starts"))
+
     def address(self, name: str) -> int:
         """The address of a function, good as long as this lives; of a lazy one that was never
         called, that of its callback.
@@ -310,14 +344,10 @@ class Routines:
 
     def machine_ir(self, names: Sequence[str]) -> str:
         """The LLVM IR of functions."""
-        writer = MachineWriter(self.tape, self.constants, self.modes)
-        texts = [
-            writer.prepare(name)
-            if name == PREPARE
-            else writer.function(_symbol(name), self.routine(name).roots)
-            for name in names
-        ]
-        return machine_text(texts)
+        roots = {
+            _symbol(name): None if name == PREPARE else self.routine(name).roots for name in names
+        }
+        return MachineWriter(self.tape, self.constants, self.modes).text(roots)
 
     def _machine(self, names: Sequence[str]) -> dict[str, int]:
         from tracewire.compile.native import assemble  # LLVM is loaded by those who compile

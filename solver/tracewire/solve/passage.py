@@ -35,8 +35,7 @@ from tracewire.solve.integrator import Integrator
 from tracewire.solve.interrupt import Halt, Interrupted
 from tracewire.solve.limits import STEP
 from tracewire.solve.options import START
-from tracewire.solve.problem import initial_value_problem
-from tracewire.solve.setup import start_of
+from tracewire.solve.problem import initial_value_problem, start_of
 from tracewire.solve.workspace import set_to
 
 Vector = NDArray[np.float64]

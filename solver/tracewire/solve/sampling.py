@@ -94,3 +94,12 @@ def sample_times(
     """The sample times (N,) in s that a run over a span has by itself. Raises OptionError."""
     begin, end = span_of(model, values, span, None)
     return samples_of(model, values, begin, end, every=every)
+
+
+def even_times(
+    model: Model, values: Mapping[str, float], span: tuple[float, float] | None, steps: int
+) -> Vector:
+    """Times (steps + 1,) in s, evenly from the begin to the end of a span, the diagram's unless
+    given. Raises OptionError."""
+    begin, end = span_of(model, values, span, None)
+    return np.linspace(begin, end, steps + 1)

@@ -4,21 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tracewire.compile import Model
-from tracewire.errors import Problem, SimulationError
-from tracewire.solve.failures import place_of
-from tracewire.solve.integrator import Integrator
+from tracewire.solve.integrator import Integrator, refuse_nan
 from tracewire.solve.interrupt import Interrupted
 from tracewire.solve.limits import Limits
 from tracewire.solve.problem import initial_value_problem
 from tracewire.solve.progress import Tell
 from tracewire.solve.run import Run
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 def simulate(
@@ -90,16 +84,3 @@ def simulate(
     run = integrator.run
     integrator.give_back()
     return run
-
-
-def refuse_nan(model: Model, samples: Matrix, t: Vector) -> None:
-    """A recorded signal may be undefined where no state depends on it."""
-    if np.isfinite(samples).all():
-        return
-    for n, name in enumerate(model.recorded):
-        bad = np.flatnonzero(~np.isfinite(samples[:, n]))
-        if len(bad):
-            when, value = t[bad[0]], samples[bad[0], n]
-            what = f"the recorded signal '{name}' is not finite ({value}) at t = {when:.9g} s"
-            hint = "Look for a division by zero or the root of a negative number in it."
-            raise SimulationError([Problem(what, place_of(model, name), (), hint)])

@@ -14,7 +14,7 @@ from tracewire.errors import OptionError, Problem, TracewireError
 from tracewire.formula import names_of
 from tracewire.solve.core.flow import FUNCTIONS
 from tracewire.solve.core_library import library
-from tracewire.solve.integrator import Integrator
+from tracewire.solve.integrator import Integrator, refuse_nan
 from tracewire.solve.interrupt import Halt
 from tracewire.solve.observers import (
     Observer,
@@ -27,7 +27,6 @@ from tracewire.solve.observers import (
 from tracewire.solve.options import Options, with_row
 from tracewire.solve.problem import InitialValueProblem, initial_value_problem
 from tracewire.solve.setup import Records
-from tracewire.solve.simulate import refuse_nan
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
