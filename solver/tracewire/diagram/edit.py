@@ -8,24 +8,21 @@ from __future__ import annotations
 
 import contextlib
 import difflib
-import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 from tracewire.diagram.diagram import BlockUse, Diagram, Wire
 from tracewire.diagram.outline import Outline
 from tracewire.diagram.override import localised, with_parts, without_part
-from tracewire.diagram.rewrite import digits, reread
+from tracewire.diagram.rewrite import reread
 from tracewire.diagram.splice import (
     entry_after,
-    entry_last,
     item_last,
     replaced,
     without_entry,
     without_items,
 )
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
-from tracewire.diagram.yaml_text import inline, mapping_text
 from tracewire.errors import DiagramError, OptionError, unknown
 
 
@@ -99,35 +96,6 @@ def remove_addend(diagram: Diagram, sum_name: str, addend: str) -> Diagram:
     return new
 
 
-def set_values(diagram: Diagram, values: Mapping[str, float]) -> Diagram:
-    """The diagram with other values of parameters: path -> value in SI.
-
-    A path is that of a run's parameter: `stiffness`, `bearing.slip` (a parameter of the subsystem
-    that the block `bearing` is), `drag.c` (a setting written as a mapping). The text gets the value
-    in the user's unit, with six digits. Where several blocks share the subsystem, `bearing.slip` is
-    written into the block, not into the definition.
-    """
-    outline = Outline(diagram)
-    spots = [outline.parameter(path) for path in values]
-    diagram = localised(diagram, outline, (spot.into or spot.node for spot in spots))
-    outline = Outline(diagram)
-    changes = []
-    for path, value in values.items():
-        if not math.isfinite(value):
-            raise OptionError.one(f"parameter '{path}' cannot become {value}")
-        spot = outline.parameter(path)
-        low, high = spot.value.fit or (-math.inf, math.inf)
-        number = digits(value / spot.factor, low / spot.factor, high / spot.factor)
-        node = spot.node
-        if spot.into is not None:  # the definition is shared: a copy of its value goes to the use
-            copy = _copy(node, number)
-            changes.append(entry_last(diagram.text, spot.into, spot.name, copy))
-        else:
-            scalar = node.values["value"] if isinstance(node, Entries) else node
-            changes.append(replaced(scalar, number))
-    return reread(diagram, changes)
-
-
 def set_variants(diagram: Diagram, variants: Mapping[str, str]) -> Diagram:
     """The diagram with other bodies of subsystems: block -> variant. Raises OptionError."""
     parts: dict[tuple[str, ...], str] = {}
@@ -142,32 +110,6 @@ def set_variants(diagram: Diagram, variants: Mapping[str, str]) -> Diagram:
             raise OptionError([unknown(f"variant of '{name}'", variant, known, use.place)])
         parts["blocks", use.row or name, "variant"] = variant
     return with_parts(diagram, parts)
-
-
-def written_units(diagram: Diagram, paths: Iterable[str]) -> dict[str, str]:
-    """The unit in which the text writes each parameter of a run, by its path.
-
-    Left out are those without a unit there, and those whose text is in another file.
-    """
-    outline = Outline(diagram)
-    found: dict[str, str] = {}
-    for path in paths:
-        try:
-            node = outline.parameter(path).node
-        except OptionError:
-            continue
-        unit = node.values.get("unit") if isinstance(node, Entries) else None
-        if isinstance(unit, Scalar):
-            found[path] = unit.text
-    return found
-
-
-def _copy(node: Node, number: str) -> str:
-    """The text of a value with another number, on one line."""
-    if not isinstance(node, Entries):
-        return number
-    parts = {name: inline(part) for name, _, part in node}
-    return mapping_text({**parts, "value": number})
 
 
 def difference(old: Diagram, new: Diagram) -> str:

@@ -101,7 +101,7 @@ def _numbers(
                 continue
             node = _channel(diagram, root, series, signal)
             assert isinstance(node, Entries)
-            factor = _factor_of(known, kind, series, signal)
+            factor = factor_of(known, kind, series, signal)
             low, high = (end / known.factor for end in known.fit)  # as the text has them
             yield node.values[kind], digits(value / factor, low, high)
 
@@ -110,12 +110,7 @@ def _own(
     diagram: Diagram, root: Entries, parameter: str, series: str, value: float
 ) -> tuple[Node, str]:
     """The text of a parameter's value in one series, and what it becomes."""
-    if series not in diagram.measured:
-        raise OptionError([unknown("measured series", series, diagram.measured)])
-    given = diagram.measured[series].parameters
-    if parameter not in given:
-        raise OptionError([unknown(f"parameter of the series '{series}'", parameter, given)])
-    known, node = given[parameter], root
+    known, node = own_value(diagram, parameter, series), root
     for key in ("measured", series, "parameters"):
         inner = node.values[key]
         assert isinstance(inner, Entries)
@@ -123,6 +118,16 @@ def _own(
     low, high = known.fit or (-math.inf, math.inf)
     number = digits(value / known.factor, low / known.factor, high / known.factor)
     return node.values[parameter], number
+
+
+def own_value(diagram: Diagram, parameter: str, series: str) -> Value:
+    """The value of a parameter in one series. Raises OptionError: there is none."""
+    if series not in diagram.measured:
+        raise OptionError([unknown("measured series", series, diagram.measured)])
+    given = diagram.measured[series].parameters
+    if parameter not in given:
+        raise OptionError([unknown(f"parameter of the series '{series}'", parameter, given)])
+    return given[parameter]
 
 
 def sensor_numbers(
@@ -139,7 +144,7 @@ def sensor_numbers(
                 known: Value | None = getattr(channel, kind)
                 if known is None or not isinstance(known.formula, Number):
                     continue
-                own = _factor_of(known, kind, series, signal)
+                own = factor_of(known, kind, series, signal)
                 bounds = None
                 if known.fit is not None:
                     low, high = (end * own / known.factor for end in known.fit)
@@ -148,7 +153,7 @@ def sensor_numbers(
     return found
 
 
-def _factor_of(known: Value, kind: str, series: Series, signal: str) -> float:
+def factor_of(known: Value, kind: str, series: Series, signal: str) -> float:
     """The factor to SI of a number of a sensor as it stands in the text."""
     if known.unit or series.channels[signal].declared is not None:
         return known.factor
