@@ -24,6 +24,7 @@ ROOMS = [
     "shipped",
     "result",
     "options",
+    "resume",
     "formula",
     "library",
     "data",
