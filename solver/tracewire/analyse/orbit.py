@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.analyse.drive import is_driven, number, period_of
-from tracewire.analyse.floquet import Floquet
+from tracewire.analyse.floquet_multipliers import Floquet
 from tracewire.analyse.limits import ORBIT
 from tracewire.analyse.turns import units_of, within_a_turn
 from tracewire.compile import Model

@@ -10,7 +10,7 @@ from tracewire.diagram.changes import (
     apply,
     patch,
 )
-from tracewire.diagram.complete import Proposal, complete, word_before
+from tracewire.diagram.completion import Proposal, complete, word_before
 from tracewire.diagram.diagram import (
     Array,
     BlockUse,
@@ -73,11 +73,11 @@ from tracewire.diagram.names import (
 from tracewire.diagram.owned import patch_own
 from tracewire.diagram.packages import package_subsystems, who_has
 from tracewire.diagram.quantity_names import EVENT_KINDS, is_quantity, quantity_problems
-from tracewire.diagram.read import read, read_readable, read_readable_text, read_text
+from tracewire.diagram.reader import read, read_readable, read_readable_text, read_text
 from tracewire.diagram.rename import renamed
 from tracewire.diagram.rewire import add_to_drive, rewired
 from tracewire.diagram.schema import schema_of, schema_text
-from tracewire.diagram.write import write, written_out
+from tracewire.diagram.writer import write, written_out
 from tracewire.diagram.yaml_text import mapping_text, quoted
 
 __all__ = [

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from tracewire.diagram.diagram import Diagram
-from tracewire.diagram.read import read_text
+from tracewire.diagram.reader import read_text
 from tracewire.diagram.splice import Change, changed
 from tracewire.formula import number_text
 

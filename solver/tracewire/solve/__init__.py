@@ -140,7 +140,7 @@ from tracewire.solve.progress import PartProgress, Tell
 from tracewire.solve.run import Event, Run, Sensitivities, Statistics
 from tracewire.solve.runs import Runs
 from tracewire.solve.sampling import DEFAULT_SAMPLES, even_times, sample_times
-from tracewire.solve.simulate import simulate
+from tracewire.solve.simulation import simulate
 from tracewire.solve.spans import Span, SpanRuns, simulate_spans
 from tracewire.solve.workspace import release
 

@@ -10,15 +10,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.analyse.bifurcation import Bifurcation, bifurcation
-from tracewire.analyse.floquet import Floquet, floquet
+from tracewire.analyse.bifurcation_diagram import Bifurcation, bifurcation
+from tracewire.analyse.floquet_multipliers import Floquet, floquet
 from tracewire.analyse.limits import QUANTITY
-from tracewire.analyse.lyapunov import Lyapunov, lyapunov
+from tracewire.analyse.lyapunov_exponents import Lyapunov, lyapunov
 from tracewire.analyse.orbit import PeriodicOrbit, periodic_orbit
 from tracewire.analyse.plane import Plane, span_of
+from tracewire.analyse.poincare_section import PoincareSection, section
 from tracewire.analyse.quantities.conditions import Conditions
-from tracewire.analyse.section import PoincareSection, section
-from tracewire.analyse.steady_state import SteadyState, steady_state
+from tracewire.analyse.steady_states import SteadyState, steady_state
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, OptionError, Problem
 from tracewire.fit import Fit, fit
