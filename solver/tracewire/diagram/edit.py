@@ -12,17 +12,17 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from tracewire.diagram.diagram import BlockUse, Diagram, Wire
-from tracewire.diagram.outline import Outline
 from tracewire.diagram.override import localised, with_parts, without_part
 from tracewire.diagram.rewrite import reread
-from tracewire.diagram.splice import (
+from tracewire.diagram.source_map import SourceMap
+from tracewire.diagram.strict import Entries, Items, Node, Scalar
+from tracewire.diagram.text_edits import (
     entry_after,
     item_last,
     replaced,
     without_entry,
     without_items,
 )
-from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.errors import DiagramError, OptionError, unknown
 
 
@@ -89,8 +89,8 @@ def remove_addend(diagram: Diagram, sum_name: str, addend: str) -> Diagram:
             if blocks.keys[block].place.file == str(diagram.file):
                 new = reread(diagram, [*wires, without_entry(diagram.text, blocks, block)])
             else:
-                outline = Outline(new)
-                path = (*outline.path(outline.block(sum_name)[1]), block)
+                source_map = SourceMap(new)
+                path = (*source_map.path(source_map.block(sum_name)[1]), block)
                 new = without_part(new, ".".join(path))
     _expect(new, sum_name, port, kept)
     return new
@@ -152,11 +152,11 @@ def with_addend(diagram: Diagram, sum_name: str, wire: Wire) -> Diagram:
 
 def _own_sum(diagram: Diagram, sum_name: str) -> tuple[Diagram, Diagram, Entries, str]:
     """The diagram with the inputs of a sum in its own text, and where the sum stands."""
-    outline = Outline(diagram)
-    inside, blocks, name = outline.block(sum_name)
+    source_map = SourceMap(diagram)
+    inside, blocks, name = source_map.block(sum_name)
     _, node = _addends(inside.blocks[name], inside, blocks)
-    diagram = localised(diagram, outline, [node])
-    return diagram, *Outline(diagram).block(sum_name)
+    diagram = localised(diagram, source_map, [node])
+    return diagram, *SourceMap(diagram).block(sum_name)
 
 
 def _signals(use: BlockUse, port: str) -> list[str]:
@@ -165,7 +165,7 @@ def _signals(use: BlockUse, port: str) -> list[str]:
 
 def _expect(diagram: Diagram, sum_name: str, port: str, signals: list[str]) -> None:
     """Make sure that an edit did what it should, however the text was laid out."""
-    inside, _, name = Outline(diagram).block(sum_name)
+    inside, _, name = SourceMap(diagram).block(sum_name)
     use = inside.blocks[name]
     if _signals(use, port) != signals:
         what = "the list of addends is laid out in a way that cannot be edited by program"

@@ -8,11 +8,11 @@ from collections.abc import Iterator, Mapping
 from tracewire.data import column_unit
 from tracewire.diagram.diagram import Diagram, Series, Value
 from tracewire.diagram.names import find_recorded
-from tracewire.diagram.outline import Outline
 from tracewire.diagram.override import localised
 from tracewire.diagram.rewrite import as_written, bounds, digits, reread
-from tracewire.diagram.splice import Change, entry_last, replaced
+from tracewire.diagram.source_map import SourceMap
 from tracewire.diagram.strict import Entries, Node, Scalar
+from tracewire.diagram.text_edits import TextEdit, entry_last, replaced
 from tracewire.errors import FormulaError, OptionError, unknown
 from tracewire.formula import Number, number_text, read_unit
 from tracewire.library import SENSOR_TERMS
@@ -32,10 +32,10 @@ def add_sensor(
     such measured signal, or no such kind.
     """
     full, having = series_of(diagram, signal, kind)
-    outline = Outline(diagram)
-    nodes = [_channel(diagram, outline.root, series, full) for series in having]
-    diagram = localised(diagram, outline, nodes)
-    root = Outline(diagram).root
+    source_map = SourceMap(diagram)
+    nodes = [_channel(diagram, source_map.root, series, full) for series in having]
+    diagram = localised(diagram, source_map, nodes)
+    root = SourceMap(diagram).root
     changes = []
     for series in having:
         node = _channel(diagram, root, series, full)
@@ -70,11 +70,11 @@ def set_sensors(diagram: Diagram, values: Mapping[str, float]) -> Diagram:
     gets it, in the unit that its text has. `harmonic.phase@run_1` is the value of a parameter in
     one series, under its `parameters`.
     """
-    outline = Outline(diagram)
-    nodes = [node for node, _ in _numbers(diagram, outline.root, values)]
-    diagram = localised(diagram, outline, nodes)
+    source_map = SourceMap(diagram)
+    nodes = [node for node, _ in _numbers(diagram, source_map.root, values)]
+    diagram = localised(diagram, source_map, nodes)
     changes = []
-    for node, number in _numbers(diagram, Outline(diagram).root, values):
+    for node, number in _numbers(diagram, SourceMap(diagram).root, values):
         if not isinstance(node, Entries):
             changes.append(replaced(node, number))
         elif "value" in node.values:
@@ -176,7 +176,7 @@ def _value_text(value: float, fit: tuple[float, float] | None, factor: float) ->
     return f"{{value: {number_text(number)}{shown}}}"
 
 
-def _with_number(text: str, channel: Node, kind: str, number: str) -> Change:
+def _with_number(text: str, channel: Node, kind: str, number: str) -> TextEdit:
     """The text of a channel with a number of its sensor."""
     if isinstance(channel, Scalar):
         column = text[channel.start : channel.end]

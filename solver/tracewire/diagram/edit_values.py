@@ -12,12 +12,12 @@ from tracewire.diagram.channels import check_term
 from tracewire.diagram.diagram import Array, BlockUse, Diagram, Value
 from tracewire.diagram.edit_sensors import factor_of, own_value, set_sensors
 from tracewire.diagram.names import find_parameter, is_count, split_index
-from tracewire.diagram.outline import Outline
 from tracewire.diagram.override import localised
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.rewrite import digits, reread, rounded
-from tracewire.diagram.splice import entry_last, replaced
+from tracewire.diagram.source_map import SourceMap
 from tracewire.diagram.strict import Entries, Node, Scalar
+from tracewire.diagram.text_edits import entry_last, replaced
 from tracewire.diagram.uses import check_bounds, check_conditions
 from tracewire.diagram.written import Written, count_uses, find_written
 from tracewire.diagram.yaml_text import inline, mapping_text
@@ -71,18 +71,22 @@ def set_values(diagram: Diagram, values: Mapping[str, float]) -> Diagram:
     in the user's unit, with six digits. Where several blocks share the subsystem, `bearing.slip` is
     written into the block, not into the definition.
     """
-    outline = Outline(diagram)
-    spots = [outline.parameter(path) for path in values]
-    diagram = localised(diagram, outline, (spot.into or spot.node for spot in spots))
-    outline = Outline(diagram)
+    source_map = SourceMap(diagram)
+    locations = [source_map.parameter(path) for path in values]
+    diagram = localised(
+        diagram, source_map, (location.into or location.node for location in locations)
+    )
+    source_map = SourceMap(diagram)
     changes = []
     for path, value in values.items():
-        spot = outline.parameter(path)
-        number = digits(*_in_its_unit(path, value, spot.value, spot.factor))
-        node = spot.node
-        if spot.into is not None:  # the definition is shared: a copy of its value goes to the use
+        location = source_map.parameter(path)
+        number = digits(*_in_its_unit(path, value, location.value, location.factor))
+        node = location.node
+        if (
+            location.into is not None
+        ):  # the definition is shared: a copy of its value goes to the use
             copy = _copy(node, number)
-            changes.append(entry_last(diagram.text, spot.into, spot.name, copy))
+            changes.append(entry_last(diagram.text, location.into, location.name, copy))
         else:
             scalar = node.values["value"] if isinstance(node, Entries) else node
             changes.append(replaced(scalar, number))
@@ -94,11 +98,11 @@ def written_units(diagram: Diagram, paths: Iterable[str]) -> dict[str, str]:
 
     Left out are those without a unit there, and those whose text is in another file.
     """
-    outline = Outline(diagram)
+    source_map = SourceMap(diagram)
     found: dict[str, str] = {}
     for path in paths:
         try:
-            node = outline.parameter(path).node
+            node = source_map.parameter(path).node
         except OptionError:
             continue
         unit = node.values.get("unit") if isinstance(node, Entries) else None

@@ -18,7 +18,7 @@ from tracewire.errors import DiagramError, OptionError, Place, TracewireError, u
 
 
 @dataclass(frozen=True)
-class Spot:
+class ParameterLocation:
     """A parameter in the text: its node, its value, and the factor to SI of a number put there.
 
     `into`: the block that shall get a value of its own, because others share the node.
@@ -31,7 +31,7 @@ class Spot:
     into: Entries | None = None
 
 
-class Outline:
+class SourceMap:
     """The nodes of a diagram, found by the names of its parts.
 
     `root` has those of the files that it extends and includes, too; `own` those of its text only,
@@ -109,7 +109,7 @@ class Outline:
         assert holder is not None
         return inside, holder, name
 
-    def parameter(self, path: str) -> Spot:
+    def parameter(self, path: str) -> ParameterLocation:
         """Where the value of a parameter of a run is written. Raises OptionError."""
         at = find_written(self.top, path, self.uses, self._bodies_with)
         entries = self._entries(at.body)
@@ -127,7 +127,7 @@ class Outline:
             node = node.items[index[0]]
         return self._spot(replace(at, name=name), node)
 
-    def _spot(self, at: Written, node: Node, into: Entries | None = None) -> Spot:
+    def _spot(self, at: Written, node: Node, into: Entries | None = None) -> ParameterLocation:
         """A value at a node. A number in the place of a formula is in the unit that stands there;
         else in that of the parameter of the subsystem that it is a value of."""
         factor = at.value.factor
@@ -135,7 +135,7 @@ class Outline:
             factor = at.factor
         elif at.use is not None and at.use.subsystem is not None:
             factor = at.use.subsystem.parameters[at.name].factor
-        return Spot(at.name, node, at.value, factor, into)
+        return ParameterLocation(at.name, node, at.value, factor, into)
 
     def _bodies_with(self, chosen: Diagram, use: BlockUse, name: str) -> int:
         """How many bodies have the very parameter that the body of a line has."""
