@@ -211,3 +211,31 @@ def test_a_block_of_a_row_has_no_line_of_its_own() -> None:
     block = AddBlock("one", "constant", {}, {"value": Value(Number(2.0))}, "f_1")
     with pytest.raises(OptionError, match="one of the row 'f'"):
         apply(read_text(text), [block])
+
+
+@pytest.mark.parametrize(
+    ("path", "told"),
+    [
+        ("n", r"'n' says how many blocks there are, and another number makes others"),
+        ("drag.wet_body.k", r"'drag.wet_body.k' belongs to a body of 'arm', of which a parameter"),
+    ],
+)
+def test_what_only_the_text_can_change_is_refused_in_the_objects(path: str, told: str) -> None:
+    text = """
+inputs: [u]
+parameters: {n: 2, kind: 1}
+blocks:
+  row: {type: gain, of: u, k: 1, replicate: n}
+  drag: {type: arm, r: u, variant: kind}
+subsystems:
+  arm:
+    inputs: [r]
+    outputs: {y: total}
+    variants:
+      dry: {parameters: {k: 1}, blocks: {total: {type: gain, of: r, k: k}}}
+      wet: {parameters: {k: 2}, blocks: {total: {type: gain, of: r, k: k}}}
+"""
+    diagram = read_text(text)
+    with pytest.raises(OptionError, match=told):
+        apply(diagram, [SetValues({path: 3.0})])
+    assert patch(diagram, [SetValues({path: 3.0})]).text != text
