@@ -80,7 +80,7 @@ def _phases(text: str, end: float, file: Path | None) -> tuple[tw.Model, list[fl
     read = time.perf_counter()
     model = tw.compile(diagram)
     lowered = time.perf_counter()
-    model.address("rhs")
+    model.routines.address("rhs")
     made = time.perf_counter()
 
     def run() -> None:
@@ -92,7 +92,7 @@ def _phases(text: str, end: float, file: Path | None) -> tuple[tw.Model, list[fl
 
 def _evaluations(model: tw.Model, wires: Network, options: Options) -> Iterator[tuple[str, ...]]:
     """The C function of the rates beside numpy and scipy.sparse, at one random point."""
-    sizes = model.sizes
+    sizes = model.routines.sizes
     order = [int(name[1:]) for name in model.states]
     x = np.random.default_rng(1).normal(size=wires.cells)
     own_x = np.ascontiguousarray(x[order])
@@ -129,7 +129,7 @@ def _evaluations(model: tw.Model, wires: Network, options: Options) -> Iterator[
 
 def _bound(model: tw.Model, name: str, *arrays: Vector) -> Callable[[], None]:
     """A call of one of the model's C functions at t = 0.3."""
-    function = FUNCTION(model.compiled_address(name))
+    function = FUNCTION(model.routines.compiled_address(name))
     pointers = [array.ctypes.data_as(POINTER) for array in arrays]
 
     def call() -> None:

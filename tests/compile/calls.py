@@ -64,8 +64,8 @@ def called(
 
 def values(model: Model, name: str, at: Point) -> list[float]:
     """The values of one function of a model at a point."""
-    sizes = model.sizes
-    c = called(model.address("prepare"), sizes.constants, x=at.p)
+    sizes = model.routines.sizes
+    c = called(model.routines.address("prepare"), sizes.constants, x=at.p)
     if name == "prepare":
         return c
     n, modes = sizes.states, sizes.modes
@@ -82,7 +82,7 @@ def values(model: Model, name: str, at: Point) -> list[float]:
         "guard_curves": modes * (n + 1),
     }
     size = lengths.get(name, modes)
-    return called(model.address(name), size, at.t, at.x, at.m, c, at.k) if size else []
+    return called(model.routines.address(name), size, at.t, at.x, at.m, c, at.k) if size else []
 
 
 def point_at(model: Model, t: float, x: Sequence[float]) -> Point | None:

@@ -356,8 +356,8 @@ def test_derivatives_in_parameters() -> None:
     def rates(k: float) -> np.ndarray:
         return np.array(values(model, "rhs", Point(WHERE.t, WHERE.x, WHERE.m, [k], [])))
 
-    c = called(model.address("prepare"), model.sizes.constants, x=WHERE.p)
-    exact = called(model.address(name), 2, WHERE.t, WHERE.x, WHERE.m, c)
+    c = called(model.routines.address("prepare"), model.routines.sizes.constants, x=WHERE.p)
+    exact = called(model.routines.address(name), 2, WHERE.t, WHERE.x, WHERE.m, c)
     assert exact == pytest.approx((rates(0.70001) - rates(0.69999)) / 2e-5, rel=1e-7)
 
 

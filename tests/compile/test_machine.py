@@ -36,7 +36,7 @@ blocks:
 def agree(diagram: object, seeds: range, record: tuple[str, ...] = (), lazy: bool = True) -> None:
     """Both back ends give the same bits for all functions at random points."""
     machine, python = both(diagram, record)  # type: ignore[arg-type]
-    assert machine.sizes == python.sizes
+    assert machine.routines.sizes == python.routines.sizes
     for seed in seeds:
         at = random_point(machine, seed)
         for name in (*EAGER, *LAZY) if lazy else EAGER:
@@ -254,18 +254,18 @@ events:
         name = model.derivative(of, ["x", "v", "k", "t"])
         assert model.derivative(of, ["x", "v", "k", "t"]) == name
         at = Point(0.5, [0.3, 1.1], [0.0] * 4, [3.0], [])
-        c = called(model.address("prepare"), model.sizes.constants, x=at.p)
+        c = called(model.routines.address("prepare"), model.routines.sizes.constants, x=at.p)
         size = 4 * len(exact)
-        found = called(model.address(name), size, at.t, at.x, at.m, c, at.k)
+        found = called(model.routines.address(name), size, at.t, at.x, at.m, c, at.k)
         assert found == pytest.approx([number for row in exact for number in row])
 
 
 def test_a_jacobian_costs_what_it_has() -> None:
     model = compile(read_text(chain(150)))
-    routine = model._routines.routine("jacobian")
+    routine = model.routines.routine("jacobian")
     assert routine.size == 300 * 301
     assert len(routine.roots) == 150 + 150 * 3
-    assert len(model._routines.machine_ir(["jacobian"])) < 300_000
+    assert len(model.routines.machine_ir(["jacobian"])) < 300_000
 
 
 # the addresses
@@ -273,7 +273,7 @@ def test_a_jacobian_costs_what_it_has() -> None:
 
 def test_sizes_are_those_of_the_arrays() -> None:
     model = compile(read_text(BALL), backend="python")
-    sizes = model.sizes
+    sizes = model.routines.sizes
     assert (sizes.states, sizes.modes, sizes.parameters) == (2, 1, 1)
     assert (sizes.outputs, sizes.timed, sizes.resets) == (2, 0, 1)
 
@@ -290,33 +290,33 @@ def test_constants_are_the_parameters_and_behind_them_what_is_made_of_them() -> 
 @pytest.mark.parametrize("backend", ["llvm", "quick", "python"])
 def test_a_lazy_function_is_compiled_by_its_first_call(backend: str) -> None:
     model = compile(read_text(one("x*x*t")), backend=backend)  # type: ignore[arg-type]
-    first = model.address("jacobian")
-    assert model.address("jacobian") == first
+    first = model.routines.address("jacobian")
+    assert model.routines.address("jacobian") == first
     assert called(first, 2, 2.0, [3.0]) == [12.0, 9.0]
-    direct = model.address("jacobian")
+    direct = model.routines.address("jacobian")
     assert direct != first
     assert called(direct, 2, 2.0, [3.0]) == called(first, 2, 2.0, [3.0]) == [12.0, 9.0]
-    assert model.compiled_address("jacobian") == direct
+    assert model.routines.compiled_address("jacobian") == direct
 
 
 def test_a_lazy_function_may_be_compiled_without_a_call() -> None:
     model = compile(read_text(one("x*x*t")))
-    direct = model.compiled_address("jacobian")
-    assert model.address("jacobian") == direct
+    direct = model.routines.compiled_address("jacobian")
+    assert model.routines.address("jacobian") == direct
     assert called(direct, 2, 2.0, [3.0]) == [12.0, 9.0]
 
 
 def test_functions_that_are_compiled_together_are_those_that_are_compiled_alone() -> None:
     alone, together = (compile(read_text(one("x*x*t")), backend="quick") for _ in range(2))
     names = ["jacobian", "rhs", "guard_second", "jacobian"]
-    found = together.compiled_addresses(names)
-    assert found == [together.compiled_address(name) for name in names]
+    found = together.routines.compiled_addresses(names)
+    assert found == [together.routines.compiled_address(name) for name in names]
     assert called(found[0], 2, 2.0, [3.0]) == values_of(alone, "jacobian")
     assert called(found[1], 1, 2.0, [3.0]) == values_of(alone, "rhs") == [18.0]
 
 
 def values_of(model: Model, name: str) -> list[float]:
-    return called(model.compiled_address(name), 2 if name == "jacobian" else 1, 2.0, [3.0])
+    return called(model.routines.compiled_address(name), 2 if name == "jacobian" else 1, 2.0, [3.0])
 
 
 def test_threads_may_ask_and_call_at_once() -> None:
@@ -330,15 +330,15 @@ def test_threads_may_ask_and_call_at_once() -> None:
 
 def test_code_lives_as_long_as_its_model() -> None:
     model = compile(read_text(one("3*x")))
-    address = model.address("rhs")
+    address = model.routines.address("rhs")
     for number in range(native.CODE.kept + 3):
-        compile(read_text(one(f"{number} + x"))).address("rhs")
+        compile(read_text(one(f"{number} + x"))).routines.address("rhs")
     assert called(address, 1, x=[2.0]) == [6.0]
 
 
 def test_the_same_code_is_compiled_once() -> None:
     first, second = (compile(read_text(one("x*0.123 + t"))) for _ in range(2))
-    assert first.address("rhs") == second.address("rhs")
+    assert first.routines.address("rhs") == second.routines.address("rhs")
 
 
 def test_a_back_end_that_does_not_exist() -> None:
@@ -353,7 +353,7 @@ def test_a_derivative_that_many_places_share_is_written_by_a_loop() -> None:
     pull = "  pull: {type: expression, formula: sin(s)}"
     text = "\n".join(["span: [0, 1]", "blocks:", *states, total, pull, ""])
     machine, python = both(text)
-    assert "@fill(" in machine._routines.machine_ir(["jacobian"])
+    assert "@fill(" in machine.routines.machine_ir(["jacobian"])
     at = random_point(machine, 5)
     found = values(machine, "jacobian", at)
     assert bits(found) == bits(values(python, "jacobian", at))

@@ -24,7 +24,7 @@ blocks:
     )
     names = list(model.states)
     states = [x if name == "x" else y for name in names]
-    routines = model._routines
+    routines = model.routines
     routines.add("sizes", 1, lambda: {0: [*routines.eager["guard_sizes"].roots.values()][-1]})
     both = [*states, *map(abs, states)]
     return routines.evaluate("sizes", 0.0, both, [0.0] * 2 * len(model.modes), [], [])[0]
@@ -78,4 +78,4 @@ blocks:
   s: {{type: expression, formula: "sign({formula})"}}
 """
     )
-    assert model.has_pace == has
+    assert model.routines.has_pace == has

@@ -10,7 +10,8 @@ import pytest
 from diagram.alike import said
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tracewire.diagram import DiagramBuilder, Signal, read, read_text, set_values, write
+from tracewire.diagram import DiagramBuilder, Signal, read, read_text, write
+from tracewire.diagram.edit_values import set_values
 from tracewire.errors import DiagramError, OptionError
 
 CART = """\

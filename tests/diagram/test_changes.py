@@ -15,6 +15,7 @@ from tracewire.diagram import (
     AddSensorTerm,
     Change,
     Diagram,
+    SetValues,
     Value,
     apply,
     patch,
@@ -25,19 +26,28 @@ from tracewire.formula import Number
 
 TEXT = """\
 inputs: {u: {unit: N, default: 0}}
-parameters: {m: 2, c: {value: 3, unit: mm, fit: [0, 9]}}
+parameters: {m: 2, c: {value: 3, unit: mm, fit: [0, 9]}, d: {value: 2*m, unit: mm}}
 blocks:
   x: {type: integrator, of: v}             # the way
   v: {type: integrator, of: force}
   force: {type: sum, of: [spring, -u, a.y]}   # the sum
   spring: {type: expression, formula: "-m*x - 0.1*abs(u)"}
-  pull: {type: sine, amplitude: 1, omega: 2}
+  pull: {type: sine, amplitude: {value: 1, fit: [0, 1000]}, omega: 2}
   a: {type: leg, r: v, w: pull}
   b: {type: arm, r: v, variant: wet}
+  pair: {type: mux, of: [v, v]}
+  left: {type: foot, r: v, k2: {value: 2*m, unit: cm}}
+  right: {type: foot, r: v, k2: 3}
+  only_one: {type: integrator, of: pair, start: [{value: 0, unit: mm}, {value: 1, unit: mm}]}
   only: {type: sum, of: [b.y, -pull]}
 subsystems:
   leg: {inputs: [r, w], outputs: {y: total}, parameters: {k: {value: 5, unit: mm}}, blocks:
     {total: {type: sum, of: [r, w]}}}
+  foot:
+    inputs: [r]
+    outputs: {y: slow}
+    parameters: {k: {value: 5, unit: mm, fit: [0, 9]}, k2: {value: 1, unit: mm}}
+    blocks: {slow: {type: first_order, of: r, lag: {value: 1, unit: ms}}}
   arm:
     inputs: [r]
     outputs: {y: total}
@@ -106,6 +116,22 @@ own = st.builds(
 )
 
 
+others = st.builds(
+    lambda chosen: SetValues(chosen),
+    st.dictionaries(
+        st.sampled_from(
+            (
+                *("m", "c", "d", "a.k", "b.k", "pull.amplitude", "left.k", "right.k", "left.k2"),
+                *("left.slow.lag", "only_one.start[1]", "no", "offset.x", "gain.v", "c@run_1"),
+                "m@run_2",
+            )
+        ),
+        st.floats(-1e-3, 1e6),
+        max_size=3,
+    ),
+)
+
+
 def done(way: object, diagram: Diagram, changes: Sequence[Change]) -> object:
     """What a diagram says after changes; the kind of the error where they cannot be made."""
     try:
@@ -115,14 +141,20 @@ def done(way: object, diagram: Diagram, changes: Sequence[Change]) -> object:
 
 
 @settings(deadline=None, max_examples=40)
-@given(blocks("one"), blocks("two"), terms, own)
+@given(blocks("one"), blocks("two"), terms, own, others)
 def test_objects_and_text_say_the_same(
-    made: Callable[[], Diagram], one: AddBlock, two: AddBlock, term: AddSensorTerm, values: AddOwn
+    made: Callable[[], Diagram],
+    one: AddBlock,
+    two: AddBlock,
+    term: AddSensorTerm,
+    values: AddOwn,
+    other: SetValues,
 ) -> None:
     diagram = made()
-    for changes in ([one], [term], [values]):
+    changes: Sequence[Change]
+    for changes in ([one], [term], [values], [other], [term, values, other]):
         assert done(apply, diagram, changes) == done(patch, diagram, changes)
-    both = [one, two, term, values]
+    both = [one, two, term, values, other]
     assert done(apply, diagram, both) == done(patch, diagram, both)
 
 
@@ -179,3 +211,31 @@ def test_a_block_of_a_row_has_no_line_of_its_own() -> None:
     block = AddBlock("one", "constant", {}, {"value": Value(Number(2.0))}, "f_1")
     with pytest.raises(OptionError, match="one of the row 'f'"):
         apply(read_text(text), [block])
+
+
+@pytest.mark.parametrize(
+    ("path", "told"),
+    [
+        ("n", r"'n' says how many blocks there are, and another number makes others"),
+        ("drag.wet_body.k", r"'drag.wet_body.k' belongs to a body of 'arm', of which a parameter"),
+    ],
+)
+def test_what_only_the_text_can_change_is_refused_in_the_objects(path: str, told: str) -> None:
+    text = """
+inputs: [u]
+parameters: {n: 2, kind: 1}
+blocks:
+  row: {type: gain, of: u, k: 1, replicate: n}
+  drag: {type: arm, r: u, variant: kind}
+subsystems:
+  arm:
+    inputs: [r]
+    outputs: {y: total}
+    variants:
+      dry: {parameters: {k: 1}, blocks: {total: {type: gain, of: r, k: k}}}
+      wet: {parameters: {k: 2}, blocks: {total: {type: gain, of: r, k: k}}}
+"""
+    diagram = read_text(text)
+    with pytest.raises(OptionError, match=told):
+        apply(diagram, [SetValues({path: 3.0})])
+    assert patch(diagram, [SetValues({path: 3.0})]).text != text

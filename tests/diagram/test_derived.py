@@ -17,9 +17,9 @@ from tracewire.diagram import (
     patch,
     patch_own,
     read_text,
-    set_values,
     written_out,
 )
+from tracewire.diagram.edit_values import set_values
 from tracewire.errors import DiagramError, OptionError
 from tracewire.formula import Number
 

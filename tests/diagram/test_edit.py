@@ -16,10 +16,10 @@ from tracewire.diagram import (
     find_parameter,
     read_text,
     remove_addend,
-    set_sensors,
-    set_values,
     write,
 )
+from tracewire.diagram.edit_sensors import set_sensors
+from tracewire.diagram.edit_values import set_values
 from tracewire.errors import DiagramError, OptionError
 from tracewire.formula import Number
 
@@ -154,6 +154,14 @@ blocks: {d: {type: viscous, rate: d, c: {unit: N m s/rad, value: '1'}}}
     assert "c: {unit: N m s/rad, value: 20}" in new.text
     assert changes(old, set_values(old, {"b": 3}))[1] == ["  b: 3"]
     assert set_values(old, {}).text == old.text
+
+
+def test_a_number_in_the_place_of_a_formula_is_in_the_unit_that_stands_there() -> None:
+    """A formula is in SI whatever its unit, and a number is not."""
+    text = "parameters: {k: 1, c: {value: 2*k, unit: mm}}\n"
+    text += "blocks: {x: {type: integrator, of: x, start: {value: c, unit: mm}}}\n"
+    changed = set_values(made(text), {"c": 0.004, "x.start": 0.005})
+    assert changed.text == text.replace("2*k", "4").replace("value: c", "value: 5")
 
 
 def test_a_value_in_a_list_is_set_where_it_stands() -> None:

@@ -17,11 +17,11 @@ from tracewire.diagram import (
     remove_addend,
     replace_series,
     series_parts,
-    set_sensors,
-    set_values,
     with_series_of,
     written_out,
 )
+from tracewire.diagram.edit_sensors import set_sensors
+from tracewire.diagram.edit_values import set_values
 from tracewire.errors import DiagramError, OptionError
 from tracewire.formula import Number
 

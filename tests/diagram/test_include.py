@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 from diagram.small_library import LIBRARY, refused
-from tracewire.diagram import add_addend, read_text, set_values
+from tracewire.diagram import add_addend, read_text
+from tracewire.diagram.edit_values import set_values
 from tracewire.errors import OptionError
 
 PARTS = """

@@ -10,9 +10,9 @@ from tracewire.diagram import (
     add_addend,
     read_text,
     remove_addend,
-    set_values,
     written_out,
 )
+from tracewire.diagram.edit_values import set_values
 from tracewire.errors import OptionError
 
 CELL = """

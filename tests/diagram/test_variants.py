@@ -11,10 +11,10 @@ from tracewire.diagram import (
     Diagram,
     add_addend,
     read_text,
-    set_values,
     set_variants,
     written_out,
 )
+from tracewire.diagram.edit_values import set_values
 from tracewire.errors import OptionError, SimulationError
 from tracewire.solve import simulate
 

@@ -15,7 +15,8 @@ from show.traces import FOUND
 from tracewire.analyse.partial import Partial
 from tracewire.cli.reporting import store
 from tracewire.cli.setting import write_numbers
-from tracewire.diagram import read_text, set_values
+from tracewire.diagram import read_text
+from tracewire.diagram.edit_values import set_values
 from tracewire.errors import TracewireError
 from tracewire.fit.checkpoint import Store
 from tracewire.show.document import Figure, Report, Section

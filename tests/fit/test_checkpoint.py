@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 from residual.models import OSCILLATOR, T, made, oscillation, series
+from tracewire import resume
 from tracewire.errors import OptionError
-from tracewire.fit import Fit, checkpoint, fit, optimset
-from tracewire.fit.limits import SearchLimits
+from tracewire.fit import Fit, fit, optimset
 from tracewire.fit.methods import METHODS
 
 MODEL = made(OSCILLATOR)
@@ -93,7 +93,7 @@ def test_a_disk_that_becomes_full_does_not_cost_the_fit(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """All writings but the first fail: the fit is done and says so, and the first file is there."""
-    usual, count = checkpoint.write_file, 0
+    usual, count = resume.write_file, 0
 
     def full(path: Any, content: Any) -> Any:
         nonlocal count
@@ -102,8 +102,8 @@ def test_a_disk_that_becomes_full_does_not_cost_the_fit(
             raise OSError(28, "No space left on device")
         return usual(path, content)
 
-    monkeypatch.setattr(checkpoint, "SEARCH", SearchLimits(keep_every=0.0))
-    monkeypatch.setattr(checkpoint, "write_file", full)
+    monkeypatch.setattr(resume, "RESUME", resume.ResumeLimits(every=0.0))
+    monkeypatch.setattr(resume, "write_file", full)
     found = fitted("least_squares", save=tmp_path / "fit.json")
     assert count > 1
     assert found.values == fitted("least_squares").values

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tracewire.compile import Model, compile
-from tracewire.diagram import add_own, read, read_text, set_sensors
+from tracewire.diagram import add_own, read, read_text
+from tracewire.diagram.edit_sensors import set_sensors
 from tracewire.errors import DiagramError, OptionError
 from tracewire.fit import fit
 from tracewire.residual import load_measured

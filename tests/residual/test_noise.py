@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from residual.made_noise import autoregression
 from scipy.linalg import toeplitz
 from tracewire.residual import Measured
-from tracewire.residual.channel_noise import channel_noise
 from tracewire.residual.noise import noise_of
 from tracewire.residual.noise_estimate import noise_level
+from tracewire.residual.noise_of_channels import channel_noise
 
 RANDOM = np.random.default_rng(7)
 

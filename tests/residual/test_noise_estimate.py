@@ -14,8 +14,8 @@ from residual.made_noise import autoregression
 from scipy.interpolate import CubicSpline
 from scipy.signal import butter, filtfilt, lfilter, resample
 from tracewire.residual import Measured
-from tracewire.residual.channel_noise import channel_noise, estimate_noise
 from tracewire.residual.noise_estimate import noise_of_signal
+from tracewire.residual.noise_of_channels import channel_noise, estimate_noise
 from tracewire.residual.readings import interpolation, rounding_step
 
 Vector = NDArray[np.float64]

@@ -31,6 +31,8 @@ DRIVEN = "span: [0, 1]\ninputs: [u]\nblocks: {x: {type: integrator, of: u}}"
             {"span": (0, 1), "times": [0.5, 2.0]},
             r"sample times from 0.5 to 2 s are not within the span from 0 to 1 s",
         ),
+        ({"every": 0.0}, r"an output every 0 s from 0 to .* s cannot be kept"),
+        ({"every": 0.5, "times": [0.0, 1.0]}, r"an output every 0.5 s\. Give times= or every="),
         ({"parameters": {"restitutoin": 1.0}}, r"unknown parameter.*Did you mean 'restitution'"),
         ({"parameters": {"restitution": float("nan")}}, r"'restitution' is given as nan"),
         ({"start": {"y": 1.0}}, r"unknown state 'y'; there are: v, x"),
@@ -42,6 +44,13 @@ DRIVEN = "span: [0, 1]\ninputs: [u]\nblocks: {x: {type: integrator, of: u}}"
 def test_an_option_that_does_not_fit_is_refused(options: dict[str, Any], message: str) -> None:
     with pytest.raises(OptionError, match=message):
         simulate(made(BALL), **options)
+
+
+def test_the_time_between_samples_may_be_given() -> None:
+    own, given = OSCILLATOR + "\nevery: 0.5\n", run(OSCILLATOR, span=(0, 2), every=0.25)
+    assert given.t.tolist() == [0.25 * n for n in range(9)]
+    assert run(own, span=(0, 2), every=0.25).t.tolist() == given.t.tolist()
+    assert run(own, span=(0, 2)).t.tolist() == [0.0, 0.5, 1.0, 1.5, 2.0]
 
 
 def test_an_absolute_tolerance_may_be_given_by_state() -> None:

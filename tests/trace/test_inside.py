@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tracewire.compile import compile
-from tracewire.diagram import read, set_values
+from tracewire.diagram import read
+from tracewire.diagram.edit_values import set_values
 from tracewire.fit import fit
 from tracewire.solve import simulate
 from tracewire.trace import trace

@@ -1,17 +1,16 @@
 """What a model does beyond one run: orbits, their stability, charts, exponents, spectra."""
 
-from tracewire.analyse.bifurcation import Bifurcation, Branch, bifurcation
+from tracewire.analyse.bifurcation_diagram import Bifurcation, Branch, bifurcation
 from tracewire.analyse.chart import StabilityChart, stability_chart
-from tracewire.analyse.floquet import Floquet, floquet
+from tracewire.analyse.floquet_multipliers import Floquet, floquet
 from tracewire.analyse.growth import GrowthRate, growth_rate
 from tracewire.analyse.invariants import Drift, invariant_drift
-from tracewire.analyse.linearise import Linear, linearise
-from tracewire.analyse.lyapunov import Lyapunov, lyapunov
+from tracewire.analyse.linearisation import Linear, linearise
+from tracewire.analyse.lyapunov_exponents import Lyapunov, lyapunov
 from tracewire.analyse.orbit import PeriodicOrbit, periodic_orbit
 from tracewire.analyse.plane import Plane
-from tracewire.analyse.scalogram import Scalogram, scalogram
-from tracewire.analyse.section import PoincareSection, section
-from tracewire.analyse.spectrum import Line, Spectrum, spectrum
+from tracewire.analyse.poincare_section import PoincareSection, section
+from tracewire.analyse.spectra import Line, Spectrum, spectrum
 from tracewire.analyse.statements import (
     VERDICTS,
     Judge,
@@ -20,8 +19,9 @@ from tracewire.analyse.statements import (
     counts_of,
     judge,
 )
-from tracewire.analyse.steady_state import SteadyState, steady_state
-from tracewire.analyse.sweep import Sweep, sweep
+from tracewire.analyse.steady_states import SteadyState, steady_state
+from tracewire.analyse.sweeps import Sweep, sweep
+from tracewire.analyse.wavelets import Scalogram, scalogram
 
 __all__ = [
     "VERDICTS",

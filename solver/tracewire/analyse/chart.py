@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tracewire.analyse.floquet import Tries
+from tracewire.analyse.floquet_multipliers import Tries
 from tracewire.analyse.grid import grid_of
 from tracewire.analyse.partial import Partial, fingerprint
 from tracewire.analyse.work import work_through

@@ -151,8 +151,6 @@ class SweepLimits:
 
     most_points: int = 1_000_000
     """Of a grid."""
-    keep_every: float = 2.0
-    """Wall time between two writings of the file from which a sweep goes on, s, at least."""
 
 
 SWEEP = SweepLimits()

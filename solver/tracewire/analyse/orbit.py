@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.analyse.drive import is_driven, number, period_of
-from tracewire.analyse.floquet import Floquet
+from tracewire.analyse.floquet_multipliers import Floquet
 from tracewire.analyse.limits import ORBIT
 from tracewire.analyse.turns import units_of, within_a_turn
 from tracewire.compile import Model
@@ -75,7 +76,8 @@ def periodic_orbit(
     unit = units_of(model, modulo or {})
     if skip < 0:
         raise OptionError([Problem(f"{skip} periods cannot be skipped", hint="Give 0 or more.")])
-    passage = Passage(
+    make = partial(
+        Passage,
         model,
         length=length,
         begin=since,
@@ -84,22 +86,12 @@ def periodic_orbit(
         preset=preset,
         method=method,
         rtol=rtol,
-        tangents=True,
-        inner=ORBIT.points,
     )
+    passage = make(tangents=True, inner=ORBIT.points)
     driven = is_driven(passage, length)
     x = passage.x
     if skip:
-        before = Passage(
-            model,
-            length=length,
-            begin=since,
-            parameters=parameters,
-            start=guess,
-            preset=preset,
-            method=method,
-            rtol=rtol,
-        )
+        before = make()
         before.go_to(since + skip * length)
         x = within_a_turn(before.x, unit)
     if not driven:

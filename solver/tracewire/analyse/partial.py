@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import time
-import zipfile
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -13,11 +11,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.analyse.limits import SWEEP
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Place, Problem
-from tracewire.files import replacing, writing
 from tracewire.formula import to_text
+from tracewire.resume import ResumeFile
 
 KIND = "a sweep of tracewire"
 
@@ -25,8 +22,7 @@ KIND = "a sweep of tracewire"
 class Partial:
     """The rows of a sweep (count, width) as they are done, in memory and, with a path, in a file.
 
-    A file that is there is read, and must belong to the same diagram, grid and options. It is
-    written every two seconds, and is never half a file.
+    A file that is there is read, and must belong to the same diagram, grid and options.
     """
 
     def __init__(
@@ -38,11 +34,12 @@ class Partial:
         self.done = np.zeros(count, dtype=bool)
         self.errors: dict[int, str] = {}
         self.resumed = 0
-        self._written = time.monotonic()
+        self._file: ResumeFile | None = None
         if self.path is not None:
             _check(self.path)
+            self._file = ResumeFile(self.path, KIND, has_arrays=True)
             if self.path.exists():
-                self._read()
+                self._read(self._file)
 
     def put(self, number: int, row: NDArray[np.float64] | None, error: str = "") -> None:
         """Keep what has become of a row."""
@@ -51,32 +48,26 @@ class Partial:
         if error:
             self.errors[number] = error
         self.done[number] = True
-        if time.monotonic() - self._written > SWEEP.keep_every:
+        if self._file is not None and self._file.is_due:
             with suppress(OptionError):  # a full disk may have space again; the last writing tells
                 self.write()
 
     def write(self) -> None:
         """Write the file, if there is to be one. Raises OptionError."""
-        if self.path is None:
-            return
-        self._written = time.monotonic()
-        content = {"kind": KIND, "identity": self.identity, "errors": self.errors}
-        arrays = {"rows": self.rows, "done": self.done, "content": np.array(json.dumps(content))}
-        with writing(self.path), replacing(self.path) as file:
-            np.savez(file, allow_pickle=False, **arrays)
+        if self._file is not None:
+            content = {"identity": self.identity, "errors": self.errors}
+            self._file.write(content, rows=self.rows, done=self.done)
 
-    def _read(self) -> None:
-        place = Place(str(self.path))
-        hint = "Name the file that a sweep has left here, or a new one."
+    def _read(self, file: ResumeFile) -> None:
+        place = Place(str(file.path))
         try:
-            with np.load(str(self.path), allow_pickle=False) as file:
-                content = json.loads(str(file["content"]))
-                rows, done = file["rows"], file["done"]
-        except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
-            raise OptionError.one("this is no partial file of a sweep", place, hint=hint) from None
-        if content.get("kind") != KIND:
+            content = file.read()
+        except OSError:
+            content = None
+        if content is None or not content.keys() >= {"identity", "errors", "rows", "done"}:
+            hint = "Name the file that a sweep has left here, or a new one."
             raise OptionError.one("this is no partial file of a sweep", place, hint=hint)
-        there = content["identity"]
+        there, rows, done = content["identity"], content["rows"], content["done"]
         other = [name for name in {**there, **self.identity}
                  if there.get(name) != self.identity.get(name)]  # fmt: skip
         if other or rows.shape != self.rows.shape:

@@ -10,7 +10,8 @@ from tracewire.cli.executors import executor_at
 from tracewire.cli.options import DiagramPath
 from tracewire.cli.output import telling, working
 from tracewire.cli.records import FigureTarget, Given, PeriodOptions, Target, Work
-from tracewire.cli.setting import Modulo, Rtol, TwoStates, read_setting, tell, values_of
+from tracewire.cli.setting import Modulo, Rtol, TwoStates, read_setting, tell
+from tracewire.cli.values import values_of
 from tracewire.errors import OptionError, Problem
 
 

@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tracewire.cli.limits import LIMITS
-from tracewire.cli.one_run import Signal, run_of
 from tracewire.cli.options import DiagramPath
 from tracewire.cli.records import FigureFile, FigureTarget, Given, Sampling, Since, Target
-from tracewire.cli.setting import Rtol, read_setting, tell_parts
+from tracewire.cli.setting import Rtol, Signal, read_setting, run_of, tell_parts
 
 if TYPE_CHECKING:
     from tracewire.solve import Run

@@ -10,8 +10,8 @@ from tracewire.cli.executors import executor_at
 from tracewire.cli.options import DiagramPath
 from tracewire.cli.output import telling, working
 from tracewire.cli.records import FigureTarget, Given, PlaneOptions, Work
-from tracewire.cli.setting import Modulo, Rtol, TwoStates, read_setting, tell, values_of
-from tracewire.cli.values import start_values_of
+from tracewire.cli.setting import Modulo, Rtol, TwoStates, read_setting, tell
+from tracewire.cli.values import start_values_of, values_of
 from tracewire.errors import OptionError, Problem
 
 Skip = Annotated[int, typer.Option(metavar="N", help="Points that are passed over.")]

@@ -7,10 +7,9 @@ from typing import Annotated
 
 import typer
 
-from tracewire.cli.one_run import Signal, run_of
 from tracewire.cli.options import DiagramPath
 from tracewire.cli.records import FigureFile, FigureTarget, Given, Sampling, Since
-from tracewire.cli.setting import Rtol, read_setting, tell, tell_parts
+from tracewire.cli.setting import Rtol, Signal, read_setting, run_of, tell, tell_parts
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,9 @@ from typing import Annotated
 import typer
 
 from tracewire.cli.limits import LIMITS
-from tracewire.cli.options import AsJson, Debug, DiagramPath
+from tracewire.cli.options import AsJson, Debug, DiagramPath, SeriesName, read_series
 from tracewire.cli.output import check_target, note, print_json, print_text, telling, working
 from tracewire.cli.records import Given, Span
-from tracewire.cli.series import SeriesName, read_series
 from tracewire.cli.setting import Rtol
 from tracewire.cli.values import parameter_values_of, start_values_of
 from tracewire.files import writing
@@ -61,7 +60,7 @@ def animate(
         from tracewire.diagram import read
         from tracewire.show import animate as film_of
         from tracewire.show import frame_times
-        from tracewire.solve import Options, parameter_values, simulate, with_options
+        from tracewire.solve import Options, even_times, parameter_values, simulate, with_options
 
         plain = compile(read(diagram, given.library or ()))
         model = compile(plain.diagram, plain.read_by_scene)
@@ -75,9 +74,7 @@ def animate(
     )
     options = with_options(conditions, own)
     known = parameter_values(model, options.get("parameters") or {}, options.get("preset", ""))
-    from tracewire.cli.one_run import evenly
-
-    begin, end = options.get("span") or evenly(model, known, None, 1).tolist()
+    begin, end = options.get("span") or even_times(model, known, None, 1).tolist()
     times = frame_times(model, (begin, end), target, speed=speed, fps=fps, width=width)
     finer = max(LIMITS.film_finer, math.ceil(LIMITS.film_samples / len(times)))
     samples = np.interp(

@@ -11,9 +11,9 @@ from typing import Annotated
 import typer
 from typer.main import get_command
 
+from tracewire.cli.multi_value import MultiValueCommand
 from tracewire.cli.output import INTERRUPTED, Cut, print_problems
 from tracewire.cli.records import with_fields
-from tracewire.cli.several import Several
 from tracewire.cli.streams import close_streams, open_streams
 from tracewire.errors import Problem, TracewireError
 
@@ -69,7 +69,7 @@ def _app(verbs: Sequence[str]) -> typer.Typer:
         if isinstance(made, typer.Typer):
             app.add_typer(made, name=verb)
         else:
-            app.command(cls=Several if verb == "trace" else None)(with_fields(made))
+            app.command(cls=MultiValueCommand if verb == "trace" else None)(with_fields(made))
     return app
 
 

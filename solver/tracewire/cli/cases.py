@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from tracewire.cli.limits import LIMITS
-from tracewire.cli.setting import values_of
+from tracewire.cli.values import values_of
 from tracewire.errors import OptionError, Problem
 
 if TYPE_CHECKING:

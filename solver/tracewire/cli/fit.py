@@ -143,7 +143,7 @@ def fit(
       tracewire fit pendulum.yaml --fix c --profile w0_squared
       tracewire fit pendulum.yaml --MaxIter 150 --save fit.json --apply
     """
-    from tracewire.diagram import set_sensors, set_values
+    from tracewire.diagram import SetValues, patch
     from tracewire.fit import fit as fit_model
     from tracewire.fit import profile as profile_of
     from tracewire.show import present
@@ -178,11 +178,9 @@ def fit(
                 cut = True
                 break
     attempt = Attempts()
-    own = {n: v for n, v in found.values.items() if n in model.flat.parameters}
-    sensors = {n: v for n, v in found.values.items() if n not in own}
 
     def edited() -> Diagram:
-        return set_sensors(set_values(model.diagram, own), sensors)
+        return patch(model.diagram, [SetValues(found.values)])
 
     attempt(lambda: store(model.diagram, edited, target.apply, target.output))
     attempt(lambda: write_report(found, target.report, profiles))

@@ -14,6 +14,8 @@ from tracewire.cli.project import with_project
 if TYPE_CHECKING:
     from tracewire.compile import Model
     from tracewire.diagram import Diagram
+    from tracewire.residual import Measured
+    from tracewire.solve import Options
 
 DiagramPath = Annotated[
     str, typer.Argument(metavar="DIAGRAM", help="A diagram file (YAML).", show_default=False)
@@ -26,6 +28,14 @@ Libraries = Annotated[
         help="A Python file or folder of further blocks; it is run, so trust it. Repeatable.",
         show_default=False,
         callback=with_project,
+    ),
+]
+SeriesName = Annotated[
+    str,
+    typer.Option(
+        "--series",
+        metavar="NAME",
+        help="Run as this measured series: its inputs, start, values and time.",
     ),
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
@@ -61,3 +71,18 @@ def load_model(
     if more > 0:
         note(f"units: {more} more; `tracewire check` tells them all.")
     return model
+
+
+def read_series(model: Model, name: str) -> tuple[Options, Measured | None]:
+    """The conditions of a measured series and the series; none where no name is given.
+
+    Raises OptionError, DataError.
+    """
+    from tracewire.solve import Options
+
+    if not name:
+        return Options(), None
+    from tracewire.residual import measured_series
+
+    measured = measured_series(model, name)
+    return measured.conditions, measured

@@ -156,18 +156,16 @@ def with_table(model: Model, found: Found, path: str, folder: Path) -> Diagram |
     `folder` is that of the diagram that will name the file. None, and a note, where a block cannot
     do that.
     """
-    from tracewire.diagram import set_sensors, set_values
+    from tracewire.diagram import SetValues, patch
     from tracewire.trace.candidates.places import find_places
     from tracewire.trace.missing.table import add_table
 
     missing = found.missing
     assert missing is not None
     places = {place.name: place for place in find_places(model)}
-    own = {n: v for n, v in found.declared.items() if n in model.flat.parameters}
-    sensors = {n: v for n, v in found.declared.items() if n not in own}
     file = Path(os.path.relpath(path, folder)).as_posix()
     try:
-        fitted = set_sensors(set_values(found.original, own), sensors)
+        fitted = patch(found.original, [SetValues(found.declared)])
         return add_table(fitted, places[missing.place], missing, file)
     except OptionError as error:
         note(f"the diagram gets no table: {error.problems[0]}")

@@ -9,13 +9,11 @@ from typing import TYPE_CHECKING
 
 from tracewire.cli.cases import cases_of
 from tracewire.cli.limits import LIMITS
-from tracewire.cli.one_run import evenly
-from tracewire.cli.options import DiagramPath, load_model
+from tracewire.cli.options import DiagramPath, load_model, read_series
 from tracewire.cli.output import note, print_json, print_table, print_text, telling, working
 from tracewire.cli.records import Sampling
 from tracewire.cli.reporting import write_report
 from tracewire.cli.run_records import Accuracy, RunGiven, RunTarget
-from tracewire.cli.series import read_series
 from tracewire.cli.values import parameter_values_of, start_values_of, units_of
 from tracewire.errors import Problem
 from tracewire.files import writing
@@ -54,17 +52,14 @@ def run(
     cases = cases_of(model, given.over or (), given.preset or ())
     if len(cases) > 1:
         target.check_several()
-    if sampling.every is not None:
-        from tracewire.formula import Number
-
-        model = replace(model, flat=replace(model.flat, every=Number(sampling.every)))
     from tracewire.solve import Options, with_options
 
     conditions, measured = read_series(model, given.series)
-    own = Options(parameters=parameters, start=starts, span=sampling.span)
+    own = Options(parameters=parameters, start=starts, span=sampling.span, every=sampling.every)
     options = with_options(conditions, own | accuracy.options)
     # a figure of a quick swing needs more points than a table of it
-    finer = bool(target.figure or target.report) and model.flat.every is None
+    is_spaced = sampling.every is not None or model.flat.every is not None
+    finer = bool(target.figure or target.report) and not is_spaced
     lost = target.output or f"{Path(diagram).stem}.interrupted.npz"
     runs = {}
     for case in cases:
@@ -86,13 +81,19 @@ def _simulated(model: Model, options: Options, finer: bool, what: str, lost: str
     """The run, with ten times the samples where it is `finer`; what there is of one that the user
     stops goes into the file `lost`."""
     with working(what) as show:
-        from tracewire.solve import DEFAULT_SAMPLES, Interrupted, parameter_values, simulate
+        from tracewire.solve import (
+            DEFAULT_SAMPLES,
+            Interrupted,
+            even_times,
+            parameter_values,
+            simulate,
+        )
 
         if finer:
             preset = options.get("preset", "")
             known = parameter_values(model, options.get("parameters") or {}, preset)
             steps = LIMITS.finer * (DEFAULT_SAMPLES - 1)
-            options["times"] = evenly(model, known, options.get("span"), steps)
+            options["times"] = even_times(model, known, options.get("span"), steps)
         try:
             return simulate(model, **options, progress=telling(what, show))
         except Interrupted as error:

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tracewire.cli.options import AsJson, Debug, Libraries
+from tracewire.cli.options import AsJson, Debug, Libraries, SeriesName
 from tracewire.cli.output import check_target
 from tracewire.cli.reporting import ReportFile
-from tracewire.cli.series import SeriesName
 from tracewire.errors import OptionError, Problem
 
 if TYPE_CHECKING:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any
@@ -16,24 +15,21 @@ from tracewire.cli.output import (
     print_json,
     print_parts,
     print_text,
+    telling,
     working,
 )
-from tracewire.cli.records import Given, Target
+from tracewire.cli.records import Given, Sampling, Target
 from tracewire.cli.values import parameter_values_of, start_values_of
-from tracewire.errors import OptionError, Problem
 from tracewire.files import replacing, write_rows, writing
 
 if TYPE_CHECKING:
     from tracewire.compile import Model
     from tracewire.result import Result
     from tracewire.show import Table
-    from tracewire.solve import Options
+    from tracewire.solve import Options, Run
 
 OUTPUTS = (".csv", ".npz")
 FIGURES = (".png", ".svg", ".pdf")
-NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
-VALUES = re.compile(rf"\s*([^=\s]+)\s*=\s*({NUMBER})\s*:\s*({NUMBER})\s*:\s*(\d+)\s*(.*)")
-LISTED = re.compile(rf"\s*([^=\s]+)\s*=\s*({NUMBER}(?:\s*,\s*{NUMBER})*)\s*([^\d:,;]?[^:,;]*)")
 
 Modulo = Annotated[
     list[str] | None,
@@ -43,6 +39,7 @@ Modulo = Annotated[
         help="A state that closes up to a multiple, as in 'phi=360 deg'. Repeatable.",
     ),
 ]
+Signal = Annotated[str, typer.Argument(metavar="SIGNAL", help="A signal.", show_default=False)]
 TwoStates = Annotated[
     tuple[str, str] | None, typer.Option(metavar="X Y", help="The two states of the figure.")
 ]
@@ -86,44 +83,19 @@ def read_setting(
     return Setting(model, parameters, start_values_of(model, given.start or ()), given.preset)
 
 
-def values_of(model: Model, texts: Sequence[str], option: str = "--over") -> dict[str, Any]:
-    """NAME=FROM:TO:COUNT as evenly spaced values, NAME=VALUE,VALUE,... as these, in SI by name.
+def run_of(setting: Setting, sampling: Sampling, rtol: float, *, steps: int | None = None) -> Run:
+    """The run of a setting, with its warnings told; in `steps` steps where nothing says another."""
+    from tracewire.solve import Options, even_times, parameter_values, simulate
 
-    Raises OptionError.
-    """
-    import numpy as np
-
-    found: dict[str, Any] = {}
-    problems: list[Problem] = []
-    for text in texts:
-        even, listed = VALUES.fullmatch(text), LISTED.fullmatch(text)
-        if even is not None:
-            name, first, last, count, unit = even.groups()
-            given = [first, last]
-        elif listed is not None:
-            name, numbers, unit = listed.groups()
-            given, count = numbers.split(","), "1"
-        else:
-            what = f"{option} '{text}' is not a name, '=' and FROM:TO:COUNT or values"
-            hint = f"Write it like {option} f=0.3:0.9:800 or {option} f=0.3,0.5,1."
-            problems.append(Problem(what, hint=hint))
-            continue
-        read, known = parameter_values_of, name
-        if name.startswith("start."):
-            read, known = start_values_of, name.removeprefix("start.")
-        values = [
-            next(iter(read(model, [f"{known}={number.strip()} {unit}"], option).values()))
-            for number in given
-        ]
-        if int(count) < 1:
-            problems.append(Problem(f"{option} '{text}' has no values", hint="Give a COUNT."))
-            continue
-        if name in found:
-            problems.append(Problem(f"{option} gives '{name}' twice", hint="Leave one out."))
-        found[name] = np.linspace(values[0], values[1], int(count)) if even else np.array(values)
-    if problems:
-        raise OptionError(problems)
-    return found
+    options = setting.run_options(sampling.span, rtol) | Options(every=sampling.every)
+    if steps is not None and sampling.every is None and setting.model.flat.every is None:
+        values = parameter_values(setting.model, setting.parameters, setting.preset)
+        options["times"] = even_times(setting.model, values, sampling.span, steps)
+    with working("simulating") as show:
+        run = simulate(setting.model, **options, progress=telling("simulating", show))
+    for warning in run.warnings:
+        note(f"warning: {warning}")
+    return run
 
 
 def tell(

@@ -7,11 +7,11 @@ from typing import Annotated
 import typer
 
 from tracewire.cli.executors import executor_at
-from tracewire.cli.options import DiagramPath
+from tracewire.cli.options import DiagramPath, SeriesName, read_series
 from tracewire.cli.output import telling, working
 from tracewire.cli.records import FigureTarget, Given, Since, Span, Work
-from tracewire.cli.series import SeriesName, read_series
-from tracewire.cli.setting import Rtol, read_setting, tell, values_of
+from tracewire.cli.setting import Rtol, read_setting, tell
+from tracewire.cli.values import values_of
 
 
 def sweep(

@@ -1,11 +1,11 @@
-"""`name=value` of the command line: numbers with or without a unit, for parameters and states."""
+"""`name=value` and `name=values` of the command line: numbers with or without a unit."""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, Any
 
 from tracewire.errors import FormulaError, OptionError, Problem, unknown
 
@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 ASSIGNMENT = re.compile(rf"\s*([^=\s]+)\s*=\s*({NUMBER})(?:\s*([^\s\d.].*?|1\s*/.*?))?\s*")
+VALUES = re.compile(rf"\s*([^=\s]+)\s*=\s*({NUMBER})\s*:\s*({NUMBER})\s*:\s*(\d+)\s*(.*)")
+LISTED = re.compile(rf"\s*([^=\s]+)\s*=\s*({NUMBER}(?:\s*,\s*{NUMBER})*)\s*([^\d:,;]?[^:,;]*)")
 HINT = "Write it like {option} k=2.5 or {option} 'phi=13.6 deg'."
 
 Declared = tuple[str, str, float]
@@ -58,6 +60,46 @@ def start_values_of(
         return found, units[found], 1.0
 
     return _assigned(texts, option, declared)
+
+
+def values_of(model: Model, texts: Sequence[str], option: str = "--over") -> dict[str, Any]:
+    """NAME=FROM:TO:COUNT as evenly spaced values, NAME=VALUE,VALUE,... as these, in SI by name.
+
+    Raises OptionError.
+    """
+    import numpy as np
+
+    found: dict[str, Any] = {}
+    problems: list[Problem] = []
+    for text in texts:
+        even, listed = VALUES.fullmatch(text), LISTED.fullmatch(text)
+        if even is not None:
+            name, first, last, count, unit = even.groups()
+            given = [first, last]
+        elif listed is not None:
+            name, numbers, unit = listed.groups()
+            given, count = numbers.split(","), "1"
+        else:
+            what = f"{option} '{text}' is not a name, '=' and FROM:TO:COUNT or values"
+            hint = f"Write it like {option} f=0.3:0.9:800 or {option} f=0.3,0.5,1."
+            problems.append(Problem(what, hint=hint))
+            continue
+        read, known = parameter_values_of, name
+        if name.startswith("start."):
+            read, known = start_values_of, name.removeprefix("start.")
+        values = [
+            next(iter(read(model, [f"{known}={number.strip()} {unit}"], option).values()))
+            for number in given
+        ]
+        if int(count) < 1:
+            problems.append(Problem(f"{option} '{text}' has no values", hint="Give a COUNT."))
+            continue
+        if name in found:
+            problems.append(Problem(f"{option} gives '{name}' twice", hint="Leave one out."))
+        found[name] = np.linspace(values[0], values[1], int(count)) if even else np.array(values)
+    if problems:
+        raise OptionError(problems)
+    return found
 
 
 def units_of(model: Model, texts: Iterable[str], option: str = "--unit") -> dict[str, str]:

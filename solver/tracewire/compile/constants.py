@@ -56,12 +56,4 @@ class Constants:
 
     def order(self, roots: Iterable[int]) -> list[int]:
         """The entries that a function of these roots reads or computes, each after its operands."""
-        wanted: set[int] = set()
-        stack = list(roots)
-        while stack:
-            index = stack.pop()
-            if index not in wanted:
-                wanted.add(index)
-                if self.place(index) is None:
-                    stack.extend(self.tape.entries[index].operands)
-        return sorted(wanted)
+        return self.tape.needed(roots, lambda index: self.place(index) is not None)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from tracewire.compile.flat import FlatEvent
-from tracewire.compile.jumps import lower_jumps, only_jumps
+from tracewire.compile.jump_events import lower_jumps, only_jumps
 from tracewire.compile.lowered import Direction, Reset
 from tracewire.compile.lowering import Lowering
 from tracewire.compile.memory import values_of

@@ -7,6 +7,13 @@ from dataclasses import replace
 
 from tracewire.compile.continuous import ContinuousPort, jump_problems
 from tracewire.compile.curves import curve_tables
+from tracewire.compile.declared_events import (
+    block_events,
+    block_memory,
+    diagram_events,
+    memory_name,
+    near_ticks,
+)
 from tracewire.compile.expand import expand_vectors
 from tracewire.compile.flat import (
     Flat,
@@ -16,13 +23,6 @@ from tracewire.compile.flat import (
     FlatMemory,
     FlatParameter,
     FlatState,
-)
-from tracewire.compile.happenings import (
-    block_events,
-    block_memory,
-    diagram_events,
-    memory_name,
-    near_ticks,
 )
 from tracewire.compile.loops import order_signals
 from tracewire.compile.many import write_wires

@@ -97,7 +97,7 @@ done:
 HELPERS = {"segment": SEGMENT, "slope": SLOPE, "fill": FILL, "past": PAST}
 
 
-def machine_text(functions: Sequence[str]) -> str:
+def _module(functions: Sequence[str]) -> str:
     """The IR of a module with these functions and what they call."""
     body = "\n".join(functions)
     heads = [f"declare double @{PREFIX}{name}(double) {PURE}" for name in libm.ONE]
@@ -115,11 +115,20 @@ class MachineWriter:
         self.tape, self.constants, self.modes = tape, constants, modes
         self.has_sincos = libm.has_sincos()
 
-    def function(self, name: str, roots: Mapping[int, int]) -> str:
-        """The IR of a function that writes each root to its place in `out`."""
+    def text(self, functions: Mapping[str, Mapping[int, int] | None]) -> str:
+        """The IR of a module with functions by their names: of one that writes each root to its
+        place in `out`, these; of the one that prepares the constants, None."""
+        return _module(
+            [
+                self._prepare(name) if roots is None else self._function(name, roots)
+                for name, roots in functions.items()
+            ]
+        )
+
+    def _function(self, name: str, roots: Mapping[int, int]) -> str:
         return _Body(self, name, roots, self.constants.order(roots.values())).text()
 
-    def prepare(self, name: str) -> str:
+    def _prepare(self, name: str) -> str:
         """The IR of the function that makes the constants `c` of the parameters `x`."""
         tape, constants = self.tape, self.constants
         roots = {place: index for index, place in constants.places.items()}

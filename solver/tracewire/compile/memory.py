@@ -25,8 +25,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import reduce
 
+from tracewire.compile.declared_events import told_clock
 from tracewire.compile.flat import Flat, FlatMemory
-from tracewire.compile.happenings import told_clock
 from tracewire.compile.lowered import Reset, Transition
 from tracewire.compile.lowering import Lowering
 from tracewire.formula import Call, Expression, Number, to_text

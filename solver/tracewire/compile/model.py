@@ -14,7 +14,7 @@ from tracewire.compile.holding import modes_read
 from tracewire.compile.lower import lower
 from tracewire.compile.lowered import Lowered, Mode, Reset
 from tracewire.compile.memory import told
-from tracewire.compile.routines import BACKENDS, PREPARE, Backend, Routines, Sizes
+from tracewire.compile.routines import BACKENDS, PREPARE, Backend, Routines
 from tracewire.compile.scene import resolve_scene
 from tracewire.compile.vectors import element_names
 from tracewire.diagram import Diagram, ScenePart, find_recorded
@@ -26,7 +26,7 @@ from tracewire.formula import Expression, evaluation_order, names_of, to_text
 class Model:
     """A diagram compiled to a flat ODE with events; parameters and start values stay arguments.
 
-    Its functions have C addresses, compiled when they are first asked for: see `address`. `source`
+    Its functions are `routines`, with C addresses, compiled when they are first asked for. `source`
     is the Python text of the same functions.
     """
 
@@ -138,17 +138,6 @@ class Model:
         return bool(self.lowered.delays) or self.lowered.shifts
 
     @cached_property
-    def watched_delays(self) -> frozenset[int]:
-        """The numbers of the delays that guards read, or what a slide may hold: steps follow these,
-        where no state feels them."""
-        return self._routines.watched_delays
-
-    def jump_orders(self) -> list[list[int]]:
-        """Of each mode, and behind them each state: by how many orders of the derivative its jump
-        is smoother in the signal of each delay."""
-        return self._routines.jump_orders()
-
-    @cached_property
     def scene(self) -> tuple[ScenePart, ...]:
         """The parts of the scene of the diagram, over the signals by their full names."""
         return resolve_scene(self.diagram, self.flat.shapes)[0]
@@ -186,69 +175,18 @@ class Model:
         return labels
 
     @cached_property
-    def _routines(self) -> Routines:
+    def routines(self) -> Routines:
+        """The functions of the model: their addresses, and the lengths of their arrays."""
         outputs = [self.lowered.entries[name] for name in self.recorded]
         return Routines(self.lowered, outputs, self._labels, self.backend)
 
     @cached_property
     def source(self) -> str:
         """The Python text of the model's functions."""
-        return self._routines.text([PREPARE, *self._routines.eager])
-
-    @property
-    def sizes(self) -> Sizes:
-        """The lengths of the arrays of the model's functions."""
-        return self._routines.sizes
-
-    @property
-    def has_pace(self) -> bool:
-        """Whether guards may turn faster than the states say: what `pace` tells is not always 0."""
-        return self._routines.has_pace
-
-    @property
-    def reads_held(self) -> bool:
-        """Whether a guard reads what a slide may hold: a friction that sticks has any force."""
-        return self._routines.reads_held
-
-    def address(self, name: str) -> int:
-        """The address of one of the model's C functions, good as long as the model lives.
-
-            void f(double t, const double *x, const double *m, const double *c, const double *k,
-                   double *out)
-
-        x[n]: states. m[2*M]: the values of the modes, and behind them 1.0 for each guard that is
-        held at zero. c: what `prepare` makes of the parameters, which it takes as x; behind these
-        what is known of the past of delayed signals (see `past`), where there are any. k: the
-        tables, k[j] is the offset of table j; there: count N, x[N], y[N], slope[N-1]. `out` is
-        zeroed by the caller. Functions, with the length of out: prepare (C), rhs (n), outputs (R),
-        guards (M), guard_rates (M), timed (2T), starts (n), resets, delayed (D: signals that are
-        read with a delay), lags (2D: the delays, and the longest they may be), pace (2: of the
-        guards, and while something is held), and guard_sizes (M), as all `sizes` a function of
-        x[2n]: states, and behind them their sizes; compiled when they are first called: jacobian
-        (n*(n+1): d rate/d x, d rate/d t), guard_gradients (M*n),
-        guard_curves (M*(n+1): gradient of the guard's rate, its change with t), guard_second,
-        guard_third, guard_fourth (M: derivatives of the guards along the flow), and the sizes of
-        these, guard_rate_sizes, guard_second_sizes, ..., and rate_sizes (n).
-        """
-        return self._routines.address(name)
-
-    def addresses(self, names: Sequence[str]) -> list[int]:
-        """The addresses of several functions: see `address`."""
-        return self._routines.addresses(names)
-
-    def compiled_address(self, name: str) -> int:
-        """The same, but a function that was never called is compiled now.
-
-        For threads of compiled code: the callback behind the other address would wait for Python.
-        """
-        return self._routines.compiled_address(name)
-
-    def compiled_addresses(self, names: Sequence[str]) -> list[int]:
-        """The addresses of several functions, compiled together: see `compiled_address`."""
-        return self._routines.compiled_addresses(names)
+        return self.routines.text([PREPARE, *self.routines.eager])
 
     def derivative(self, of: str, by: Sequence[str]) -> str:
-        """The name of the function d(function `of`) / d(`by`), for `address`.
+        """The name of the function d(function `of`) / d(`by`), for `routines`.
 
         of: a function that is no derivative itself (`rhs`, `guards`, `starts`, ...). by: names of
         states, parameters, or `t`; behind them come what each delayed signal was, and its rates.
@@ -258,11 +196,7 @@ class Model:
         for op in ("history", "history_rate"):
             delays = range(len(self.lowered.delays))
             leaves += [self.lowered.tape.push(op, payload=number) for number in delays]
-        return self._routines.add_derivative(of, leaves)
-
-    def places(self, function: str) -> tuple[int, ...]:
-        """Which entries of `out` a function may make other than 0."""
-        return tuple(self._routines.routine(function).roots)
+        return self.routines.add_derivative(of, leaves)
 
     def all_signals(
         self,
@@ -280,8 +214,8 @@ class Model:
         names = [*self.flat.signals, *(f"{state.name}'" for state in self.flat.states)]
         low = self.lowered
         entries = [*(low.entries[name] for name in self.flat.signals), *low.rates]
-        self._routines.add("signals", len(entries), lambda: dict(enumerate(entries)))
-        return names, self._routines.evaluate("signals", t, x, m, p, k)
+        self.routines.add("signals", len(entries), lambda: dict(enumerate(entries)))
+        return names, self.routines.evaluate("signals", t, x, m, p, k)
 
 
 def compile(diagram: Diagram, record: Sequence[str] = (), backend: Backend = "llvm") -> Model:

@@ -10,11 +10,23 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from tracewire.compile.source import Function
 
 DOUBLES = ctypes.POINTER(ctypes.c_double)
 SIGNATURE = ctypes.CFUNCTYPE(None, ctypes.c_double, *[DOUBLES] * 5)
 FORWARD = ctypes.CFUNCTYPE(None, ctypes.c_double, *[ctypes.c_void_p] * 5)
+ADDRESSED = ctypes.c_char * 0
+
+
+def place_of(array: NDArray[np.float64]) -> Any:
+    """An array as a function of C takes it: by far the fastest way to its address."""
+    return ADDRESSED.from_buffer(array.data)
+
+
+UNREAD = place_of(np.zeros(1))  # an argument that a function of the model does not read
 
 
 def address_of(callback: Any) -> int:

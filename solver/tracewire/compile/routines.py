@@ -8,17 +8,21 @@ from functools import cached_property, partial
 from threading import RLock
 from typing import Any, Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
 from tracewire.compile.constants import Constants
 from tracewire.compile.delays import jump_orders
 from tracewire.compile.differentiate import differentiate, gradients
 from tracewire.compile.holding import holding, may_rest, moving, reads
 from tracewire.compile.lowered import Lowered
-from tracewire.compile.machine import MachineWriter, machine_text
+from tracewire.compile.machine import MachineWriter
 from tracewire.compile.pace import pace
-from tracewire.compile.pointers import address_of, as_c, when_called
+from tracewire.compile.pointers import FORWARD, UNREAD, address_of, as_c, place_of, when_called
 from tracewire.compile.sizes import sizes
 from tracewire.compile.source import Function, Writer, guarded, load
 
+Vector = NDArray[np.float64]
 Backend = Literal["llvm", "quick", "python"]
 BACKENDS: tuple[Backend, ...] = ("llvm", "quick", "python")
 ORDERS = {"guard_second": 2, "guard_third": 3, "guard_fourth": 4}
@@ -180,9 +184,10 @@ class Routines:
         time = {low.entries["t"]: self.tape.constant(1.0)}
         return [pace(self.tape, searched, self.flow), pace(self.tape, forces, time)]
 
-    @property
+    @cached_property
     def watched_delays(self) -> frozenset[int]:
-        """The numbers of the delays that are read by what is searched for zeros."""
+        """The numbers of the delays that are read by guards, or by what a slide may hold: steps
+        follow these, where no state feels them."""
         low = self.lowered
         roots = [m.guard for m in low.modes if not m.timed and m.kind != "memory"]
         roots += [self.guard_rates[i] for i in self.holding]
@@ -190,7 +195,8 @@ class Routines:
         return frozenset(int(entry.payload) for entry in read if entry.op == "history")
 
     def jump_orders(self) -> list[list[int]]:
-        """By how many orders the jump of each mode and state is smoother in each delayed signal."""
+        """Of each mode, and behind them each state: by how many orders of the derivative its jump
+        is smoother in the signal of each delay."""
         low = self.lowered
         fractions = {low.modes[i].leaf: self.guard_rates[i] for i in self.holding}
         forces: dict[int, list[int]] = {}
@@ -203,12 +209,13 @@ class Routines:
 
     @property
     def has_pace(self) -> bool:
-        """Whether guards, or what is held, may turn faster than the states say."""
+        """Whether guards, or what is held, may turn faster than the states say: what `pace` tells
+        is not always 0."""
         return any(self.tape.value(entry) != 0.0 for entry in self.eager["pace"].roots.values())
 
     @property
     def reads_held(self) -> bool:
-        """Whether a guard reads what a slide may hold."""
+        """Whether a guard reads what a slide may hold: a friction that sticks has any force."""
         return reads(self.tape, [mode.guard for mode in self.lowered.modes], self.holding)
 
     def rows(self, of: str, leaves: Sequence[int]) -> dict[int, int]:
@@ -243,8 +250,57 @@ class Routines:
                 found = self._made[name] = Routine(name.replace("_", " "), size, kept)
             return found
 
+    @cached_property
+    def usual_modes(self) -> Vector:
+        """The values of the modes before a run has decided them, and behind them that none is
+        held."""
+        usual = [mode.at_zero for mode in self.lowered.modes]
+        return np.array([*usual, *[0.0] * len(usual)], dtype=float)
+
+    def constants_from(self, parameters: Sequence[float]) -> Vector:
+        """What the model computes from its parameters alone, with room for the past of signals."""
+        given = np.array([*parameters, 0.0])  # never empty
+        out = np.zeros(max(1, self.sizes.constants))
+        self._prepare(0.0, place_of(given), UNREAD, UNREAD, UNREAD, place_of(out))
+        return out
+
+    def starts(self, constants: Vector, tables: Vector) -> Vector:
+        """The start states (n,) that the diagram has."""
+        out, modes = np.zeros(self.states), place_of(self.usual_modes)
+        self._starts(0.0, UNREAD, modes, place_of(constants), place_of(tables), place_of(out))
+        return out
+
+    # what Python calls; to make one takes longer than the call
+
+    @cached_property
+    def _prepare(self) -> Callable[..., None]:
+        return FORWARD(self.address(PREPARE))
+
+    @cached_property
+    def _starts(self) -> Callable[..., None]:
+        return FORWARD(self.address("starts"))
+
     def address(self, name: str) -> int:
-        """The address of a function; of a lazy one that was never called, that of its callback."""
+        """The address of a function, good as long as this lives; of a lazy one that was never
+        called, that of its callback.
+
+            void f(double t, const double *x, const double *m, const double *c, const double *k,
+                   double *out)
+
+        x[n]: states. m[2*M]: the values of the modes, and behind them 1.0 for each guard that is
+        held at zero. c: what `prepare` makes of the parameters, which it takes as x; behind these
+        what is known of the past of delayed signals (see `past`), where there are any. k: the
+        tables, k[j] is the offset of table j; there: count N, x[N], y[N], slope[N-1]. `out` is
+        zeroed by the caller. Functions, with the length of out: prepare (C), rhs (n), outputs (R),
+        guards (M), guard_rates (M), timed (2T), starts (n), resets, delayed (D: signals that are
+        read with a delay), lags (2D: the delays, and the longest they may be), pace (2: of the
+        guards, and while something is held), and guard_sizes (M), as all `sizes` a function of
+        x[2n]: states, and behind them their sizes; compiled when they are first called: jacobian
+        (n*(n+1): d rate/d x, d rate/d t), guard_gradients (M*n),
+        guard_curves (M*(n+1): gradient of the guard's rate, its change with t), guard_second,
+        guard_third, guard_fourth (M: derivatives of the guards along the flow), and the sizes of
+        these, guard_rate_sizes, guard_second_sizes, ..., and rate_sizes (n).
+        """
         known = self._addresses.get(name)
         if known is not None:
             return known
@@ -269,7 +325,10 @@ class Routines:
             return found
 
     def compiled_address(self, name: str) -> int:
-        """The address of a function, compiled now where it has not been."""
+        """The address of a function, compiled now where it has not been.
+
+        For threads of compiled code: the callback behind the other address would wait for Python.
+        """
         return self.compiled_addresses([name])[0]
 
     def compiled_addresses(self, names: Sequence[str]) -> list[int]:
@@ -285,14 +344,10 @@ class Routines:
 
     def machine_ir(self, names: Sequence[str]) -> str:
         """The LLVM IR of functions."""
-        writer = MachineWriter(self.tape, self.constants, self.modes)
-        texts = [
-            writer.prepare(name)
-            if name == PREPARE
-            else writer.function(_symbol(name), self.routine(name).roots)
-            for name in names
-        ]
-        return machine_text(texts)
+        roots = {
+            _symbol(name): None if name == PREPARE else self.routine(name).roots for name in names
+        }
+        return MachineWriter(self.tape, self.constants, self.modes).text(roots)
 
     def _machine(self, names: Sequence[str]) -> dict[str, int]:
         from tracewire.compile.native import assemble  # LLVM is loaded by those who compile

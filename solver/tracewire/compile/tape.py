@@ -225,15 +225,19 @@ class Tape:
                 stack.extend(operands)
         return sorted(wanted)
 
-    def needed(self, roots: Iterable[int]) -> list[int]:
-        """The entries that the roots depend on, themselves included, in order."""
+    def needed(
+        self, roots: Iterable[int], is_known: Callable[[int], bool] | None = None
+    ) -> list[int]:
+        """The entries that the roots depend on, themselves included, in order; not what an entry
+        that `is_known` depends on."""
         wanted: set[int] = set()
         stack = list(roots)
         while stack:
             index = stack.pop()
             if index not in wanted:
                 wanted.add(index)
-                stack.extend(self.entries[index].operands)
+                if is_known is None or not is_known(index):
+                    stack.extend(self.entries[index].operands)
         return sorted(wanted)
 
     def leaves(self, roots: Iterable[int]) -> set[str]:

@@ -1,8 +1,16 @@
 """Diagrams: from a YAML file to a checked description, and edits of its text."""
 
 from tracewire.diagram.builder import DiagramBuilder, Signal, SubsystemBuilder
-from tracewire.diagram.changes import AddBlock, AddOwn, AddSensorTerm, Change, apply, patch
-from tracewire.diagram.complete import Proposal, complete, word_before
+from tracewire.diagram.changes import (
+    AddBlock,
+    AddOwn,
+    AddSensorTerm,
+    Change,
+    SetValues,
+    apply,
+    patch,
+)
+from tracewire.diagram.completion import Proposal, complete, word_before
 from tracewire.diagram.diagram import (
     Array,
     BlockUse,
@@ -30,19 +38,18 @@ from tracewire.diagram.edit import (
     add_addend,
     difference,
     remove_addend,
-    set_values,
     set_variants,
     with_addend,
-    written_units,
 )
 from tracewire.diagram.edit_own import add_own
-from tracewire.diagram.edit_sensors import add_sensor, sensor_numbers, set_sensors
+from tracewire.diagram.edit_sensors import add_sensor, sensor_numbers
 from tracewire.diagram.edit_series import (
     path_text,
     replace_series,
     series_parts,
     with_series_of,
 )
+from tracewire.diagram.edit_values import written_units
 from tracewire.diagram.effects import EffectType, effects_of
 from tracewire.diagram.files import STDIN, absent_series, load_stdin
 from tracewire.diagram.files import load as load_text
@@ -66,11 +73,11 @@ from tracewire.diagram.names import (
 from tracewire.diagram.owned import patch_own
 from tracewire.diagram.packages import package_subsystems, who_has
 from tracewire.diagram.quantity_names import EVENT_KINDS, is_quantity, quantity_problems
-from tracewire.diagram.read import read, read_readable, read_readable_text, read_text
+from tracewire.diagram.reader import read, read_readable, read_readable_text, read_text
 from tracewire.diagram.rename import renamed
 from tracewire.diagram.rewire import add_to_drive, rewired
 from tracewire.diagram.schema import schema_of, schema_text
-from tracewire.diagram.write import write, written_out
+from tracewire.diagram.writer import write, written_out
 from tracewire.diagram.yaml_text import mapping_text, quoted
 
 __all__ = [
@@ -99,6 +106,7 @@ __all__ = [
     "Proposal",
     "ScenePart",
     "Series",
+    "SetValues",
     "Setting",
     "Shown",
     "Signal",
@@ -148,8 +156,6 @@ __all__ = [
     "schema_text",
     "sensor_numbers",
     "series_parts",
-    "set_sensors",
-    "set_values",
     "set_variants",
     "shown_cycle",
     "signals",

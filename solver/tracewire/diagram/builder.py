@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from tracewire.diagram.built import Data, Names, by_python, caller, node_of, text_of
 from tracewire.diagram.diagram import Diagram
-from tracewire.diagram.read import read_text
+from tracewire.diagram.reader import read_text
 from tracewire.errors import DiagramError, OptionError, Place, unknown
 from tracewire.formula import is_name, name_hint
 

@@ -5,7 +5,8 @@ comments and layout stay. Both say the same:
 
     read(patch(text, changes)) == apply(read(text), changes)
 
-but for the places of the parts.
+but for the places of the parts. Values in a body that a parameter chooses, and how many blocks
+there are, can be changed in the text only.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from tracewire.diagram.diagram import Array, BlockUse, Diagram, Value, Wire
 from tracewire.diagram.edit import add_addend, many_port, with_addend
 from tracewire.diagram.edit_own import add_own, declared_parameter
 from tracewire.diagram.edit_sensors import add_sensor, column_factor, series_of
+from tracewire.diagram.edit_values import apply_values, patch_values
 from tracewire.diagram.names import find_signal, split_index
 from tracewire.diagram.owned import apply_own, patch_own
 from tracewire.diagram.problems import Problems
@@ -72,7 +74,15 @@ class AddOwn:
     fit: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
 
-Change = AddBlock | AddSensorTerm | AddOwn
+@dataclass(frozen=True)
+class SetValues:
+    """Other values, in SI, by the names that a fit has for them: of parameters (`k`, `drag.c`), of
+    sensors (`offset.theta`, where a series leaves it free), of one series (`phase@run_1`)."""
+
+    values: Mapping[str, float]
+
+
+Change = AddBlock | AddSensorTerm | AddOwn | SetValues
 
 
 def patch(diagram: Diagram, changes: Sequence[Change]) -> Diagram:
@@ -93,6 +103,8 @@ def patch(diagram: Diagram, changes: Sequence[Change]) -> Diagram:
                 diagram = add_sensor(diagram, signal, kind, value, fit)
             case AddOwn(values, fit):
                 diagram = add_own(diagram, values, fit)
+            case SetValues(values):
+                diagram = patch_values(diagram, values)
     return diagram
 
 
@@ -112,6 +124,8 @@ def apply(diagram: Diagram, changes: Sequence[Change]) -> Diagram:
                 diagram = _with_sensor_term(diagram, change)
             case AddOwn():
                 diagram = _with_own(diagram, change)
+            case SetValues(values):
+                diagram = apply_values(diagram, values)
     return diagram
 
 

@@ -10,10 +10,11 @@ from tracewire.diagram.body import Body
 from tracewire.diagram.diagram import Channel, Diagram, Hold, Value
 from tracewire.diagram.grammar import FREE, MEASURED_INPUT, SIGNAL
 from tracewire.diagram.names import find_recorded, recordable
-from tracewire.diagram.problems import clip
+from tracewire.diagram.problems import Problems, clip
 from tracewire.diagram.quantities import SECOND, read_above_zero, read_unit_like
 from tracewire.diagram.strict import Entries, Node, Scalar
 from tracewire.diagram.values import read_bounds, read_value
+from tracewire.errors import Place
 from tracewire.formula import Number, Unit
 from tracewire.library import SENSOR_TERMS
 
@@ -145,10 +146,17 @@ def _of_sensor(name: str, node: Node, body: Body, unit: Unit) -> Value | None:
     if isinstance(node, Entries) and "value" not in node.keys and "fit" in node.keys:
         return _free(name, node, body, unit)
     value = read_value(node, body, unit=unit)
-    if name == "gain" and value is not None and value.formula == Number(0.0):
+    if value is None:
+        return None
+    check_term(name, value, body.place(node), body.problems)
+    return replace(value, named=True)
+
+
+def check_term(name: str, value: Value, place: Place, problems: Problems) -> None:
+    """Note a number that a sensor cannot have."""
+    if name == "gain" and value.formula == Number(0.0):
         hint = "It is the number that the signal is multiplied by."
-        body.problems.add("a gain of 0 shows nothing of the signal", body.place(node), (), hint)
-    return None if value is None else replace(value, named=True)
+        problems.add("a gain of 0 shows nothing of the signal", place, (), hint)
 
 
 def _free(name: str, node: Entries, body: Body, unit: Unit) -> Value | None:

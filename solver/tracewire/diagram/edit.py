@@ -8,24 +8,21 @@ from __future__ import annotations
 
 import contextlib
 import difflib
-import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 from tracewire.diagram.diagram import BlockUse, Diagram, Wire
-from tracewire.diagram.outline import Outline
 from tracewire.diagram.override import localised, with_parts, without_part
-from tracewire.diagram.rewrite import digits, reread
-from tracewire.diagram.splice import (
+from tracewire.diagram.rewrite import reread
+from tracewire.diagram.source_map import SourceMap
+from tracewire.diagram.strict import Entries, Items, Node, Scalar
+from tracewire.diagram.text_edits import (
     entry_after,
-    entry_last,
     item_last,
     replaced,
     without_entry,
     without_items,
 )
-from tracewire.diagram.strict import Entries, Items, Node, Scalar
-from tracewire.diagram.yaml_text import inline, mapping_text
 from tracewire.errors import DiagramError, OptionError, unknown
 
 
@@ -92,40 +89,11 @@ def remove_addend(diagram: Diagram, sum_name: str, addend: str) -> Diagram:
             if blocks.keys[block].place.file == str(diagram.file):
                 new = reread(diagram, [*wires, without_entry(diagram.text, blocks, block)])
             else:
-                outline = Outline(new)
-                path = (*outline.path(outline.block(sum_name)[1]), block)
+                source_map = SourceMap(new)
+                path = (*source_map.path(source_map.block(sum_name)[1]), block)
                 new = without_part(new, ".".join(path))
     _expect(new, sum_name, port, kept)
     return new
-
-
-def set_values(diagram: Diagram, values: Mapping[str, float]) -> Diagram:
-    """The diagram with other values of parameters: path -> value in SI.
-
-    A path is that of a run's parameter: `stiffness`, `bearing.slip` (a parameter of the subsystem
-    that the block `bearing` is), `drag.c` (a setting written as a mapping). The text gets the value
-    in the user's unit, with six digits. Where several blocks share the subsystem, `bearing.slip` is
-    written into the block, not into the definition.
-    """
-    outline = Outline(diagram)
-    spots = [outline.parameter(path) for path in values]
-    diagram = localised(diagram, outline, (spot.into or spot.node for spot in spots))
-    outline = Outline(diagram)
-    changes = []
-    for path, value in values.items():
-        if not math.isfinite(value):
-            raise OptionError.one(f"parameter '{path}' cannot become {value}")
-        spot = outline.parameter(path)
-        low, high = spot.value.fit or (-math.inf, math.inf)
-        number = digits(value / spot.factor, low / spot.factor, high / spot.factor)
-        node = spot.node
-        if spot.into is not None:  # the definition is shared: a copy of its value goes to the use
-            copy = _copy(node, number)
-            changes.append(entry_last(diagram.text, spot.into, spot.name, copy))
-        else:
-            scalar = node.values["value"] if isinstance(node, Entries) else node
-            changes.append(replaced(scalar, number))
-    return reread(diagram, changes)
 
 
 def set_variants(diagram: Diagram, variants: Mapping[str, str]) -> Diagram:
@@ -142,32 +110,6 @@ def set_variants(diagram: Diagram, variants: Mapping[str, str]) -> Diagram:
             raise OptionError([unknown(f"variant of '{name}'", variant, known, use.place)])
         parts["blocks", use.row or name, "variant"] = variant
     return with_parts(diagram, parts)
-
-
-def written_units(diagram: Diagram, paths: Iterable[str]) -> dict[str, str]:
-    """The unit in which the text writes each parameter of a run, by its path.
-
-    Left out are those without a unit there, and those whose text is in another file.
-    """
-    outline = Outline(diagram)
-    found: dict[str, str] = {}
-    for path in paths:
-        try:
-            node = outline.parameter(path).node
-        except OptionError:
-            continue
-        unit = node.values.get("unit") if isinstance(node, Entries) else None
-        if isinstance(unit, Scalar):
-            found[path] = unit.text
-    return found
-
-
-def _copy(node: Node, number: str) -> str:
-    """The text of a value with another number, on one line."""
-    if not isinstance(node, Entries):
-        return number
-    parts = {name: inline(part) for name, _, part in node}
-    return mapping_text({**parts, "value": number})
 
 
 def difference(old: Diagram, new: Diagram) -> str:
@@ -210,11 +152,11 @@ def with_addend(diagram: Diagram, sum_name: str, wire: Wire) -> Diagram:
 
 def _own_sum(diagram: Diagram, sum_name: str) -> tuple[Diagram, Diagram, Entries, str]:
     """The diagram with the inputs of a sum in its own text, and where the sum stands."""
-    outline = Outline(diagram)
-    inside, blocks, name = outline.block(sum_name)
+    source_map = SourceMap(diagram)
+    inside, blocks, name = source_map.block(sum_name)
     _, node = _addends(inside.blocks[name], inside, blocks)
-    diagram = localised(diagram, outline, [node])
-    return diagram, *Outline(diagram).block(sum_name)
+    diagram = localised(diagram, source_map, [node])
+    return diagram, *SourceMap(diagram).block(sum_name)
 
 
 def _signals(use: BlockUse, port: str) -> list[str]:
@@ -223,7 +165,7 @@ def _signals(use: BlockUse, port: str) -> list[str]:
 
 def _expect(diagram: Diagram, sum_name: str, port: str, signals: list[str]) -> None:
     """Make sure that an edit did what it should, however the text was laid out."""
-    inside, _, name = Outline(diagram).block(sum_name)
+    inside, _, name = SourceMap(diagram).block(sum_name)
     use = inside.blocks[name]
     if _signals(use, port) != signals:
         what = "the list of addends is laid out in a way that cannot be edited by program"

@@ -6,11 +6,11 @@ from collections.abc import Mapping
 
 from tracewire.diagram.diagram import Diagram, Value
 from tracewire.diagram.names import find_parameter, parameters
-from tracewire.diagram.outline import Outline
 from tracewire.diagram.override import with_parts
 from tracewire.diagram.rewrite import as_written, bounds, reread
-from tracewire.diagram.splice import entry_last
+from tracewire.diagram.source_map import SourceMap
 from tracewire.diagram.strict import Entries, Node
+from tracewire.diagram.text_edits import entry_last
 from tracewire.errors import OptionError, unknown
 from tracewire.formula import number_text
 
@@ -28,8 +28,8 @@ def add_own(
     """
     changes = []
     parts: dict[tuple[str, ...], str] = {}
-    outline = Outline(diagram)
-    root = outline.root
+    source_map = SourceMap(diagram)
+    root = source_map.root
     for series, own in values.items():
         if series not in diagram.measured:
             raise OptionError([unknown("measured series", series, diagram.measured)])
@@ -44,7 +44,7 @@ def add_own(
         }
         given = node.values.get("parameters")
         parts_of_series: tuple[Node, ...] = (node, *node.keys.values())
-        if not all(map(outline.is_own, parts_of_series)):
+        if not all(map(source_map.is_own, parts_of_series)):
             parts |= {("measured", series, "parameters", p): text for p, text in texts.items()}
         elif isinstance(given, Entries) and given.keys:
             changes += [entry_last(diagram.text, given, path, n) for path, n in texts.items()]

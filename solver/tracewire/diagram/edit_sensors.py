@@ -8,11 +8,11 @@ from collections.abc import Iterator, Mapping
 from tracewire.data import column_unit
 from tracewire.diagram.diagram import Diagram, Series, Value
 from tracewire.diagram.names import find_recorded
-from tracewire.diagram.outline import Outline
 from tracewire.diagram.override import localised
 from tracewire.diagram.rewrite import as_written, bounds, digits, reread
-from tracewire.diagram.splice import Change, entry_last, replaced
+from tracewire.diagram.source_map import SourceMap
 from tracewire.diagram.strict import Entries, Node, Scalar
+from tracewire.diagram.text_edits import TextEdit, entry_last, replaced
 from tracewire.errors import FormulaError, OptionError, unknown
 from tracewire.formula import Number, number_text, read_unit
 from tracewire.library import SENSOR_TERMS
@@ -32,10 +32,10 @@ def add_sensor(
     such measured signal, or no such kind.
     """
     full, having = series_of(diagram, signal, kind)
-    outline = Outline(diagram)
-    nodes = [_channel(diagram, outline.root, series, full) for series in having]
-    diagram = localised(diagram, outline, nodes)
-    root = Outline(diagram).root
+    source_map = SourceMap(diagram)
+    nodes = [_channel(diagram, source_map.root, series, full) for series in having]
+    diagram = localised(diagram, source_map, nodes)
+    root = SourceMap(diagram).root
     changes = []
     for series in having:
         node = _channel(diagram, root, series, full)
@@ -70,11 +70,11 @@ def set_sensors(diagram: Diagram, values: Mapping[str, float]) -> Diagram:
     gets it, in the unit that its text has. `harmonic.phase@run_1` is the value of a parameter in
     one series, under its `parameters`.
     """
-    outline = Outline(diagram)
-    nodes = [node for node, _ in _numbers(diagram, outline.root, values)]
-    diagram = localised(diagram, outline, nodes)
+    source_map = SourceMap(diagram)
+    nodes = [node for node, _ in _numbers(diagram, source_map.root, values)]
+    diagram = localised(diagram, source_map, nodes)
     changes = []
-    for node, number in _numbers(diagram, Outline(diagram).root, values):
+    for node, number in _numbers(diagram, SourceMap(diagram).root, values):
         if not isinstance(node, Entries):
             changes.append(replaced(node, number))
         elif "value" in node.values:
@@ -101,7 +101,7 @@ def _numbers(
                 continue
             node = _channel(diagram, root, series, signal)
             assert isinstance(node, Entries)
-            factor = _factor_of(known, kind, series, signal)
+            factor = factor_of(known, kind, series, signal)
             low, high = (end / known.factor for end in known.fit)  # as the text has them
             yield node.values[kind], digits(value / factor, low, high)
 
@@ -110,12 +110,7 @@ def _own(
     diagram: Diagram, root: Entries, parameter: str, series: str, value: float
 ) -> tuple[Node, str]:
     """The text of a parameter's value in one series, and what it becomes."""
-    if series not in diagram.measured:
-        raise OptionError([unknown("measured series", series, diagram.measured)])
-    given = diagram.measured[series].parameters
-    if parameter not in given:
-        raise OptionError([unknown(f"parameter of the series '{series}'", parameter, given)])
-    known, node = given[parameter], root
+    known, node = own_value(diagram, parameter, series), root
     for key in ("measured", series, "parameters"):
         inner = node.values[key]
         assert isinstance(inner, Entries)
@@ -123,6 +118,16 @@ def _own(
     low, high = known.fit or (-math.inf, math.inf)
     number = digits(value / known.factor, low / known.factor, high / known.factor)
     return node.values[parameter], number
+
+
+def own_value(diagram: Diagram, parameter: str, series: str) -> Value:
+    """The value of a parameter in one series. Raises OptionError: there is none."""
+    if series not in diagram.measured:
+        raise OptionError([unknown("measured series", series, diagram.measured)])
+    given = diagram.measured[series].parameters
+    if parameter not in given:
+        raise OptionError([unknown(f"parameter of the series '{series}'", parameter, given)])
+    return given[parameter]
 
 
 def sensor_numbers(
@@ -139,7 +144,7 @@ def sensor_numbers(
                 known: Value | None = getattr(channel, kind)
                 if known is None or not isinstance(known.formula, Number):
                     continue
-                own = _factor_of(known, kind, series, signal)
+                own = factor_of(known, kind, series, signal)
                 bounds = None
                 if known.fit is not None:
                     low, high = (end * own / known.factor for end in known.fit)
@@ -148,7 +153,7 @@ def sensor_numbers(
     return found
 
 
-def _factor_of(known: Value, kind: str, series: Series, signal: str) -> float:
+def factor_of(known: Value, kind: str, series: Series, signal: str) -> float:
     """The factor to SI of a number of a sensor as it stands in the text."""
     if known.unit or series.channels[signal].declared is not None:
         return known.factor
@@ -171,7 +176,7 @@ def _value_text(value: float, fit: tuple[float, float] | None, factor: float) ->
     return f"{{value: {number_text(number)}{shown}}}"
 
 
-def _with_number(text: str, channel: Node, kind: str, number: str) -> Change:
+def _with_number(text: str, channel: Node, kind: str, number: str) -> TextEdit:
     """The text of a channel with a number of its sensor."""
     if isinstance(channel, Scalar):
         column = text[channel.start : channel.end]

@@ -8,12 +8,19 @@ from pathlib import Path
 
 from tracewire.diagram.diagram import Diagram
 from tracewire.diagram.edit_sensors import add_sensor, sensor_numbers, set_sensors
-from tracewire.diagram.outline import Outline
 from tracewire.diagram.override import without_part
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.rewrite import reread
-from tracewire.diagram.splice import Change, changed, end_of, entry_last, replaced, without_entry
+from tracewire.diagram.source_map import SourceMap
 from tracewire.diagram.strict import Entries, Node, compose
+from tracewire.diagram.text_edits import (
+    TextEdit,
+    changed,
+    end_of,
+    entry_last,
+    replaced,
+    without_entry,
+)
 from tracewire.diagram.yaml_text import inline, quoted
 
 SECTION = "measured"
@@ -21,14 +28,14 @@ SECTION = "measured"
 
 def series_parts(diagram: Diagram, series: str, without: Collection[str] = ()) -> dict[str, str]:
     """The keys of a series in the text, each with its value on one line."""
-    outline = Outline(diagram)
-    node: Node = outline.root
+    source_map = SourceMap(diagram)
+    node: Node = source_map.root
     for key in (SECTION, series):
         assert isinstance(node, Entries)
         node = node.values[key]
     assert isinstance(node, Entries)
     parts = {key: inline(part) for key, _, part in node if key not in without}
-    if "file" in parts and not outline.is_own(node.values["file"]):
+    if "file" in parts and not source_map.is_own(node.values["file"]):
         parts["file"] = quoted(path_text(diagram.measured[series].file, diagram.file.parent))
     return parts
 
@@ -36,7 +43,7 @@ def series_parts(diagram: Diagram, series: str, without: Collection[str] = ()) -
 def replace_series(diagram: Diagram, series: Mapping[str, str]) -> Diagram:
     """The diagram with other measured series: name -> mapping as YAML on one line."""
     diagram = _without_extended(diagram)
-    text, root = diagram.text, Outline(diagram).own
+    text, root = diagram.text, SourceMap(diagram).own
     given = root.values.get(SECTION)
     ending = "\r\n" if "\r\n" in text else "\n"
     lines = [f"{quoted(name)}: {line}" for name, line in series.items()]
@@ -50,7 +57,7 @@ def replace_series(diagram: Diagram, series: Mapping[str, str]) -> Diagram:
     else:
         begin = "" if text.endswith("\n") else ending
         added = ending.join([f"{SECTION}:", *(f"  {line}" for line in lines)])
-        change = Change(len(text), len(text), f"{begin}{added}{ending}")
+        change = TextEdit(len(text), len(text), f"{begin}{added}{ending}")
     return reread(diagram, [change])
 
 
@@ -64,8 +71,8 @@ def with_series_of(edited: Diagram, original: Diagram, target: Path | None = Non
     if edited.measured == original.measured:
         return edited
     numbers = sensor_numbers(edited)
-    outline, own = Outline(edited), Outline(original).own
-    root = outline.own
+    source_map, own = SourceMap(edited), SourceMap(original).own
+    root = source_map.own
     if _is_extended(original):
         new = _with_sections_of(edited, original)
     elif SECTION not in own.values:
@@ -74,7 +81,9 @@ def with_series_of(edited: Diagram, original: Diagram, target: Path | None = Non
         new = reread(edited, [without_entry(edited.text, root, SECTION)])
         short = not original.text.endswith("\n") and new.text.endswith("\n")
         return (
-            reread(new, [Change(len(new.text.rstrip("\r\n")), len(new.text), "")]) if short else new
+            reread(new, [TextEdit(len(new.text.rstrip("\r\n")), len(new.text), "")])
+            if short
+            else new
         )
     else:
         section = own.values[SECTION]
@@ -92,27 +101,27 @@ def with_series_of(edited: Diagram, original: Diagram, target: Path | None = Non
 
 def _is_extended(diagram: Diagram) -> bool:
     """Whether a series, or a part of one, stands in a file that the diagram extends."""
-    outline = Outline(diagram)
-    section = outline.root.values.get(SECTION)
+    source_map = SourceMap(diagram)
+    section = source_map.root.values.get(SECTION)
     inside = [] if not isinstance(section, Entries) else [*section.values.values()]
     keys = [key for node in inside if isinstance(node, Entries) for key in node.keys.values()]
-    return not all(map(outline.is_own, keys))
+    return not all(map(source_map.is_own, keys))
 
 
 def _without_extended(diagram: Diagram) -> Diagram:
     """The diagram without the series of the files that it extends, and without changes of them."""
     if not _is_extended(diagram):
         return diagram
-    outline = Outline(diagram)
-    if SECTION in outline.own.values:
-        change = without_entry(diagram.text, outline.own, SECTION)
+    source_map = SourceMap(diagram)
+    if SECTION in source_map.own.values:
+        change = without_entry(diagram.text, source_map.own, SECTION)
         diagram = reread(diagram, [change])
     return without_part(diagram, SECTION)
 
 
 def _with_sections_of(edited: Diagram, original: Diagram) -> Diagram:
     """The edited diagram, its series and what it removes as the text of the original has them."""
-    text, own = edited.text, Outline(original).own
+    text, own = edited.text, SourceMap(original).own
     for section in (SECTION, "remove"):
         root = compose(text, edited.file, Problems())
         assert isinstance(root, Entries)
@@ -122,7 +131,7 @@ def _with_sections_of(edited: Diagram, original: Diagram) -> Diagram:
             part = original.text[own.keys[section].start : end_of(own.values[section])]
             ending = "\r\n" if "\r\n" in text else "\n"
             text += ("" if text.endswith("\n") else ending) + part + ending
-    return reread(edited, [Change(0, len(edited.text), text)])
+    return reread(edited, [TextEdit(0, len(edited.text), text)])
 
 
 def _moved(diagram: Diagram, root: Entries, target: Path) -> Diagram:

@@ -8,29 +8,29 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from tracewire.diagram.diagram import Diagram
-from tracewire.diagram.outline import Outline
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.rewrite import reread
-from tracewire.diagram.splice import Change, changed, entry_last, item_last, replaced
+from tracewire.diagram.source_map import SourceMap
 from tracewire.diagram.strict import Entries, Items, Node, compose
+from tracewire.diagram.text_edits import TextEdit, changed, entry_last, item_last, replaced
 from tracewire.diagram.yaml_text import inline, mapping_text, quoted
 from tracewire.errors import OptionError
 
 
-def localised(diagram: Diagram, outline: Outline, nodes: Iterable[Node]) -> Diagram:
+def localised(diagram: Diagram, source_map: SourceMap, nodes: Iterable[Node]) -> Diagram:
     """The diagram with a copy of these parts in its own text; itself where they stand there.
 
     Raises OptionError: a part stands in a file that the diagram includes.
     """
-    foreign = [node for node in nodes if not outline.is_own(node)]
+    foreign = [node for node in nodes if not source_map.is_own(node)]
     if not foreign:
         return diagram
     for node in foreign:
-        _refuse_included(outline, node)
+        _refuse_included(source_map, node)
     parts: dict[tuple[str, ...], str] = {}
     for node in foreign:
-        path = outline.path(node)
-        parts[path] = inline(_at(outline.root, path))
+        path = source_map.path(node)
+        parts[path] = inline(_at(source_map.root, path))
     return with_parts(diagram, parts)
 
 
@@ -43,12 +43,12 @@ def with_parts(diagram: Diagram, parts: Mapping[tuple[str, ...], str]) -> Diagra
         root = compose(text, diagram.file, Problems())
         assert isinstance(root, Entries)
         text = changed(text, [_with_part(text, root, path, value)])
-    return reread(diagram, [Change(0, len(diagram.text), text)])
+    return reread(diagram, [TextEdit(0, len(diagram.text), text)])
 
 
 def without_part(diagram: Diagram, path: str) -> Diagram:
     """The diagram that takes a part away from what it extends: `blocks.drag`."""
-    root = Outline(diagram).own
+    root = SourceMap(diagram).own
     given = root.values.get("remove")
     if isinstance(given, Items):
         return reread(diagram, [item_last(diagram.text, given, path)])
@@ -56,7 +56,7 @@ def without_part(diagram: Diagram, path: str) -> Diagram:
     return with_parts(diagram, {("remove",): f"[{names}]"})
 
 
-def _with_part(text: str, root: Entries, path: tuple[str, ...], value: str) -> Change:
+def _with_part(text: str, root: Entries, path: tuple[str, ...], value: str) -> TextEdit:
     node, rest = root, list(path)
     while len(rest) > 1 and isinstance(inner := node.values.get(rest[0]), Entries):
         node, rest = inner, rest[1:]
@@ -73,10 +73,10 @@ def _with_part(text: str, root: Entries, path: tuple[str, ...], value: str) -> C
     return _at_end(text, [f"{name}:", f"  {quoted(deeper[0])}: {value}"])
 
 
-def _at_end(text: str, lines: list[str]) -> Change:
+def _at_end(text: str, lines: list[str]) -> TextEdit:
     ending = "\r\n" if "\r\n" in text else "\n"
     begin = "" if text.endswith("\n") or not text else ending
-    return Change(len(text), len(text), begin + "".join(f"{line}{ending}" for line in lines))
+    return TextEdit(len(text), len(text), begin + "".join(f"{line}{ending}" for line in lines))
 
 
 def _at(root: Entries, path: tuple[str, ...]) -> Node:
@@ -87,10 +87,10 @@ def _at(root: Entries, path: tuple[str, ...]) -> Node:
     return node
 
 
-def _refuse_included(outline: Outline, node: Node) -> None:
-    path = outline.path(node)
+def _refuse_included(source_map: SourceMap, node: Node) -> None:
+    path = source_map.path(node)
     # a subsystem that stands in the tree is one of the diagram's own, which may extend it
-    if node.place.file in outline.included and path[0] != "subsystems":
+    if node.place.file in source_map.included and path[0] != "subsystems":
         what = f"'{'.'.join(path[1:])}' is defined in a file that is included"
         hint = "Edit that file, or move it into the diagram's own."
         raise OptionError.one(what, node.place, hint=hint)

@@ -19,11 +19,11 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from tracewire.diagram.diagram import BlockUse, Diagram
-from tracewire.diagram.outline import Outline
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.rewrite import reread
-from tracewire.diagram.splice import Change, end_of, entry_last, replaced
+from tracewire.diagram.source_map import SourceMap
 from tracewire.diagram.strict import Entries, Node, compose
+from tracewire.diagram.text_edits import TextEdit, end_of, entry_last, replaced
 from tracewire.diagram.yaml_text import inline
 from tracewire.errors import OptionError, Place, unknown
 
@@ -42,7 +42,7 @@ def patch_own(diagram: Diagram, path: str, sum_path: str) -> tuple[Diagram, str]
         return diagram, f"{use.type}.{sum_name}"
     name = _free(diagram, use.type)
     where = "" if inside is diagram else f"{inside.name}."
-    _, blocks, _ = Outline(diagram).block(f"{where}{use.name}")
+    _, blocks, _ = SourceMap(diagram).block(f"{where}{use.name}")
     line = blocks.values[use.name]
     assert isinstance(line, Entries)
     kind = line.values["type"]
@@ -52,7 +52,7 @@ def patch_own(diagram: Diagram, path: str, sum_path: str) -> tuple[Diagram, str]
     typed = replaced(kind, name)
     short = f"{{extends: {use.type}}}"
     with_base = reread(diagram, [_defined(diagram, name, short, [f"extends: {use.type}"]), typed])
-    _, its_blocks, _ = Outline(with_base).block(f"{name}.{sum_name}")
+    _, its_blocks, _ = SourceMap(with_base).block(f"{name}.{sum_name}")
     sum_line = its_blocks.values[sum_name]
     assert isinstance(sum_line, Entries)
     wires = f"{sum_name}: {{of: {_listed(sum_line.values['of'])}}}"
@@ -125,7 +125,7 @@ def _definitions(diagram: Diagram) -> Iterator[str]:
         yield from _definitions(inside)
 
 
-def _defined(diagram: Diagram, name: str, short: str, lines: list[str]) -> Change:
+def _defined(diagram: Diagram, name: str, short: str, lines: list[str]) -> TextEdit:
     """A new definition at the end of the subsystems in the text, as lines or in braces."""
     text = diagram.text
     root = compose(text, diagram.file, Problems())
@@ -139,7 +139,7 @@ def _defined(diagram: Diagram, name: str, short: str, lines: list[str]) -> Chang
     if not isinstance(known, Entries):
         begin = "" if text.endswith("\n") or not text else ending
         added = ["subsystems:", f"  {name}:", *(f"    {line}" for line in lines)]
-        return Change(len(text), len(text), begin + "".join(f"{line}{ending}" for line in added))
+        return TextEdit(len(text), len(text), begin + "".join(f"{line}{ending}" for line in added))
     if known.flow:
         return entry_last(text, known, name, short)
     last = list(known.keys)[-1]
@@ -148,7 +148,7 @@ def _defined(diagram: Diagram, name: str, short: str, lines: list[str]) -> Chang
     at = text.find("\n", end_of(known.values[last])) + 1 or len(text)
     begin = "" if text.endswith("\n", 0, at) else ending
     added = [f"{indent}{name}:", *(f"{indent}  {line}" for line in lines)]
-    return Change(at, at, begin + "".join(f"{line}{ending}" for line in added))
+    return TextEdit(at, at, begin + "".join(f"{line}{ending}" for line in added))
 
 
 def _listed(node: Node) -> str:

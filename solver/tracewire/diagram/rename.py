@@ -7,12 +7,12 @@ from dataclasses import replace
 from tracewire.diagram.choose import is_chosen
 from tracewire.diagram.diagram import Diagram
 from tracewire.diagram.grammar import DIRECTIONS, OF_A_BLOCK, SHAPES
-from tracewire.diagram.outline import Outline, elsewhere
 from tracewire.diagram.quantity_names import EVENT_KINDS
 from tracewire.diagram.rename_places import PATH, Names, Part, use_of
 from tracewire.diagram.rewrite import reread
-from tracewire.diagram.splice import Change
+from tracewire.diagram.source_map import SourceMap, elsewhere
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
+from tracewire.diagram.text_edits import TextEdit
 from tracewire.errors import OptionError, Place, TracewireError, unknown
 from tracewire.formula import is_name, name_hint, to_text
 
@@ -27,13 +27,13 @@ def renamed(diagram: Diagram, old: str, new: str) -> Diagram:
     block that is meant. Raises OptionError: there is no such part, the new name is taken or cannot
     be one, or the part stands in a file that is included or extended, or is named there.
     """
-    outline = Outline(diagram)
-    part = _find(outline, old)
-    _refuse_ambiguous(outline, part, new)
-    _check(outline, part, new)
-    found = reread(diagram, _changes(outline, part, new))
+    source_map = SourceMap(diagram)
+    part = _find(source_map, old)
+    _refuse_ambiguous(source_map, part, new)
+    _check(source_map, part, new)
+    found = reread(diagram, _changes(source_map, part, new))
     # there and back must be the same text: else a place was taken that means something else
-    again = Outline(found)
+    again = SourceMap(found)
     path = ".".join([*part.path.split(".")[:-1], new]) if part.is_type else part.path
     back = replace(part, path=path, place=again.definitions[path][0].place, name=new)
     if reread(found, _changes(again, back, part.name)).text != diagram.text:
@@ -42,19 +42,19 @@ def renamed(diagram: Diagram, old: str, new: str) -> Diagram:
     return found
 
 
-def _find(outline: Outline, path: str) -> Part:
+def _find(source_map: SourceMap, path: str) -> Part:
     where, _, name = path.rpartition(".")
-    inside = _inside(outline, where)
-    defined = next(p for p, (d, _) in outline.definitions.items() if d.place == inside.place)
-    known = _parts(outline, defined)
+    inside = _inside(source_map, where)
+    defined = next(p for p, (d, _) in source_map.definitions.items() if d.place == inside.place)
+    known = _parts(source_map, defined)
     if name in known:
-        _refuse_elsewhere(outline, defined, name)
+        _refuse_elsewhere(source_map, defined, name)
         return Part(defined, inside.place, name)
     if name in inside.subsystems:
         own = inside.subsystems[name]
-        if (own.place, own.variant) not in outline.nodes:
+        if (own.place, own.variant) not in source_map.nodes:
             raise elsewhere(own)
-        _refuse_elsewhere(outline, defined, name)
+        _refuse_elsewhere(source_map, defined, name)
         return Part(f"{defined}.{name}".lstrip("."), own.place, name, is_type=True)
     known += inside.subsystems
     raise OptionError(
@@ -62,17 +62,17 @@ def _find(outline: Outline, path: str) -> Part:
     )
 
 
-def _refuse_elsewhere(outline: Outline, path: str, name: str) -> None:
+def _refuse_elsewhere(source_map: SourceMap, path: str, name: str) -> None:
     """Refuse a part that another file defines, or changes."""
-    for inside, entries in outline.bodies[path]:
+    for inside, entries in source_map.bodies[path]:
         parameter = inside.parameters.get(name)
-        if parameter is not None and parameter.place.file in outline.included:
+        if parameter is not None and parameter.place.file in source_map.included:
             what = f"'{name}' stands in a file that is included"
             raise OptionError.one(what, inside.place, hint="Rename it there.")
         place = _key(entries, name)
-        if place is not None and place.file != str(outline.top.file):
+        if place is not None and place.file != str(source_map.top.file):
             raise _of_base(name, place)
-    base: Node | None = outline.base
+    base: Node | None = source_map.base
     for inner in path.split(".") if path else ():
         subsystems = base.values.get("subsystems") if isinstance(base, Entries) else None
         base = subsystems.values.get(inner) if isinstance(subsystems, Entries) else None
@@ -101,10 +101,10 @@ def _key(entries: Entries, name: str) -> Place | None:
     return next((place for place in found if place is not None), None)
 
 
-def _refuse_ambiguous(outline: Outline, part: Part, new: str) -> None:
+def _refuse_ambiguous(source_map: SourceMap, part: Part, new: str) -> None:
     """Refuse names that are words of a statement, or of another diagram that one reads."""
     what = ""
-    for statement in outline.top.expect if not part.is_type else ():
+    for statement in source_map.top.expect if not part.is_type else ():
         read = {*PATH.findall(to_text(statement.that))}
         if words := read & {*EVENT_KINDS, *DIRECTIONS} & {part.name, new}:
             what = f"'{min(words)}' is a word of a statement under 'expect', too"
@@ -112,13 +112,13 @@ def _refuse_ambiguous(outline: Outline, part: Part, new: str) -> None:
         if others and part.name in read:
             what = f"a statement reads '{part.name}' beside another diagram"
     if what:
-        raise OptionError.one(what, outline.top.place, hint="Rename by hand.")
+        raise OptionError.one(what, source_map.top.place, hint="Rename by hand.")
 
 
-def _inside(outline: Outline, path: str) -> Diagram:
+def _inside(source_map: SourceMap, path: str) -> Diagram:
     """The diagram at a path of subsystems, or of blocks that are some."""
-    found = outline.definitions.get(path)
-    inside, blocks = outline.top, path.split(".") if path else []
+    found = source_map.definitions.get(path)
+    inside, blocks = source_map.top, path.split(".") if path else []
     for n, name in enumerate(blocks):
         use = use_of(inside, name)
         if use is None or use.subsystem is None:
@@ -136,31 +136,31 @@ def _inside(outline: Outline, path: str) -> Diagram:
     if found is not None and found[0].place != inside.place:
         what = f"'{path}' is a block and another subsystem"
         raise OptionError.one(what, inside.place, hint="Rename the block first.")
-    if (inside.place, inside.variant) not in outline.nodes:
+    if (inside.place, inside.variant) not in source_map.nodes:
         raise elsewhere(inside)
     return inside
 
 
-def _parts(outline: Outline, path: str) -> list[str]:
+def _parts(source_map: SourceMap, path: str) -> list[str]:
     """The names that a diagram and its bodies give: an output may have that of what it carries."""
     found: dict[str, None] = {}
-    for inside, _ in outline.bodies[path]:
+    for inside, _ in source_map.bodies[path]:
         lines = (use.row or use.name for use in inside.blocks.values())
         found |= dict.fromkeys([*lines, *inside.inputs, *inside.parameters, *inside.outputs])
     return [*found]
 
 
-def _check(outline: Outline, part: Part, new: str) -> None:
-    inside, what = outline.definitions[part.path][0], ""
+def _check(source_map: SourceMap, part: Part, new: str) -> None:
+    inside, what = source_map.definitions[part.path][0], ""
     if not is_name(new):
         hint = name_hint(new)
         raise OptionError.one(f"'{new}' cannot be the name of a part", inside.place, hint=hint)
     if part.is_type:
-        known = {name.rpartition(".")[2] for name in outline.definitions} | set(inside.library)
-        known |= set(outline.top.subsystems)
+        known = {name.rpartition(".")[2] for name in source_map.definitions} | set(inside.library)
+        known |= set(source_map.top.subsystems)
         if new in known:
             what = f"there is a block type '{new}' already"
-    elif new in _parts(outline, part.path):
+    elif new in _parts(source_map, part.path):
         what = f"there is a part '{new}' already"
     elif new in OF_A_BLOCK and part.path:
         what = f"'{new}:' means something else on every block"
@@ -168,18 +168,18 @@ def _check(outline: Outline, part: Part, new: str) -> None:
         raise OptionError.one(what, inside.place, hint="Choose another name.")
 
 
-def _changes(outline: Outline, part: Part, new: str) -> list[Change]:
-    changes: dict[int, Change] = {}
-    for path, bodies in outline.bodies.items():
+def _changes(source_map: SourceMap, part: Part, new: str) -> list[TextEdit]:
+    changes: dict[int, TextEdit] = {}
+    for path, bodies in source_map.bodies.items():
         shape = SHAPES["subsystem" if path else "diagram"]
         for inside, entries in bodies:
-            names = Names(part, new, inside, outline.top)
+            names = Names(part, new, inside, source_map.top)
             found = [*names.of(entries, shape)]
             if inside.place == part.place:
-                found += names.removed(outline.removed.get((inside.place, inside.variant)))
+                found += names.removed(source_map.removed.get((inside.place, inside.variant)))
             for scalar, text in found:
-                if scalar.place.file != str(outline.top.file):
+                if scalar.place.file != str(source_map.top.file):
                     what = f"'{part.name}' is named in a diagram that this one extends"
                     raise OptionError.one(what, scalar.place, hint="Rename by hand.")
-                changes[scalar.start] = Change(scalar.start, scalar.end, text)
+                changes[scalar.start] = TextEdit(scalar.start, scalar.end, text)
     return list(changes.values())

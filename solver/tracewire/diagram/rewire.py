@@ -10,11 +10,11 @@ from typing import TypeGuard
 from tracewire.diagram.diagram import BlockUse, Diagram, Event, Wire
 from tracewire.diagram.edit import add_addend
 from tracewire.diagram.names import find_signal
-from tracewire.diagram.outline import Outline
 from tracewire.diagram.override import localised
 from tracewire.diagram.rewrite import reread
-from tracewire.diagram.splice import Change, entry_after, entry_last
+from tracewire.diagram.source_map import SourceMap
 from tracewire.diagram.strict import Entries, Items, Node
+from tracewire.diagram.text_edits import TextEdit, entry_after, entry_last
 from tracewire.errors import DiagramError, OptionError, unknown
 from tracewire.formula import Call, Expression, Name, Number, names_of, rename
 
@@ -135,8 +135,8 @@ def _own_readers(
     diagram: Diagram, readers: list[BlockUse], events: list[Event]
 ) -> tuple[Diagram, Entries, Node | None]:
     """The diagram with the lines of these blocks in its own text, its blocks, and its events."""
-    outline = Outline(diagram)
-    blocks = outline.root.values["blocks"]
+    source_map = SourceMap(diagram)
+    blocks = source_map.root.values["blocks"]
     assert isinstance(blocks, Entries)
     for event in events:
         if event.place.file != str(diagram.file):
@@ -144,8 +144,8 @@ def _own_readers(
             raise OptionError.one(what, event.place, hint="Edit that file.")
     lines = [blocks.values[use.name] for use in readers]
     parts = [part for line in lines if isinstance(line, Entries) for part in line.values.values()]
-    diagram = localised(diagram, outline, parts)
-    root = Outline(diagram).root
+    diagram = localised(diagram, source_map, parts)
+    root = SourceMap(diagram).root
     blocks = root.values["blocks"]
     assert isinstance(blocks, Entries)
     return diagram, blocks, root.values.get("events") if events else None
@@ -183,7 +183,7 @@ def _wiring(use: BlockUse) -> tuple[object, ...]:
     return wires, {key: given for key, given in use.settings.items() if _is_formula(given)}
 
 
-def _tokens(diagram: Diagram, node: Node, old: str, new: str) -> list[Change]:
+def _tokens(diagram: Diagram, node: Node, old: str, new: str) -> list[TextEdit]:
     """Changes of each name of the signal `old` in the texts of a node."""
     if isinstance(node, Items):
         return [change for item in node.items for change in _tokens(diagram, item, old, new)]
@@ -191,7 +191,7 @@ def _tokens(diagram: Diagram, node: Node, old: str, new: str) -> list[Change]:
         parts = node.values.values()
         return [change for part in parts for change in _tokens(diagram, part, old, new)]
     return [
-        Change(node.start + found.start(), node.start + found.end(), new)
+        TextEdit(node.start + found.start(), node.start + found.end(), new)
         for found in NAME.finditer(diagram.text[node.start : node.end])
         if find_signal(diagram, found[0]) == old
     ]

@@ -6,12 +6,12 @@ import math
 from collections.abc import Sequence
 
 from tracewire.diagram.diagram import Diagram
-from tracewire.diagram.read import read_text
-from tracewire.diagram.splice import Change, changed
+from tracewire.diagram.reader import read_text
+from tracewire.diagram.text_edits import TextEdit, changed
 from tracewire.formula import number_text
 
 
-def reread(diagram: Diagram, changes: Sequence[Change]) -> Diagram:
+def reread(diagram: Diagram, changes: Sequence[TextEdit]) -> Diagram:
     """The diagram of the changed text, in the same file. Raises DiagramError."""
     return read_text(changed(diagram.text, changes), diagram.file, library=diagram.library)
 

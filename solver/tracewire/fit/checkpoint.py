@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import math
-import time
 from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
@@ -14,10 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.errors import OptionError, Place, Problem
-from tracewire.files import write_file, writing
-from tracewire.fit.limits import SEARCH
 from tracewire.fit.search import Search
 from tracewire.residual import Criterion
+from tracewire.resume import ResumeFile
 
 Vector = NDArray[np.float64]
 KIND = "a fit of tracewire"
@@ -25,11 +22,10 @@ KEYS = ("method", "seed", "names", "best", "state", "evaluations", "iterations",
 
 
 class Store:
-    """Writes how far a fit is to a file, every two seconds and at the end."""
+    """Writes how far a fit is to a file, now and then and at the end."""
 
     def __init__(self, path: str | Path, method: str) -> None:
-        self.path, self.method = Path(path), method
-        self.written = -math.inf
+        self.file, self.method = ResumeFile(path, KIND), method
         self.works = False
         self.remarks: tuple[str, ...] = ()
 
@@ -39,12 +35,9 @@ class Store:
         Raises OptionError where the first writing fails. Where a later one does, as on a disk that
         became full, the search goes on, and `remarks` says so.
         """
-        now = time.perf_counter()
-        if not last and now - self.written < SEARCH.keep_every:
+        if not last and not self.file.is_due:
             return
-        self.written = now
         content = {
-            "kind": KIND,
             "method": self.method,
             "seed": search.seed,
             "names": search.criterion.names,
@@ -56,8 +49,7 @@ class Store:
             "state": dict(search.state),
         }
         try:
-            with writing(self.path):
-                write_file(self.path, json.dumps(content, indent=1))
+            self.file.write(content)
         except OptionError as error:
             if not self.works:
                 raise
@@ -73,17 +65,11 @@ def resume_from(path: str | Path, method: str, criterion: Criterion) -> Mapping[
     """
     place = Place(str(path))
     try:
-        content = json.loads(Path(path).read_text(encoding="utf-8"))
+        content = ResumeFile(path, KIND).read()
     except OSError as error:
         what = f"the saved fit cannot be read: {error.strerror or error}"
         raise OptionError.one(what, place, hint="Check its path.") from None
-    except ValueError:
-        content = None
-    if (
-        not isinstance(content, dict)
-        or content.get("kind") != KIND
-        or not content.keys() >= {*KEYS}
-    ):
+    if content is None or not content.keys() >= {*KEYS}:
         hint = "Name the file that --save, or save= of fit, has written."
         raise OptionError.one("this is not the saved file of a fit", place, hint=hint)
     if content["names"] != criterion.names:

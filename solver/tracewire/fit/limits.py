@@ -14,8 +14,6 @@ class SearchLimits:
 
     report_every: float = 0.1
     """Wall time between two reports of progress, s."""
-    keep_every: float = 2.0
-    """Wall time between two writings of the file from which a fit goes on, s."""
     most_steps: int = 1_000_000
     """Steps of least squares, whatever the options allow."""
     exact: float = 1e-14

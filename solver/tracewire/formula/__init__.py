@@ -11,7 +11,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from tracewire.formula.dimension import dimension_of, dimension_text
-from tracewire.formula.evaluate import evaluate
+from tracewire.formula.evaluation import evaluate
 from tracewire.formula.expression import (
     DELAYS,
     Call,
@@ -25,7 +25,7 @@ from tracewire.formula.expression import (
 )
 from tracewire.formula.functions import CONSTANTS, FUNCTIONS, OPERATIONS
 from tracewire.formula.order import evaluation_order
-from tracewire.formula.parse import (
+from tracewire.formula.parser import (
     is_condition,
     is_name,
     name_hint,

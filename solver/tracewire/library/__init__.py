@@ -1,8 +1,8 @@
 """Block declarations: what a block is, and how a folder of block files becomes a library."""
 
-from tracewire.library.check_effect import Face, check_effect
+from tracewire.library.check_effects import Face, check_effect
 from tracewire.library.declare import Block
-from tracewire.library.describe import (
+from tracewire.library.description import (
     bounds_text,
     describe,
     describe_formulas,

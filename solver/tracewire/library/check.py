@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from tracewire.errors import FormulaError, Place, Problem
 from tracewire.formula import is_name, read_unit
-from tracewire.library.check_effect import Face, check_effect
+from tracewire.library.check_effects import Face, check_effect
 from tracewire.library.check_formula import Use, check_formula
 from tracewire.library.check_memory import check_by_mode, check_memory
 from tracewire.library.parts import Input, Output, Parameter, Parts, State

@@ -1,6 +1,5 @@
 """Measured data beside a model: residuals, their derivatives, and the noise they are judged by."""
 
-from tracewire.residual.channel_noise import channel_noise, estimate_noise
 from tracewire.residual.criterion import LIMITS, Criterion, half_square
 from tracewire.residual.files import series_from_files
 from tracewire.residual.initial_states import fit_initial_states
@@ -24,6 +23,7 @@ from tracewire.residual.measured import (
 )
 from tracewire.residual.noise import degrees_of, noise_in, noise_of, noises_beside
 from tracewire.residual.noise_estimate import NoiseEstimate, noise_level
+from tracewire.residual.noise_of_channels import channel_noise, estimate_noise
 from tracewire.residual.past import longest_delay, with_past
 from tracewire.residual.segment import (
     OWN,

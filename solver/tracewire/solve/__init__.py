@@ -139,8 +139,8 @@ from tracewire.solve.problem import InitialValueProblem, initial_value_problem
 from tracewire.solve.progress import PartProgress, Tell
 from tracewire.solve.run import Event, Run, Sensitivities, Statistics
 from tracewire.solve.runs import Runs
-from tracewire.solve.sampling import DEFAULT_SAMPLES, sample_times
-from tracewire.solve.simulate import simulate
+from tracewire.solve.sampling import DEFAULT_SAMPLES, even_times, sample_times
+from tracewire.solve.simulation import simulate
 from tracewire.solve.spans import Span, SpanRuns, simulate_spans
 from tracewire.solve.workspace import release
 
@@ -170,6 +170,7 @@ __all__ = [
     "beyond_budget",
     "carry_out",
     "cores",
+    "even_times",
     "initial_value_problem",
     "parameter_values",
     "refuse_delays",

@@ -129,11 +129,11 @@ def _delays_of(model: Model) -> tuple[Ints, Ints, Ints]:
     """The modes of the delays, how far jumps get, and which of them guards read."""
     delays = model.lowered.delays
     count, leaves = len(delays), len(model.modes) + len(model.states)
-    order = model.jump_orders() if count else []
+    order = model.routines.jump_orders() if count else []
     return (
         np.array([delay.mode for delay in delays], dtype=np.int64),
         np.array(order, dtype=np.int64).reshape(leaves if count else 0, count),
-        np.array([int(j in model.watched_delays) for j in range(count)], dtype=np.int64),
+        np.array([int(j in model.routines.watched_delays) for j in range(count)], dtype=np.int64),
     )
 
 

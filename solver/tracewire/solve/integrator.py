@@ -30,7 +30,7 @@ from tracewire.solve.core.codes import (
 from tracewire.solve.core.flow import EVALUATIONS, FUNCTIONS
 from tracewire.solve.core_library import library
 from tracewire.solve.event_log import Log
-from tracewire.solve.failures import failure, too_long, too_many_events
+from tracewire.solve.failures import failure, place_of, too_long, too_many_events
 from tracewire.solve.history import grow
 from tracewire.solve.interrupt import Halt, Interrupted, until_interrupted
 from tracewire.solve.limits import PAUSE
@@ -162,7 +162,7 @@ class Integrator:
                 raise failure(self.model, self.arrays, status)
             self._check_limits()
             # what was compiled meanwhile is called without a detour
-            self.arrays.flow.address[:] = self.model.addresses(FUNCTIONS)
+            self.arrays.flow.address[:] = self.model.routines.addresses(FUNCTIONS)
             budget = next_budget(budget, int(ints[STEPS]) - done, self.seconds - before)
             status = None
             if self.tell is not None and self.seconds - last >= PAUSE.seconds:
@@ -260,3 +260,16 @@ class Integrator:
     def give_back(self) -> None:
         """Let the next run of the model have the arrays; this one is over."""
         give_back(self.model, self.workspace)
+
+
+def refuse_nan(model: Model, samples: Matrix, t: Vector) -> None:
+    """A recorded signal may be undefined where no state depends on it."""
+    if np.isfinite(samples).all():
+        return
+    for n, name in enumerate(model.recorded):
+        bad = np.flatnonzero(~np.isfinite(samples[:, n]))
+        if len(bad):
+            when, value = t[bad[0]], samples[bad[0], n]
+            what = f"the recorded signal '{name}' is not finite ({value}) at t = {when:.9g} s"
+            hint = "Look for a division by zero or the root of a negative number in it."
+            raise SimulationError([Problem(what, place_of(model, name), (), hint)])

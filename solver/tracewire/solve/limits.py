@@ -112,8 +112,6 @@ class MemoryLimits:
     """Kinds of what is asked for, of which a model keeps what moves."""
     times: int = 64
     """Spans whose default times are kept."""
-    functions: int = 256
-    """Of models that are called in turn."""
     core_files: int = 4
     """Of other texts of the core: checkouts and branches take turns."""
     code_wait: float = 600.0

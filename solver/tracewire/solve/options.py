@@ -22,6 +22,7 @@ class Options(TypedDict, total=False):
     start: Mapping[str, float] | None
     span: tuple[float, float] | None
     times: ArrayLike | None
+    every: float | None
     method: str
     rtol: float
     atol: float | Mapping[str, float] | None

@@ -35,8 +35,7 @@ from tracewire.solve.integrator import Integrator
 from tracewire.solve.interrupt import Halt, Interrupted
 from tracewire.solve.limits import STEP
 from tracewire.solve.options import START
-from tracewire.solve.problem import initial_value_problem
-from tracewire.solve.setup import start_of
+from tracewire.solve.problem import initial_value_problem, start_of
 from tracewire.solve.workspace import set_to
 
 Vector = NDArray[np.float64]
@@ -94,7 +93,7 @@ class Passage:
             preset=preset,
             inputs=inputs,
         )
-        model.compiled_addresses(FUNCTIONS)  # several passages may run in threads
+        model.routines.compiled_addresses(FUNCTIONS)  # several passages may run in threads
         problem = replace(self._problem, times=np.zeros(inner))
         self._integrator = Integrator(problem, records="states", halt=halt or Halt())
         self.arrays: Arrays = self._integrator.arrays
@@ -221,7 +220,7 @@ class Passage:
     def value(
         self, function: str, size: int, x: Vector, t: float, modes: Vector | None = None
     ) -> Vector:
-        """A function of the model (see `Model.address`) at a time and states, (size,).
+        """A function of the model (see `Routines.address`) at a time and states, (size,).
 
         `modes` (M,) in place of those at the stop.
         """
@@ -230,7 +229,7 @@ class Passage:
         if modes is not None:
             m = m.copy()
             m[: len(modes)] = modes
-        address = self.model.compiled_address(function)
+        address = self.model.routines.compiled_address(function)
         invoke(address, t, np.ascontiguousarray(x), m, flow.c, flow.k, out)
         return out
 

@@ -9,8 +9,8 @@ from typing import Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.compile import Model
-from tracewire.errors import OptionError, unknown
+from tracewire.compile import OF_THE_PAST, Model
+from tracewire.errors import OptionError, Problem, unknown
 from tracewire.options import options_of
 from tracewire.solve.core.methods import NAMES
 from tracewire.solve.history import Past, past_of
@@ -19,7 +19,6 @@ from tracewire.solve.options import Options, refuse_unknown_options, with_row
 from tracewire.solve.parameters import parameter_values
 from tracewire.solve.sampling import ascending, samples_of, span_of
 from tracewire.solve.sensitivities import Moving, checked, moving_with
-from tracewire.solve.setup import constants_of, start_of
 from tracewire.solve.tables import packed, tables_follow, tables_of
 from tracewire.solve.tolerance import Tolerance, longest_step, tolerance_of
 
@@ -99,7 +98,8 @@ def _problem(
     times = given.get("times")
     known = None if times is None else ascending(times)
     begin, end = span_of(model, values, given.get("span"), known)
-    samples = samples_of(model, values, begin, end, known) if sampled else np.empty(0)
+    every = given.get("every")
+    samples = samples_of(model, values, begin, end, known, every) if sampled else np.empty(0)
     method = given.get("method", "auto")
     if method != "auto" and method not in NAMES:
         raise OptionError([unknown("method", method, ["auto", *NAMES])])
@@ -110,7 +110,10 @@ def _problem(
     if tables is None:
         tables = packed(tables_of(model, values, given.get("inputs") or {}))
     past = past_of(model, given.get("past") or {})
-    constants = constants_of(model, values, past)
+    constants = model.routines.constants_from(list(values.values()))
+    if model.lowered.delays:
+        first = len(model.parameters)
+        constants[first : first + OF_THE_PAST] = 0.0, past.address, past.begin
     start = start_of(model, constants, tables, given.get("start") or {})
     return InitialValueProblem(
         model=model,
@@ -129,3 +132,18 @@ def _problem(
         past=past,
         sampled=sampled,
     )
+
+
+def start_of(model: Model, constants: Vector, tables: Vector, given: Mapping[str, float]) -> Vector:
+    """The start states (n,): the diagram's, changed by `given`. Raises OptionError."""
+    names = model.states
+    problems = [unknown("state", name, names) for name in given if name not in names]
+    x = model.routines.starts(constants, tables)
+    for n, name in enumerate(names if given else ()):
+        if name in given:
+            x[n] = given[name]
+    bad = [] if np.isfinite(x).all() else np.flatnonzero(~np.isfinite(x)).tolist()
+    problems += [Problem(f"the start of '{names[n]}' is {x[n]}") for n in bad]
+    if problems:
+        raise OptionError(problems)
+    return x

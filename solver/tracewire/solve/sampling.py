@@ -46,9 +46,18 @@ def span_of(
 
 
 def samples_of(
-    model: Model, values: Mapping[str, float], begin: float, end: float, times: Vector | None
+    model: Model,
+    values: Mapping[str, float],
+    begin: float,
+    end: float,
+    times: Vector | None = None,
+    every: float | None = None,
 ) -> Vector:
-    """The sample times (N,) within a span. Raises OptionError where there is no use in them."""
+    """The sample times (N,) within a span: those that are given, or each so many seconds, or as the
+    diagram says. Raises OptionError where there is no use in them."""
+    if times is not None and every is not None:
+        what = f"there are sample times, and an output every {every:g} s"
+        raise OptionError([Problem(what, hint="Give times= or every=, not both.")])
     if times is not None:
         if times[0] < begin or times[-1] > end:
             what = (
@@ -57,9 +66,10 @@ def samples_of(
             )
             raise OptionError([Problem(what, hint="Give a longer span, or other times.")])
         return times
-    if model.flat.every is None:
-        return _default_times(begin, end).copy()
-    every = evaluate(model.flat.every, values)
+    if every is None:
+        if model.flat.every is None:
+            return _default_times(begin, end).copy()
+        every = evaluate(model.flat.every, values)
     if not every > 0 or (end - begin) / every > SAMPLE.most:
         what = f"an output every {every:g} s from {begin:g} to {end:g} s cannot be kept"
         raise OptionError([Problem(what, hint="Give a larger `every`.")])
@@ -75,7 +85,21 @@ def _default_times(begin: float, end: float) -> Vector:
     return np.linspace(begin, end, DEFAULT_SAMPLES)
 
 
-def sample_times(model: Model, values: Mapping[str, float], span: tuple[float, float]) -> Vector:
+def sample_times(
+    model: Model,
+    values: Mapping[str, float],
+    span: tuple[float, float],
+    every: float | None = None,
+) -> Vector:
     """The sample times (N,) in s that a run over a span has by itself. Raises OptionError."""
     begin, end = span_of(model, values, span, None)
-    return samples_of(model, values, begin, end, None)
+    return samples_of(model, values, begin, end, every=every)
+
+
+def even_times(
+    model: Model, values: Mapping[str, float], span: tuple[float, float] | None, steps: int
+) -> Vector:
+    """Times (steps + 1,) in s, evenly from the begin to the end of a span, the diagram's unless
+    given. Raises OptionError."""
+    begin, end = span_of(model, values, span, None)
+    return np.linspace(begin, end, steps + 1)

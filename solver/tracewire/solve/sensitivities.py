@@ -197,7 +197,7 @@ def new_sensitivity(
     w = n + 1 + a if q else 0
     names = [*model.states, "t", *moved]
     functions = [model.derivative(of, names) for of in DERIVATIVES] if q else []
-    address = model.compiled_addresses(functions)
+    address = model.routines.compiled_addresses(functions)
     return Sensitivity(
         address=np.array(address, dtype=np.int64),
         chain=np.zeros((a, q)),
@@ -234,7 +234,7 @@ def new_sensitivity(
 
 def _read_by(model: Model, function: str, n: int, a: int) -> NDArray[np.int64]:
     """Where among a parameters those begin and end that each of n rates reads."""
-    places, w = np.array(model.places(function), dtype=np.int64), n + 1 + a
+    places, w = np.array([*model.routines.routine(function).roots], dtype=np.int64), n + 1 + a
     found = np.zeros((n, 2), dtype=np.int64)
     for state in range(n):
         mine = places[places // w == state] % w - (n + 1)

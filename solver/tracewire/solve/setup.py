@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import ctypes
-from collections.abc import Callable, Mapping, Sequence
-from functools import lru_cache
-from typing import Any, Literal, NamedTuple
+from collections.abc import Sequence
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.compile import OF_THE_PAST, Model
-from tracewire.errors import OptionError, Problem, unknown
+from tracewire.compile import Model
 from tracewire.solve.core.arrays import (
     Arrays,
     Crossings,
@@ -30,26 +27,15 @@ from tracewire.solve.core.codes import (
     LOG_HEAD,
     PACED,
 )
-from tracewire.solve.core.flow import FREE, FUNCTIONS
+from tracewire.solve.core.flow import FREE, FUNCTIONS, READING
 from tracewire.solve.core.locate import SAMPLES
-from tracewire.solve.core.memory import MODEL_FUNCTION
 from tracewire.solve.core.methods import METHODS
-from tracewire.solve.history import Past, new_history
+from tracewire.solve.history import new_history
 from tracewire.solve.limits import MEMORY
 from tracewire.solve.once_per_model import once_per_model
 from tracewire.solve.sensitivities import new_sensitivity
 
 Vector = NDArray[np.float64]
-ADDRESSED = ctypes.c_char * 0
-
-
-def _place(array: Vector) -> Any:
-    """An array as a function of C takes it: by far the fastest way to its address."""
-    return ADDRESSED.from_buffer(array.data)
-
-
-UNREAD = _place(np.zeros(1))  # an argument that a function of the model does not read
-
 Records = Literal["signals", "states", "both"]
 """What a sample has: the recorded signals, the states, or the states behind the signals."""
 
@@ -104,54 +90,6 @@ def plan_of(model: Model) -> Plan:
     )
 
 
-@once_per_model
-def default_modes(model: Model) -> Vector:
-    """The values of the modes before a run has decided them, and behind them that none is held."""
-    usual = [mode.at_zero for mode in model.modes]
-    return np.array([*usual, *[0.0] * len(usual)], dtype=float)
-
-
-def constants_of(model: Model, values: Mapping[str, float], past: Past) -> Vector:
-    """What a model computes from its parameters alone, and where the past of delayed signals is."""
-    parameters = np.array([*values.values(), 0.0])  # never empty
-    constants = np.zeros(max(1, model.sizes.constants))
-    data = _place(parameters), UNREAD, UNREAD, UNREAD, _place(constants)
-    _function_at(model.address("prepare"))(0.0, *data)
-    if model.lowered.delays:
-        first = len(model.parameters)
-        constants[first : first + OF_THE_PAST] = 0.0, past.address, past.begin
-    return constants
-
-
-def start_of(model: Model, constants: Vector, tables: Vector, given: Mapping[str, float]) -> Vector:
-    """The start states (n,): the diagram's, changed by `given`. Raises OptionError."""
-    names = model.states
-    problems = [unknown("state", name, names) for name in given if name not in names]
-    x = np.zeros(len(names))
-    data = UNREAD, _place_of_modes(model), _place(constants), _place(tables), _place(x)
-    _function_at(model.address("starts"))(0.0, *data)
-    for n, name in enumerate(names if given else ()):
-        if name in given:
-            x[n] = given[name]
-    bad = [] if np.isfinite(x).all() else np.flatnonzero(~np.isfinite(x)).tolist()
-    problems += [Problem(f"the start of '{names[n]}' is {x[n]}") for n in bad]
-    if problems:
-        raise OptionError(problems)
-    return x
-
-
-@once_per_model
-def _place_of_modes(model: Model) -> Any:
-    """Where the default modes are."""
-    return _place(default_modes(model))
-
-
-@lru_cache(maxsize=MEMORY.functions)
-def _function_at(address: int) -> Callable[..., None]:
-    """What Python calls; to make it takes longer than the call."""
-    return MODEL_FUNCTION(address)
-
-
 def _plan_for(model: Model, records: Records) -> Plan:
     """The plan of a model with what its samples have."""
     plan, states = plan_of(model), np.arange(len(model.states))
@@ -162,21 +100,21 @@ def _plan_for(model: Model, records: Records) -> Plan:
 
 def _new_flow(model: Model, numbers: int) -> Flow:
     """The field of a model, with its modes as they are by default; its tables have `numbers`."""
-    sizes, count = model.sizes, len(model.modes)
+    sizes, count = model.routines.sizes, len(model.modes)
     return Flow(
         address=np.empty(len(FUNCTIONS), dtype=np.int64),
-        m=default_modes(model).copy(),
+        m=model.routines.usual_modes.copy(),
         c=np.zeros(max(1, sizes.constants)),
         k=np.zeros(numbers),
         bound=np.full(count, FREE, dtype=np.int64),
         push=np.zeros((count, sizes.states)),
-        counts=np.array([int(model.reads_held), 0, 0, 0], dtype=np.int64),
+        counts=np.zeros(4, dtype=np.int64),
     )
 
 
 def _new_progress(model: Model, count: int, columns: int) -> Progress:
     """A run that has not begun, with `count` samples of `columns` numbers."""
-    n, modes = model.sizes.states, len(model.modes)
+    n, modes = model.routines.sizes.states, len(model.modes)
     width = LOG_HEAD + 2 * n
     progress = Progress(
         now=np.zeros(10),
@@ -198,7 +136,6 @@ def _new_progress(model: Model, count: int, columns: int) -> Progress:
         least=np.zeros(n),
         sizes=np.zeros(2 * n),
     )
-    progress.now[PACED] = float(model.has_pace)
     return progress
 
 
@@ -208,6 +145,8 @@ def new_arrays(model: Model, kind: Kind) -> Arrays:
     plan = _plan_for(model, kind.records)
     flow = _new_flow(model, kind.tables)
     progress = _new_progress(model, kind.samples, len(plan.direct))
+    flow.counts[READING] = model.routines.reads_held
+    progress.now[PACED] = model.routines.has_pace
     most = 3 * modes  # a guard has two levels at most, and held it has a force or two fractions
 
     def ints(size: int) -> NDArray[np.int64]:

@@ -21,14 +21,13 @@ from tracewire.solve.core.spans import INSIDE, LEFT, SPAN
 from tracewire.solve.core_library import library
 from tracewire.solve.failures import failure
 from tracewire.solve.history import refuse_delays
-from tracewire.solve.integrator import Integrator
+from tracewire.solve.integrator import Integrator, refuse_nan
 from tracewire.solve.interrupt import Halt, Interrupted
 from tracewire.solve.limits import PAUSE, Limits, beyond_budget
 from tracewire.solve.options import START
 from tracewire.solve.problem import InitialValueProblem, initial_value_problem
 from tracewire.solve.run import Sensitivities
 from tracewire.solve.sensitivities import recorded
-from tracewire.solve.simulate import refuse_nan
 from tracewire.solve.workspace import least_peak
 
 Vector = NDArray[np.float64]

@@ -14,7 +14,7 @@ from tracewire.errors import OptionError, Problem, TracewireError
 from tracewire.formula import names_of
 from tracewire.solve.core.flow import FUNCTIONS
 from tracewire.solve.core_library import library
-from tracewire.solve.integrator import Integrator
+from tracewire.solve.integrator import Integrator, refuse_nan
 from tracewire.solve.interrupt import Halt
 from tracewire.solve.observers import (
     Observer,
@@ -27,7 +27,6 @@ from tracewire.solve.observers import (
 from tracewire.solve.options import Options, with_row
 from tracewire.solve.problem import InitialValueProblem, initial_value_problem
 from tracewire.solve.setup import Records
-from tracewire.solve.simulate import refuse_nan
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -60,7 +59,9 @@ class Task:
             check_section(model, self.section)
         self.criterion = next((o for o in observers if callable(o)), None)
         self.problem = self._any_problem()
-        model.compiled_addresses(FUNCTIONS)  # made during a run one would wait for Python's lock
+        model.routines.compiled_addresses(
+            FUNCTIONS
+        )  # made during a run one would wait for Python's lock
         self._check_times()
         library()  # not in a thread
 
@@ -85,7 +86,8 @@ class Task:
     def _check_times(self) -> None:
         """Refuse samples that do not fit into one array, before the first run."""
         flat = self.model.flat
-        formulas = [*flat.span, *([flat.every] if flat.every is not None else [])]
+        every = flat.every if self.options.get("every") is None else None
+        formulas = [*flat.span, *([every] if every is not None else [])]
         if not self.sampled or not any(names_of(formula) for formula in formulas):
             return
         first: Vector | None = None

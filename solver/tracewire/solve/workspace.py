@@ -107,7 +107,7 @@ def acquire(problem: InitialValueProblem, records: Records) -> Workspace:
 def set_to(arrays: Arrays, problem: InitialValueProblem) -> None:
     """Let the arrays of a run that has not begun be those of a problem."""
     flow, progress, tolerance = arrays.flow, arrays.progress, problem.tolerance
-    flow.address[:] = problem.model.addresses(FUNCTIONS)
+    flow.address[:] = problem.model.routines.addresses(FUNCTIONS)
     flow.c[:], flow.k[:] = problem.constants, problem.tables
     now, (begin, end) = progress.now, problem.span
     now[T], now[H], now[END], now[LENGTH] = begin, 0.0, end, end - begin

@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from tracewire.compile import compile
-from tracewire.diagram import Diagram, set_sensors, set_values
+from tracewire.diagram import Diagram, SetValues, patch
 from tracewire.draw import draw
 from tracewire.errors import OptionError, Problem, TracewireError
 
@@ -124,17 +124,13 @@ class Job:
 
     def _fitted(self, found: Fit) -> Diagram:
         """The diagram with the values that the fit has found, and with those of the page."""
-        free = found.model.flat.parameters
-        own = {n: v for n, v in found.values.items() if n in free}
-        sensors = {n: v for n, v in found.values.items() if n not in own}
-        rest = {n: v for n, v in self.values.items() if n not in own}
-        return set_sensors(set_values(self.diagram, {**rest, **own}), sensors)
+        return patch(self.diagram, [SetValues({**self.values, **found.values})])
 
     def _trace(self) -> None:
         from tracewire.show import sentences_of
         from tracewire.trace import trace
 
-        found = trace(compile(set_values(self.diagram, self.values)), progress=self._tell)
+        found = trace(compile(patch(self.diagram, [SetValues(self.values)])), progress=self._tell)
         self.words = sentences_of(found)
         self.result = found
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-from tracewire.diagram import LIMITS, complete, load_text, set_values, word_before
+from tracewire.diagram import LIMITS, SetValues, complete, load_text, patch, word_before
 from tracewire.draw import draw
 from tracewire.errors import DiagramError, OptionError, Problem, TracewireError, unknown
 from tracewire.files import write_file, writing
@@ -155,7 +155,7 @@ class Service:
         model = self._version(request).model
         if model is None:
             raise OptionError.one("the text has mistakes", hint="Repair them first.")
-        changed = set_values(model.diagram, in_si(request.get("parameters") or {}))
+        changed = patch(model.diagram, [SetValues(in_si(request.get("parameters") or {}))])
         return {"text": changed.text}
 
     def state(self, request: Request) -> Answer:
@@ -230,7 +230,7 @@ class Service:
             return told(version.problems)
         if kind == "diagram":
             values = in_si(request.get("parameters") or {})
-            changed = set_values(version.model.diagram, values)
+            changed = patch(version.model.diagram, [SetValues(values)])
             return {"name": self.file.name, "text": changed.text}
         if kind == "script" and version.text != self._text():
             what = "a script reads the diagram from its file, and the text here is another"

@@ -2,7 +2,7 @@
 
 from tracewire.analyse.quantities.conditions import Conditions, conditions_of
 from tracewire.analyse.quantities.evaluate import NOTHING_FURTHER, Further, is_of_run
-from tracewire.analyse.quantities.measure import ask, measure
+from tracewire.analyse.quantities.measurement import ask, measure
 from tracewire.analyse.quantities.subject import Recorder, Subject, silent
 
 __all__ = [

@@ -18,7 +18,7 @@ from tracewire.analyse.quantities.evaluate import (
     of_states,
     other_of,
 )
-from tracewire.analyse.spectrum import spectrum
+from tracewire.analyse.spectra import spectrum
 from tracewire.diagram import EVENT_KINDS, is_quantity
 from tracewire.errors import AnalysisError, OptionError, Problem
 from tracewire.formula import CONSTANTS, Call, Expression, is_condition, names_of, to_text

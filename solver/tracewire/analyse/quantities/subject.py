@@ -10,15 +10,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.analyse.bifurcation import Bifurcation, bifurcation
-from tracewire.analyse.floquet import Floquet, floquet
+from tracewire.analyse.bifurcation_diagram import Bifurcation, bifurcation
+from tracewire.analyse.floquet_multipliers import Floquet, floquet
 from tracewire.analyse.limits import QUANTITY
-from tracewire.analyse.lyapunov import Lyapunov, lyapunov
+from tracewire.analyse.lyapunov_exponents import Lyapunov, lyapunov
 from tracewire.analyse.orbit import PeriodicOrbit, periodic_orbit
 from tracewire.analyse.plane import Plane, span_of
+from tracewire.analyse.poincare_section import PoincareSection, section
 from tracewire.analyse.quantities.conditions import Conditions
-from tracewire.analyse.section import PoincareSection, section
-from tracewire.analyse.steady_state import SteadyState, steady_state
+from tracewire.analyse.steady_states import SteadyState, steady_state
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, OptionError, Problem
 from tracewire.fit import Fit, fit
@@ -91,7 +91,8 @@ class Subject:
         if c.samples is not None and first < end:
             return np.linspace(first, end, c.samples)
         if times is None:
-            times = sample_times(self.model, self.parameters, (begin, end))
+            every = c.options.get("every")
+            times = sample_times(self.model, self.parameters, (begin, end), every)
             if "span" in c.options and times[-1] < end - QUANTITY.same_time * abs(end - begin):
                 times = np.append(times, end)
         found = np.asarray(times, dtype=float).ravel()
@@ -137,7 +138,8 @@ class Subject:
             what = f"a quantity reads a signal at {times[0]:g} s, and the run begins at {begin:g} s"
             raise OptionError([Problem(what, hint="Write run: {from: ...} in the statement.")])
         end = max(end, float(times[-1]))  # a signal may be read later than samples count
-        options = {key: value for key, value in c.options.items() if key not in ("span", "times")}
+        own = ("span", "times", "every")
+        options = {key: value for key, value in c.options.items() if key not in own}
         return simulate(model, **options, span=(begin, end), times=times)  # type: ignore[arg-type]
 
     # what analyses find

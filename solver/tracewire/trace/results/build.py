@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
-from tracewire.diagram import Diagram, patch, set_sensors, set_values
+from tracewire.diagram import Diagram, SetValues, patch
 from tracewire.residual import SENSED
 from tracewire.trace.candidates.changes import changes_of
 from tracewire.trace.found import CandidateScore, FoundEffect, SearchStep, Tie
@@ -140,9 +140,10 @@ def edit_diagram(
     if not effects:
         return model.diagram
     chosen = [(effect.candidate, effect.values) for effect in effects]
-    diagram = patch(model.diagram, changes_of(model.diagram, chosen))
-    own = {name: value for name, value in values.items() if name in model.flat.parameters}
-    diagram = set_values(diagram, own) if own else diagram
     added = {effect.candidate.coefficient for effect in effects}
-    sensors = {n: v for n, v in values.items() if n.startswith(SENSED) and n not in added}
-    return set_sensors(diagram, sensors) if sensors else diagram
+    kept = {
+        name: value
+        for name, value in values.items()
+        if name in model.flat.parameters or (name.startswith(SENSED) and name not in added)
+    }
+    return patch(model.diagram, [*changes_of(model.diagram, chosen), SetValues(kept)])

@@ -12,7 +12,7 @@ from tracewire.diagram.files import absent_series
 from tracewire.diagram.modeline import moved_modeline
 from tracewire.diagram.packages import Packages
 from tracewire.diagram.problems import Problems
-from tracewire.diagram.read import read_text
+from tracewire.diagram.reader import read_text
 from tracewire.diagram.replicate import numbers_of, replicated
 from tracewire.diagram.sources import Sources
 from tracewire.diagram.strict import Entries, Items, Node, Scalar

@@ -189,6 +189,7 @@ class _Reader:
         def find(type_name: str, at: Place, line: Entries) -> Block | Diagram | None:
             return self.find(type_name, scope, at, line)
 
+        title = read_title(given["title"], body) if "title" in given else ""
         inputs = read_inputs(given["inputs"], body) if "inputs" in given else {}
         parameters = read_parameters(given["parameters"], body) if "parameters" in given else {}
         blocks = read_blocks(given["blocks"], body, find) if "blocks" in given else {}
@@ -207,7 +208,7 @@ class _Reader:
             file=scope.file,
             text=scope.text,
             library=self.library,
-            title=read_title(given["title"], body) if "title" in given else "",
+            title=title,
             inputs=inputs,
             outputs=read_outputs(given["outputs"], body) if "outputs" in given else {},
             parameters=parameters,

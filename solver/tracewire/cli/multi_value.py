@@ -9,7 +9,7 @@ from typer.core import TyperCommand, TyperOption
 DIAGRAMS = (".yaml", ".yml")
 
 
-class Several(TyperCommand):
+class MultiValueCommand(TyperCommand):
     """A command whose repeatable options take all values up to the next option.
 
     The parser behind typer knows a fixed number of values only, so the name of the option is set

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from tracewire.diagram.choose import NUMBER, is_chosen, side_by_side
+from tracewire.diagram.choose import side_by_side
 from tracewire.diagram.diagram import BlockUse, Diagram, Value
 from tracewire.diagram.extend import with_variant
 from tracewire.diagram.files import load
-from tracewire.diagram.names import find_parameter, parameters, split_index
+from tracewire.diagram.names import split_index
 from tracewire.diagram.packages import Packages
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.sources import Sources
 from tracewire.diagram.strict import Entries, Items, Node, Scalar, compose
+from tracewire.diagram.written import Written, count_uses, find_written
 from tracewire.errors import DiagramError, OptionError, Place, TracewireError, unknown
-from tracewire.formula import Number, to_text
 
 
 @dataclass(frozen=True)
-class Spot:
+class ParameterLocation:
     """A parameter in the text: its node, its value, and the factor to SI of a number put there.
 
     `into`: the block that shall get a value of its own, because others share the node.
@@ -31,7 +31,7 @@ class Spot:
     into: Entries | None = None
 
 
-class Outline:
+class SourceMap:
     """The nodes of a diagram, found by the names of its parts.
 
     `root` has those of the files that it extends and includes, too; `own` those of its text only,
@@ -56,7 +56,7 @@ class Outline:
         self.bodies: dict[str, list[tuple[Diagram, Entries]]] = {"": [(diagram, root)]}
         self.removed: dict[tuple[Place, str], Node] = {}
         self.nodes: dict[tuple[Place, str], Entries] = {(diagram.place, ""): root}
-        self.uses, self.used = _count_uses(diagram)
+        self.uses, self.used = count_uses(diagram)
         self._define("", diagram, root)
 
     def _define(self, path: str, diagram: Diagram, entries: Entries) -> None:
@@ -109,47 +109,33 @@ class Outline:
         assert holder is not None
         return inside, holder, name
 
-    def parameter(self, path: str) -> Spot:
+    def parameter(self, path: str) -> ParameterLocation:
         """Where the value of a parameter of a run is written. Raises OptionError."""
-        value = find_parameter(self.top, path)
-        if value is None:
-            raise OptionError([unknown("parameter", path, parameters(self.top))])
-        inside, entries, rest = self.top, self.root, path
-        while "." in rest:
-            head, _, rest = rest.partition(".")
-            use = inside.blocks[head]
-            line = _part(entries, "blocks", use.row or head)
-            assert isinstance(line, Entries)
-            if use.row and rest.partition(".")[0] not in getattr(use.subsystem, "blocks", ()):
-                what = f"'{path}' belongs to a block of the row '{use.row}', which have one line"
-                hint = "Make it a parameter of the diagram, and name that in the line."
-                raise OptionError.one(what, use.place, hint=hint)
-            given = use.settings.get(rest)
-            if isinstance(given, Value) and (rest == NUMBER or is_chosen(inside)):
-                what = f"'{path}' is given by the parameter '{to_text(given.formula)}'"
-                raise OptionError.one(what, use.place, hint="Change that one.")
-            setting, index = split_index(rest)
-            if setting in use.settings and use.subsystem is None:
-                node = line.values[setting]
-                if index and isinstance(node, Items):
-                    node = node.items[index[0]]
-                return _given(setting, node, value, use)
-            if rest in use.settings:
-                return _given(rest, line.values[rest], value, use)
-            assert use.subsystem is not None
-            entries = self._entries(use.subsystem)
-            shared = self.uses[use.subsystem.place] > 1
-            if is_chosen(inside):  # the line of a body stands in no text
-                shared = self.uses[inside.place] > 1 or self._bodies_with(inside, use, rest) > 1
-            if rest in use.subsystem.parameters and not (shared and is_chosen(inside)):
-                node = _part(entries, "parameters", rest)
-                return Spot(rest, node, value, value.factor, line if shared else None)
-            if shared:
-                what = f"'{path}' stands in '{use.type}', which several blocks are"
-                hint = f"Make it a parameter of '{use.type}'."
-                raise OptionError.one(what, use.subsystem.place, hint=hint)
-            inside = use.subsystem
-        return Spot(rest, _part(entries, "parameters", rest), value, value.factor)
+        at = find_written(self.top, path, self.uses, self._bodies_with)
+        entries = self._entries(at.body)
+        if at.use is None:
+            return self._spot(at, _part(entries, "parameters", at.name))
+        line = _part(entries, "blocks", at.use.row or at.use.name)
+        assert isinstance(line, Entries)
+        if at.is_shared:
+            assert at.use.subsystem is not None
+            node = _part(self._entries(at.use.subsystem), "parameters", at.name)
+            return self._spot(at, node, line)
+        name, index = split_index(at.name) if at.use.subsystem is None else (at.name, ())
+        node = line.values[name]
+        if index and isinstance(node, Items):
+            node = node.items[index[0]]
+        return self._spot(replace(at, name=name), node)
+
+    def _spot(self, at: Written, node: Node, into: Entries | None = None) -> ParameterLocation:
+        """A value at a node. A number in the place of a formula is in the unit that stands there;
+        else in that of the parameter of the subsystem that it is a value of."""
+        factor = at.value.factor
+        if isinstance(node, Entries) and "unit" in node.values:
+            factor = at.factor
+        elif at.use is not None and at.use.subsystem is not None:
+            factor = at.use.subsystem.parameters[at.name].factor
+        return ParameterLocation(at.name, node, at.value, factor, into)
 
     def _bodies_with(self, chosen: Diagram, use: BlockUse, name: str) -> int:
         """How many bodies have the very parameter that the body of a line has."""
@@ -176,15 +162,6 @@ class Outline:
         if (diagram.place, diagram.variant) not in self.nodes:
             raise elsewhere(diagram)
         return self.nodes[diagram.place, diagram.variant]
-
-
-def _given(name: str, node: Node, value: Value, use: BlockUse) -> Spot:
-    """A setting of a block; a number takes the unit of a subsystem's parameter, a formula none."""
-    own = isinstance(node, Entries) and "unit" in node.values
-    factor = value.factor
-    if use.subsystem is not None and not own and not isinstance(value.formula, Number):
-        factor = use.subsystem.parameters[name].factor
-    return Spot(name, node, value, factor)
 
 
 def _part(entries: Entries, section: str, name: str) -> Node:
@@ -221,22 +198,3 @@ def elsewhere(diagram: Diagram) -> TracewireError:
     own = f"own_{diagram.name}: {{extends: {diagram.name}}}"
     hint = f"Edit that file, or write one that extends it: {own}."
     return OptionError.one(what, diagram.place, hint=hint)
-
-
-def _count_uses(top: Diagram) -> tuple[dict[Place, int], dict[Place, Diagram]]:
-    """How many parts of the whole diagram are made from each definition, and one of them."""
-    inner_first: dict[Place, Diagram] = {}
-
-    def visit(diagram: Diagram) -> None:
-        for use in diagram.blocks.values():
-            if use.subsystem is not None and use.subsystem.place not in inner_first:
-                visit(use.subsystem)
-        inner_first[diagram.place] = diagram
-
-    visit(top)
-    counts = dict.fromkeys(inner_first, 0) | {top.place: 1}
-    for diagram in reversed(inner_first.values()):
-        for use in diagram.blocks.values():
-            if use.subsystem is not None:
-                counts[use.subsystem.place] += counts[diagram.place]
-    return counts, inner_first

@@ -4,21 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tracewire.compile import Model
-from tracewire.errors import Problem, SimulationError
-from tracewire.solve.failures import place_of
-from tracewire.solve.integrator import Integrator
+from tracewire.solve.integrator import Integrator, refuse_nan
 from tracewire.solve.interrupt import Interrupted
 from tracewire.solve.limits import Limits
 from tracewire.solve.problem import initial_value_problem
 from tracewire.solve.progress import Tell
 from tracewire.solve.run import Run
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 def simulate(
@@ -28,6 +22,7 @@ def simulate(
     start: Mapping[str, float] | None = None,
     span: tuple[float, float] | None = None,
     times: ArrayLike | None = None,
+    every: float | None = None,
     method: str = "auto",
     rtol: float = 1e-6,
     atol: float | Mapping[str, float] | None = None,
@@ -42,8 +37,9 @@ def simulate(
     """Simulate a model: integrate x' = f(x, t) with frozen modes between located events.
 
     `parameters` and `start` override the diagram's values by name, in SI; `preset` is applied
-    before them. `span` is (from, to) in s, `times` (N,) the ascending sample times in s; without
-    them the diagram's span and its `every`, or 1001 samples. `method` is
+    before them. `span` is (from, to) in s, `times` (N,) the ascending sample times in s, or
+    `every` the time between two of them; without these the diagram's span and its `every`, or 1001
+    samples. `method` is
     `dormand_prince` (explicit, order 5), `dop853` (explicit, order 8), `rosenbrock` (stiff, order
     5), `rk4` (fixed `step` in s, order 4), or `auto`: dormand_prince, dop853 where rtol is
     1e-8 or less, and rosenbrock where a mode combination turns out to be stiff. `atol` is given as
@@ -68,6 +64,7 @@ def simulate(
         start=start,
         span=span,
         times=times,
+        every=every,
         method=method,
         rtol=rtol,
         atol=atol,
@@ -87,16 +84,3 @@ def simulate(
     run = integrator.run
     integrator.give_back()
     return run
-
-
-def refuse_nan(model: Model, samples: Matrix, t: Vector) -> None:
-    """A recorded signal may be undefined where no state depends on it."""
-    if np.isfinite(samples).all():
-        return
-    for n, name in enumerate(model.recorded):
-        bad = np.flatnonzero(~np.isfinite(samples[:, n]))
-        if len(bad):
-            when, value = t[bad[0]], samples[bad[0], n]
-            what = f"the recorded signal '{name}' is not finite ({value}) at t = {when:.9g} s"
-            hint = "Look for a division by zero or the root of a negative number in it."
-            raise SimulationError([Problem(what, place_of(model, name), (), hint)])

@@ -10,7 +10,7 @@ from tracewire.errors import DiagramError, Place, TracewireError
 
 
 @dataclass(frozen=True)
-class Change:
+class TextEdit:
     """`text` in place of the characters from `start` to `end`."""
 
     start: int
@@ -18,7 +18,7 @@ class Change:
     text: str
 
 
-def changed(text: str, changes: Sequence[Change]) -> str:
+def changed(text: str, changes: Sequence[TextEdit]) -> str:
     """The text with all changes made; they must not overlap."""
     for change in sorted(changes, key=lambda change: change.start, reverse=True):
         text = text[: change.start] + change.text + text[change.end :]
@@ -33,54 +33,54 @@ def end_of(node: Node) -> int:
     return max(end_of(part) for part in parts if part.place.file == node.place.file)
 
 
-def replaced(node: Node, new: str) -> Change:
+def replaced(node: Node, new: str) -> TextEdit:
     """The node's text exchanged; a text block (| or >) is refused."""
     if isinstance(node, Scalar) and node.style in ("|", ">"):
         raise _refused(node)
-    return Change(node.start, end_of(node), new)
+    return TextEdit(node.start, end_of(node), new)
 
 
-def entry_after(text: str, entries: Entries, after: str, name: str, value: str) -> Change:
+def entry_after(text: str, entries: Entries, after: str, name: str, value: str) -> TextEdit:
     """`name: value` as a new entry behind the entry `after`, laid out as that is."""
     key, node = entries.keys[after], entries.values[after]
     end = end_of(node)
     if entries.flow:
-        return Change(end, end, f", {name}: {value}")
+        return TextEdit(end, end, f", {name}: {value}")
     indent = _indent(text, key)
     width = node.start - key.start if node.place.line == key.place.line else 0
     return _line_after(text, end, f"{indent}{f'{name}:'.ljust(width - 1)} {value}")
 
 
-def entry_last(text: str, entries: Entries, name: str, value: str) -> Change:
+def entry_last(text: str, entries: Entries, name: str, value: str) -> TextEdit:
     """`name: value` as the last entry of a mapping, of which others may stand in other files."""
     own = [known for known, key in entries.keys.items() if key.place.file == entries.place.file]
     if not own:
-        return Change(entries.start + 1, entries.start + 1, f"{name}: {value}")
+        return TextEdit(entries.start + 1, entries.start + 1, f"{name}: {value}")
     return entry_after(text, entries, own[-1], name, value)
 
 
-def item_last(text: str, items: Items, value: str) -> Change:
+def item_last(text: str, items: Items, value: str) -> TextEdit:
     """`value` as the last item of a list."""
     if not items.items:
-        return Change(items.start + 1, items.start + 1, value)
+        return TextEdit(items.start + 1, items.start + 1, value)
     last = items.items[-1]
     end = end_of(last)
     if items.flow:
-        return Change(end, end, f", {value}")
+        return TextEdit(end, end, f", {value}")
     return _line_after(text, end, text[_line_start(text, last.start) : last.start] + value)
 
 
-def without_entry(text: str, entries: Entries, name: str) -> Change:
+def without_entry(text: str, entries: Entries, name: str) -> TextEdit:
     """The entry taken out: its lines, or its part of a mapping in braces."""
     key, node = entries.keys[name], entries.values[name]
     if not entries.flow:
         _indent(text, key)
-        return Change(_line_start(text, key.start), _line_end(text, end_of(node)), "")
+        return TextEdit(_line_start(text, key.start), _line_end(text, end_of(node)), "")
     parts = [(k.start, end_of(entries.values[n])) for n, k in entries.keys.items()]
     return _without_part(text, parts, list(entries.keys).index(name))
 
 
-def without_items(text: str, key: Scalar, items: Items, indices: Sequence[int]) -> list[Change]:
+def without_items(text: str, key: Scalar, items: Items, indices: Sequence[int]) -> list[TextEdit]:
     """Items taken out of the list that is the value of `key`."""
     parts = [(item.start, end_of(item)) for item in items.items]
     kept = [i for i in range(len(parts)) if i not in indices]
@@ -88,27 +88,27 @@ def without_items(text: str, key: Scalar, items: Items, indices: Sequence[int]) 
         if len(indices) == 1:
             return [_without_part(text, parts, indices[0])]
         inside = ", ".join(text[parts[i][0] : parts[i][1]] for i in kept)
-        return [Change(parts[0][0], parts[-1][1], inside)]
+        return [TextEdit(parts[0][0], parts[-1][1], inside)]
     changes = [
-        Change(_line_start(text, parts[i][0]), _line_end(text, parts[i][1]), "") for i in indices
+        TextEdit(_line_start(text, parts[i][0]), _line_end(text, parts[i][1]), "") for i in indices
     ]
     if not kept:
         colon = text.index(":", key.end) + 1
-        changes.append(Change(colon, colon, " []"))
+        changes.append(TextEdit(colon, colon, " []"))
     return changes
 
 
-def _without_part(text: str, parts: Sequence[tuple[int, int]], index: int) -> Change:
+def _without_part(text: str, parts: Sequence[tuple[int, int]], index: int) -> TextEdit:
     """One part of a list in brackets taken out with one of the commas beside it."""
     start, end = parts[index]
     if len(parts) == 1:
-        return Change(start, end, "")
+        return TextEdit(start, end, "")
     if index > 0 and "#" not in text[parts[index - 1][1] : start]:
-        return Change(parts[index - 1][1], end, "")
+        return TextEdit(parts[index - 1][1], end, "")
     if index == 0 and "#" not in text[end : parts[1][0]]:
-        return Change(start, parts[1][0], "")
+        return TextEdit(start, parts[1][0], "")
     comma = text.find(",", end, parts[index + 1][0]) if index + 1 < len(parts) else -1
-    return Change(start, comma + 1 if comma >= 0 else end, "")
+    return TextEdit(start, comma + 1 if comma >= 0 else end, "")
 
 
 def _line_start(text: str, at: int) -> int:
@@ -121,12 +121,12 @@ def _line_end(text: str, at: int) -> int:
     return len(text) if found < 0 else found + 1
 
 
-def _line_after(text: str, at: int, line: str) -> Change:
+def _line_after(text: str, at: int, line: str) -> TextEdit:
     end = _line_end(text, at)
     ending = "\r\n" if "\r\n" in text else "\n"
     if text.endswith("\n", 0, end):
-        return Change(end, end, line + ending)
-    return Change(end, end, ending + line)
+        return TextEdit(end, end, line + ending)
+    return TextEdit(end, end, ending + line)
 
 
 def _indent(text: str, key: Scalar) -> str:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tracewire.analyse import verdict
 from tracewire.analyse.drive import is_driven
 from tracewire.analyse.equilibrium import find_equilibrium
-from tracewire.analyse.linearise import linearise, nonsmooth
+from tracewire.analyse.linearisation import linearise, nonsmooth
 from tracewire.compile import Model, at_rest
 from tracewire.errors import AnalysisError, Problem
 from tracewire.result import Result

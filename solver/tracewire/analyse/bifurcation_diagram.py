@@ -16,7 +16,7 @@ from tracewire.analyse.grid import grid_of
 from tracewire.analyse.limits import SECTION
 from tracewire.analyse.partial import Partial, fingerprint
 from tracewire.analyse.plane import Plane, span_of
-from tracewire.analyse.section import extent_of, take_points
+from tracewire.analyse.poincare_section import extent_of, take_points
 from tracewire.analyse.turns import units_of
 from tracewire.analyse.work import interrupted
 from tracewire.compile import Model
