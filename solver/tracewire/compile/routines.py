@@ -18,6 +18,7 @@ from tracewire.compile.pace import pace
 from tracewire.compile.pointers import address_of, as_c, when_called
 from tracewire.compile.sizes import sizes
 from tracewire.compile.source import Function, Writer, guarded, load
+from tracewire.compile.straight import weights
 
 Backend = Literal["llvm", "quick", "python"]
 BACKENDS: tuple[Backend, ...] = ("llvm", "quick", "python")
@@ -85,6 +86,7 @@ class Routines:
         guards = [mode.guard for mode in low.modes]
         self.guard_rates = self.along_the_flow(guards, 1)
         self.holding = holding(low, moving(low, self.guard_rates, self.flow))
+        self._weights = weights(low.tape, guards)
         self.eager: dict[str, Routine] = {
             "rhs": _dense("Rates of the states.", low.rates),
             "outputs": _dense("Recorded signals.", outputs),
@@ -107,6 +109,10 @@ class Routines:
             "resets": _dense(
                 "New values of all resets, one after the other.",
                 [entry for reset in low.resets for entry in reset.values.values()],
+            ),
+            "guard_weights": _dense(
+                "Weights of the states in the guards that are straight, one after the other.",
+                [entry for found in self._weights for entry in (found or {}).values()],
             ),
         }
         for routine in self.eager.values():
@@ -200,6 +206,17 @@ class Routines:
                 for state in reset.values:
                     forces.setdefault(low.states[state], []).extend(bends)
         return jump_orders(low, fractions, forces)
+
+    @property
+    def straight(self) -> tuple[bool, ...]:
+        """Of each guard, whether it is a sum of states times what only reads parameters."""
+        return tuple(found is not None for found in self._weights)
+
+    @property
+    def weighed(self) -> tuple[tuple[int, int], ...]:
+        """The guard and the state of each of the `guard_weights`."""
+        every = enumerate(self._weights)
+        return tuple((guard, state) for guard, found in every for state in found or ())
 
     @property
     def has_pace(self) -> bool:

@@ -101,6 +101,8 @@ def plan_of(model: Model) -> Plan:
         transitions=np.array(moves, dtype=np.int64).reshape(-1, 7),
         direct=ints([position.get(name, -1) for name in model.recorded]),
         loop=loop,
+        straight=ints([int(straight) for straight in model.straight_guards]),
+        weighed=np.array(model.weighed, dtype=np.int64).reshape(-1, 2),
     )
 
 
@@ -168,6 +170,7 @@ def _new_flow(model: Model, numbers: int) -> Flow:
         m=default_modes(model).copy(),
         c=np.zeros(max(1, sizes.constants)),
         k=np.zeros(numbers),
+        weights=np.zeros(len(model.weighed)),
         bound=np.full(count, FREE, dtype=np.int64),
         push=np.zeros((count, sizes.states)),
         counts=np.array([int(model.reads_held), 0, 0, 0], dtype=np.int64),
@@ -240,6 +243,7 @@ def new_arrays(model: Model, kind: Kind) -> Arrays:
         start=np.zeros(most),
         found=np.full(most, np.inf),
         hit=ints(most),
+        bends=np.zeros(modes),
     )
     crossings = Crossings(
         how=np.full(modes, -1),

@@ -25,8 +25,9 @@ class Flow(NamedTuple):
     """The field of a model for one set of parameters, and the discrete state of a run.
 
     `address`: of the model's functions, in the order of FUNCTIONS. `m`: the modes (M,) and behind
-    them, per mode, 1 while its guard is held at zero. `c`, `k`: constants and tables. `bound`:
-    FREE, SLIDING or RESTING per mode. `push` (M, n): how the force of a contact acts on the rates.
+    them, per mode, 1 while its guard is held at zero. `c`, `k`: constants and tables. `weights`: of
+    the states in straight guards, as `weighed` of the plan lists them. `bound`: FREE, SLIDING or
+    RESTING per mode. `push` (M, n): how the force of a contact acts on the rates.
     `counts`: evaluations, and how many guards slide and rest.
     """
 
@@ -34,6 +35,7 @@ class Flow(NamedTuple):
     m: Vector
     c: Vector
     k: Vector
+    weights: Vector
     bound: Ints
     push: Matrix
     counts: Ints
@@ -48,7 +50,8 @@ class Plan(NamedTuple):
     `writes` the states that they set. `transitions` has rows (memory mode, source, trigger mode,
     target, reset, level of the trigger, at_zero). `direct` is, per
     recorded signal, the state that it is, or -1. `loop` is, per mode, the algebraic loop through
-    it, or -1.
+    it, or -1. `straight` is, per mode, 1 where its guard is a sum of states times what no run
+    changes; `weighed` has rows (mode, state) of what is in these sums.
     """
 
     kind: Ints
@@ -63,6 +66,8 @@ class Plan(NamedTuple):
     transitions: IntMatrix
     direct: Ints
     loop: Ints
+    straight: Ints
+    weighed: IntMatrix
 
 
 class Progress(NamedTuple):
@@ -129,7 +134,8 @@ class Watch(NamedTuple):
     Of a fraction on a slide the margin is the distance to 0 or 1, of a contact its force. `to` is
     the mode beyond. A margin is `armed` once it has been positive: only then may it cross. `rows`
     (samples, margins) holds the margins over a step, `start` those where it begins, `found` where
-    in the step they cross, `hit` which of them do.
+    in the step they cross, `hit` which of them do. `bends` (M,) is work space: how far guards may
+    be from a straight line inside a step.
     """
 
     mode: Ints
@@ -142,6 +148,7 @@ class Watch(NamedTuple):
     start: Vector
     found: Vector
     hit: Ints
+    bends: Vector
 
 
 class Crossings(NamedTuple):
