@@ -206,14 +206,10 @@ class Model:
         return self._routines.has_pace
 
     @property
-    def straight_guards(self) -> tuple[bool, ...]:
-        """Of each guard, whether it is a sum of states times numbers that no run changes."""
+    def straight_guards(self) -> tuple[tuple[int, ...] | None, ...]:
+        """Of each guard that is a sum of states times numbers that no run changes, the states, in
+        the order of `guard_weights`; None of the others."""
         return self._routines.straight
-
-    @property
-    def weighed(self) -> tuple[tuple[int, int], ...]:
-        """The guard and the state of each of the `guard_weights`."""
-        return self._routines.weighed
 
     @property
     def reads_held(self) -> bool:
@@ -234,7 +230,7 @@ class Model:
         guards (M), guard_rates (M), timed (2T), starts (n), resets, delayed (D: signals that are
         read with a delay), lags (2D: the delays, and the longest they may be), pace (2: of the
         guards, and while something is held), guard_weights (of the states in straight guards: see
-        `weighed`), and guard_sizes (M), as all `sizes` a function of
+        `straight_guards`), and guard_sizes (M), as all `sizes` a function of
         x[2n]: states, and behind them their sizes; compiled when they are first called: jacobian
         (n*(n+1): d rate/d x, d rate/d t), guard_gradients (M*n),
         guard_curves (M*(n+1): gradient of the guard's rate, its change with t), guard_second,

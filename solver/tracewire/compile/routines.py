@@ -208,15 +208,10 @@ class Routines:
         return jump_orders(low, fractions, forces)
 
     @property
-    def straight(self) -> tuple[bool, ...]:
-        """Of each guard, whether it is a sum of states times what only reads parameters."""
-        return tuple(found is not None for found in self._weights)
-
-    @property
-    def weighed(self) -> tuple[tuple[int, int], ...]:
-        """The guard and the state of each of the `guard_weights`."""
-        every = enumerate(self._weights)
-        return tuple((guard, state) for guard, found in every for state in found or ())
+    def straight(self) -> tuple[tuple[int, ...] | None, ...]:
+        """Of each guard that is a sum of states times what only reads parameters, the states, in
+        the order of the `guard_weights`; None of the others."""
+        return tuple(None if found is None else tuple(found) for found in self._weights)
 
     @property
     def has_pace(self) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
+from itertools import accumulate
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -85,6 +86,8 @@ def plan_of(model: Model) -> Plan:
     for number, members in enumerate(low.loops):
         loop[list(members)] = number
 
+    terms = [states or () for states in model.straight_guards]
+
     def ints(values: Sequence[int]) -> NDArray[np.int64]:
         return np.array(values, dtype=np.int64)
 
@@ -101,8 +104,9 @@ def plan_of(model: Model) -> Plan:
         transitions=np.array(moves, dtype=np.int64).reshape(-1, 7),
         direct=ints([position.get(name, -1) for name in model.recorded]),
         loop=loop,
-        straight=ints([int(straight) for straight in model.straight_guards]),
-        weighed=np.array(model.weighed, dtype=np.int64).reshape(-1, 2),
+        straight=ints([int(terms is not None) for terms in model.straight_guards]),
+        first_term=ints([*accumulate(map(len, terms), initial=0)]),
+        term_state=ints([state for states in terms for state in states]),
     )
 
 
@@ -170,7 +174,7 @@ def _new_flow(model: Model, numbers: int) -> Flow:
         m=default_modes(model).copy(),
         c=np.zeros(max(1, sizes.constants)),
         k=np.zeros(numbers),
-        weights=np.zeros(len(model.weighed)),
+        weights=np.zeros(len(plan_of(model).term_state)),
         bound=np.full(count, FREE, dtype=np.int64),
         push=np.zeros((count, sizes.states)),
         counts=np.array([int(model.reads_held), 0, 0, 0], dtype=np.int64),
@@ -243,7 +247,6 @@ def new_arrays(model: Model, kind: Kind) -> Arrays:
         start=np.zeros(most),
         found=np.full(most, np.inf),
         hit=ints(most),
-        bends=np.zeros(modes),
     )
     crossings = Crossings(
         how=np.full(modes, -1),

@@ -24,7 +24,7 @@ from tracewire.solve.setup import Kind, Records, new_arrays, new_spans
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 ONLY_WRITTEN = (
-    *("address", "c", "k", "weights", "log", "stiff", "times", "bends"),
+    *("address", "c", "k", "weights", "log", "stiff", "times"),
     *("change", "between", "right", "parts", "system", "steps"),  # of sensitivities
     *GROWING,
 )

@@ -26,7 +26,7 @@ class Flow(NamedTuple):
 
     `address`: of the model's functions, in the order of FUNCTIONS. `m`: the modes (M,) and behind
     them, per mode, 1 while its guard is held at zero. `c`, `k`: constants and tables. `weights`: of
-    the states in straight guards, as `weighed` of the plan lists them. `bound`: FREE, SLIDING or
+    the states in straight guards, term by term. `bound`: FREE, SLIDING or
     RESTING per mode. `push` (M, n): how the force of a contact acts on the rates.
     `counts`: evaluations, and how many guards slide and rest.
     """
@@ -51,7 +51,7 @@ class Plan(NamedTuple):
     target, reset, level of the trigger, at_zero). `direct` is, per
     recorded signal, the state that it is, or -1. `loop` is, per mode, the algebraic loop through
     it, or -1. `straight` is, per mode, 1 where its guard is a sum of states times what no run
-    changes; `weighed` has rows (mode, state) of what is in these sums.
+    changes; `first_term` (M + 1,) is where its terms begin, whose states are in `term_state`.
     """
 
     kind: Ints
@@ -67,7 +67,8 @@ class Plan(NamedTuple):
     direct: Ints
     loop: Ints
     straight: Ints
-    weighed: IntMatrix
+    first_term: Ints
+    term_state: Ints
 
 
 class Progress(NamedTuple):
@@ -134,8 +135,7 @@ class Watch(NamedTuple):
     Of a fraction on a slide the margin is the distance to 0 or 1, of a contact its force. `to` is
     the mode beyond. A margin is `armed` once it has been positive: only then may it cross. `rows`
     (samples, margins) holds the margins over a step, `start` those where it begins, `found` where
-    in the step they cross, `hit` which of them do. `bends` (M,) is work space: how far guards may
-    be from a straight line inside a step.
+    in the step they cross, `hit` which of them do.
     """
 
     mode: Ints
@@ -148,7 +148,6 @@ class Watch(NamedTuple):
     start: Vector
     found: Vector
     hit: Ints
-    bends: Vector
 
 
 class Crossings(NamedTuple):

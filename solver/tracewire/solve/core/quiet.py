@@ -29,23 +29,22 @@ def keeps_away(core: int, method: int, count: int) -> bool:
     flow, plan, trial, watched = flow_of(core), plan_of(core), trial_of(core), watch_of(core)
     if flow.counts[SLIDING] + flow.counts[RESTING]:  # the margins of what is held are no guards
         return False
-    for row in range(count):
-        if watched.armed[row] == 0:
-            return False
-    bends, bent, inner = watched.bends, trial.at, trial.inner
+    start, end, armed = watched.start, watched.rows[SAMPLES - 1], watched.armed
+    bent, inner = trial.at, trial.inner
     for j in range(len(bent)):
-        bent[j] = 0.0
+        total = 0.0
         for k in range(BENT[method], INNER[method]):
-            bent[j] += abs(inner[k, j])
-    for i in range(len(bends)):
-        bends[i] = 0.0 if plan.straight[i] else np.inf
-    for term in range(len(flow.weights)):
-        bends[plan.weighed[term, 0]] += flow.weights[term] * bent[plan.weighed[term, 1]]
-    away = True
+            total += abs(inner[k, j])
+        bent[j] = total
     for row in range(count):
-        bend = bends[watched.mode[row]]
-        away = away and watched.start[row] > bend and watched.rows[SAMPLES - 1, row] > bend
-    return away
+        i, bend = np.uint64(watched.mode[row]), 0.0  # unsigned: no place is counted from the end
+        for term in range(plan.first_term[i], plan.first_term[i + np.uint64(1)]):
+            place = np.uint64(term)
+            bend += flow.weights[place] * bent[np.uint64(plan.term_state[place])]
+        away = start[row] > bend and end[row] > bend
+        if not (away and armed[row] and plan.straight[i]):
+            return False
+    return True
 
 
 @helper
