@@ -141,7 +141,7 @@ from tracewire.solve.run import Event, Run, Sensitivities, Statistics
 from tracewire.solve.runs import Runs
 from tracewire.solve.sampling import DEFAULT_SAMPLES, sample_times
 from tracewire.solve.simulate import simulate
-from tracewire.solve.spans import Span, SpanRuns, simulate_spans
+from tracewire.solve.spans import Span, SpanProblem, SpanRuns, simulate_spans, span_problem
 from tracewire.solve.workspace import release
 
 __all__ = [
@@ -163,6 +163,7 @@ __all__ = [
     "Section",
     "Sensitivities",
     "Span",
+    "SpanProblem",
     "SpanRuns",
     "Statistics",
     "Tell",
@@ -179,6 +180,7 @@ __all__ = [
     "simulate",
     "simulate_many",
     "simulate_spans",
+    "span_problem",
     "until_interrupted",
     "values_at",
     "with_options",

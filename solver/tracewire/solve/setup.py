@@ -32,9 +32,9 @@ from tracewire.solve.core.codes import (
     PACED,
 )
 from tracewire.solve.core.flow import FREE, FUNCTIONS
-from tracewire.solve.core.locate import SAMPLES
 from tracewire.solve.core.memory import MODEL_FUNCTION
 from tracewire.solve.core.methods import METHODS
+from tracewire.solve.core.quiet import SAMPLES
 from tracewire.solve.history import Past, new_history
 from tracewire.solve.limits import MEMORY
 from tracewire.solve.once_per_model import once_per_model

@@ -43,6 +43,8 @@ class Workspace:
         self.table, self.first = table_of(self.arrays), self.block.copy()
         self.address: int = self.table.__array_interface__["data"][0]
         self.spans: Spans | None = None
+        self.layout: object = None
+        """What the arrays for spans are laid out for, so that the next run need not do it again."""
         self._table_of_spans = np.empty(0, dtype=np.int64)
         progress, sensitivity = self.arrays.progress, self.arrays.sensitivity
         self.size = progress.samples.size + sensitivity.samples.size + kind.tables
@@ -61,7 +63,7 @@ class Workspace:
         spans = self.spans
         if spans is None or (len(spans.ends), len(spans.times)) != (count, samples):
             spans = self.spans = new_spans(self.arrays, count, samples, self.block, self.first)
-            self._table_of_spans = table_of([spans])
+            self._table_of_spans, self.layout = table_of([spans]), None
             self.size = spans.samples.size + spans.answers.size + self.kind.tables
         return spans
 

@@ -74,6 +74,7 @@ from tracewire.solve.core.methods import (
     IMPLICIT,
     SAFETY,
 )
+from tracewire.solve.core.quiet import SAMPLES
 from tracewire.solve.core.record import sample_end, sample_inside
 from tracewire.solve.core.saltation import begin_sensitivities
 from tracewire.solve.core.start import begin
@@ -411,7 +412,7 @@ def _reached_with(core: int) -> bool:
     """
     progress, watched, crossings = progress_of(core), watch_of(core), crossings_of(core)
     rows, start = watched.rows, watched.start
-    last, some = locate.SAMPLES - 1, False
+    last, some = SAMPLES - 1, False
     for row in range(locate.watched_count(core)):
         armed = watched.armed[row] and watched.kind[row] == GUARD
         some = some or (armed and start[row] <= NEARLY * (rows[last - 1, row] - start[row]))
