@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.solve.core.arrays import Arrays, Spans, table_of
-from tracewire.solve.core.codes import ABSOLUTE, END, FIXED, LENGTH, LONGEST, METHOD, RTOL, H, T
+from tracewire.solve.core.codes import END, FIXED, LENGTH, LONGEST, METHOD, RTOL, H, T
 from tracewire.solve.core.flow import FUNCTIONS
 from tracewire.solve.core.memory import invoke
 from tracewire.solve.core.methods import NAMES
@@ -115,9 +115,7 @@ def set_to(arrays: Arrays, problem: InitialValueProblem) -> None:
     now[T], now[H], now[END], now[LENGTH] = begin, 0.0, end, end - begin
     now[RTOL], now[FIXED], now[LONGEST] = tolerance.rtol, tolerance.step, tolerance.longest
     progress.x[:], progress.times[:] = problem.start, problem.times
-    progress.given[:] = tolerance.atol
-    follows = ABSOLUTE * tolerance.rtol  # till the core knows of what size the states are
-    progress.atol[:] = np.where(tolerance.atol > 0, tolerance.atol, follows)
+    progress.given[:], progress.atol[:] = tolerance.atol, tolerance.first
     progress.ints[METHOD] = -1 if problem.method == "auto" else NAMES.index(problem.method)
     if problem.sensitivities:
         _set_sensitivities(arrays, problem)
