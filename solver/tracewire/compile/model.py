@@ -7,6 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 
+import numpy as np
+from numpy.typing import NDArray
+
 from tracewire.compile.differentiate import gradients
 from tracewire.compile.flat import Flat
 from tracewire.compile.flatten import flatten
@@ -239,7 +242,7 @@ class Model:
         """
         return self._routines.address(name)
 
-    def addresses(self, names: Sequence[str]) -> list[int]:
+    def addresses(self, names: Sequence[str]) -> NDArray[np.int64]:
         """The addresses of several functions: see `address`."""
         return self._routines.addresses(names)
 

@@ -8,6 +8,9 @@ from functools import cached_property, partial
 from threading import RLock
 from typing import Any, Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
 from tracewire.compile.constants import Constants
 from tracewire.compile.delays import jump_orders
 from tracewire.compile.differentiate import differentiate, gradients
@@ -31,6 +34,7 @@ SIZES = {
     "rate_sizes": "rhs",
 }
 PREPARE = "prepare"
+Addresses = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -132,7 +136,7 @@ class Routines:
         self._addresses: dict[str, int] = {}
         self._callbacks: dict[str, int] = {}
         # a tuple of names that was asked for, of how many compiled functions, and the answer
-        self._last: tuple[Sequence[str], int, list[int]] = ((), -1, [])
+        self._last: tuple[Sequence[str], int, Addresses] = ((), -1, np.empty(0, dtype=np.int64))
         self._evaluated: dict[str, dict[str, Function]] = {}
         self._kept: list[Any] = []  # machine code and callbacks, which live as long as this does
 
@@ -269,14 +273,15 @@ class Routines:
                 self._callbacks[name] = address_of(callback)
             return self._callbacks[name]
 
-    def addresses(self, names: Sequence[str]) -> list[int]:
+    def addresses(self, names: Sequence[str]) -> Addresses:
         """The addresses of several functions."""
         asked, compiled, found = self._last
         if asked is names and compiled == len(self._addresses):
             return found
         with self.lock:
             known, compiled = self._addresses, len(self._addresses)
-            found = [known[name] if name in known else self.address(name) for name in names]
+            some = [known[name] if name in known else self.address(name) for name in names]
+            found = np.array(some, dtype=np.int64)
             self._last = tuple(names), compiled, found
             return found
 

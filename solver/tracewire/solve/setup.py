@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+from array import array
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from itertools import accumulate
@@ -119,9 +120,9 @@ def default_modes(model: Model) -> Vector:
 
 def constants_of(model: Model, values: Mapping[str, float], past: Past) -> Vector:
     """What a model computes from its parameters alone, and where the past of delayed signals is."""
-    parameters = np.array([*values.values(), 0.0])  # never empty
+    parameters = array("d", [*values.values(), 0.0])  # never empty
     constants = np.zeros(max(1, model.sizes.constants))
-    data = _place(parameters), UNREAD, UNREAD, UNREAD, _place(constants)
+    data = ADDRESSED.from_buffer(parameters), UNREAD, UNREAD, UNREAD, _place(constants)
     _function_at(model.address("prepare"))(0.0, *data)
     if model.lowered.delays:
         first = len(model.parameters)
