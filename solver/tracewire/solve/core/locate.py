@@ -42,7 +42,15 @@ from tracewire.solve.core.flow import (
     held,
 )
 from tracewire.solve.core.modes import held_levels, jump_time, levels, piece
-from tracewire.solve.core.quiet import EDGE, HELD_NOISE, SAMPLES, SLACK, is_quiet, keeps_away
+from tracewire.solve.core.quiet import (
+    EDGE,
+    HELD_NOISE,
+    SAMPLES,
+    SLACK,
+    all_armed,
+    is_quiet,
+    keeps_away,
+)
 from tracewire.solve.core.readings import guard_rates, guard_values
 from tracewire.solve.core.surface import pin
 from tracewire.solve.core.units import helper, inlined, unit
@@ -201,10 +209,14 @@ def find(core: int, method: int, whole: bool) -> int:
     for k in range(1, SAMPLES - 1):
         _margins_inside(core, method, k / (SAMPLES - 1), rows[k])
     _copy_watched(start, rows[0], count)
-    if is_quiet(core, count):
+    quiet = is_quiet(core, count)
+    if quiet and all_armed(core, count):
         return NOTHING
     floors = np.empty(count)
     _floors(core, floors)
+    if quiet:
+        _arm(core, floors)
+        return NOTHING
     found[:] = np.inf
     first, fresh = SAMPLES - 1, False
     for k in range(1, SAMPLES):
@@ -233,15 +245,22 @@ def find(core: int, method: int, whole: bool) -> int:
         found[i] = min(found[i], dip)
         any_found = any_found or found[i] < np.inf
     if not any_found:
-        for i in range(count):
-            if not watched.armed[i]:
-                watched.armed[i] = int(np.max(rows[:, i]) > floors[i])
+        _arm(core, floors)
         return NOTHING
     earliest = np.min(found)  # beyond the count it is infinite
     for i in range(count):
         if found[i] - earliest > 4 * ROOT:
             found[i] = np.inf
     return INSIDE
+
+
+@helper
+def _arm(core: int, floors: Vector) -> None:
+    """Arm the margins that have been positive."""
+    rows, armed = watch_of(core).rows, watch_of(core).armed
+    for i in range(len(floors)):
+        for k in range(SAMPLES):
+            armed[i] = int(armed[i] or rows[k, i] > floors[i])
 
 
 @unit

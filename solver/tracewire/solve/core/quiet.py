@@ -48,19 +48,27 @@ def keeps_away(core: int, method: int, count: int) -> bool:
 
 
 @helper
-def is_quiet(core: int, count: int) -> bool:
-    """Whether all margins are armed, none is below zero at a sample, and none may dip below it.
+def all_armed(core: int, count: int) -> bool:
+    """Whether all margins have been positive."""
+    armed = True
+    for row in range(count):
+        armed = armed and watch_of(core).armed[row] != 0
+    return armed
 
-    What rounding may explain is asked later. Nearly all steps are quiet, and most margins vary less
-    than they are away from zero: no parabola through three of their samples comes near it.
+
+@helper
+def is_quiet(core: int, count: int) -> bool:
+    """Whether no margin is below zero at a sample, and none may dip below it.
+
+    What rounding may explain is asked later. Most margins vary less than they are away from zero:
+    no parabola through three of their samples comes near it.
     """
-    watched = watch_of(core)
-    rows, kind, armed = watched.rows, watched.kind, watched.armed
+    rows, kind = watch_of(core).rows, watch_of(core).kind
     for i in range(count):
         least, most = rows[0, i], rows[0, i]
         for k in range(1, SAMPLES):
             least, most = min(least, rows[k, i]), max(most, rows[k, i])
-        if armed[i] == 0 or (2.0 * least <= most and not _stays_above(core, i, kind[i])):
+        if 2.0 * least <= most and not _stays_above(core, i, kind[i]):
             return False
     return True
 
