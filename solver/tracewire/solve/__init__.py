@@ -109,7 +109,8 @@ logs (`event_log`), and finds words for what went wrong (`failures`). `core` hol
 as functions that are compiled when the package is built (`core_build`); `core_library` loads their
 machine code, which calls that of a model by address. `simulate` is one run; `simulate_many` runs
 the same problem with rows of values in threads (`task`); `Passage` stops
-where an analysis looks at it; `simulate_spans` lets the core go from one short run to the next.
+where an analysis looks at it; `simulate_spans` lets the core go from one short run to the next. A
+fit keeps the `span_problem` behind it, which is checked and laid out once, and runs it with values.
 
 **Delays.** What is read with a delay is kept over each step, as polynomials through its values in
 the dense output, and before the start it is what is declared. Steps are shorter than the delay, so

@@ -2,7 +2,8 @@
 
 A crossing is on the half-open interval (t0, t1]: a guard that is zero where a step begins does not
 fire there. Guards are sampled inside the step, and a sampled minimum is refined by a parabola, so
-that two crossings inside one step are not missed.
+that two crossings inside one step are not missed. Not so where all guards are straight in the
+states and so far from zero at both ends that no sample can be near it (`quiet`).
 """
 
 from __future__ import annotations
