@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import Problem, SimulationError
-from tracewire.residual.limits import WINDOW
+from tracewire.residual.limits import CRITERION, WINDOW
 from tracewire.residual.measured import Measured
 from tracewire.residual.observation import ObservationModel
 from tracewire.residual.segment import (
@@ -152,7 +152,7 @@ class SegmentBatch:
             problem = kept[1].with_values(parameters, starts)
         else:
             problem = self._problem(observation, parameters, starts, asked)
-            if observation is self._declared:
+            if observation is self._declared and problem.size <= CRITERION.kept:
                 self._kept[key] = names, problem
         return problem.run(point.budget, halt), observation
 

@@ -118,6 +118,11 @@ class SpanProblem:
     layout: Layout
     starts: Sequence[Mapping[str, float]]
 
+    @property
+    def size(self) -> int:
+        """The numbers in its tables and times."""
+        return self.problem.tables.size + self.layout.times.size
+
     def with_values(
         self, parameters: Mapping[str, float], starts: Sequence[Mapping[str, float]]
     ) -> SpanProblem:
