@@ -14,6 +14,7 @@ from tracewire.compile.pointers import SIGNATURE
 from tracewire.diagram import Diagram, read_text
 
 EAGER = ("prepare", "rhs", "outputs", "guards", "guard_rates", "timed", "starts", "resets")
+EAGER = (*EAGER, "guard_weights")
 LAZY = ("jacobian", "guard_gradients", "guard_curves", "guard_second", "guard_third")
 LAZY = (*LAZY, "guard_fourth")
 NEAR = 1e-9
@@ -80,6 +81,7 @@ def values(model: Model, name: str, at: Point) -> list[float]:
         "jacobian": n * (n + 1),
         "guard_gradients": modes * n,
         "guard_curves": modes * (n + 1),
+        "guard_weights": sum(len(states or ()) for states in model.routines.straight),
     }
     size = lengths.get(name, modes)
     return called(model.routines.address(name), size, at.t, at.x, at.m, c, at.k) if size else []

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from residual.models import LINE, OSCILLATOR, C, K, T, criterion_of, made, oscillation, series
 from tracewire.errors import DataError, OptionError, SimulationError
 from tracewire.residual import Criterion, Measured, Segment, Sensor, Unknown
-from tracewire.residual import linearisation as linearisation_module
+from tracewire.solve.spans import SpanProblem
 
 LINE_MODEL = made(LINE)
 
@@ -150,16 +150,16 @@ def test_differences_stand_in_where_sensitivities_fail(
     value: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tried: list[float] = []
-    plain = linearisation_module.simulate_spans
+    plain = SpanProblem.run
 
-    def failing(*arguments: Any, **options: Any) -> Any:
-        runs = plain(*arguments, **options)
-        if options["sensitivities"]:
+    def failing(spans: SpanProblem, *arguments: Any) -> Any:
+        runs = plain(spans, *arguments)
+        if spans.problem.sensitivities:
             return replace(runs, errors={0: SimulationError.one("no sensitivities today")})
-        tried.append(options["parameters"]["a"])
+        tried.append(spans.problem.parameters["a"])
         return runs
 
-    monkeypatch.setattr(linearisation_module, "simulate_spans", failing)
+    monkeypatch.setattr(SpanProblem, "run", failing)
     whole = criterion_of(LINE_MODEL, series(T))
     criterion = Criterion(LINE_MODEL, whole.segments, [Unknown("a", value, 0.0, 1.0)], {"b": 0.0})
     (matrix,) = criterion.residuals_and_jacobians(criterion.initial_unknowns())[1]

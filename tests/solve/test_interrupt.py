@@ -6,7 +6,6 @@ import signal
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +19,7 @@ from tracewire.fit import fit
 from tracewire.solve import Interrupted, Limits, Run, integrator, simulate, simulate_many
 from tracewire.solve.integrator import next_budget
 from tracewire.solve.limits import PAUSE, PauseLimits
+from tracewire.solve.spans import SpanProblem
 
 PENDULUM = Path(__file__).parents[2] / "diagrams/papers/a_torsion/pendulum.yaml"
 STICKING = OSCILLATOR.replace("coulomb, rate: v, level: 0.1", "dry_friction, rate: v, slip: 0.1")
@@ -260,6 +260,6 @@ def test_a_fit_is_interrupted_not_penalised(monkeypatch: pytest.MonkeyPatch) -> 
     def stop(*_: object, **__: object) -> None:
         raise Interrupted([])
 
-    monkeypatch.setattr(import_module("tracewire.residual.linearisation"), "simulate_spans", stop)
+    monkeypatch.setattr(SpanProblem, "run", stop)
     with pytest.raises(KeyboardInterrupt):
         fit(compile(read(PENDULUM)))

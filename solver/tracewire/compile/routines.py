@@ -21,6 +21,7 @@ from tracewire.compile.pace import pace
 from tracewire.compile.pointers import FORWARD, UNREAD, address_of, as_c, place_of, when_called
 from tracewire.compile.sizes import sizes
 from tracewire.compile.source import Function, Writer, guarded, load
+from tracewire.compile.straight import weights
 
 Vector = NDArray[np.float64]
 Backend = Literal["llvm", "quick", "python"]
@@ -34,6 +35,7 @@ SIZES = {
     "rate_sizes": "rhs",
 }
 PREPARE = "prepare"
+Addresses = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -89,6 +91,7 @@ class Routines:
         guards = [mode.guard for mode in low.modes]
         self.guard_rates = self.along_the_flow(guards, 1)
         self.holding = holding(low, moving(low, self.guard_rates, self.flow))
+        self._weights = weights(low.tape, guards)
         self.eager: dict[str, Routine] = {
             "rhs": _dense("Rates of the states.", low.rates),
             "outputs": _dense("Recorded signals.", outputs),
@@ -112,6 +115,10 @@ class Routines:
                 "New values of all resets, one after the other.",
                 [entry for reset in low.resets for entry in reset.values.values()],
             ),
+            "guard_weights": _dense(
+                "Weights of the states in the guards that are straight, one after the other.",
+                [entry for found in self._weights for entry in (found or {}).values()],
+            ),
         }
         for routine in self.eager.values():
             self.constants.collect(routine.roots.values())
@@ -130,7 +137,7 @@ class Routines:
         self._addresses: dict[str, int] = {}
         self._callbacks: dict[str, int] = {}
         # a tuple of names that was asked for, of how many compiled functions, and the answer
-        self._last: tuple[Sequence[str], int, list[int]] = ((), -1, [])
+        self._last: tuple[Sequence[str], int, Addresses] = ((), -1, np.empty(0, dtype=np.int64))
         self._evaluated: dict[str, dict[str, Function]] = {}
         self._kept: list[Any] = []  # machine code and callbacks, which live as long as this does
 
@@ -206,6 +213,12 @@ class Routines:
                 for state in reset.values:
                     forces.setdefault(low.states[state], []).extend(bends)
         return jump_orders(low, fractions, forces)
+
+    @property
+    def straight(self) -> tuple[tuple[int, ...] | None, ...]:
+        """Of each guard that is a sum of states times what only reads parameters, the states, in
+        the order of the `guard_weights`; None of the others."""
+        return tuple(None if found is None else tuple(found) for found in self._weights)
 
     @property
     def has_pace(self) -> bool:
@@ -294,12 +307,13 @@ class Routines:
         zeroed by the caller. Functions, with the length of out: prepare (C), rhs (n), outputs (R),
         guards (M), guard_rates (M), timed (2T), starts (n), resets, delayed (D: signals that are
         read with a delay), lags (2D: the delays, and the longest they may be), pace (2: of the
-        guards, and while something is held), and guard_sizes (M), as all `sizes` a function of
-        x[2n]: states, and behind them their sizes; compiled when they are first called: jacobian
-        (n*(n+1): d rate/d x, d rate/d t), guard_gradients (M*n),
-        guard_curves (M*(n+1): gradient of the guard's rate, its change with t), guard_second,
-        guard_third, guard_fourth (M: derivatives of the guards along the flow), and the sizes of
-        these, guard_rate_sizes, guard_second_sizes, ..., and rate_sizes (n).
+        guards, and while something is held), guard_weights (of the states in `straight`
+        guards), and guard_sizes (M), as all `sizes` a function of x[2n]: states, and behind them
+        their sizes; compiled when they are first called:
+        jacobian (n*(n+1): d rate/d x, d rate/d t), guard_gradients (M*n), guard_curves
+        (M*(n+1): gradient of the guard's rate, its change with t), guard_second, guard_third,
+        guard_fourth (M: derivatives of the guards along the flow), and the sizes of these,
+        guard_rate_sizes, guard_second_sizes, ..., and rate_sizes (n).
         """
         known = self._addresses.get(name)
         if known is not None:
@@ -313,14 +327,15 @@ class Routines:
                 self._callbacks[name] = address_of(callback)
             return self._callbacks[name]
 
-    def addresses(self, names: Sequence[str]) -> list[int]:
+    def addresses(self, names: Sequence[str]) -> Addresses:
         """The addresses of several functions."""
         asked, compiled, found = self._last
         if asked is names and compiled == len(self._addresses):
             return found
         with self.lock:
             known, compiled = self._addresses, len(self._addresses)
-            found = [known[name] if name in known else self.address(name) for name in names]
+            some = [known[name] if name in known else self.address(name) for name in names]
+            found = np.array(some, dtype=np.int64)
             self._last = tuple(names), compiled, found
             return found
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
 from dataclasses import replace
 from functools import cache
 from itertools import pairwise
@@ -257,7 +256,7 @@ class Criterion:
             steps = sum(len(self.segments[n].rows) for n in starts)
         many = steps > CRITERION.many
         groups = self._groups(sorted(starts), halves=many and not self.remembers)
-        with _interruptible() as halt:
+        with _Interruptible() as halt:
 
             def linearise_group(group: int, numbers: Sequence[int]) -> BatchLinearisation:
                 if self.steps > self.budget:  # nothing more is run, and nothing counted
@@ -269,7 +268,7 @@ class Criterion:
                 sigma = self.sigma[batch.segments[0].measured.name]
                 return batch.linearise(point, sigma, [*named] if slopes else None, halt)
 
-            apart = _threads().map if many and cores() > 1 else map
+            apart = _threads().map if many and len(groups) > 1 and cores() > 1 else map
             done = list(apart(linearise_group, range(len(groups)), groups))
         found: dict[int, Linearisation] = {}
         for numbers, group in zip(groups, done, strict=True):
@@ -323,7 +322,7 @@ class Criterion:
         Raises SimulationError where it fails, KeyboardInterrupt for Ctrl-C: the whole search shall
         stop.
         """
-        with _interruptible() as halt:
+        with _Interruptible() as halt:
             batch = self._new_batch([segment], [False])
             runs, observation = batch.simulate(self._point(named, [start]), halt)
         for error in runs.errors.values():
@@ -386,14 +385,19 @@ class Criterion:
         )
 
 
-@contextmanager
-def _interruptible() -> Iterator[Halt]:
+class _Interruptible:
     """Ctrl-C during runs is no failed run: the whole search shall stop."""
-    try:
-        with until_interrupted() as halt:
-            yield halt
-    except Interrupted as error:
-        raise KeyboardInterrupt from error
+
+    def __init__(self) -> None:
+        self.noting = until_interrupted()
+
+    def __enter__(self) -> Halt:
+        return self.noting.__enter__()
+
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
+        self.noting.__exit__(None, None, None)
+        if isinstance(error, Interrupted):
+            raise KeyboardInterrupt from error
 
 
 @cache

@@ -218,6 +218,9 @@ class CriterionLimits:
     """The residual where a run fails, in units of the spread of the samples."""
     many: int = 3000
     """Steps from which on series run in parallel: threads cost more than they save before."""
+    kept: int = 50_000
+    """Numbers in the inputs and times of a series up to which the problem of its runs is kept: to
+    make it again takes a small part of a longer run, and many criteria live at once."""
     rate_step: float = 1e-3
     """Of a sample interval: how far to each side a signal is sampled for its rate."""
     tiny: float = 1e-6

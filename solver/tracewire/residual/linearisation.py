@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import accumulate
+from itertools import accumulate, pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import Problem, SimulationError
-from tracewire.residual.limits import WINDOW
+from tracewire.residual.limits import CRITERION, WINDOW
 from tracewire.residual.measured import Measured
 from tracewire.residual.observation import ObservationModel
 from tracewire.residual.segment import (
@@ -23,10 +23,11 @@ from tracewire.residual.segment import (
     of_diagram,
     parameter_in,
 )
-from tracewire.solve import Halt, Interrupted, Limits, Span, SpanRuns, simulate_spans
+from tracewire.solve import Halt, Interrupted, Limits, Span, SpanProblem, SpanRuns, span_problem
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
+Names = list[tuple[str, ...]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,11 +107,21 @@ class SegmentBatch:
     follows: Sequence[bool]
     rtol: float
     limits: Limits
+    _kept: dict[tuple[str, ...] | None, tuple[Names, SpanProblem]] = field(
+        default_factory=dict, init=False, repr=False
+    )
+    """By what is asked for, the problem with the declared sensors, and the names of its starts."""
 
     @cached_property
     def samples(self) -> Matrix:
         """What was measured in the segments, one behind the other: (N, signals)."""
         return np.concatenate([segment.samples() for segment in self.segments])
+
+    @cached_property
+    def _slices(self) -> list[slice]:
+        """Where the samples of each segment are among those of all."""
+        rows = [*accumulate((len(segment.rows) for segment in self.segments), initial=0)]
+        return [slice(*both) for both in pairwise(rows)]
 
     @cached_property
     def _declared(self) -> ObservationModel:
@@ -128,31 +139,55 @@ class SegmentBatch:
     ) -> tuple[SpanRuns, ObservationModel]:
         """The runs, with the sensitivities that are `asked` for, and the sensors that look at them;
         `rates` of signals are for the derivatives by a delay. Raises Interrupted."""
-        measured = self.segments[0].measured
         observation = self._observation(point.values, rates)
-        atol = None if asked is None else absolute_tolerances(self.model, measured, self.rtol)
+        starts = [
+            start if after else {**segment.start, **start}
+            for segment, start, after in zip(self.segments, point.starts, self.follows, strict=True)
+        ]
+        parameters = of_diagram(point.values, self.segments[0].measured)
+        key = asked if asked is None else tuple(asked)
+        names = [tuple(start) for start in starts]
+        kept = self._kept.get(key) if observation is self._declared else None
+        if kept is not None and kept[0] == names:
+            problem = kept[1].with_values(parameters, starts)
+        else:
+            problem = self._problem(observation, parameters, starts, asked)
+            if observation is self._declared and problem.size <= CRITERION.kept:
+                self._kept[key] = names, problem
+        return problem.run(point.budget, halt), observation
+
+    def _problem(
+        self,
+        observation: ObservationModel,
+        parameters: Mapping[str, float],
+        starts: Sequence[Mapping[str, float]],
+        asked: Sequence[str] | None,
+    ) -> SpanProblem:
+        """The problem of the runs, checked and laid out."""
+        measured = self.segments[0].measured
         spans = [
-            Span(begin, end, times, start if after else {**segment.start, **start}, after)
-            for segment, begin, end, times, start, after in zip(
-                self.segments, observation.begins, observation.ends, observation.times,
-                point.starts, self.follows, strict=True,
+            Span(*about)
+            for about in zip(
+                observation.begins,
+                observation.ends,
+                observation.times,
+                starts,
+                self.follows,
+                strict=True,
             )
-        ]  # fmt: skip
-        runs = simulate_spans(
+        ]
+        return span_problem(
             self.model,
             spans,
-            parameters=of_diagram(point.values, measured),
+            asked or (),
+            parameters=parameters,
             rtol=self.rtol,
-            atol=atol,
+            atol=None if asked is None else absolute_tolerances(self.model, measured, self.rtol),
             preset=measured.preset,
             inputs=measured.inputs,
             past=measured.past,
             limits=self.limits,
-            budget=point.budget,
-            sensitivities=asked or (),
-            halt=halt,
         )
-        return runs, observation
 
     def linearise(
         self, point: Point, sigma: Vector, moving: Sequence[str] | None, halt: Halt
@@ -177,16 +212,16 @@ class SegmentBatch:
             return BatchLinearisation({}, errors, 0, frozenset())
         with np.errstate(over="ignore", invalid="ignore"):  # what overflows is not usable
             shown = observation.observe(runs)
-            slopes = observation.derivatives(runs, answers)
-            slopes /= sigma[:, None]
             residual = subtract_measured(measured, self.samples, shown)
             residual /= sigma
-        rows = [*accumulate((len(segment.rows) for segment in self.segments), initial=0)]
+            slopes = observation.derivatives(runs, answers)
+            if answers:
+                slopes /= sigma[:, None]
         near, errors = dict[int, Linearisation](), dict(runs.errors)
         columns = {name: column for column, name in enumerate(answers)}
         moved = [column for column, name in enumerate(answers.values()) if name]
         for number, (segment, start) in enumerate(zip(self.segments, point.starts, strict=True)):
-            mine = slice(rows[number], rows[number + 1])
+            mine = self._slices[number]
             if number in errors:
                 continue
             if not (_is_usable(shown[mine]) and _is_usable(slopes[mine])):

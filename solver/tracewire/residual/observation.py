@@ -86,6 +86,8 @@ class ObservationModel:
         the signals in it; of a sensor it is ''.
         """
         found = np.zeros((len(self.since), len(self.signals), len(unknowns)))
+        if not unknowns:
+            return found
         rows = {name: row for row, name in enumerate(run.sensitivities)}
         moving = [column for column, name in enumerate(unknowns.values()) if name]
         moved = [rows[name] for name in unknowns.values() if name]

@@ -34,7 +34,8 @@ class Sensor:
     def observe(self, delayed: Vector, since: Vector) -> Vector:
         """What the sensor shows (N,) of a signal y(t - delay), at the times t - t0."""
         gain = self.gain + self.quad * delayed if self.quad else self.gain
-        shown = gain * delayed + self.offset
+        shown = gain * delayed
+        shown += self.offset
         return shown + self.drift * since if self.drift else shown
 
     def signal(self, shown: Vector, since: Vector) -> Vector:

@@ -109,7 +109,8 @@ logs (`event_log`), and finds words for what went wrong (`failures`). `core` hol
 as functions that are compiled when the package is built (`core_build`); `core_library` loads their
 machine code, which calls that of a model by address. `simulate` is one run; `simulate_many` runs
 the same problem with rows of values in threads (`task`); `Passage` stops
-where an analysis looks at it; `simulate_spans` lets the core go from one short run to the next.
+where an analysis looks at it; `simulate_spans` lets the core go from one short run to the next. A
+fit keeps the `span_problem` behind it, which is checked and laid out once, and runs it with values.
 
 **Delays.** What is read with a delay is kept over each step, as polynomials through its values in
 the dense output, and before the start it is what is declared. Steps are shorter than the delay, so
@@ -141,7 +142,7 @@ from tracewire.solve.run import Event, Run, Sensitivities, Statistics
 from tracewire.solve.runs import Runs
 from tracewire.solve.sampling import DEFAULT_SAMPLES, even_times, sample_times
 from tracewire.solve.simulation import simulate
-from tracewire.solve.spans import Span, SpanRuns, simulate_spans
+from tracewire.solve.spans import Span, SpanProblem, SpanRuns, simulate_spans, span_problem
 from tracewire.solve.workspace import release
 
 __all__ = [
@@ -163,6 +164,7 @@ __all__ = [
     "Section",
     "Sensitivities",
     "Span",
+    "SpanProblem",
     "SpanRuns",
     "Statistics",
     "Tell",
@@ -180,6 +182,7 @@ __all__ = [
     "simulate",
     "simulate_many",
     "simulate_spans",
+    "span_problem",
     "until_interrupted",
     "values_at",
     "with_options",

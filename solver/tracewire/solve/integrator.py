@@ -34,6 +34,7 @@ from tracewire.solve.failures import failure, place_of, too_long, too_many_event
 from tracewire.solve.history import grow
 from tracewire.solve.interrupt import Halt, Interrupted, until_interrupted
 from tracewire.solve.limits import PAUSE
+from tracewire.solve.once_per_model import once_per_model
 from tracewire.solve.problem import InitialValueProblem
 from tracewire.solve.progress import Tell
 from tracewire.solve.run import EventLog, Run, Statistics
@@ -54,6 +55,12 @@ def next_budget(budget: int, steps: int, seconds: float) -> int:
     """The steps before the next pause, after `steps` took `seconds`."""
     fitting = PAUSE.seconds * max(steps, 1) / max(seconds, 1e-9)
     return max(1, int(min(fitting, PAUSE.growth * budget)))
+
+
+@once_per_model
+def _units_of(model: Model) -> dict[str, str]:
+    """The units of the recorded signals."""
+    return {name: model.flat.units.get(name, "") for name in model.recorded}
 
 
 class Integrator:
@@ -195,12 +202,12 @@ class Integrator:
     @property
     def statistics(self) -> Statistics:
         """What the run has cost so far."""
-        ints = self.arrays.progress.ints
+        ints = self.arrays.progress.ints.tolist()
         return Statistics(
-            steps=int(ints[STEPS] - ints[REJECTED]),
-            rejected=int(ints[REJECTED]),
+            steps=ints[STEPS] - ints[REJECTED],
+            rejected=ints[REJECTED],
             evaluations=int(self.arrays.flow.counts[EVALUATIONS]),
-            stiff_steps=int(ints[STIFF_STEPS]),
+            stiff_steps=ints[STIFF_STEPS],
             seconds=self.seconds,
         )
 
@@ -240,12 +247,11 @@ class Integrator:
         """The run with these sample times (N,) and samples (N, signals)."""
         problem, model, names = self.problem, self.model, self.model.states
         answers, log = self.arrays.sensitivity.samples[: len(t)], self.log.copy()
-        units = model.flat.units
         return Run(
             title=model.flat.title,
             t=t,
             signals=dict(zip(model.recorded, samples.T.copy(), strict=True)),
-            units={name: units.get(name, "") for name in model.recorded},
+            units=_units_of(model),
             events=EventLog(lambda: log.events),
             parameters=problem.parameters,
             start=dict(zip(names, problem.start.tolist(), strict=True)),

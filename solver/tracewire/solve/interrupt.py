@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+# what `signal` calls: it makes enumerations of all that it is given and gives back
+import _signal  # type: ignore[import-not-found]
 import signal
 import threading
 from contextlib import AbstractContextManager
@@ -13,6 +15,8 @@ from tracewire.errors import SimulationError
 if TYPE_CHECKING:
     from tracewire.solve.run import Run
     from tracewire.solve.runs import Runs
+
+CTRL_C = int(signal.SIGINT)
 
 
 @dataclass(eq=False)
@@ -51,15 +55,15 @@ class _Noted:
         self.halt, self.noted = Halt(), False
 
     def __enter__(self) -> Halt:
-        main = threading.current_thread() is threading.main_thread()
-        if main and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        main = threading.get_ident() == threading.main_thread().ident
+        if main and _signal.getsignal(CTRL_C) is _signal.default_int_handler:
             self.noted = True
-            signal.signal(signal.SIGINT, self._note)
+            _signal.signal(CTRL_C, self._note)
         return self.halt
 
     def __exit__(self, *_: object) -> None:
         if self.noted:
-            signal.signal(signal.SIGINT, signal.default_int_handler)
+            _signal.signal(CTRL_C, _signal.default_int_handler)
 
     def _note(self, number: int, frame: object) -> None:
         if self.halt.asked:

@@ -15,14 +15,10 @@ START = "start."
 """Before the name of a state: its start value."""
 
 
-class Options(TypedDict, total=False):
-    """The options of `simulate`, by name."""
+class AnySpan(TypedDict, total=False):
+    """The options of `simulate`, by name, that do not say where a run begins and ends."""
 
     parameters: Mapping[str, float] | None
-    start: Mapping[str, float] | None
-    span: tuple[float, float] | None
-    times: ArrayLike | None
-    every: float | None
     method: str
     rtol: float
     atol: float | Mapping[str, float] | None
@@ -33,10 +29,19 @@ class Options(TypedDict, total=False):
     limits: Limits | Mapping[str, float] | None
 
 
+class Options(AnySpan, total=False):
+    """The options of `simulate`, by name."""
+
+    start: Mapping[str, float] | None
+    span: tuple[float, float] | None
+    times: ArrayLike | None
+    every: float | None
+
+
 def refuse_unknown_options(given: Mapping[str, object]) -> None:
     """Raises OptionError with every option that `simulate` does not have."""
-    known = Options.__annotations__
-    problems = [unknown("option", name, known) for name in given if name not in known]
+    known = Options.__optional_keys__
+    problems = [unknown("option", name, sorted(known)) for name in given if name not in known]
     if problems:
         raise OptionError(problems)
 

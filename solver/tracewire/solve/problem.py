@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Unpack
+from dataclasses import dataclass, replace
+from typing import TypedDict, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ from tracewire.solve.history import Past, past_of
 from tracewire.solve.limits import Limits
 from tracewire.solve.options import Options, refuse_unknown_options, with_row
 from tracewire.solve.parameters import parameter_values
-from tracewire.solve.sampling import ascending, samples_of, span_of
+from tracewire.solve.sampling import ascending, samples_of, span_of, timing_follows
 from tracewire.solve.sensitivities import Moving, checked, moving_with
 from tracewire.solve.tables import packed, tables_follow, tables_of
 from tracewire.solve.tolerance import Tolerance, longest_step, tolerance_of
@@ -64,8 +64,58 @@ class InitialValueProblem:
         given = with_row(self.model, self.given, row)
         if span is not None:
             given["span"] = span
-        same = None if tables_follow(self.model, given.get("inputs") or {}) else self.tables
-        return _problem(self.model, given, self.sensitivities, self.sampled, same)
+        return self._with(given, span is None)
+
+    def with_parameters(self, parameters: Mapping[str, float]) -> InitialValueProblem:
+        """The problem with others in the place of the parameters that were given. Raises as
+        `with_values` does."""
+        given = Options(**self.given)
+        given["parameters"] = parameters
+        return self._with(given, True)
+
+    def _with(self, given: Options, same_span: bool) -> InitialValueProblem:
+        """The problem with the parameters and start values of these options, and their span."""
+        model = self.model
+        same_tables = not tables_follow(model, given.get("inputs") or {})
+        tables = self.tables if same_tables else None
+        if not same_span or timing_follows(model):
+            return _problem(model, given, self.sensitivities, self.sampled, tables)
+        values = parameter_values(model, given.get("parameters") or {}, given.get("preset", ""))
+        numbers = _numbers(model, given, values, self.sensitivities, self.past, tables)
+        return replace(self, given=given, parameters=values, **numbers)
+
+
+class _Numbers(TypedDict):
+    """What follows from the values of the parameters."""
+
+    moving: Moving
+    constants: Vector
+    tables: Vector
+    start: Vector
+
+
+def _numbers(
+    model: Model,
+    given: Options,
+    values: Mapping[str, float],
+    asked: tuple[str, ...],
+    past: Past,
+    tables: Vector | None,
+) -> _Numbers:
+    """What follows from the values of the parameters; `tables` where they are known."""
+    if tables is None:
+        tables = packed(tables_of(model, values, given.get("inputs") or {}))
+    parameters, preset = given.get("parameters") or {}, given.get("preset", "")
+    constants = model.routines.constants_from(list(values.values()))
+    if model.lowered.delays:
+        first = len(model.parameters)
+        constants[first : first + OF_THE_PAST] = 0.0, past.address, past.begin
+    return _Numbers(
+        moving=moving_with(model, asked, values, parameters, preset),
+        constants=constants,
+        tables=tables,
+        start=start_of(model, constants, tables, given.get("start") or {}),
+    )
 
 
 def initial_value_problem(
@@ -91,10 +141,8 @@ def _problem(
     tables: Vector | None = None,
 ) -> InitialValueProblem:
     """The problem; `tables` are the packed ones, where they are known."""
-    parameters, preset = given.get("parameters") or {}, given.get("preset", "")
-    values = parameter_values(model, parameters, preset)
+    values = parameter_values(model, given.get("parameters") or {}, given.get("preset", ""))
     asked = checked(model, sensitivities)
-    moving = moving_with(model, asked, values, parameters, preset)
     times = given.get("times")
     known = None if times is None else ascending(times)
     begin, end = span_of(model, values, given.get("span"), known)
@@ -107,14 +155,7 @@ def _problem(
     longest = longest_step(model, values, limits)
     rtol, atol, step = given.get("rtol", 1e-6), given.get("atol"), given.get("step")
     tolerance = tolerance_of(model, rtol, atol, method, step, end - begin, longest)
-    if tables is None:
-        tables = packed(tables_of(model, values, given.get("inputs") or {}))
     past = past_of(model, given.get("past") or {})
-    constants = model.routines.constants_from(list(values.values()))
-    if model.lowered.delays:
-        first = len(model.parameters)
-        constants[first : first + OF_THE_PAST] = 0.0, past.address, past.begin
-    start = start_of(model, constants, tables, given.get("start") or {})
     return InitialValueProblem(
         model=model,
         given=given,
@@ -125,12 +166,9 @@ def _problem(
         limits=limits,
         tolerance=tolerance,
         sensitivities=asked,
-        moving=moving,
-        constants=constants,
-        tables=tables,
-        start=start,
         past=past,
         sampled=sampled,
+        **_numbers(model, given, values, asked, past, tables),
     )
 
 

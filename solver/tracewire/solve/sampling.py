@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem
-from tracewire.formula import evaluate
+from tracewire.formula import evaluate, names_of
 from tracewire.solve.limits import MEMORY, SAMPLE
+from tracewire.solve.once_per_model import once_per_model
 
 Vector = NDArray[np.float64]
 DEFAULT_SAMPLES = 1001
@@ -43,6 +44,14 @@ def span_of(
         what = f"the span from {begin:g} to {end:g} s is empty"
         raise OptionError([Problem(what, hint="Give a begin before the end.")])
     return begin, end
+
+
+@once_per_model
+def timing_follows(model: Model) -> bool:
+    """Whether parameters may change the span of the diagram, its samples or its longest step."""
+    flat = model.flat
+    formulas = [*flat.span, *(f for f in (flat.every, flat.max_step) if f is not None)]
+    return bool(model.lowered.delays) or any(names_of(formula) for formula in formulas)
 
 
 def samples_of(

@@ -245,6 +245,8 @@ def _read_by(model: Model, function: str, n: int, a: int) -> NDArray[np.int64]:
 
 def recorded(model: Model, samples: Matrix, asked: tuple[str, ...]) -> Sensitivities:
     """d signal/d name at samples, as the core has them: (N, signals*names)."""
+    if not asked:
+        return Sensitivities((), model.recorded, np.zeros((0, len(model.recorded), len(samples))))
     shape = len(asked), len(model.recorded), len(samples)
     return Sensitivities(asked, model.recorded, samples.T.copy().reshape(shape))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import accumulate
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -28,8 +29,8 @@ from tracewire.solve.core.codes import (
     PACED,
 )
 from tracewire.solve.core.flow import FREE, FUNCTIONS, READING
-from tracewire.solve.core.locate import SAMPLES
 from tracewire.solve.core.methods import METHODS
+from tracewire.solve.core.quiet import SAMPLES
 from tracewire.solve.history import new_history
 from tracewire.solve.limits import MEMORY
 from tracewire.solve.once_per_model import once_per_model
@@ -71,6 +72,8 @@ def plan_of(model: Model) -> Plan:
     for number, members in enumerate(low.loops):
         loop[list(members)] = number
 
+    terms = [states or () for states in model.routines.straight]
+
     def ints(values: Sequence[int]) -> NDArray[np.int64]:
         return np.array(values, dtype=np.int64)
 
@@ -87,6 +90,9 @@ def plan_of(model: Model) -> Plan:
         transitions=np.array(moves, dtype=np.int64).reshape(-1, 7),
         direct=ints([position.get(name, -1) for name in model.recorded]),
         loop=loop,
+        straight=ints([int(terms is not None) for terms in model.routines.straight]),
+        first_term=ints([*accumulate(map(len, terms), initial=0)]),
+        term_state=ints([state for states in terms for state in states]),
     )
 
 
@@ -106,6 +112,7 @@ def _new_flow(model: Model, numbers: int) -> Flow:
         m=model.routines.usual_modes.copy(),
         c=np.zeros(max(1, sizes.constants)),
         k=np.zeros(numbers),
+        weights=np.zeros(len(plan_of(model).term_state)),
         bound=np.full(count, FREE, dtype=np.int64),
         push=np.zeros((count, sizes.states)),
         counts=np.zeros(4, dtype=np.int64),

@@ -6,12 +6,14 @@ are prepared once, and the core goes from one to the next on its own.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
+from typing import NamedTuple, Unpack
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, SimulationError, unknown
@@ -23,8 +25,8 @@ from tracewire.solve.failures import failure
 from tracewire.solve.history import refuse_delays
 from tracewire.solve.integrator import Integrator, refuse_nan
 from tracewire.solve.interrupt import Halt, Interrupted
-from tracewire.solve.limits import PAUSE, Limits, beyond_budget
-from tracewire.solve.options import START
+from tracewire.solve.limits import PAUSE, beyond_budget
+from tracewire.solve.options import START, AnySpan, Options
 from tracewire.solve.problem import InitialValueProblem, initial_value_problem
 from tracewire.solve.run import Sensitivities
 from tracewire.solve.sensitivities import recorded
@@ -74,108 +76,155 @@ def simulate_spans(
     model: Model,
     spans: Sequence[Span],
     *,
-    parameters: Mapping[str, float] | None = None,
-    rtol: float = 1e-6,
-    atol: Mapping[str, float] | None = None,
-    preset: str = "",
-    inputs: Mapping[str, tuple[ArrayLike, ArrayLike]] | None = None,
-    past: Mapping[str, tuple[ArrayLike, ArrayLike]] | None = None,
-    limits: Limits | None = None,
     budget: float = np.inf,
     sensitivities: Sequence[str] = (),
     halt: Halt | None = None,
+    **given: Unpack[AnySpan],
 ) -> SpanRuns:
     """Simulate a model over many spans: each run is what `simulate` makes of it, alone.
 
     Only that what is found stiff in one span is taken for stiff at once in those behind it.
 
-    Arguments are those of `simulate`; `limits` hold for each run, `budget` for the steps of all: a
-    run that begins beyond it fails. `halt` says whether the user wants to stop. A run that fails
-    does not end the others. Raises OptionError for arguments that do not fit, and Interrupted.
+    `given` are options of `simulate`: parameters, rtol, atol, preset, inputs, past, limits, which
+    hold for each run; `budget` holds for the steps of all: a run that begins beyond it fails.
+    `halt` says whether the user wants to stop. A run that fails does not end the others. Raises
+    OptionError for arguments that do not fit, and Interrupted.
     """
-    if any(span.follows for span in spans) and not past:
+    return span_problem(model, spans, sensitivities, **given).run(budget, halt or Halt())
+
+
+class Layout(NamedTuple):
+    """What of spans is the same for all starts: begin and end of each (W, 2); where its samples
+    begin in `times` (M,), (W + 1,); whether it goes on from the one before (W,); the states whose
+    start is given (W, n), and those (n,) that go on."""
+
+    ends: Matrix
+    rows: NDArray[np.int64]
+    times: Vector
+    follows: NDArray[np.int64]
+    given: NDArray[np.bool_]
+    kept: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class SpanProblem:
+    """Runs of one model over many spans: checked and laid out once, for any values.
+
+    `problem` has all that they have in common, and `starts` the start values of each by name.
+    """
+
+    problem: InitialValueProblem
+    layout: Layout
+    starts: Sequence[Mapping[str, float]]
+
+    @property
+    def size(self) -> int:
+        """The numbers in its tables and times."""
+        return self.problem.tables.size + self.layout.times.size
+
+    def with_values(
+        self, parameters: Mapping[str, float], starts: Sequence[Mapping[str, float]]
+    ) -> SpanProblem:
+        """The same with other values of parameters, and of the states that `starts` had. Raises
+        OptionError, SimulationError."""
+        return SpanProblem(self.problem.with_parameters(parameters), self.layout, starts)
+
+    def run(self, budget: float, halt: Halt) -> SpanRuns:
+        """The runs; see `simulate_spans`. Raises OptionError, Interrupted."""
+        problem, layout = self.problem, self.layout
+        integrator = Integrator(problem, halt=halt)
+        space = integrator.workspace
+        integrator.progress.ints[BUDGET] = min(problem.limits.steps, PAUSE.steps)
+        space.keep()
+        many = space.for_spans(len(layout.ends), len(layout.times))
+        if space.layout is not layout:
+            _set_layout(many, layout, problem.sensitivities)
+            space.layout = layout
+        self._set_to(many, space.arrays)
+        own_places = space.table.copy()
+        errors, warnings = _executed(integrator, many, budget, halt)
+        space.table[:] = own_places  # the core has set those of samples to what is in `many`
+        model = problem.model
+        errors |= _undefined(model, many, errors)
+        slopes = many.final_s.reshape(*many.final.shape, many.floor.shape[1])
+        runs = SpanRuns(
+            signals=dict(zip(model.recorded, many.samples.T.copy(), strict=True)),
+            sensitivities=recorded(model, many.answers, problem.sensitivities),
+            rows=layout.rows,
+            final=many.final.copy(),
+            final_slopes=slopes.copy(),
+            steps=many.steps.copy(),
+            errors=errors,
+            warnings=warnings,
+        )
+        integrator.give_back()
+        return runs
+
+    def _set_to(self, many: Spans, base: Arrays) -> None:
+        """Let a run of each span begin with these values, and nothing have come of it yet. Raises
+        OptionError for starts that do not fit."""
+        problem, given = self.problem, self.layout.given
+        states, asked = problem.model.states, problem.sensitivities
+        many.x[:] = problem.start
+        for number, start in enumerate(self.starts):
+            for name, value in start.items():
+                if not math.isfinite(value):
+                    raise OptionError([Problem(f"the start of '{name}' is {value}")])
+                many.x[number, states.index(name)] = value
+        many.at[:] = 0, 0, 0, problem.limits.events, 0
+        if asked:
+            count, (n, q) = len(given), many.floor.shape
+            set_here = given[:, :, None] & many.lasting.astype(bool)  # it follows no parameter
+            many.s[:] = np.where(set_here, 0.0, base.sensitivity.s).reshape(count, n * q)
+            many.floor[:] = least_peak(base, problem)
+            many.answers.fill(0.0)
+            many.final_s.fill(0.0)
+        many.samples.fill(np.nan)
+        many.final.fill(np.nan)
+        many.steps.fill(0)
+
+
+def span_problem(
+    model: Model,
+    spans: Sequence[Span],
+    sensitivities: Sequence[str] = (),
+    **given: Unpack[AnySpan],
+) -> SpanProblem:
+    """The problem of many spans with these options of `simulate`; see `simulate_spans`. Raises
+    OptionError, SimulationError."""
+    if any(span.follows for span in spans) and not given.get("past"):
         refuse_delays(model, "a span that follows another")
     always = set(spans[0].start).intersection(*(span.start for span in spans))
-    problem = initial_value_problem(
-        model,
-        sensitivities,
-        sampled=False,
-        span=(0.0, 1.0),
-        start={name: spans[0].start[name] for name in always},
-        parameters=parameters,
-        rtol=rtol,
-        atol=atol,
-        preset=preset,
-        inputs=inputs,
-        past=past,
-        limits=limits,
+    options = Options(**given)  # type: ignore[typeddict-item]  # of those of any span
+    options["span"] = 0.0, 1.0
+    options["start"] = {name: spans[0].start[name] for name in always}
+    problem = initial_value_problem(model, sensitivities, sampled=False, **options)
+    strange = [name for span in spans for name in span.start if name not in model.states]
+    if strange:
+        raise OptionError([unknown("state", strange[0], model.states)])
+    starts = [span.start for span in spans]
+    set_here = np.array([[name in start for name in model.states] for start in starts], dtype=bool)
+    follows = np.array([n > 0 and span.follows for n, span in enumerate(spans)], dtype=bool)
+    kept = np.zeros(len(model.states), dtype=bool)
+    if follows.any():
+        kept = ~set_here[follows].any(axis=0)
+        set_here |= follows[:, None] & kept
+    layout = Layout(
+        ends=np.array([(span.begin, span.end) for span in spans]),
+        rows=np.array([*accumulate((len(span.times) for span in spans), initial=0)]),
+        times=np.concatenate([span.times for span in spans]),
+        follows=follows.astype(np.int64),
+        given=set_here,
+        kept=kept,
     )
-    integrator = Integrator(problem, halt=halt or Halt())
-    space = integrator.workspace
-    integrator.progress.ints[BUDGET] = min(problem.limits.steps, PAUSE.steps)
-    space.keep()
-    many = space.for_spans(len(spans), sum(len(span.times) for span in spans))
-    _set_to(many, problem, space.arrays, spans)
-    own_places = space.table.copy()
-    errors, warnings = _executed(integrator, many, budget, halt or Halt())
-    space.table[:] = own_places  # the core has set those of samples to what is in `many`
-    errors |= _undefined(model, many, errors)
-    slopes = many.final_s.reshape(*many.final.shape, many.floor.shape[1])
-    runs = SpanRuns(
-        signals=dict(zip(model.recorded, many.samples.T.copy(), strict=True)),
-        sensitivities=recorded(model, many.answers, problem.sensitivities),
-        rows=many.rows.copy(),
-        final=many.final.copy(),
-        final_slopes=slopes.copy(),
-        steps=many.steps.copy(),
-        errors=errors,
-        warnings=warnings,
-    )
-    integrator.give_back()
-    return runs
+    return SpanProblem(problem, layout, starts)
 
 
-def _set_to(many: Spans, problem: InitialValueProblem, base: Arrays, spans: Sequence[Span]) -> None:
-    """Let the arrays for spans be those of these: what a run of each begins with, and that nothing
-    has come of it yet. Raises OptionError for starts that do not fit."""
-    states, asked = problem.model.states, problem.sensitivities
-    count, (n, q) = len(spans), many.floor.shape
-    given = np.zeros((count, n), dtype=bool)
-    many.x[:] = problem.start
-    for number, span in enumerate(spans):
-        for name, value in span.start.items():
-            if name not in states:
-                raise OptionError([unknown("state", name, states)])
-            state = states.index(name)
-            many.x[number, state] = value
-            given[number, state] = True
-    if not np.isfinite(many.x).all():
-        number, state = np.argwhere(~np.isfinite(many.x))[0].tolist()
-        what = f"the start of '{states[state]}' is {many.x[number, state]}"
-        raise OptionError([Problem(what)])
-    many.at[:] = 0, 0, 0, problem.limits.events, 0
-    many.ends[:] = [(span.begin, span.end) for span in spans]
-    many.rows[:] = [*accumulate((len(span.times) for span in spans), initial=0)]
-    np.concatenate([span.times for span in spans], out=many.times)
-    many.follows[:] = [n > 0 and span.follows for n, span in enumerate(spans)]
-    follows = many.follows.astype(bool)
-    if any(span.follows for span in spans[1:]):
-        many.kept[:] = ~given[follows].any(axis=0)  # states that go on from span to span
-        given |= follows[:, None] & many.kept.astype(bool)
-    if q:
-        is_start = np.array([name.startswith(START) for name in asked])
-        many.lasting[:] = ~is_start
-        set_here = given[:, :, None] & ~is_start  # what is set follows no parameter
-        many.s[:] = np.where(set_here, 0.0, base.sensitivity.s).reshape(count, n * q)
-        many.floor[:] = least_peak(base, problem)
-    for array, nothing in (
-        (many.samples, np.nan),
-        (many.answers, 0.0),
-        (many.final, np.nan),
-        (many.final_s, 0.0),
-        (many.steps, 0),
-    ):
-        array.fill(nothing)
+def _set_layout(many: Spans, layout: Layout, asked: Sequence[str]) -> None:
+    """Let the arrays of spans have the layout of these."""
+    many.ends[:], many.rows[:], many.times[:] = layout.ends, layout.rows, layout.times
+    many.follows[:], many.kept[:] = layout.follows, layout.kept
+    many.lasting[:] = [not name.startswith(START) for name in asked]
 
 
 def _executed(

@@ -72,8 +72,13 @@ def _table(name: str, x: ArrayLike, y: ArrayLike, known: dict[int, Vector]) -> T
 
 def tables_follow(model: Model, inputs: Inputs) -> bool:
     """Whether the tables follow parameters: an input has a formula of them, and no values."""
-    defaults = [f for name, f in model.flat.inputs.items() if name not in inputs and f]
-    return any(names_of(formula) for formula in defaults)
+    return any(name not in inputs for name in _following_inputs(model))
+
+
+@once_per_model
+def _following_inputs(model: Model) -> tuple[str, ...]:
+    """The inputs whose default is a formula of parameters."""
+    return tuple(name for name, f in model.flat.inputs.items() if f is not None and names_of(f))
 
 
 def packed(tables: Sequence[Table]) -> Vector:

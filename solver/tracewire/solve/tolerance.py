@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.formula import evaluate
+from tracewire.solve.core.codes import ABSOLUTE
 from tracewire.solve.core.methods import STEPPED
 from tracewire.solve.limits import STEP, Limits
 
@@ -21,11 +22,13 @@ Vector = NDArray[np.float64]
 @dataclass(frozen=True)
 class Tolerance:
     """How exact a run is: relative, absolute per state (n,), the step of a fixed method, and the
-    longest step in s that any may take. An absolute one of 0 follows the size of the state.
+    longest step in s that any may take. An absolute one of 0 follows the size of the state, and
+    begins as `first` (n,) has it, till the core knows of what size the states are.
     """
 
     rtol: float
     atol: Vector
+    first: Vector
     step: float = np.inf
     longest: float = np.inf
 
@@ -61,7 +64,8 @@ def tolerance_of(
         raise OptionError([Problem(what, hint="Give a step above 0 and below the span.")])
     absolute = [given.get(name, usual or 0.0) for name in model.states]
     fixed = math.inf if step is None else step
-    return Tolerance(rtol, np.array(absolute, dtype=float), fixed, longest)
+    first = [value or ABSOLUTE * rtol for value in absolute]
+    return Tolerance(rtol, np.array(absolute, dtype=float), np.array(first), fixed, longest)
 
 
 def longest_step(model: Model, values: Mapping[str, float], limits: Limits) -> float:

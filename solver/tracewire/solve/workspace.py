@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.solve.core.arrays import Arrays, Spans, table_of
-from tracewire.solve.core.codes import ABSOLUTE, END, FIXED, LENGTH, LONGEST, METHOD, RTOL, H, T
+from tracewire.solve.core.codes import END, FIXED, LENGTH, LONGEST, METHOD, RTOL, H, T
 from tracewire.solve.core.flow import FUNCTIONS
 from tracewire.solve.core.memory import invoke
 from tracewire.solve.core.methods import NAMES
@@ -24,7 +24,7 @@ from tracewire.solve.setup import Kind, Records, new_arrays, new_spans
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 ONLY_WRITTEN = (
-    *("address", "c", "k", "log", "stiff", "times"),
+    *("address", "c", "k", "weights", "log", "stiff", "times"),
     *("change", "between", "right", "parts", "system", "steps"),  # of sensitivities
     *GROWING,
 )
@@ -43,6 +43,8 @@ class Workspace:
         self.table, self.first = table_of(self.arrays), self.block.copy()
         self.address: int = self.table.__array_interface__["data"][0]
         self.spans: Spans | None = None
+        self.layout: object = None
+        """What the arrays for spans are laid out for, so that the next run need not do it again."""
         self._table_of_spans = np.empty(0, dtype=np.int64)
         progress, sensitivity = self.arrays.progress, self.arrays.sensitivity
         self.size = progress.samples.size + sensitivity.samples.size + kind.tables
@@ -61,7 +63,7 @@ class Workspace:
         spans = self.spans
         if spans is None or (len(spans.ends), len(spans.times)) != (count, samples):
             spans = self.spans = new_spans(self.arrays, count, samples, self.block, self.first)
-            self._table_of_spans = table_of([spans])
+            self._table_of_spans, self.layout = table_of([spans]), None
             self.size = spans.samples.size + spans.answers.size + self.kind.tables
         return spans
 
@@ -113,9 +115,7 @@ def set_to(arrays: Arrays, problem: InitialValueProblem) -> None:
     now[T], now[H], now[END], now[LENGTH] = begin, 0.0, end, end - begin
     now[RTOL], now[FIXED], now[LONGEST] = tolerance.rtol, tolerance.step, tolerance.longest
     progress.x[:], progress.times[:] = problem.start, problem.times
-    progress.given[:] = tolerance.atol
-    follows = ABSOLUTE * tolerance.rtol  # till the core knows of what size the states are
-    progress.atol[:] = np.where(tolerance.atol > 0, tolerance.atol, follows)
+    progress.given[:], progress.atol[:] = tolerance.atol, tolerance.first
     progress.ints[METHOD] = -1 if problem.method == "auto" else NAMES.index(problem.method)
     if problem.sensitivities:
         _set_sensitivities(arrays, problem)

@@ -25,8 +25,9 @@ class Flow(NamedTuple):
     """The field of a model for one set of parameters, and the discrete state of a run.
 
     `address`: of the model's functions, in the order of FUNCTIONS. `m`: the modes (M,) and behind
-    them, per mode, 1 while its guard is held at zero. `c`, `k`: constants and tables. `bound`:
-    FREE, SLIDING or RESTING per mode. `push` (M, n): how the force of a contact acts on the rates.
+    them, per mode, 1 while its guard is held at zero. `c`, `k`: constants and tables. `weights`: of
+    the states in straight guards, term by term. `bound`: FREE, SLIDING or
+    RESTING per mode. `push` (M, n): how the force of a contact acts on the rates.
     `counts`: evaluations, and how many guards slide and rest.
     """
 
@@ -34,6 +35,7 @@ class Flow(NamedTuple):
     m: Vector
     c: Vector
     k: Vector
+    weights: Vector
     bound: Ints
     push: Matrix
     counts: Ints
@@ -48,7 +50,8 @@ class Plan(NamedTuple):
     `writes` the states that they set. `transitions` has rows (memory mode, source, trigger mode,
     target, reset, level of the trigger, at_zero). `direct` is, per
     recorded signal, the state that it is, or -1. `loop` is, per mode, the algebraic loop through
-    it, or -1.
+    it, or -1. `straight` is, per mode, 1 where its guard is a sum of states times what no run
+    changes; `first_term` (M + 1,) is where its terms begin, whose states are in `term_state`.
     """
 
     kind: Ints
@@ -63,6 +66,9 @@ class Plan(NamedTuple):
     transitions: IntMatrix
     direct: Ints
     loop: Ints
+    straight: Ints
+    first_term: Ints
+    term_state: Ints
 
 
 class Progress(NamedTuple):

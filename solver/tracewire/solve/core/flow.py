@@ -41,11 +41,13 @@ FUNCTIONS = (
     "rate_sizes",
     "delayed",
     "lags",
+    "guard_weights",
 )
 RHS, GUARDS, GUARD_RATES, OUTPUTS, TIMED, RESETS = 0, 1, 2, 3, 4, 5
 JACOBIAN, GRADIENTS, CURVES, SECOND = 6, 7, 8, 9
 PACE = 12
 GUARD_SIZES, GUARD_RATE_SIZES, SECOND_SIZES, RATE_SIZES, DELAYED, LAGS = 13, 14, 15, 18, 19, 20
+GUARD_WEIGHTS = FUNCTIONS.index("guard_weights")
 FREE, SLIDING, RESTING = 0, 1, 2
 # counts[SLIDING] and counts[RESTING] hold how many guards are so; counts[READING] is 1 where guards
 # read what a slide may hold

@@ -50,6 +50,7 @@ from tracewire.solve.core.codes import (
     T,
 )
 from tracewire.solve.core.flow import (
+    GUARD_WEIGHTS,
     PACE,
     RATE_SIZES,
     RESTING,
@@ -73,6 +74,7 @@ from tracewire.solve.core.methods import (
     IMPLICIT,
     SAFETY,
 )
+from tracewire.solve.core.quiet import SAMPLES
 from tracewire.solve.core.record import sample_end, sample_inside
 from tracewire.solve.core.saltation import begin_sensitivities
 from tracewire.solve.core.start import begin
@@ -112,6 +114,7 @@ def advance(core: int) -> int:
     if ints[STAGE] == 0:
         if is_delayed(core):
             begin_history(core)
+        evaluate(core, GUARD_WEIGHTS, now[T], x, flow_of(core).weights)
         _first_sizes(core)
         status = begin(core)
         if status != FINISHED:
@@ -178,7 +181,9 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
         if status != FINISHED:
             return status
         method, ratio = ints[CURRENT], now[RATIO]
-        how = locate.find(core, method)
+        end = trial.ends[0] + trial.ends[1]
+        last = end >= limit
+        how = locate.find(core, method, last)
         at_once = how == AT_ONCE and trial.ends[1] > SOON * now[LENGTH]
         if at_once or how == TOO_LONG:
             now[H] = trial.ends[1] / 16
@@ -186,9 +191,7 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
         if how != NOTHING:
             return _crossed(core)
         longest = after
-        end = trial.ends[0] + trial.ends[1]
         sample_inside(core, method, end)
-        last = end >= limit
         now[T] = limit if last else end
         copy(trial.x_end, x)
         if flow.counts[SLIDING] + flow.counts[RESTING]:
@@ -409,7 +412,7 @@ def _reached_with(core: int) -> bool:
     """
     progress, watched, crossings = progress_of(core), watch_of(core), crossings_of(core)
     rows, start = watched.rows, watched.start
-    last, some = locate.SAMPLES - 1, False
+    last, some = SAMPLES - 1, False
     for row in range(locate.watched_count(core)):
         armed = watched.armed[row] and watched.kind[row] == GUARD
         some = some or (armed and start[row] <= NEARLY * (rows[last - 1, row] - start[row]))

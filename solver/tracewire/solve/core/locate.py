@@ -2,7 +2,8 @@
 
 A crossing is on the half-open interval (t0, t1]: a guard that is zero where a step begins does not
 fire there. Guards are sampled inside the step, and a sampled minimum is refined by a parabola, so
-that two crossings inside one step are not missed.
+that two crossings inside one step are not missed. Not so where all guards are straight in the
+states and so far from zero at both ends that no sample can be near it (`quiet`).
 """
 
 from __future__ import annotations
@@ -42,15 +43,20 @@ from tracewire.solve.core.flow import (
     held,
 )
 from tracewire.solve.core.modes import held_levels, jump_time, levels, piece
+from tracewire.solve.core.quiet import (
+    EDGE,
+    HELD_NOISE,
+    SAMPLES,
+    SLACK,
+    all_armed,
+    is_quiet,
+    keeps_away,
+)
 from tracewire.solve.core.readings import guard_rates, guard_values
 from tracewire.solve.core.surface import pin
 from tracewire.solve.core.units import helper, inlined, unit
 
-SAMPLES = 5  # of the margins over a step, both ends included
-SLACK = 0.25  # a parabola that stays above zero by less than bend/32 may be wrong about it
 CLOSE = 1.0 / 16.0  # of a sample's distance: where a dip is looked at more closely
-EDGE = 2.2  # times the bend: a parabola may be wrong about which side of a sample it turns on
-HELD_NOISE = 1e-9  # of a fraction, and of what the force of a contact balances
 ROOT = 1e-14
 CLEARLY = 4.0  # beyond its level, in units of the noise
 MOST_ROUNDS = 200
@@ -186,10 +192,11 @@ def margins(core: int, t: float, x: Vector, out: Vector) -> None:
 
 
 @unit
-def find(core: int, method: int) -> int:
+def find(core: int, method: int, whole: bool) -> int:
     """The first crossings inside a step whose margins at the start are known.
 
-    Fills `found` with theta in (0, 1] for what crosses first, else with infinity. AT_ONCE: it
+    Fills `found` with theta in (0, 1] for what crosses first, else with infinity, and `rows` with
+    all samples of a step that is looked at as a `whole`, or where a margin may cross. AT_ONCE: it
     crosses right where the step begins. TOO_LONG: it rises first and falls before the first sample.
     """
     watched = watch_of(core)
@@ -197,13 +204,20 @@ def find(core: int, method: int) -> int:
     count = watched_count(core)
     if count == 0:
         return NOTHING
-    for k in range(1, SAMPLES):
+    _margins_inside(core, method, 1.0, rows[SAMPLES - 1])
+    if not whole and keeps_away(core, method, count):
+        return NOTHING
+    for k in range(1, SAMPLES - 1):
         _margins_inside(core, method, k / (SAMPLES - 1), rows[k])
     _copy_watched(start, rows[0], count)
-    if _is_quiet(core, count):
+    quiet = is_quiet(core, count)
+    if quiet and all_armed(core, count):
         return NOTHING
     floors = np.empty(count)
     _floors(core, floors)
+    if quiet:
+        _arm(core, floors)
+        return NOTHING
     found[:] = np.inf
     first, fresh = SAMPLES - 1, False
     for k in range(1, SAMPLES):
@@ -232,15 +246,22 @@ def find(core: int, method: int) -> int:
         found[i] = min(found[i], dip)
         any_found = any_found or found[i] < np.inf
     if not any_found:
-        for i in range(count):
-            if not watched.armed[i]:
-                watched.armed[i] = int(np.max(rows[:, i]) > floors[i])
+        _arm(core, floors)
         return NOTHING
     earliest = np.min(found)  # beyond the count it is infinite
     for i in range(count):
         if found[i] - earliest > 4 * ROOT:
             found[i] = np.inf
     return INSIDE
+
+
+@helper
+def _arm(core: int, floors: Vector) -> None:
+    """Arm the margins that have been positive."""
+    rows, armed = watch_of(core).rows, watch_of(core).armed
+    for i in range(len(floors)):
+        for k in range(SAMPLES):
+            armed[i] = int(armed[i] or rows[k, i] > floors[i])
 
 
 @unit
@@ -271,42 +292,6 @@ def _floors(core: int, out: Vector) -> None:
         size = contact.force_sizes(core, trial.ends[0], trial.x)
         for row in range(forces, total):
             out[row] = HELD_NOISE * size[row - forces]
-
-
-@helper
-def _is_quiet(core: int, count: int) -> bool:
-    """Whether all margins are armed, none is below zero at a sample, and none may dip below it.
-
-    What rounding may explain is asked later. Nearly all steps are quiet, and most margins vary less
-    than they are away from zero: no parabola through three of their samples comes near it.
-    """
-    watched = watch_of(core)
-    rows, kind, armed = watched.rows, watched.kind, watched.armed
-    for i in range(count):
-        least, most = rows[0, i], rows[0, i]
-        for k in range(1, SAMPLES):
-            least, most = min(least, rows[k, i]), max(most, rows[k, i])
-        if armed[i] == 0 or (2.0 * least <= most and not _stays_above(core, i, kind[i])):
-            return False
-    return True
-
-
-@helper
-def _stays_above(core: int, i: int, kind: int) -> bool:
-    """Whether a margin is above zero at all samples, and no parabola says that it may dip."""
-    rows = watch_of(core).rows
-    floor = HELD_NOISE if kind == FRACTION else 0.0
-    least = min(rows[0, i], 0.0) - floor
-    for k in range(1, SAMPLES):
-        if rows[k, i] < least:
-            return False
-    for k in range(1, SAMPLES - 1):
-        before, here, after = rows[k - 1, i], rows[k, i], rows[k + 1, i]
-        bend, slope = after - 2 * here + before, after - before
-        dips = slope * slope > bend * (8 * here - SLACK * bend)
-        if dips and bend > 0 and before > floor and abs(slope) <= EDGE * bend:
-            return False
-    return True
 
 
 @inlined

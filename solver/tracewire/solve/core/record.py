@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from tracewire.solve.core import methods
 from tracewire.solve.core.arrays import (
     Vector,
@@ -93,10 +91,12 @@ def _fill(core: int, row: int, t: float, x: Vector) -> None:
     flow = flow_of(core)
     plan = plan_of(core)
     progress = progress_of(core)
-    values = progress.samples[row]
+    values, computed = progress.samples[row], False
     if flow.counts[SLIDING] + flow.counts[RESTING]:
         pin(core, t, x)
-    if np.any(plan.direct < 0):
+    for state in plan.direct:
+        computed = computed or state < 0
+    if computed:
         outputs(core, t, x, values)
     for column in range(len(values)):
         if plan.direct[column] >= 0:

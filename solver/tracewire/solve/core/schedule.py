@@ -52,6 +52,8 @@ def upcoming(core: int, t: float, x: Vector, to: Vector) -> float:
     """
     flow, plan = flow_of(core), plan_of(core)
     best = np.inf
+    if len(plan.timed) == 0:
+        return best
     to[:] = np.nan
     lines = _lines(core, t, x)
     times, rounding = np.full(len(plan.timed), np.inf), np.zeros(len(plan.timed))

@@ -74,8 +74,8 @@ def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
     plan = plan_of(core)
     progress = progress_of(core)
     modes = len(plan.kind)
-    guards, after, level = np.empty(modes), np.empty(modes), np.empty(modes)
-    marked = np.empty((2, modes))
+    numbers = np.empty((5, modes))
+    guards, after, level, marked = numbers[0], numbers[1], numbers[2], numbers[3:]
     seen = np.empty((0, 3 * modes))  # until a second round needs it, which is rare
     flags = np.empty((3, modes), dtype=np.int64)
     zero, moved = flags[0], flags[1]

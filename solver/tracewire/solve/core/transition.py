@@ -93,7 +93,7 @@ def happen(core: int, t: float, x: Vector) -> int:
     turned, marks = flags[1], flags[2]
     speed = numbers[0]  # the guard's rate before it fired, along its side
     done = np.zeros(len(plan.resets), dtype=np.int64)
-    jumps = np.zeros((modes, len(x)))
+    jumps = np.zeros((modes if len(done) else 0, len(x)))
     status = _resets(core, t, x, done, fired, speed, turned, jumps)
     if status != FINISHED:
         return status
@@ -222,9 +222,9 @@ def _carry_on(core: int, t: float, x: Vector, fired: Ints, marks: Ints) -> int:
     """Fire the resets whose guards the jumps of this instant have carried over zero, then those
     that these carry over in turn. `fired` marks the guards whose resets have fired. A status."""
     flow, plan, crossings = flow_of(core), plan_of(core), crossings_of(core)
-    progress, due = progress_of(core), np.zeros(len(plan.resets), dtype=np.int64)
-    if len(due) == 0:
+    if len(plan.resets) == 0:
         return FINISHED
+    progress, due = progress_of(core), np.zeros(len(plan.resets), dtype=np.int64)
     no_crossings(core)
     waits, marked = np.full(len(plan.kind), contact.FLIES), np.empty((2, len(plan.kind)))
     for _ in range(MOST_RESETS):

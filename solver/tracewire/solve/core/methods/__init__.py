@@ -14,6 +14,7 @@ STEPPED = tuple(method.name for method in METHODS if method.fixed)
 """The methods that take steps of a given length."""
 # what the core reads of a method by its number
 INNER = tuple(method.inner for method in METHODS)
+BENT = tuple(method.bent for method in METHODS)
 EXPONENT = tuple(method.exponent for method in METHODS)
 SAFETY = tuple(method.safety for method in METHODS)
 EDGE = tuple(method.edge for method in METHODS)
@@ -92,6 +93,7 @@ def error_of(core: int, method: int, rtol: float, atol: Vector, last: float) -> 
 
 
 __all__ = [
+    "BENT",
     "DOP853",
     "DORMAND_PRINCE",
     "EDGE",

@@ -16,7 +16,7 @@ from tracewire.solve.core.methods.trial import norm
 from tracewire.solve.core.units import unit
 
 MAIN, STAGES, INNER = 12, 16, 7
-METHOD = Method("dop853", STAGES, inner=INNER, exponent=-1 / 8, safety=0.85, edge=6.1)
+METHOD = Method("dop853", STAGES, inner=INNER, bent=1, exponent=-1 / 8, safety=0.85, edge=6.1)
 """Of the tolerated error 0.85 to the power of 8 is 0.27, and 0.9 is 0.43. The edge is Hairer's."""
 PROBE = 0.4  # of a step: there the polynomial's defect is about ten times the error of a good step
 

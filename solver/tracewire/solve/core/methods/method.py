@@ -10,7 +10,9 @@ from dataclasses import dataclass
 class Method:
     """A method by its name, and what the core must know of it.
 
-    stages, inner: the rows that it needs of these arrays of a trial step. exponent: how the step
+    stages, inner: the rows that it needs of these arrays of a trial step. bent: the first row of
+    `inner` that bends its polynomial away from the straight line between the ends of the step; from
+    there on each has a factor of theta*(1 - theta) and others of at most 1. exponent: how the step
     follows from the error, h is multiplied with `safety` times the error to this power. edge:
     |h*eigenvalue| at the edge of its stability, inf where it has no edge or does not estimate it.
     implicit: it takes the Jacobian, counts as a step of a stiff method, and leaves no rate of the
@@ -20,6 +22,7 @@ class Method:
     name: str
     stages: int
     inner: int
+    bent: int = 0
     exponent: float = -0.2
     safety: float = 0.9
     edge: float = math.inf
