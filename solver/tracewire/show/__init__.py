@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from tracewire.show.document import Report, report_script, report_style
     from tracewire.show.event_rows import jump_times
     from tracewire.show.figures import group_signals, plot_run
-    from tracewire.show.fit_figures import plot_fit, plot_residual
     from tracewire.show.fit_tables import fit_text, fit_words
     from tracewire.show.library_page import library_report
     from tracewire.show.live import optimplotfit, optimplotfval, optimplotx
@@ -78,7 +77,6 @@ __all__ = [
     "plot_convergence",
     "plot_correlation",
     "plot_diagnostics",
-    "plot_fit",
     "plot_growth",
     "plot_invariants",
     "plot_lyapunov",
@@ -87,7 +85,6 @@ __all__ = [
     "plot_polar",
     "plot_portrait",
     "plot_profiles",
-    "plot_residual",
     "plot_run",
     "plot_runs",
     "plot_scalogram",
@@ -114,7 +111,6 @@ FILE_OF = {
     "document": "Report report_script report_style",
     "event_rows": "jump_times",
     "figures": "group_signals plot_run",
-    "fit_figures": "plot_fit plot_residual",
     "fit_tables": "fit_text fit_words",
     "library_page": "library_report",
     "live": "optimplotfit optimplotfval optimplotx",

@@ -190,13 +190,6 @@ class Passage:
         return self.arrays.progress.samples.copy()
 
     @property
-    def inside_tangents(self) -> NDArray[np.float64]:
-        """The tangent vectors (K, n, n) at the inner instants of the last interval."""
-        n = len(self.model.states)
-        both = self.arrays.sensitivity.samples.reshape(-1, n, n)
-        return np.ascontiguousarray(both.transpose(0, 2, 1))
-
-    @property
     def log(self) -> Matrix:
         """What happened in the last interval, in order: time, kind, mode, direction, x⁻, x⁺."""
         rows = self._integrator.log.rows
