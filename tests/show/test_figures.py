@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.errors import OptionError
-from tracewire.show import plot_fit, plot_residual, plot_run
+from tracewire.show import plot_run
 from tracewire.show.event_rows import draw_events, event_rows, is_tick, jump_times
 from tracewire.show.figures import group_signals
 from tracewire.show.sticking import held_intervals, joined, stick_intervals
@@ -306,43 +306,6 @@ def test_run_table_has_start_end_and_extremes() -> None:
     assert rows["x"] == ("m", "0", "20", "0", "20")
 
 
-def test_a_fit_becomes_a_figure_with_residuals(tmp_path: Path) -> None:
-    after = np.cos(3 * T)
-    series = [("theta", T, after + 0.1, after * 0.8, after), ("x", T, T, T + 2.0, T + 0.5)]
-    said = texts(plot_fit(tmp_path / "fit.svg", series, ["rad", "m"], "A fit"))
-    for words in ("A fit", "measured", "before", "after", "theta [rad]", "residual [m]"):
-        assert words in said
-    assert "rms of the residual: 2 before, 0.5 after [m]" in said
-    assert "0.1 after [rad]" in said
-
-
-def test_a_residual_figure_names_uses_and_rms(tmp_path: Path) -> None:
-    windows = {"run_1": [(0.0, 2.0, "train"), (2.0, 3.0, "gate"), (3.0, 4.0, "validate")]}
-    series = [("run_1", T, np.full(81, 3.0), np.full(81, -1.0))]
-    said = texts(plot_residual(tmp_path / "r.svg", series, windows, band=2.0))
-    for words in ("train", "gate", "validate", "residual [σ]", "run_1: rms 3 before, 1 after"):
-        assert words in said
-
-
-def test_windows_are_shaded_by_use(tmp_path: Path) -> None:
-    series = [("run_1", T, T, T)]
-    plain = plot_residual(tmp_path / "plain.png", series)
-    shaded = plot_residual(tmp_path / "shaded.png", series, {"run_1": [(1.0, 2.0, "train")]})
-    assert plain.read_bytes() != shaded.read_bytes()
-
-
-def test_more_series_than_are_readable_are_cut(tmp_path: Path) -> None:
-    series = [(f"run_{n}", T, T, T) for n in range(13)]
-    said = texts(plot_residual(tmp_path / "r.svg", series, title="Residual"))
-    assert "Residual (the first 12 of 13 series)" in said
-    assert "run_12" not in said
-
-
-def test_single_samples_are_drawn(tmp_path: Path) -> None:
-    one = np.array([1.0])
-    assert plot_fit(tmp_path / "fit.png", [("x", one, one, one, one)]).is_file()
-
-
 def test_another_ending_is_refused(tmp_path: Path) -> None:
     with pytest.raises(OptionError, match=r"unknown ending of a figure '.jpg'; there are: .pdf"):
         plot_run(SWING, tmp_path / "run.jpg")
@@ -351,19 +314,3 @@ def test_another_ending_is_refused(tmp_path: Path) -> None:
 def test_a_run_without_signals_is_refused(tmp_path: Path) -> None:
     with pytest.raises(OptionError, match=r"no recorded signals to draw. Name signals under"):
         plot_run(run_of({}), tmp_path / "run.png")
-
-
-def test_arrays_of_different_lengths_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(OptionError, match=r"series 'x' have 81, 81, 80, 81 values. Give the same"):
-        plot_fit(tmp_path / "fit.png", [("x", T, T, T[1:], T)])
-    with pytest.raises(OptionError, match="series 'x' have 81, 0, 81 values"):
-        plot_residual(tmp_path / "r.png", [("x", T, [], T)])
-
-
-def test_a_figure_of_nothing_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(OptionError, match=r"0 series with 0 units cannot be drawn. Give at least"):
-        plot_fit(tmp_path / "fit.png", [])
-    with pytest.raises(OptionError, match="1 series with 2 units"):
-        plot_fit(tmp_path / "fit.png", [("x", T, T, T, T)], ["m", "s"])
-    with pytest.raises(OptionError, match="a figure of no series cannot be drawn"):
-        plot_residual(tmp_path / "r.png", [])

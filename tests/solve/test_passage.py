@@ -92,7 +92,6 @@ def test_states_inside_of_an_interval() -> None:
         run = simulate(model, span=(0, 3), times=inner, **TIGHT)
         assert passage.inside[:, 0] == pytest.approx(run["x"], abs=1e-7)
         assert passage.inside[-1] == pytest.approx(passage.x)
-        assert passage.inside_tangents[-1] == pytest.approx(passage.tangents)
 
 
 def test_a_passage_begins_anew_with_other_parameters() -> None:
