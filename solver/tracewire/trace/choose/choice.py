@@ -126,14 +126,28 @@ def choose(
     """The simplest model that predicts as well as the best, pruned; model 0 is the declared one.
 
     Only models that are surely better than the declared one are compared, where there are any; none
-    that fits as many numbers more than the declared one as half of the blocks that judge them, and
-    none that has more squared error at each horizon.
+    that fits as many numbers more than the declared one as there are blocks to judge them by, and
+    none that has more squared error at each horizon. One that is left with as many as half of the
+    blocks gives way to those with fewer.
     scores: S, (models, horizons, families of folds, blocks); not finite where a model does not run.
     folds: the blocks that one fit predicts, by family.
     """
+    totals, declared = scores.mean(axis=(1, 2)), entrants[0].numbers
+    blocks = totals.shape[-1]
+    found, sure = _choose_below(entrants, totals, declared + blocks, options)
+    many = declared + options.numbers_a_block * blocks
+    if entrants[found].numbers >= many:
+        found, sure = _choose_below(entrants, totals, many, options)
+    choice = choice_of(found, entrants, scores, folds, options)
+    return replace(choice, sure=choice.sure or sure)
+
+
+def _choose_below(
+    entrants: Sequence[Entrant], totals: Array, many: float, options: TraceOptions
+) -> tuple[int, bool]:
+    """The choice among models with fewer numbers than these, and whether it is sure as a part of a
+    sure model."""
     tolerance = float(np.log1p(options.near))
-    totals = scores.mean(axis=(1, 2))
-    many = entrants[0].numbers + options.numbers_a_block * totals.shape[-1]
     usable = [
         n
         for n in _usable(totals)
@@ -148,8 +162,7 @@ def choose(
     parts = [n for n in usable if n not in among and entrants[n].effects < entrants[chosen].effects]
     near = [n for n in parts if n and _cost(totals, n, chosen) <= tolerance]
     pruned = _prune(entrants, totals, [*among, *near], chosen, options)
-    found = choice_of(pruned, entrants, scores, folds, options)
-    return replace(found, sure=found.sure or (pruned in near and bool(surer)))
+    return pruned, pruned in near and bool(surer)
 
 
 def _simplest_near_best(
