@@ -9,7 +9,8 @@ import pytest
 from solve.models import BALL, made
 from tracewire.compile import Model
 from tracewire.errors import SimulationError
-from tracewire.solve import Limits, Run, simulate
+from tracewire.solve import Limits, Run, simulate, workspace
+from tracewire.solve.limits import MEMORY
 
 
 def same(one: Run, other: Run) -> bool:
@@ -74,3 +75,11 @@ blocks:
     given = ({}, {"a": 2.0}, {"a": 3.0}, {"b": 1.0}, {"a": 3.0, "b": 1.0}, {"c": 9.0}, {})
     found = [simulate(model, parameters=values).final["x"] for values in given]
     assert found == pytest.approx([3.0, 5.0, 7.0, 2.0, 2.0, 9.0, 3.0])
+
+
+def test_of_many_models_those_that_ran_first_give_their_arrays_up() -> None:
+    models = [made(BALL) for _ in range(MEMORY.models + 3)]
+    finals = [thrown(model, 1.0).final for model in models]
+    holding = [bool(workspace._kept(model)) for model in models]
+    assert holding == [False] * 3 + [True] * MEMORY.models
+    assert thrown(models[0], 1.0).final == finals[0], "it makes new ones"

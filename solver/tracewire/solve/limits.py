@@ -104,6 +104,8 @@ class MemoryLimits:
     """Of the past of what is delayed: 2 GB."""
     workspaces: int = 16
     """Kinds of workspaces that a model keeps."""
+    models: int = 24
+    """Models that keep workspaces; of more, those that began first give theirs up."""
     workspace: int = 500_000
     """Of the samples and tables of one; larger ones are not kept."""
     given: int = 100

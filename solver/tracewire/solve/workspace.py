@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import deque
 from typing import Any
+from weakref import ref
 
 import numpy as np
 from numpy.typing import NDArray
@@ -154,6 +156,12 @@ def give_back(model: Model, space: Workspace) -> None:
     kept = _kept(model)
     if space.size > MEMORY.workspace or has_grown(space.arrays):
         return
+    if not kept:
+        _holders.append(ref(model))
+        while len(_holders) > MEMORY.models:
+            oldest = _holders.popleft()()
+            if oldest is not None and oldest is not model:
+                release(oldest)
     if space.kind not in kept and len(kept) >= MEMORY.workspaces:
         kept.clear()
     kept.setdefault(space.kind, []).append(space)
@@ -162,6 +170,10 @@ def give_back(model: Model, space: Workspace) -> None:
 def release(model: Model) -> None:
     """Free the memory that runs of a model keep for the next one."""
     _kept(model).clear()
+
+
+_holders: deque[ref[Model]] = deque()
+"""The models that keep workspaces, in the order in which they began to."""
 
 
 @once_per_model

@@ -221,7 +221,8 @@ class TorqueLinearisation:
             of_starts, of_hats = np.split(mine, [len(starts)], axis=2)
             shape = len(mine), len(rows), len(self.places), count
             at_nodes = of_hats.reshape(shape)[:, :, :, order]
-            pieces[n].append(Piece(here, of_starts, at_nodes))
+            # a view would keep all answers in memory
+            pieces[n].append(Piece(here, of_starts.copy(), at_nodes))
         return [
             WindowPieces(n, times, samples, counts, tuple(pieces[n]))
             for n, (times, samples, counts) in zip(group, nodes, strict=True)
