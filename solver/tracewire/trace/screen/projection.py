@@ -22,17 +22,20 @@ def project_out_starts(
     torques: Mapping[str, Sequence[Matrix]],
     every: int = 1,
     chosen: Sequence[int] | None = None,
+    rows: Matrix | None = None,
 ) -> tuple[Matrix, Vector]:
     """What torques by place do to the residuals of all windows, or of those `chosen`, as rows
     (K, M) without what the starts of windows imitate, of every so many residuals of a window; and
     the squares (K,) of them with it.
 
-    Window by window: all of them are much memory. Rows are scaled so that squares stay the same.
+    Window by window: all of them are much memory. Rows are scaled so that squares stay the same;
+    they are written into `rows` where these are given.
     """
     numbers = range(len(views)) if chosen is None else chosen
     count = sum(given[0].shape[1] for given in torques.values())
     size = sum(-(-len(views[n].basis) // every) for n in numbers)
-    rows, whole, first = np.empty((count, size)), np.zeros(count), 0
+    rows = np.empty((count, size)) if rows is None else rows
+    whole, first = np.zeros(count), 0
     for n in numbers:
         window, view = linearisation.window_pieces[n], views[n]
         columns = linearisation.window_response(window, torques)

@@ -359,8 +359,8 @@ def _rows(
             for torques, used, output in zip(given, samples, known.pop(variant), strict=True):
                 torques[used, column] = output
         mine = slice(first, first + len(group))
-        rows[mine], whole[mine] = project_out_starts(
-            linearisation, windows.projections, {place: given}, every
+        _, whole[mine] = project_out_starts(
+            linearisation, windows.projections, {place: given}, every, rows=rows[mine]
         )
         first += len(group)
     edges = np.cumsum([near.residual.size for near in windows.linearisations])[:-1]
