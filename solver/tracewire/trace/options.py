@@ -68,10 +68,6 @@ class TraceOptions:
     block_counts: float = 0.2
     """The part of the error by which one block counts at most in such a test: in a decay most of
     what is missing shows in the first blocks."""
-    numbers_a_block: float = 0.5
-    """Numbers more than the declared model has, for each block, that a named model fits too many.
-    Of 28 named models of made and measured records the right ones had up to 3 for 7 blocks; those
-    with 4 for 8, 4 for 7, 5 for 7 and 6 for 8 were wrong, each."""
     material: float = 0.03
     """The part of the declared model's squared error that each effect must take away beside the
     others, the mean over horizons. On 23 generated records with a floor, what stood for the floor

@@ -55,12 +55,11 @@ def test_of_models_within_five_percent_the_one_of_fewest_numbers_is_taken() -> N
     assert chosen(entrants, 1.0, 0.2, 0.0, -0.005).chosen == 2
 
 
-def test_a_model_with_half_as_many_more_numbers_as_blocks_is_not_taken() -> None:
+def test_a_model_with_as_many_more_numbers_as_blocks_is_not_taken() -> None:
     """So many numbers follow what a handful of blocks show, whatever it is."""
-    many = 2 + int(OPTIONS.numbers_a_block * BLOCKS)
-    entrants = [model(), model("a"), model("b", "c", numbers=many)]
+    entrants = [model(), model("a"), model("b", "c", numbers=2 + BLOCKS)]
     assert chosen(entrants, 1.0, 0.4, 0.0).chosen == 1
-    entrants[2] = model("b", "c", numbers=many - 1)
+    entrants[2] = model("b", "c", numbers=1 + BLOCKS)
     assert chosen(entrants, 1.0, 0.4, 0.0).chosen == 2
 
 
@@ -215,7 +214,7 @@ def test_a_wave_gives_way_to_the_common_law_that_it_imitates() -> None:
 def test_common_effects_with_fewer_numbers_go_before_a_wave_that_takes_little_more() -> None:
     """Whatever they are: a wave of three numbers follows what a law that is nearly right leaves."""
     declared = replace(model(), left=(1.0, 1.0))
-    wave = replace(model("a", "wave", numbers=6, uncommon=1), left=(0.04, 0.05))
+    wave = replace(model("a", "wave", numbers=8, uncommon=1), left=(0.04, 0.05))
     common = replace(model("b", "c", numbers=4), left=(0.06, 0.07))
     worse = replace(model("d", numbers=3), left=(0.065, 0.075))
     assert chosen([declared, wave, common, worse], 2.0, 0.0, 0.2, 0.4).chosen == 2

@@ -127,31 +127,17 @@ def choose(
 
     Only models that are surely better than the declared one are compared, where there are any; none
     that fits as many numbers more than the declared one as there are blocks to judge them by, and
-    none that has more squared error at each horizon. One that is left with as many as half of the
-    blocks gives way to those with fewer.
+    none that has more squared error at each horizon.
     scores: S, (models, horizons, families of folds, blocks); not finite where a model does not run.
     folds: the blocks that one fit predicts, by family.
     """
-    totals, declared = scores.mean(axis=(1, 2)), entrants[0].numbers
-    blocks = totals.shape[-1]
-    found, sure = _choose_below(entrants, totals, declared + blocks, options)
-    many = declared + options.numbers_a_block * blocks
-    if entrants[found].numbers >= many:
-        found, sure = _choose_below(entrants, totals, many, options)
-    choice = choice_of(found, entrants, scores, folds, options)
-    return replace(choice, sure=choice.sure or sure)
-
-
-def _choose_below(
-    entrants: Sequence[Entrant], totals: Array, many: float, options: TraceOptions
-) -> tuple[int, bool]:
-    """The choice among models with fewer numbers than these, and whether it is sure as a part of a
-    sure model."""
     tolerance = float(np.log1p(options.near))
+    totals = scores.mean(axis=(1, 2))
+    fewer = entrants[0].numbers + totals.shape[-1]
     usable = [
         n
         for n in _usable(totals)
-        if n == 0 or (entrants[n].numbers < many and min(entrants[n].left, default=0.0) < 1)
+        if n == 0 or (entrants[n].numbers < fewer and min(entrants[n].left, default=0.0) < 1)
     ]
     surer = [n for n in usable if n and is_sure(totals, 0, n, options)]
     among = surer or usable
@@ -162,7 +148,8 @@ def _choose_below(
     parts = [n for n in usable if n not in among and entrants[n].effects < entrants[chosen].effects]
     near = [n for n in parts if n and _cost(totals, n, chosen) <= tolerance]
     pruned = _prune(entrants, totals, [*among, *near], chosen, options)
-    return pruned, pruned in near and bool(surer)
+    found = choice_of(pruned, entrants, scores, folds, options)
+    return replace(found, sure=found.sure or (pruned in near and bool(surer)))
 
 
 def _simplest_near_best(
