@@ -49,8 +49,12 @@ def test_the_claim_on_a_run_that_ends_at_rest_is_made_where_it_moves() -> None:
 def test_a_run_that_hardly_moves_before_it_rests_is_cut_as_a_whole() -> None:
     hit = record()
     hit.values["x"][:] = np.where(np.arange(len(hit.t)) < 20, 1.0, 0.0)
-    (claim,) = split_data([hit], OPTIONS.split).validate
+    found = split_data([hit], OPTIONS.split)
+    (claim,) = found.validate
     assert claim.end == len(hit.t) and claim.first == int(len(hit.t) * 5 / 6)
+    said = "nothing moves in the last sixth of 'swing', so that the free runs there tell little"
+    (words,) = (words for words in found.words if said in words)
+    assert words.endswith("name another run under `measured:`, with `use: validate`")
 
 
 def test_series_that_have_a_use_keep_it_whole() -> None:

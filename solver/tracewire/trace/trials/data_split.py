@@ -84,13 +84,20 @@ def split_data(measured: Sequence[Measured], options: SplitOptions) -> DataSplit
     for m in by_use["train"]:
         end = len(m.t)
         if not by_use["validate"]:
-            moving = _moving_samples(m, options)
-            end, claimed = int(moving * (1 - options.validated)), len(m.t)
+            share, moving, claimed = 1 - options.validated, _moving_samples(m, options), len(m.t)
+            end, rests = int(share * claimed), moving <= share * claimed
+            enough = share * moving >= options.few_blocks * options.shortest
             last = f"the last {_part(options.validated)} of '{m.name}'"
-            if moving < len(m.t):
+            if rests and enough:
                 last += f" before it settles, at {m.t[moving]:.4g} s,"
+                end = int(share * moving)
                 claimed = min(2 * moving - end, claimed)
             words.append(f"{last} is held back for the final claim")
+            if rests and not enough:
+                words.append(
+                    f"nothing moves in {last}, so that the free runs there tell little: name"
+                    " another run under `measured:`, with `use: validate`"
+                )
             validate.append(Section(m, end, claimed))
         if by_use["gate"]:
             train.append(Section(m, 0, end))
@@ -127,16 +134,14 @@ def shortest_window(data_split: DataSplit, options: SplitOptions) -> int:
 
 def _moving_samples(measured: Measured, options: SplitOptions) -> int:
     """The samples before all signals settle: from there on each moves through no more than a part
-    of its range. All, where what follows is shorter than a claim, or too few would be left."""
+    of its range."""
     last = 0
     for y in measured.values.values():
         low, high = usual_range(y)
         behind = y[::-1]
         ranges = (np.maximum.accumulate(behind) - np.minimum.accumulate(behind))[::-1]
         last = max(last, int(np.count_nonzero(ranges > options.moving * (high - low))))
-    count, share = len(measured.t), 1 - options.validated
-    enough = share * last >= options.few_blocks * options.shortest
-    return last if enough and last <= share * count else count
+    return last
 
 
 def _part(part: float) -> str:
