@@ -9,11 +9,10 @@ from typing import Any
 
 import pytest
 from hypothesis import settings
-from tracewire.cli import THREADS
 
-# as the command has it; the workers of pytest share the cores. numpy is imported later
-for name in THREADS:
-    os.environ.setdefault(name, "1")
+# the workers of pytest share the cores, and some tests call what is inside a fit. numpy reads it
+# when it is imported
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # a busy machine is no fault of what is tested
 settings.register_profile("no deadline", deadline=None)

@@ -24,6 +24,7 @@ ROOMS = [
     "shipped",
     "result",
     "options",
+    "blas",
     "resume",
     "formula",
     "library",

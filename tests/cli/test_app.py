@@ -147,34 +147,6 @@ def test_an_interrupt_is_told_and_exits_with_130(
     assert told.err.splitlines()[-1] == "interrupted; nothing was finished."
 
 
-@pytest.mark.parametrize(
-    ("given", "threads"),
-    [
-        ({}, "1"),
-        ({"OPENBLAS_NUM_THREADS": "2"}, "2"),
-        ({"OMP_NUM_THREADS": "2"}, "None"),
-    ],
-)
-def test_linear_algebra_takes_one_thread_unless_the_user_says(
-    given: dict[str, str], threads: str
-) -> None:
-    program = (
-        "import os, sys\n"
-        "from tracewire.cli import main\n"
-        "assert 'numpy' not in sys.modules, 'it reads these when it is imported'\n"
-        "main()\n"
-        "print(os.environ.get('OPENBLAS_NUM_THREADS'))\n"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", program, "--version"],
-        env={"PYTHONPATH": str(SOLVER), "PYTHONDONTWRITEBYTECODE": "1", **given},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert done.stdout.splitlines()[-1] == threads
-
-
 def test_the_package_runs_as_a_module(swing: Path) -> None:
     # the module's own process: no terminal, the exit code of main, and nothing on stderr
     done = subprocess.run(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import sys
 from collections.abc import Sequence
@@ -15,8 +14,6 @@ __all__ = ["main"]
 
 INTERRUPTED = 128 + signal.SIGINT
 """The exit code after Ctrl-C, as of a shell."""
-THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
-"""How many threads linear algebra takes: numpy reads these when it is imported."""
 SOON = 0.01
 """Seconds after which an interrupt that was lost comes again."""
 
@@ -26,15 +23,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     Without arguments those of the process are meant, which ends then: an interrupt while it loads
     is told as any other, one that Python would lose comes again, and one after the work changes
-    nothing. Linear algebra takes one thread then, unless the user sets OMP_NUM_THREADS or one of
-    THREADS: the matrices of a fit are small, and threads that wait for each other would take the
-    cores from the runs.
+    nothing.
     """
     if arguments is None:
         sys.unraisablehook = _ask_again
-        if "OMP_NUM_THREADS" not in os.environ:
-            for name in THREADS:
-                os.environ.setdefault(name, "1")
     try:
         from tracewire.cli.app import main as run
 

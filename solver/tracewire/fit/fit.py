@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.blas import one_blas_thread
 from tracewire.compile import Model
 from tracewire.errors import DataError, FitError, OptionError, Problem, unknown
 from tracewire.fit.checkpoint import Store, resume_from
@@ -53,6 +54,7 @@ AMPLE = "10000*numberofvariables"
 """The limits of a method that is not Scilab's, where no options are given."""
 
 
+@one_blas_thread()
 def fit(
     model: Model,
     measured: Sequence[Measured] | None = None,

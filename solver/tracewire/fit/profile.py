@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.blas import one_blas_thread
 from tracewire.errors import FitError, OptionError, Problem, unknown
 from tracewire.fit.limits import PROFILE
 from tracewire.fit.result import Fit
@@ -42,6 +43,7 @@ class Profile(Result):
     words: str
 
 
+@one_blas_thread()
 def profile(
     fit: Fit,
     name: str,

@@ -216,8 +216,9 @@ class CriterionLimits:
     """Of the scale of an unknown: the change by which differences are taken."""
     penalty: float = 100.0
     """The residual where a run fails, in units of the spread of the samples."""
-    many: int = 3000
-    """Steps from which on series run in parallel: threads cost more than they save before."""
+    many: int = 400
+    """Steps from which on series run in parallel, about a millisecond with sensitivities: threads
+    cost more than they save before."""
     kept: int = 50_000
     """Numbers in the inputs and times of a series up to which the problem of its runs is kept: to
     make it again takes a small part of a longer run, and many criteria live at once."""

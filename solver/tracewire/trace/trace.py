@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from typing import Any
 
+from tracewire.blas import one_blas_thread
 from tracewire.compile import Model
 from tracewire.errors import Problem, TracewireError
 from tracewire.fit import Fit
@@ -26,6 +27,7 @@ from tracewire.trace.search.refinement import FinalModels
 from tracewire.trace.search.setup import set_up_search
 
 
+@one_blas_thread()
 def trace(
     subject: Model | Fit,
     measured: Sequence[Measured] | None = None,

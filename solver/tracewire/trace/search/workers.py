@@ -7,6 +7,7 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import Any
 
+from tracewire.blas import one_blas_thread
 from tracewire.errors import DiagramError, FitError, OptionError, TracewireError
 from tracewire.residual import Segment
 from tracewire.solve import Halt, WorkerEnded, carry_out
@@ -34,6 +35,7 @@ class RefitJob:
 
     problem: TraceProblem
 
+    @one_blas_thread()
     def run(self, number: int, refit: RefitTask, halt: Halt) -> Trial:
         """The trial of a refit. Raises what `TraceProblem.fit` raises."""
         return self.problem.fit(
