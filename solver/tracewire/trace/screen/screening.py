@@ -219,8 +219,7 @@ def screen_candidates(
     every = -(-linearisation.size // most)
     kept = _thin([near.residual.size for near in windows.linearisations], every)
     unknowns, residual = (
-        effective_fraction[kept] * every**0.5
-        for effective_fraction in project_out_initial_states(windows)
+        projected[kept] * every**0.5 for projected in project_out_initial_states(windows)
     )
     if not linearisation.along_data:  # a value that sits on its bound cannot give way to an effect
         unknowns = unknowns[
@@ -368,15 +367,8 @@ def _rows(
         shown = linearisation.sensor_response(candidate.effect, candidate.place.definition)
         whole[row] = shown @ shown
         parts = zip(windows.projections, np.split(shown, edges), strict=True)
-        rows[row] = (
-            np.concatenate(
-                [
-                    view.project_out(effective_fraction)[::every]
-                    for view, effective_fraction in parts
-                ]
-            )
-            * every**0.5
-        )
+        left = [view.project_out(part)[::every] for view, part in parts]
+        rows[row] = np.concatenate(left) * every**0.5
     variants += [Variant(candidate, ()) for candidate in sensors]
     return rows, np.maximum(whole, 1e-300), variants
 
