@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 
+from tracewire.blas import one_blas_thread
 from tracewire.diagram import Diagram
 from tracewire.errors import TracewireError
 from tracewire.fit import describe_undetermined
@@ -125,6 +126,7 @@ def _find_experiments(search: Search, final: FinalModels) -> tuple[Experiment, .
     return tuple(found)
 
 
+@one_blas_thread()
 def _find_forces(search: Search, best: Trial) -> tuple[Force, ...]:
     """The restoring-force picture of the places that got an effect."""
     if not any(effect.candidate.block for effect in best.effects) or not search.steps:
