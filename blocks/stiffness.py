@@ -180,6 +180,7 @@ elastic_load = Block(
             "damping": Shape((0.05,)),
         },
         alias=("inertia", "drive_lag", "sensor_delay"),
+        lasting=("x", "xdot"),
     ),
     source="The equation of a dynamic absorber; at a period of 0 it is inertia.",
 )

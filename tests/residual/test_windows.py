@@ -208,3 +208,38 @@ def test_a_run_begins_ahead_once_and_only_where_a_model_remembers() -> None:
     assert with_memory(model, free) == free
     first = cut_windows(model, Section(m, 0, 60), 10, ("T",))
     assert with_memory(model, first)[0].begin == first[0].begin, "the series has no more"
+
+
+SWUNG = """\
+span: [0, 60]
+inputs: {push: {}}
+blocks:
+  x: {type: integrator, of: v}
+  v: {type: integrator, of: force}
+  drag: {type: viscous, rate: v, c: 0.4}
+  load: {type: elastic_load, of: force, m: 0.2, period: 2, damping: 0.005}
+  force: {type: sum, of: [push, drag, load]}
+"""
+
+
+def test_what_a_run_hardly_forgets_is_free_where_a_window_follows_no_other() -> None:
+    model = compile(read_text(SWUNG), record=["x"])
+    t = np.arange(0.0, 60.0, 0.05)
+    drive = {"push": (t, np.where((t // 3.1) % 2 == 0, 1.0, -1.0))}
+    run = simulate(model, times=t, inputs=drive, rtol=1e-9)
+    start = {"x": None, "v": None}
+    m = Measured("run", "train", t, {"x": run["x"]}, inputs=drive, start=start)
+    segments = cut_windows(model, Section(m, 700, 900), 100, ("x", "v"))
+    lasting = ("load.x", "load.xdot")
+    with_states = with_memory(model, segments, lasting)
+    assert [one.free for one in with_states] == [("x", "v", *lasting), ("x", "v")]
+    assert with_states[0].begin == segments[0].begin
+    errors = []
+    for windows in (with_memory(model, segments), with_states):
+        criterion = Criterion(
+            model, windows, [], {}, sigma={"x": 1e-3}, weighting="sum", chained=True
+        )
+        fitted = fit_initial_states(evaluate_windows(criterion))
+        errors.append(float(np.abs(fitted.residuals[0]).max()))
+    assert errors[0] > 1.0, "the load swings on from before the run began"
+    assert errors[1] < 0.05

@@ -78,7 +78,8 @@ class Effect:
     records; it counts both ways. lacking: the effect is tried only where a place has none of these
     signals, since there is a better one for those that do. both_signs: the effect is tried only
     where these signals take both signs: elsewhere another law is the same, as a viscous friction is
-    where a body moves one way.
+    where a body moves one way. lasting: states of the block that a run hardly forgets, as those of
+    an oscillation that is little damped: they are free where the run of a window begins.
     """
 
     coefficient: str
@@ -92,3 +93,4 @@ class Effect:
     alias: tuple[str, ...] = ()
     lacking: tuple[Symbol, ...] = ()
     both_signs: tuple[Symbol, ...] = ()
+    lasting: tuple[str, ...] = ()

@@ -82,23 +82,33 @@ def with_lead_in(model: Model, segment: Segment, delays: Mapping[str, float]) ->
     return replace(segment, begin=begin) if row < 0 else _begun_at(model, segment, row)
 
 
-def with_memory(model: Model, segments: Sequence[Segment]) -> list[Segment]:
+def with_memory(
+    model: Model, segments: Sequence[Segment], lasting: Sequence[str] = ()
+) -> list[Segment]:
     """Windows whose runs find what a model remembers beside the states that are free at a start.
 
     A lag or a hysteresis begins as its block says, which is wrong inside a record. So the run of a
     window that follows no other begins ahead of it, by twice its length or a tenth of the series.
+    States that are `lasting` are free there: no run ahead would forget where they began.
     """
     found: list[Segment] = []
+    remembers = any(mode.kind == "memory" for mode in model.modes)
     for n, segment in enumerate(segments):
-        known = set(model.states) <= set(segment.free)
-        known &= not any(mode.kind == "memory" for mode in model.modes)
         follows = n > 0 and segment.continues(segments[n - 1])
-        t, row = segment.measured.t, int(segment.rows[0]) - 1
-        if known or not segment.free or follows or row <= 0 or segment.begin < t[row]:
+        if not segment.free or follows:
             found.append(segment)
             continue
-        ahead = min(int(WINDOW.remembered * len(t)), WINDOW.remembered_windows * len(segment.rows))
-        found.append(_begun_at(model, segment, max(row - ahead, 0)))
+        if lasting:
+            start = {**dict.fromkeys(lasting, 0.0), **segment.start}
+            free = tuple(dict.fromkeys((*segment.free, *lasting)))
+            segment = replace(segment, start=start, free=free)
+        known = set(model.states) <= set(segment.free) and not remembers
+        t, row = segment.measured.t, int(segment.rows[0]) - 1
+        if not known and row > 0 and segment.begin >= t[row]:
+            most = WINDOW.remembered_windows * len(segment.rows)
+            ahead = min(int(WINDOW.remembered * len(t)), most)
+            segment = _begun_at(model, segment, max(row - ahead, 0))
+        found.append(segment)
     return found
 
 

@@ -158,6 +158,8 @@ class CandidateOptions:
     """Waves in the longest way of the coordinate, at most."""
     lengths_a_wave: int = 2
     """Lengths that are scanned for each wave more on the way."""
+    finer_lengths: int = 2
+    """Lengths that are scanned on each side of a peak, between it and the length beside it."""
     scanned: int = 6000
     """Residuals on which the lengths of waves are scanned; of a longer record those of windows that
     are spread evenly over it."""

@@ -15,7 +15,7 @@ from tracewire.residual.windows import Section, Windows, cut_windows, evaluate_w
 from tracewire.trace.candidates.places import find_places
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
-from tracewire.trace.screen.trajectories import nodes_of
+from tracewire.trace.screen.trajectories import join_windows, nodes_of, simulate_signals
 
 OPTIONS = TraceOptions()
 
@@ -171,3 +171,19 @@ def test_the_nodes_of_a_window_are_its_samples_and_where_it_begins() -> None:
     assert times[0] == second.begin and not counts[0] and counts[1:].all()
     np.testing.assert_array_equal(times, m.t[samples])
     assert nodes_of(first)[2].all()
+
+
+def test_where_windows_meet_the_end_of_one_is_the_signal() -> None:
+    problem = problem_of(record())
+    trial = trial_of(problem, length=50)
+    windows = trial.windows
+    second = {**windows.starts[1], "v": 1e3}
+    kicked = replace(windows, starts=(windows.starts[0], second, *windows.starts[2:]))
+    runs = simulate_signals(trial.model, kicked, 1e-6)
+    assert max(np.abs(run["v"]).max() for run in runs) == pytest.approx(1e3)
+    (whole,) = join_windows(kicked, runs)
+    meets = nodes_of(kicked.segments[1])[1][0]
+    assert whole.signals["v"][meets] == runs[0]["v"][-1]
+    first, last = (nodes_of(kicked.segments[n])[1] for n in (0, 2))
+    np.testing.assert_array_equal(whole.signals["v"][first], runs[0]["v"])
+    np.testing.assert_array_equal(whole.signals["v"][last[1:]], runs[2]["v"][1:])

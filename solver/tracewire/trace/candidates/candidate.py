@@ -57,6 +57,8 @@ class Candidate:
     """Effects that imitate this one on many records."""
     each: tuple[str, ...] = ()
     """Shapes that each series may have of its own: `phase@run_1` among values, not `phase`."""
+    lasting: tuple[str, ...] = ()
+    """States of its block, by their names in the model, that a run hardly forgets."""
 
     def __str__(self) -> str:
         return f"{self.effect} @ {self.place.name}" + (f" (of {self.of})" if self.of else "")

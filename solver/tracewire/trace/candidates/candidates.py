@@ -186,6 +186,7 @@ def _candidate(
         fixed=tuple(name for name, shape in effect.shapes.items() if shape.fixed),
         alias=effect.alias,
         each=effect.each,
+        lasting=tuple(f"{block}.{state}" for state in effect.lasting),
     )
 
 

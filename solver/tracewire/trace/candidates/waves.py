@@ -84,25 +84,56 @@ def _peaks(
     answer: Answer,
     options: CandidateOptions,
 ) -> tuple[float, ...]:
-    """The lengths at the highest peaks of the score, the best first."""
+    """The lengths at the highest peaks of the score, the best first. Between a peak and the lengths
+    beside it finer ones are scored, unless it is a part of a turn."""
     angle = model.flat.units.get(candidate.place.q) == "rad"
     near = candidate.scan_grid.get(shape)
     lengths = np.array(near) if near else _lengths(*candidate.limits[shape], angle, options)
-    parts = []
-    for first in range(0, len(lengths), TOGETHER):
-        some = lengths[first : first + TOGETHER]
-        torques = [
-            _outputs(model, candidate, shape, some, run, samples)
-            for run, samples in zip(runs, used, strict=True)
-        ]
-        columns = answer(candidate.place.name, torques)
-        groups = columns.reshape(len(columns), len(some), -1)
-        parts.append(_rss_reductions(groups, residual))
-    scores = np.concatenate(parts)
+
+    def score(lengths: Vector) -> Vector:
+        parts = []
+        for first in range(0, len(lengths), TOGETHER):
+            some = lengths[first : first + TOGETHER]
+            torques = [
+                _outputs(model, candidate, shape, some, run, samples)
+                for run, samples in zip(runs, used, strict=True)
+            ]
+            columns = answer(candidate.place.name, torques)
+            groups = columns.reshape(len(columns), len(some), -1)
+            parts.append(_rss_reductions(groups, residual))
+        return np.concatenate(parts)
+
+    scores = score(lengths)
     ahead = np.r_[-np.inf, scores[:-1]], np.r_[scores[1:], -np.inf]
     peaks = np.flatnonzero((scores >= ahead[0]) & (scores >= ahead[1]))
     best = peaks[np.argsort(-scores[peaks])][: options.wave_peaks]
-    return tuple(lengths[best].tolist())
+    turns = set(_turns(options)) if angle else set()
+    found = {float(lengths[peak]): float(scores[peak]) for peak in best}
+    finer = {
+        float(lengths[peak]): _between(lengths, peak, options.finer_lengths)
+        for peak in best
+        if lengths[peak] not in turns
+    }
+    if finer:
+        edges = np.cumsum([len(some) for some in finer.values()])[:-1]
+        scored = np.split(score(np.concatenate([*finer.values()])), edges)
+        for (length, some), each in zip(finer.items(), scored, strict=True):
+            if each.max() > found[length]:
+                del found[length]
+                found[float(some[each.argmax()])] = float(each.max())
+    return tuple(sorted(found, key=lambda length: -found[length]))
+
+
+def _between(lengths: Vector, peak: int, count: int) -> Vector:
+    """So many lengths on each side of a peak, evenly in their inverse up to those beside it."""
+    beside = [end for end in (peak - 1, peak + 1) if 0 <= end < len(lengths)]
+    parts, middle = np.arange(1, count + 1) / (count + 1), 1 / lengths[peak]
+    return 1 / np.concatenate([middle + parts * (1 / lengths[end] - middle) for end in beside])
+
+
+def _turns(options: CandidateOptions) -> list[float]:
+    """The parts of a turn by whole numbers of teeth, in rad."""
+    return [2 * math.pi / teeth for teeth in range(1, options.teeth + 1)]
 
 
 def _lengths(low: float, high: float, angle: bool, options: CandidateOptions) -> Vector:
@@ -111,8 +142,7 @@ def _lengths(low: float, high: float, angle: bool, options: CandidateOptions) ->
     waves = np.arange(1.0, most + 1e-9, 1 / options.lengths_a_wave)
     lengths = set((high / waves).tolist())
     if angle:
-        turns = (2 * math.pi / n for n in range(1, options.teeth + 1))
-        lengths |= {length for length in turns if low <= length <= high}
+        lengths |= {length for length in _turns(options) if low <= length <= high}
     return np.array(sorted(lengths, reverse=True))
 
 

@@ -53,17 +53,23 @@ def simulate_signals(model: Model, windows: Windows, rtol: float) -> list[Signal
 
 
 def join_windows(windows: Windows, runs: Sequence[Signals]) -> list[Trajectory]:
-    """The signals of each series along its windows."""
+    """The signals of each series along its windows.
+
+    Where one window begins at the end of another, the end counts: a speed that its window hardly
+    shows may begin far from any that the body has.
+    """
     found: list[Trajectory] = []
     segments, numbers = windows.criterion.segments, series_of(windows)
     for number in range(max(numbers) + 1):
         mine = [n for n, of in enumerate(numbers) if of == number]
         t = segments[mine[0]].measured.t
         signals = {name: np.full(len(t), np.nan) for name in runs[mine[0]]}
-        for n in mine:
-            samples = nodes_of(segments[n])[1]
-            for name, values in signals.items():
-                values[samples] = runs[n][name]
+        nodes = [nodes_of(segments[n])[1:] for n in mine]
+        for inside in (False, True):
+            for n, (samples, counts) in zip(mine, nodes, strict=True):
+                written = counts == inside
+                for name, values in signals.items():
+                    values[samples[written]] = runs[n][name][written]
         known = np.flatnonzero(np.isfinite(next(iter(signals.values()), np.zeros(len(t)))))
         joined = {name: np.interp(t, t[known], values[known]) for name, values in signals.items()}
         of = segments[mine[0]].measured

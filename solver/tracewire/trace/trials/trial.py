@@ -238,7 +238,7 @@ class TraceProblem:
         unknowns = [u for u in self._unknowns(effects, values) if u.name not in fixed]
         segments = [_drop_foreign_starts(segment, model) for segment in segments]
         criterion = self._criterion(
-            model, self.with_series_values(segments, effects), unknowns, fixed
+            model, self.with_series_values(segments, effects), unknowns, fixed, effects
         )
         criterion.budget = budget * _time_of(criterion.segments) / _time_of(segments)
         windows = evaluate_windows(criterion, inlier_limit)
@@ -324,7 +324,7 @@ class TraceProblem:
     def criterion_on(self, trial: Trial, segments: Sequence[Segment]) -> Criterion:
         """The criterion of a trial on other windows, with its values fixed."""
         segments = self.with_series_values(segments, self.fit_unseen_phases(trial, segments))
-        return self._criterion(trial.model, segments, [], self.all_values(trial))
+        return self._criterion(trial.model, segments, [], self.all_values(trial), trial.effects)
 
     def free_criterion(
         self, trial: Trial, segments: Sequence[Segment], values: Mapping[str, float]
@@ -332,14 +332,14 @@ class TraceProblem:
         """The criterion of a trial on other windows, with its unknowns free from `values`."""
         unknowns = [replace(u, value=values[u.name]) for u in trial.windows.criterion.unknowns]
         fixed = trial.windows.criterion.parameters
-        return self._criterion(trial.model, segments, unknowns, fixed)
+        return self._criterion(trial.model, segments, unknowns, fixed, trial.effects)
 
     def fixed_criterion(
         self, trial: Trial, segments: Sequence[Segment], values: Mapping[str, float]
     ) -> Criterion:
         """The criterion of a trial on other windows, with its unknowns fixed at `values`."""
         fixed = {**trial.windows.criterion.parameters, **values}
-        return self._criterion(trial.model, segments, [], fixed)
+        return self._criterion(trial.model, segments, [], fixed, trial.effects)
 
     def fit_unseen_phases(
         self, trial: Trial, segments: Sequence[Segment]
@@ -365,7 +365,7 @@ class TraceProblem:
                     those = self.with_series_values(
                         mine, [*effects[:number], changed, *effects[number + 1 :]]
                     )
-                    return self._criterion(trial.model, those, [unknown], fixed)
+                    return self._criterion(trial.model, those, [unknown], fixed, trial.effects)
 
                 effects[number] = effects[number].with_value(
                     key, fit_phase(criterion_at, self.options.trial)
@@ -398,10 +398,13 @@ class TraceProblem:
         segments: Sequence[Segment],
         unknowns: Sequence[Unknown],
         fixed: Mapping[str, float],
+        effects: Sequence[PlacedEffect],
     ) -> Criterion:
         """The sum of squares in sigma, which is what a likelihood needs."""
         values = {**fixed, **{u.name: u.value for u in unknowns}}
-        segments = with_memory(model, [with_lead_in(model, s, values) for s in segments])
+        lasting = tuple(state for effect in effects for state in effect.candidate.lasting)
+        ahead = [with_lead_in(model, segment, values) for segment in segments]
+        segments = with_memory(model, ahead, lasting)
         longest = max(int(np.sum(s.measured.t[: s.rows[-1] + 1] >= s.begin)) for s in segments)
         options = self.options.trial
         return Criterion(
@@ -459,4 +462,6 @@ def _refuse_failed(criterion: Criterion, windows: Windows) -> None:
 def _drop_foreign_starts(segment: Segment, model: Model) -> Segment:
     """The segment without starts of states that the model has not: another effect's memory."""
     start = {name: value for name, value in segment.start.items() if name in model.states}
-    return segment if len(start) == len(segment.start) else replace(segment, start=start)
+    free = tuple(name for name in segment.free if name in model.states)
+    same = len(start) == len(segment.start) and len(free) == len(segment.free)
+    return segment if same else replace(segment, start=start, free=free)
