@@ -33,6 +33,15 @@ def test_the_palette_ends_with_the_libraries(call: Any, site: Path) -> None:
     assert "gain" in [block["name"] for block in data["blocks"]]
 
 
+def test_the_palette_says_what_a_trace_tries(call: Any) -> None:
+    lines = call("blocks").out.splitlines()
+    head = lines.index("effects that a trace tries")
+    sums, drives, sensors = (line.split(None, 3) for line in lines[head + 1 : head + 4])
+    assert sums[:3] == ["at", "a", "sum"] and "coulomb" in sums[3]
+    assert drives[:3] == ["in", "a", "drive"] and "drive_lag" in drives[3]
+    assert sensors[:3] == ["of", "a", "sensor"] and "sensor_quad" in sensors[3]
+
+
 def test_to_list_the_libraries_runs_none_of_them(call: Any, site: Path) -> None:
     (site / "mylab_blocks" / "magnets.py").write_text("raise SystemExit('run')", encoding="utf-8")
     assert call("blocks").code == 0

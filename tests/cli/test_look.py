@@ -142,7 +142,9 @@ def test_show_has_parameters_states_signals_and_places(call: Any, swing: Path) -
         assert words in out
     # 60 deg is shown in SI, and beside it as the file has it
     assert any(line.split()[:3] == ["phi", "1.0472", "rad"] for line in out.splitlines())
-    assert any(line.split() == ["torque", "omega", "theta"] for line in out.splitlines())
+    places = [line.split() for line in out.splitlines()]
+    assert ["torque", "sum", "omega", "theta"] in places
+    assert ["sensor.theta", "sensor"] in places
 
 
 def test_show_as_json(call: Any, swing: Path) -> None:

@@ -76,6 +76,7 @@ def test_a_clipped_signal() -> None:
     assert told.endswith("samples: is the sensor at the end of its range?")
     low, high = signal_remarks("y", T, np.clip(noisy, -0.7, 0.8))[::-1]
     assert "its smallest value, -0.7, in" in low and "its largest value" in high
+    assert signal_remarks("u", T, np.clip(noisy, -0.7, 0.8), exact=True) == [], "a command"
 
 
 @patient

@@ -98,6 +98,22 @@ def test_outliers_are_counted_and_told() -> None:
     assert "1.8 % are outliers" in found.words
 
 
+def test_what_a_model_lacks_now_and_then_is_no_outlier() -> None:
+    white = 0.02 * np.random.default_rng(7).standard_normal(601)
+    found = one(white + np.where(np.arange(601) % 100 < 8, 1.0, 0.0))
+    assert found.outliers > 0.05
+    assert "something is missing" in found.words
+    assert "are outliers" not in found.words
+
+
+def test_noise_that_is_correlated_may_be_all_that_is_left() -> None:
+    random = np.random.default_rng(5)
+    slow = autoregression((0.88,), 601, random)
+    found = one(0.15 * slow / np.std(slow) + 0.12 * random.standard_normal(601))
+    assert found.noise < found.size < 3 * found.noise
+    assert "or the noise itself is correlated: its estimate counts the white part" in found.words
+
+
 def test_dependence_on_a_measured_input_is_told() -> None:
     rng = np.random.default_rng(7)
     drive = autoregression((0.9,), 601, rng)

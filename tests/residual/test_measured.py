@@ -428,6 +428,7 @@ def test_degrees_that_were_taken_for_radians_are_remarked(file: Path) -> None:
     assert one(file, "time: t", "angle").remarks == (
         "theta goes from -30 to 30 rad: is the column in degrees? Then say unit: deg",
     )
+    assert one(file, "time: t", "{column: angle, gain: 160}").remarks == (), "a column of counts"
 
 
 def test_milliseconds_that_were_taken_for_seconds_are_remarked(file: Path) -> None:

@@ -142,14 +142,31 @@ def _more_json(found: _Found) -> dict[str, object]:
 
 
 def _more_text(found: _Found) -> str:
-    """The subsystems of the library that was named; without one the libraries there are."""
+    """The subsystems of the library that was named; without one the libraries there are, and the
+    effects that a trace tries."""
     if found.package is None:
-        head = "libraries: 'tracewire blocks NAME' lists one"
-        rows = {package.name: str(package) for package in found.others}
-    else:
-        head = "subsystems"
-        named = found.subsystems.items()
-        rows = {f"include: {found.package.name}:{file}": ", ".join(names) for file, names in named}
+        libraries = {package.name: str(package) for package in found.others}
+        listed = _listed("libraries: 'tracewire blocks NAME' lists one", libraries)
+        return f"{_effects_text(found.library)}\n\n{listed}"
+    named = found.subsystems.items()
+    rows = {f"include: {found.package.name}:{file}": ", ".join(names) for file, names in named}
+    return _listed("subsystems", rows)
+
+
+def _effects_text(library: Library) -> str:
+    """The effects that a trace tries, by the kind of place."""
+    from tracewire.library import SENSOR_TERMS
+
+    rows: dict[str, str] = {}
+    for kind, words in (("sum", "at a sum"), ("drive", "in a drive")):
+        names = [n for n, b in library.effects().items() if b.effect and b.effect.place == kind]
+        rows[words] = ", ".join(sorted(names))
+    rows["of a sensor"] = ", ".join(f"sensor_{term}" for term in SENSOR_TERMS)
+    return _listed("effects that a trace tries", rows)
+
+
+def _listed(head: str, rows: Mapping[str, str]) -> str:
+    """Names and what they are, one on a line; '' where there are none."""
     width = max(map(len, rows), default=0)
     lines = [f"  {name:<{width}}  {what}" for name, what in rows.items()]
     return "\n".join([head, *lines]) if lines else ""

@@ -62,7 +62,7 @@ def signal_remarks(
         return []
     levels = np.unique(y)
     found = [
-        *_clipped(name, y, levels, shown),
+        *([] if exact else _clipped(name, y, levels, shown)),
         *([] if exact or cleaned else _spikes(name, t, y, shown)),
     ]
     made = [] if len(levels) < CHECK.fewest_levels else _from_lower_rate(name, t, y)

@@ -269,7 +269,7 @@ def _with_words(found: Diagnosis, measured: Measured) -> Diagnosis:
         for name, p in found.independence.items()
         if p < DIAGNOSIS.doubt and name != found.signal and name not in known
     ]
-    doubtful = estimate is not None and not estimate.is_sure
+    doubtful, lacks = estimate is not None and not estimate.is_sure, False
     over = f"correlated over {found.memory:.2g} s"
     if of_inputs:
         names = " and ".join(f"'{name}'" for name in measured.input_sigma)
@@ -281,10 +281,13 @@ def _with_words(found: Diagnosis, measured: Measured) -> Diagnosis:
         )
         words += f"between {estimate.low:.2g} and {estimate.high:.2g} (SI), {estimate.method}; "
         words += f"say its `sigma:` where it is known; {over}"
-    elif found.size > limit and not (found.is_white and not depends):
+    elif lacks := found.size > limit and not (found.is_white and not depends):
         words = f"the residual is {times:.2g} times the {source}"
         words += "" if found.is_white else f" and {over}"
-        words += ": something is missing; "
+        words += ": something is missing"
+        if estimate and not found.declared and times < DIAGNOSIS.coloured:
+            words += ", or the noise itself is correlated: its estimate counts the white part alone"
+        words += "; "
         if len(measured.t) < WINDOW.traced:
             words += f"a series is too short for `tracewire trace` below {WINDOW.traced} samples"
         else:
@@ -300,7 +303,7 @@ def _with_words(found: Diagnosis, measured: Measured) -> Diagnosis:
         words = f"white, at the {source}"
     if depends:
         words += f"; it depends on {' and '.join(depends)}, which drives the model"
-    if found.outliers > 0.005:
+    if found.outliers > 0.005 and not lacks:  # what a model lacks is large where it acts
         share = f"{100 * found.outliers:.2g} %"
         words += f"; {share} are outliers, beyond {DIAGNOSIS.far:g} standard deviations"
     return replace(found, words=words)

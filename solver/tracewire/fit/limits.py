@@ -178,6 +178,9 @@ class DiagnosisLimits:
 
     at_noise: float = 1.3**0.5
     """Times the noise up to which a residual is at it: the noise itself is known to 8 % or so."""
+    coloured: float = 3.0
+    """How many times the estimated noise a correlated residual may be noise itself: the estimate
+    counts what neighbouring samples do not share."""
     doubt: float = 0.01
     """Probability below which chance is no explanation."""
     notable: float = 0.1

@@ -66,7 +66,8 @@ def remarks_of(
             continue
         column = read.columns[name]
         low, high = usual_range(column)
-        if given.factor == 1.0 and high - low > REMARK.largest_angle:
+        scaled = series.channels[name].gain is not None  # a column of counts, or of volts
+        if given.factor == 1.0 and not scaled and high - low > REMARK.largest_angle:
             found.append(
                 f"{name} goes from {column.min():.4g} to {column.max():.4g} rad: "
                 "is the column in degrees? Then say unit: deg"

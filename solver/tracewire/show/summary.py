@@ -63,12 +63,14 @@ def recorded_table(model: Model) -> Table:
 
 
 def places_table(model: Model) -> Table:
-    """Places where an effect may be tried: the sum, its coordinate q and rate v."""
+    """Places where an effect may be tried: sums (rate v, coordinate q), drives, sensors."""
     from tracewire.trace.candidates.places import find_places
 
-    sums = (place for place in find_places(model) if place.kind == "sum")
-    rows = tuple((place.name, place.v, place.q) for place in sums)
-    return Table("places", ("sum", "rate v", "coordinate q"), rows)
+    rows = tuple(
+        (place.name, place.kind, *((place.v, place.q) if place.kind == "sum" else ("", "")))
+        for place in find_places(model)
+    )
+    return Table("places", ("place", "kind", "rate v", "coordinate q"), rows)
 
 
 def overview(model: Model) -> dict[str, object]:
