@@ -14,7 +14,6 @@ from tracewire.diagram import (
     difference,
     find_parameter,
     read_text,
-    remove_addend,
     replace_series,
     series_parts,
     with_series_of,
@@ -240,11 +239,6 @@ def test_an_addend_of_a_sum_of_the_base(folder: Path) -> None:
         "extends: parts/base.yaml\nblocks: {v: {start: 1}, force: {of: [F, -spring, damping.force, "
         "drag]}, drag: {type: viscous, rate: v, c: 0}}\n"
     )
-    back = remove_addend(new, "force", "drag")
-    assert said(back) == said(old)
-    less = remove_addend(old, "force", "damping.force")
-    assert "damping" not in less.blocks
-    assert "remove: [blocks.damping]" in less.text
 
 
 def test_an_addend_to_a_drive_of_the_base(folder: Path) -> None:

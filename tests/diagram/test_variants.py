@@ -11,7 +11,6 @@ from tracewire.diagram import (
     Diagram,
     add_addend,
     read_text,
-    set_variants,
     written_out,
 )
 from tracewire.diagram.edit_values import set_values
@@ -97,11 +96,6 @@ def test_a_diagram_that_extends_another_one_chooses_a_variant(tmp_path: Path) ->
     diagram = read_text(text, tmp_path / "top.yaml", library=LIBRARY)
     inside = diagram.blocks["drag"].subsystem
     assert inside is not None and inside.variant == "linear"
-    new = set_variants(diagram, {"drag": "none"})
-    assert new.text == text.replace("variant: linear", "variant: none")
-    other = read_text("extends: base.yaml\n", tmp_path / "top.yaml", library=LIBRARY)
-    chosen = set_variants(other, {"drag": "none"})
-    assert chosen.text == "extends: base.yaml\nblocks:\n  drag: {variant: none}\n"
 
 
 def test_edits_reach_the_variant_that_is_used() -> None:
@@ -113,7 +107,8 @@ def test_edits_reach_the_variant_that_is_used() -> None:
     added = add_addend(diagram, "friction.total", "more", line)
     inside = added.blocks["drag"].subsystem
     assert inside is not None and "more" in inside.blocks
-    none = add_addend(set_variants(diagram, {"drag": "none"}), "friction.total", "more", line)
+    other = made(FRICTION + BLOCKS.replace("variant: cubic", "variant: none"))
+    none = add_addend(other, "friction.total", "more", line)
     assert "total: {type: sum, of: [law, more]}" in none.text
 
 
@@ -185,20 +180,6 @@ MESSAGES = {
 def test_messages(case: str) -> None:
     text, message = MESSAGES[case]
     assert message in refused(text)
-
-
-@pytest.mark.parametrize(
-    ("name", "variant", "message"),
-    [
-        ("drug", "none", "unknown block 'drug'; there are: drag, v. Did you mean 'drag'?"),
-        ("v", "none", "block 'v' has no variants"),
-        ("drag", "non", "unknown variant of 'drag' 'non'; there are: cubic, linear, none"),
-    ],
-)
-def test_messages_of_a_choice(name: str, variant: str, message: str) -> None:
-    with pytest.raises(OptionError) as error:
-        set_variants(made(FRICTION + BLOCKS), {name: variant})
-    assert message in str(error.value)
 
 
 CHOSEN = """

@@ -37,8 +37,6 @@ from tracewire.diagram.diagram import (
 from tracewire.diagram.edit import (
     add_addend,
     difference,
-    remove_addend,
-    set_variants,
     with_addend,
 )
 from tracewire.diagram.edit_own import add_own
@@ -147,7 +145,6 @@ __all__ = [
     "read_readable",
     "read_readable_text",
     "read_text",
-    "remove_addend",
     "renamed",
     "replace_series",
     "rewired",
@@ -156,7 +153,6 @@ __all__ = [
     "schema_text",
     "sensor_numbers",
     "series_parts",
-    "set_variants",
     "shown_cycle",
     "signals",
     "split_index",

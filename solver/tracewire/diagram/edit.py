@@ -6,24 +6,16 @@ that text is no diagram any more. OptionError says that what should be edited do
 
 from __future__ import annotations
 
-import contextlib
 import difflib
-from collections.abc import Mapping
 from dataclasses import replace
 
 from tracewire.diagram.diagram import BlockUse, Diagram, Wire
-from tracewire.diagram.override import localised, with_parts, without_part
+from tracewire.diagram.override import localised
 from tracewire.diagram.rewrite import reread
 from tracewire.diagram.source_map import SourceMap
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
-from tracewire.diagram.text_edits import (
-    entry_after,
-    item_last,
-    replaced,
-    without_entry,
-    without_items,
-)
-from tracewire.errors import DiagramError, OptionError, unknown
+from tracewire.diagram.text_edits import entry_after, item_last, replaced
+from tracewire.errors import DiagramError, OptionError
 
 
 def add_addend(
@@ -62,54 +54,6 @@ def add_addend(
     new = reread(diagram, [*more, entry_after(text, blocks, name, block_name, line), wired])
     _expect(new, sum_name, port, [*_signals(inside.blocks[name], port), added])
     return new
-
-
-def remove_addend(diagram: Diagram, sum_name: str, addend: str) -> Diagram:
-    """The diagram without a wire of a sum, and without its block where nothing else needs that.
-
-    addend: the signal as the sum names it, without its sign, or its block.
-    """
-    diagram, inside, blocks, name = _own_sum(diagram, sum_name)
-    port, node = _addends(inside.blocks[name], inside, blocks)
-    before = _signals(inside.blocks[name], port)
-    taken = [i for i, s in enumerate(before) if addend in (s, s.partition(".")[0])]
-    if not taken:
-        raise OptionError([unknown(f"addend of '{sum_name}'", addend, before)])
-    entries = blocks.values[name]
-    assert isinstance(entries, Entries)
-    if isinstance(node, Items):
-        wires = without_items(diagram.text, entries.keys[port], node, taken)
-    else:
-        wires = [replaced(node, "[]")]
-    kept = [signal for i, signal in enumerate(before) if i not in taken]
-    block = before[taken[0]].partition(".")[0]
-    new = reread(diagram, wires)
-    if block in blocks.keys:
-        with contextlib.suppress(DiagramError):  # it stays where something else reads it
-            if blocks.keys[block].place.file == str(diagram.file):
-                new = reread(diagram, [*wires, without_entry(diagram.text, blocks, block)])
-            else:
-                source_map = SourceMap(new)
-                path = (*source_map.path(source_map.block(sum_name)[1]), block)
-                new = without_part(new, ".".join(path))
-    _expect(new, sum_name, port, kept)
-    return new
-
-
-def set_variants(diagram: Diagram, variants: Mapping[str, str]) -> Diagram:
-    """The diagram with other bodies of subsystems: block -> variant. Raises OptionError."""
-    parts: dict[tuple[str, ...], str] = {}
-    for name, variant in variants.items():
-        use = diagram.blocks.get(name)
-        if use is None:
-            raise OptionError([unknown("block", name, diagram.blocks)])
-        known = use.subsystem.variants if use.subsystem is not None else ()
-        if not known:
-            raise OptionError.one(f"block '{name}' has no variants", use.place)
-        if variant not in known:
-            raise OptionError([unknown(f"variant of '{name}'", variant, known, use.place)])
-        parts["blocks", use.row or name, "variant"] = variant
-    return with_parts(diagram, parts)
 
 
 def difference(old: Diagram, new: Diagram) -> str:

@@ -71,35 +71,13 @@ def item_last(text: str, items: Items, value: str) -> TextEdit:
 
 
 def without_entry(text: str, entries: Entries, name: str) -> TextEdit:
-    """The entry taken out: its lines, or its part of a mapping in braces."""
+    """The entry taken out: its lines, or its part of a mapping in braces and a comma beside it."""
     key, node = entries.keys[name], entries.values[name]
     if not entries.flow:
         _indent(text, key)
         return TextEdit(_line_start(text, key.start), _line_end(text, end_of(node)), "")
     parts = [(k.start, end_of(entries.values[n])) for n, k in entries.keys.items()]
-    return _without_part(text, parts, list(entries.keys).index(name))
-
-
-def without_items(text: str, key: Scalar, items: Items, indices: Sequence[int]) -> list[TextEdit]:
-    """Items taken out of the list that is the value of `key`."""
-    parts = [(item.start, end_of(item)) for item in items.items]
-    kept = [i for i in range(len(parts)) if i not in indices]
-    if items.flow:
-        if len(indices) == 1:
-            return [_without_part(text, parts, indices[0])]
-        inside = ", ".join(text[parts[i][0] : parts[i][1]] for i in kept)
-        return [TextEdit(parts[0][0], parts[-1][1], inside)]
-    changes = [
-        TextEdit(_line_start(text, parts[i][0]), _line_end(text, parts[i][1]), "") for i in indices
-    ]
-    if not kept:
-        colon = text.index(":", key.end) + 1
-        changes.append(TextEdit(colon, colon, " []"))
-    return changes
-
-
-def _without_part(text: str, parts: Sequence[tuple[int, int]], index: int) -> TextEdit:
-    """One part of a list in brackets taken out with one of the commas beside it."""
+    index = list(entries.keys).index(name)
     start, end = parts[index]
     if len(parts) == 1:
         return TextEdit(start, end, "")
