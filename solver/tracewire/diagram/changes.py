@@ -17,7 +17,7 @@ from typing import Any
 
 from tracewire.diagram.body import Body
 from tracewire.diagram.channels import unit_of_term
-from tracewire.diagram.diagram import Array, BlockUse, Diagram, Value, Wire
+from tracewire.diagram.diagram import Array, BlockUse, Diagram, Points, Value, Wire
 from tracewire.diagram.edit import add_addend, many_port, with_addend
 from tracewire.diagram.edit_own import add_own, declared_parameter
 from tracewire.diagram.edit_sensors import add_sensor, column_factor, series_of
@@ -28,9 +28,20 @@ from tracewire.diagram.problems import Problems
 from tracewire.diagram.rewire import add_to_drive, readers_of, rewired, seen_name, sole_wire
 from tracewire.diagram.rewrite import as_written
 from tracewire.diagram.uses import check_bounds, check_conditions, in_unit_of, shape_of
+from tracewire.diagram.values import points_of_file
+from tracewire.diagram.yaml_text import mapping_text, quoted
 from tracewire.errors import DiagramError, OptionError, Place, unknown
 from tracewire.formula import Number, Unit, number_text, to_text
 from tracewire.library import SENSOR_TERMS, Block
+
+
+@dataclass(frozen=True)
+class PointsFile:
+    """The points of a table: two columns of a file, whose path is as the diagram has it."""
+
+    file: str
+    x: str
+    y: str
 
 
 @dataclass(frozen=True)
@@ -43,16 +54,18 @@ class AddBlock:
     element: of a sum of vectors the number of the element that it is added to, and how many there
     are: a gain behind the block makes a vector of it. own: the path of the block whose subsystem
     has the sum, where an included file defines that: it gets a definition of its own (`owned`).
+    comment: what the text says behind the line of the block.
     """
 
     name: str
     type: str
     inputs: Mapping[str, str]
-    settings: Mapping[str, Value]
+    settings: Mapping[str, Value | PointsFile]
     to: str
     drive: bool = False
     element: tuple[int, int] | None = None
     own: str = ""
+    comment: str = ""
 
 
 @dataclass(frozen=True)
@@ -134,17 +147,14 @@ def apply(diagram: Diagram, changes: Sequence[Change]) -> Diagram:
 
 def _line(change: AddBlock) -> str:
     parts = [f"type: {change.type}"]
-    parts += [f"{port}: {_quoted(name)}" for port, name in change.inputs.items()]
+    parts += [f"{port}: {quoted(name)}" for port, name in change.inputs.items()]
     parts += [f"{name}: {_setting(value)}" for name, value in change.settings.items()]
-    return f"{{{', '.join(parts)}}}"
+    return f"{{{', '.join(parts)}}}" + (f"   # {change.comment}" if change.comment else "")
 
 
-def _quoted(name: str) -> str:
-    """The name of a signal as a value inside braces: that of an element is quoted, as YAML asks."""
-    return f'"{name}"' if "[" in name else name
-
-
-def _setting(value: Value) -> str:
+def _setting(value: Value | PointsFile) -> str:
+    if isinstance(value, PointsFile):
+        return mapping_text({key: quoted(text) for key, text in vars(value).items()})
     number = to_text(value.formula)
     if not value.named:
         return number
@@ -223,15 +233,19 @@ def _use(top: Diagram, inside: Diagram, change: AddBlock) -> BlockUse:
             inputs[port.name] = (Wire(signal, index=index),)
         elif port.default is None:
             problems.add(f"input '{port.name}' is not connected", place)
-    settings = {key: change.settings[key] for key in parameters if key in change.settings}
-    for parameter in parameters.values():
-        if parameter.default is None and parameter.name not in settings:
-            problems.add(f"parameter '{parameter.name}' is not given", place)
-    if isinstance(kind, Diagram):
-        settings = {k: in_unit_of(value, kind.parameters[k]) for k, value in settings.items()}
-    else:
-        for key, value in settings.items():
-            check_bounds(replace(value, place=place), parameters[key], body)
+    settings: dict[str, Value | Points] = {}
+    for key, parameter in parameters.items():
+        given: Value | Points | PointsFile | None = change.settings.get(key)
+        if given is None and parameter.default is None:
+            problems.add(f"parameter '{key}' is not given", place)
+        elif isinstance(given, PointsFile):
+            given = points_of_file(top.file.parent / given.file, given.x, given.y, body, place)
+        if isinstance(given, Value) and isinstance(kind, Diagram):
+            given = in_unit_of(given, kind.parameters[key])
+        if given is not None:
+            check_bounds(replace(given, place=place), parameter, body)
+            settings[key] = given
+    if isinstance(kind, Block):
         check_conditions(kind, settings, body, place)
     problems.raise_found(str(top.file))
     subsystem = kind if isinstance(kind, Diagram) else None
