@@ -15,11 +15,11 @@ from tracewire.diagram import (
     difference,
     laid_out,
     patch,
-    patch_own,
     read_text,
     written_out,
 )
 from tracewire.diagram.edit_values import set_values
+from tracewire.diagram.owned import patch_own
 from tracewire.errors import DiagramError, OptionError
 from tracewire.formula import Number
 

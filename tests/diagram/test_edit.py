@@ -10,14 +10,13 @@ from hypothesis import strategies as st
 from tracewire.diagram import (
     Diagram,
     Value,
-    add_addend,
-    add_sensor,
     difference,
     find_parameter,
     read_text,
     write,
 )
-from tracewire.diagram.edit_sensors import set_sensors
+from tracewire.diagram.edit import add_addend
+from tracewire.diagram.edit_sensors import add_sensor, set_sensors
 from tracewire.diagram.edit_values import set_values
 from tracewire.errors import DiagramError, OptionError
 from tracewire.formula import Number

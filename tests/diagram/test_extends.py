@@ -7,10 +7,6 @@ from diagram.alike import said
 from diagram.small_library import LIBRARY, refused
 from tracewire.diagram import (
     Diagram,
-    add_addend,
-    add_own,
-    add_sensor,
-    add_to_drive,
     difference,
     find_parameter,
     read_text,
@@ -19,8 +15,11 @@ from tracewire.diagram import (
     with_series_of,
     written_out,
 )
-from tracewire.diagram.edit_sensors import set_sensors
+from tracewire.diagram.edit import add_addend
+from tracewire.diagram.edit_own import add_own
+from tracewire.diagram.edit_sensors import add_sensor, set_sensors
 from tracewire.diagram.edit_values import set_values
+from tracewire.diagram.rewire import add_to_drive
 from tracewire.errors import DiagramError, OptionError
 from tracewire.formula import Number
 

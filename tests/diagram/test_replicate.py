@@ -5,12 +5,8 @@ from pathlib import Path
 import pytest
 from diagram.alike import said
 from diagram.small_library import LIBRARY, refused
-from tracewire.diagram import (
-    Diagram,
-    add_addend,
-    read_text,
-    written_out,
-)
+from tracewire.diagram import Diagram, read_text, written_out
+from tracewire.diagram.edit import add_addend
 from tracewire.diagram.edit_values import set_values
 from tracewire.errors import OptionError
 

@@ -7,12 +7,8 @@ import pytest
 from diagram.alike import said
 from diagram.small_library import LIBRARY, refused
 from tracewire.compile import compile
-from tracewire.diagram import (
-    Diagram,
-    add_addend,
-    read_text,
-    written_out,
-)
+from tracewire.diagram import Diagram, read_text, written_out
+from tracewire.diagram.edit import add_addend
 from tracewire.diagram.edit_values import set_values
 from tracewire.errors import OptionError, SimulationError
 from tracewire.solve import simulate

@@ -36,12 +36,9 @@ from tracewire.diagram.diagram import (
     Wire,
 )
 from tracewire.diagram.edit import (
-    add_addend,
     difference,
     with_addend,
 )
-from tracewire.diagram.edit_own import add_own
-from tracewire.diagram.edit_sensors import add_sensor, sensor_numbers
 from tracewire.diagram.edit_series import (
     path_text,
     replace_series,
@@ -69,12 +66,11 @@ from tracewire.diagram.names import (
     state_names,
     states,
 )
-from tracewire.diagram.owned import patch_own
 from tracewire.diagram.packages import package_subsystems, who_has
 from tracewire.diagram.quantity_names import EVENT_KINDS, is_quantity, quantity_problems
 from tracewire.diagram.reader import read, read_readable, read_readable_text, read_text
 from tracewire.diagram.rename import renamed
-from tracewire.diagram.rewire import add_to_drive, rewired
+from tracewire.diagram.rewire import rewired
 from tracewire.diagram.schema import schema_of, schema_text
 from tracewire.diagram.writer import write, written_out
 from tracewire.diagram.yaml_text import mapping_text, quoted
@@ -116,10 +112,6 @@ __all__ = [
     "Value",
     "Wire",
     "absent_series",
-    "add_addend",
-    "add_own",
-    "add_sensor",
-    "add_to_drive",
     "apply",
     "complete",
     "cycles",
@@ -139,7 +131,6 @@ __all__ = [
     "mapping_text",
     "package_subsystems",
     "patch",
-    "patch_own",
     "path_text",
     "quantity_problems",
     "quoted",
@@ -153,7 +144,6 @@ __all__ = [
     "row_ends",
     "schema_of",
     "schema_text",
-    "sensor_numbers",
     "series_parts",
     "shown_cycle",
     "signals",
