@@ -165,23 +165,16 @@ class Search:
 
     def run(self, declared: Trial) -> None:
         """One effect after the other, from the declared fit, until none passes the gate."""
-        self.first = self.best = (
-            declared if self.omits_windows(declared) else self.lengthen_windows(declared)
-        )
-        self._add_effects()
-
-    def _add_effects(self) -> None:
-        """Effects from the best model on, until none passes."""
-        while self.best is not None and len(self.best.effects) < self.options.effects:
-            found = self.add_effect(self.best)
+        whole = not self.omits_windows(declared)
+        self.first = self.best = best = self.lengthen_windows(declared) if whole else declared
+        options = self.options.search
+        while len(best.effects) < self.options.effects:
+            found = self.add_effect(best)
             if found is None:
                 break
-            before, self.best = (
-                self.best.reduced_chi2,
-                self.lengthen_windows(self.refit_on_all(found)),
-            )
-            options = self.options.search
-            if self.best.reduced_chi2 > max(options.far, before / options.nearer):
+            before = best.reduced_chi2
+            self.best = best = self.lengthen_windows(self.refit_on_all(found))
+            if best.reduced_chi2 > max(options.far, before / options.nearer):
                 break  # the noise is out of reach: models are compared otherwise
 
     def add_effect(self, now: Trial) -> Trial | None:
