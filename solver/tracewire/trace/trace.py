@@ -76,7 +76,7 @@ def trace(
             search.words.append(f"the search ended after its budget of {options.budget:g} s")
     search.tell = tell
     if interrupted:
-        judgement = Judgement("unexplained", FinalModels(*search.declared_and_best, {}, ()))
+        judgement = Judgement("unexplained", FinalModels(*search.declared_and_best))
     return result_of(search, judgement, prediction, interrupted)
 
 

@@ -293,7 +293,7 @@ def test_an_effect_beside_others_that_harms_whole_unseen_runs_is_not_named(
     )
     none: Any = Names(())
     both: Any = Names((DRY, DELAY))
-    found: Any = safeguards._without_harmful(there, FinalModels(none, both, {}, ()))
+    found: Any = safeguards._without_harmful(there, FinalModels(none, both))
     assert set(found.best) == kept
     told = f"{DELAY} is not named beside {DRY}: it multiplies the error of whole unseen runs by 1.2"
     assert there.words == ([told] if kept == {DRY} else [])

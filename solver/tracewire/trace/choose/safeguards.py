@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from tracewire.errors import FitError
+from tracewire.residual import evaluate_windows
 from tracewire.trace.check.mistakes import refuse_mistakes
-from tracewire.trace.check.tolerance import is_loose, tighten_tolerance
 from tracewire.trace.choose.unseen import (
     is_no_better_on_claim,
     join_names,
@@ -20,8 +22,7 @@ from tracewire.trace.choose.unseen import (
 from tracewire.trace.choose.verdict import Judgement, residual_map
 from tracewire.trace.search.refinement import FinalModels
 from tracewire.trace.search.search import Search
-from tracewire.trace.trials.intervals import undetermined_effects
-from tracewire.trace.trials.trial import PlacedEffect, Trial
+from tracewire.trace.trials.trial import PlacedEffect, TraceProblem, Trial
 
 
 def fit_declared(search: Search) -> Trial:
@@ -35,8 +36,31 @@ def fit_declared(search: Search) -> Trial:
     return declared
 
 
+def is_loose(problem: TraceProblem, trial: Trial) -> bool:
+    """Whether the solver's error counts beside the residual of a trial.
+
+    Its windows are run once more, from the same starts, with a tenth of the tolerance. It counts
+    where the residual of half of them moves by more than 0.3 of its size (root mean square, in
+    sigma; at least 0.3 sigma). A window that does not run so precisely does not count.
+    """
+    tighter = _tighter(problem).criterion_on(trial, trial.windows.segments)
+    there = evaluate_windows(tighter).linearisations
+    pairs = [
+        (a, b) for a, b in zip(trial.windows.linearisations, there, strict=True) if a.ran and b.ran
+    ]
+    if not pairs:
+        return False
+    moved = np.median([np.sqrt(np.mean((a.residual - b.residual) ** 2)) for a, b in pairs])
+    return not moved < problem.options.check.solver_error * max(trial.reduced_chi2**0.5, 1.0)
+
+
+def _tighter(problem: TraceProblem) -> TraceProblem:
+    """The problem with a tenth of the tolerance, or what the options say."""
+    return replace(problem, rtol=problem.options.check.tighter * problem.rtol)
+
+
 def _tighten(search: Search) -> None:
-    search.problem = tighten_tolerance(search.problem)
+    search.problem = _tighter(search.problem)
     search.words.append(
         f"the solver's error counted beside the residual: rtol is {search.problem.rtol:.0e} now"
     )
@@ -69,11 +93,22 @@ def safeguard(search: Search, judgement: Judgement) -> Judgement:
         if harm:
             names = list(map(str, final.best.effects))
             search.words.append(f"{join_names(names)} is not named: it {harm}")
-            final = FinalModels(final.declared, final.declared, {}, ())
+            final = FinalModels(final.declared, final.declared)
             dependences, missing = residual_map(search, final.declared)
             reason = f"{model_with(names)} {harm}"
             return Judgement("unexplained", final, dependences, missing, reason=reason)
     return replace(judgement, final=final)
+
+
+def undetermined_effects(trial: Trial, confidence: float) -> list[str]:
+    """The effects of a trial, by name, whose coefficient may as well be zero."""
+    ends = trial.intervals(confidence)
+    found = []
+    for effect in trial.effects:
+        low, high = ends.get(effect.candidate.coefficient, (1.0, 1.0))
+        if low <= 0 <= high:
+            found.append(str(effect))
+    return found
 
 
 def _without_undetermined(
@@ -95,7 +130,7 @@ def _without_undetermined(
     if fewer is not None:
         final = _with_effects(final, fewer)
         return replace(judgement, final=final), final
-    alone = FinalModels(final.declared, final.declared, {}, ())
+    alone = FinalModels(final.declared, final.declared)
     if final.declared.reduced_chi2 <= search.options.at_noise:
         return Judgement("null", alone), alone
     return Judgement("unexplained", alone, *residual_map(search, final.declared)), alone
