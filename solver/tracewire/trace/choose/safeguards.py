@@ -80,14 +80,15 @@ def safeguard(search: Search, judgement: Judgement) -> Judgement:
             for trial in (final.declared, final.best)
         )
         final = replace(final, declared=declared, best=best)
-    judgement, final = _without_undetermined(search, judgement, final)
+    judgement = _without_undetermined(search, replace(judgement, final=final))
     if judgement.explained is None:  # at the noise; else other runs have been asked already
-        final = _without_harmful(search, final)
+        judgement = replace(judgement, final=_without_harmful(search, judgement.final))
+    final = judgement.final
     if final.best.effects:
         lengths = sorted({min(search.short_length, final.best.length), final.best.length})
         harm = raises_unseen(search, final.declared, final.best, lengths)
         if not harm and judgement.verdict == "effect":
-            judgement = _confirmed(search, judgement, final)
+            judgement = _confirmed(search, judgement)
         if not harm and judgement.verdict == "unexplained":
             harm = raises_whole_runs(search, final.declared, final.best)
         if harm:
@@ -97,7 +98,7 @@ def safeguard(search: Search, judgement: Judgement) -> Judgement:
             dependences, missing = residual_map(search, final.declared)
             reason = f"{model_with(names)} {harm}"
             return Judgement("unexplained", final, dependences, missing, reason=reason)
-    return replace(judgement, final=final)
+    return judgement
 
 
 def undetermined_effects(trial: Trial, confidence: float) -> list[str]:
@@ -111,10 +112,9 @@ def undetermined_effects(trial: Trial, confidence: float) -> list[str]:
     return found
 
 
-def _without_undetermined(
-    search: Search, judgement: Judgement, final: FinalModels
-) -> tuple[Judgement, FinalModels]:
-    """The judgement and the models without effects whose coefficient may as well be zero."""
+def _without_undetermined(search: Search, judgement: Judgement) -> Judgement:
+    """The judgement without effects whose coefficient may as well be zero."""
+    final = judgement.final
     names = undetermined_effects(final.best, search.options.confidence)
     kept = [effect for effect in final.best.effects if str(effect) not in names]
     try:
@@ -122,18 +122,17 @@ def _without_undetermined(
     except FitError:
         names = []
     if not names:
-        return judgement, final
+        return judgement
     search.words.append(
         f"{join_names(names)} is not named: the {search.options.confidence:.0%} interval of its"
         " coefficient holds zero"
     )
     if fewer is not None:
-        final = _with_effects(final, fewer)
-        return replace(judgement, final=final), final
+        return replace(judgement, final=_with_effects(final, fewer))
     alone = FinalModels(final.declared, final.declared)
     if final.declared.reduced_chi2 <= search.options.at_noise:
-        return Judgement("null", alone), alone
-    return Judgement("unexplained", alone, *residual_map(search, final.declared)), alone
+        return Judgement("null", alone)
+    return Judgement("unexplained", alone, *residual_map(search, final.declared))
 
 
 def _without_harmful(search: Search, final: FinalModels) -> FinalModels:
@@ -166,13 +165,13 @@ def _with_effects(final: FinalModels, best: Trial) -> FinalModels:
     return replace(final, best=best, rivals=rivals)
 
 
-def _confirmed(search: Search, judgement: Judgement, final: FinalModels) -> Judgement:
+def _confirmed(search: Search, judgement: Judgement) -> Judgement:
     """The judgement, or `unexplained` where unseen data do not confirm the effects.
 
     They hardly lower the error of whole unseen runs: what follows a rest of no block's form on
     windows does not carry over to them. Or they do not lower it at all where the claim is made.
     """
-    declared, best = final.declared, final.best
+    declared, best = judgement.final.declared, judgement.final.best
     share = share_of_whole_runs(search, declared, best)
     if share < search.options.whole_runs:
         part = f"{100 * max(share, 0):.0f} %"
