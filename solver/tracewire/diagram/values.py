@@ -15,10 +15,10 @@ from tracewire.errors import DataError, FormulaError, Place
 from tracewire.formula import (
     CONSTANTS,
     FUNCTIONS,
-    Call,
     Expression,
     Number,
     Unit,
+    calls_in,
     names_of,
     parse,
     parse_condition,
@@ -49,11 +49,12 @@ def read_formula(
     except FormulaError as error:
         body.problems.take(error)
         return None
-    for function in sorted(_functions(formula) & OF_BLOCKS.keys()):
+    functions = {call.function for call in calls_in(formula)}
+    for function in sorted(functions & OF_BLOCKS.keys()):
         what = f"formula '{clip(node.text)}': {function} is for the formulas of block declarations"
         body.problems.add(what, place, (), OF_BLOCKS[function])
         return None
-    if sees == "parameter" and "[]" in _functions(formula):
+    if sees == "parameter" and "[]" in functions:
         what = f"formula '{clip(node.text)}': a value is made of numbers, which have no elements"
         hint = "A vector is the signal of a block: use an expression block."
         body.problems.add(what, place, (), hint)
@@ -62,12 +63,6 @@ def read_formula(
         if name not in CONSTANTS:
             body.references.append(Reference(name, sees, place))
     return formula
-
-
-def _functions(formula: Expression) -> set[str]:
-    if not isinstance(formula, Call):
-        return set()
-    return {formula.function}.union(*(_functions(argument) for argument in formula.arguments))
 
 
 def read_value(
