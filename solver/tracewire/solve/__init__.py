@@ -131,7 +131,7 @@ from tracewire.solve.integrator import Integrator
 from tracewire.solve.interrupt import Halt, Interrupted, until_interrupted
 from tracewire.solve.limits import Limits, beyond_budget
 from tracewire.solve.many import simulate_many
-from tracewire.solve.observers import Section
+from tracewire.solve.observers import Section, guard_crossings
 from tracewire.solve.options import START, Options, refuse_unknown_options, with_options, with_row
 from tracewire.solve.parallel import WorkerEnded, carry_out, cores
 from tracewire.solve.parameters import parameter_values
@@ -173,6 +173,7 @@ __all__ = [
     "carry_out",
     "cores",
     "even_times",
+    "guard_crossings",
     "initial_value_problem",
     "parameter_values",
     "refuse_delays",
