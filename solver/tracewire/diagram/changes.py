@@ -18,7 +18,7 @@ from typing import Any
 from tracewire.diagram.body import Body
 from tracewire.diagram.channels import unit_of_term
 from tracewire.diagram.diagram import Array, BlockUse, Diagram, Points, Value, Wire
-from tracewire.diagram.edit import add_addend, many_port, with_addend
+from tracewire.diagram.edit import add_addend, many_port, with_addend, with_bodies
 from tracewire.diagram.edit_own import add_own, declared_parameter
 from tracewire.diagram.edit_sensors import add_sensor, column_factor, series_of
 from tracewire.diagram.edit_values import apply_values, patch_values
@@ -299,17 +299,7 @@ def _changed(
     if diagram.place == place and name in diagram.blocks and diagram.blocks[name].place == line:
         diagram = edit(diagram)
 
-    def inner(inside: Diagram) -> Diagram:
-        return _changed(inside, place, line, name, edit)
-
-    return replace(
-        diagram,
-        blocks={
-            key: use if use.subsystem is None else replace(use, subsystem=inner(use.subsystem))
-            for key, use in diagram.blocks.items()
-        },
-        subsystems={key: inner(inside) for key, inside in diagram.subsystems.items()},
-    )
+    return with_bodies(diagram, lambda inside: _changed(inside, place, line, name, edit))
 
 
 def _with_sensor_term(diagram: Diagram, change: AddSensorTerm) -> Diagram:

@@ -7,6 +7,7 @@ that text is no diagram any more. OptionError says that what should be edited do
 from __future__ import annotations
 
 import difflib
+from collections.abc import Callable
 from dataclasses import replace
 
 from tracewire.diagram.diagram import BlockUse, Diagram, Wire
@@ -92,6 +93,16 @@ def with_addend(diagram: Diagram, sum_name: str, wire: Wire) -> Diagram:
     port = many_port(old, diagram)
     wired = replace(old, inputs={**old.inputs, port: (*old.inputs[port], wire)})
     return replace(diagram, blocks={**diagram.blocks, sum_name: wired})
+
+
+def with_bodies(diagram: Diagram, edit: Callable[[Diagram], Diagram]) -> Diagram:
+    """The diagram with each subsystem edited that it defines or that one of its blocks is."""
+    blocks = {
+        name: use if use.subsystem is None else replace(use, subsystem=edit(use.subsystem))
+        for name, use in diagram.blocks.items()
+    }
+    subsystems = {name: edit(inside) for name, inside in diagram.subsystems.items()}
+    return replace(diagram, blocks=blocks, subsystems=subsystems)
 
 
 def _own_sum(diagram: Diagram, sum_name: str) -> tuple[Diagram, Diagram, Entries, str]:

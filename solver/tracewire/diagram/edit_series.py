@@ -18,6 +18,7 @@ from tracewire.diagram.text_edits import (
     changed,
     end_of,
     entry_last,
+    lines_last,
     replaced,
     without_entry,
 )
@@ -55,9 +56,7 @@ def replace_series(diagram: Diagram, series: Mapping[str, str]) -> Diagram:
     elif root.flow:
         change = entry_last(text, root, SECTION, "{" + ", ".join(lines) + "}")
     else:
-        begin = "" if text.endswith("\n") else ending
-        added = ending.join([f"{SECTION}:", *(f"  {line}" for line in lines)])
-        change = TextEdit(len(text), len(text), f"{begin}{added}{ending}")
+        change = lines_last(text, [f"{SECTION}:", *(f"  {line}" for line in lines)])
     return reread(diagram, [change])
 
 

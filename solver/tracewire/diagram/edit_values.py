@@ -10,6 +10,7 @@ from typing import Any
 from tracewire.diagram.body import Body
 from tracewire.diagram.channels import check_term
 from tracewire.diagram.diagram import Array, BlockUse, Diagram, Value
+from tracewire.diagram.edit import with_bodies
 from tracewire.diagram.edit_sensors import factor_of, own_value, set_sensors
 from tracewire.diagram.names import find_parameter, is_count, split_index
 from tracewire.diagram.override import localised
@@ -196,16 +197,7 @@ def _with_body(diagram: Diagram, old: Diagram, new: Diagram) -> Diagram:
     """The diagram with a body in the place of another one, wherever that is."""
     if (diagram.place, diagram.variant) == (old.place, old.variant):
         return new
-
-    def inner(inside: Diagram) -> Diagram:
-        return _with_body(inside, old, new)
-
-    blocks = {
-        name: use if use.subsystem is None else replace(use, subsystem=inner(use.subsystem))
-        for name, use in diagram.blocks.items()
-    }
-    subsystems = {name: inner(inside) for name, inside in diagram.subsystems.items()}
-    return replace(diagram, blocks=blocks, subsystems=subsystems)
+    return with_bodies(diagram, lambda inside: _with_body(inside, old, new))
 
 
 def _with_sensor(diagram: Diagram, path: str, value: float) -> Diagram:

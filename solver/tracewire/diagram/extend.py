@@ -43,13 +43,18 @@ def with_variant(entries: Entries, variant: str, problems: Problems) -> Entries:
     changes = given.values[variant] if isinstance(given, Entries) else given
     if not isinstance(changes, Entries):
         return plain
-    removed = changes.values.get("remove")
-    items = removed.items if isinstance(removed, Items) else () if removed is None else (removed,)
-    names = [item for item in items if isinstance(item, Scalar)]
+    names = removed_parts(changes)
     own = {name: key for name, key in changes.keys.items() if name != "remove"}
     changes = replace(changes, keys=own, values={name: changes.values[name] for name in own})
     both = merged(without(plain, names, problems), changes)
     return replace(both, place=entries.place, start=entries.start, end=entries.end)
+
+
+def removed_parts(changes: Entries) -> list[Scalar]:
+    """What changes take away from what they change."""
+    given = changes.values.get("remove")
+    items = given.items if isinstance(given, Items) else () if given is None else (given,)
+    return [item for item in items if isinstance(item, Scalar)]
 
 
 def _by_name(section: str, node: Node) -> Node:

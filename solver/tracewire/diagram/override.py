@@ -12,7 +12,14 @@ from tracewire.diagram.problems import Problems
 from tracewire.diagram.rewrite import reread
 from tracewire.diagram.source_map import SourceMap
 from tracewire.diagram.strict import Entries, Items, Node, compose
-from tracewire.diagram.text_edits import TextEdit, changed, entry_last, item_last, replaced
+from tracewire.diagram.text_edits import (
+    TextEdit,
+    changed,
+    entry_last,
+    item_last,
+    lines_last,
+    replaced,
+)
 from tracewire.diagram.yaml_text import inline, mapping_text, quoted
 from tracewire.errors import OptionError
 
@@ -68,15 +75,9 @@ def _with_part(text: str, root: Entries, path: tuple[str, ...], value: str) -> T
         value = mapping_text({key: value})
     if not section:
         if node is root and not node.flow:
-            return _at_end(text, [f"{name}: {value}"])
+            return lines_last(text, [f"{name}: {value}"])
         return entry_last(text, node, quoted(name), value)
-    return _at_end(text, [f"{name}:", f"  {quoted(deeper[0])}: {value}"])
-
-
-def _at_end(text: str, lines: list[str]) -> TextEdit:
-    ending = "\r\n" if "\r\n" in text else "\n"
-    begin = "" if text.endswith("\n") or not text else ending
-    return TextEdit(len(text), len(text), begin + "".join(f"{line}{ending}" for line in lines))
+    return lines_last(text, [f"{name}:", f"  {quoted(deeper[0])}: {value}"])
 
 
 def _at(root: Entries, path: tuple[str, ...]) -> Node:

@@ -70,6 +70,13 @@ def item_last(text: str, items: Items, value: str) -> TextEdit:
     return _line_after(text, end, text[_line_start(text, last.start) : last.start] + value)
 
 
+def lines_last(text: str, lines: Sequence[str]) -> TextEdit:
+    """Lines at the end of the text."""
+    ending = "\r\n" if "\r\n" in text else "\n"
+    begin = "" if text.endswith("\n") or not text else ending
+    return TextEdit(len(text), len(text), begin + "".join(f"{line}{ending}" for line in lines))
+
+
 def without_entry(text: str, entries: Entries, name: str) -> TextEdit:
     """The entry taken out: its lines, or its part of a mapping in braces and a comma beside it."""
     key, node = entries.keys[name], entries.values[name]
