@@ -13,7 +13,7 @@ from tracewire.diagram import (
     replace_series,
     series_parts,
     with_series_of,
-    written_out,
+    write_out,
 )
 from tracewire.diagram.edit import add_addend
 from tracewire.diagram.edit_own import add_own
@@ -136,7 +136,7 @@ def test_changes_are_as_if_written_out(folder: Path, case: str) -> None:
         return
     assert same_as(folder, changes, old, new)
     diagram = extended(folder, changes)
-    again = read_text(written_out(diagram), folder / "top.yaml", library=LIBRARY)
+    again = read_text(write_out(diagram), folder / "top.yaml", library=LIBRARY)
     assert said(again) == said(diagram)
 
 
@@ -297,4 +297,4 @@ def test_needed_libraries_are_merged_by_name(tmp_path: Path) -> None:
     base = 'libraries: {tracewire: ">=0.1"}\nblocks: {y: {type: constant, value: 1}}\n'
     (tmp_path / "base.yaml").write_text(base)
     text = "extends: base.yaml\nlibraries: {tracewire: '>=0.0'}\n"
-    assert "libraries: {tracewire: '>=0.0'}" in written_out(read_text(text, tmp_path / "top.yaml"))
+    assert "libraries: {tracewire: '>=0.0'}" in write_out(read_text(text, tmp_path / "top.yaml"))

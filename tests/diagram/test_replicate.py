@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from diagram.alike import said
 from diagram.small_library import LIBRARY, refused
-from tracewire.diagram import Diagram, read_text, written_out
+from tracewire.diagram import Diagram, read_text, write_out
 from tracewire.diagram.edit import add_addend
 from tracewire.diagram.edit_values import set_values
 from tracewire.errors import OptionError
@@ -50,7 +50,7 @@ def made(text: str) -> Diagram:
 def test_a_row_is_as_if_written_out() -> None:
     assert said(made(TOP)) == said(made(CELL + OUT))
     assert [use.row for use in made(TOP).blocks.values()] == ["", "row", "row", "row"]
-    text = written_out(made(TOP))
+    text = write_out(made(TOP))
     assert "  row_2: {type: cell, left: row_1.x, right: row_3.x, start: 0.1*2}\n" in text
     assert said(made(text)) == said(made(TOP))
 
@@ -157,7 +157,7 @@ def test_each_use_of_a_subsystem_may_have_a_count_of_its_own() -> None:
         "row_2.x",
         "row_3.x",
     ]
-    assert said(made(written_out(diagram))) == said(diagram)
+    assert said(made(write_out(diagram))) == said(diagram)
 
 
 MESSAGES = {

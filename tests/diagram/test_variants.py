@@ -7,7 +7,7 @@ import pytest
 from diagram.alike import said
 from diagram.small_library import LIBRARY, refused
 from tracewire.compile import compile
-from tracewire.diagram import Diagram, read_text, written_out
+from tracewire.diagram import Diagram, read_text, write_out
 from tracewire.diagram.edit import add_addend
 from tracewire.diagram.edit_values import set_values
 from tracewire.errors import OptionError, SimulationError
@@ -73,7 +73,7 @@ def test_a_variant_is_as_if_it_were_the_body(variant: str) -> None:
     inside = diagram.blocks["drag"].subsystem
     assert inside is not None and (inside.variant, inside.variants) == (variant, tuple(BODIES))
     assert said(diagram) == said(made(whole(*BODIES[variant])))
-    assert said(made(written_out(diagram))) == said(diagram)
+    assert said(made(write_out(diagram))) == said(diagram)
 
 
 def test_the_first_variant_is_the_usual_one_and_each_use_may_have_another() -> None:
@@ -208,7 +208,7 @@ def test_edits_of_a_subsystem_whose_body_a_parameter_chooses() -> None:
     assert new.text == diagram.text.replace("kind: 1", "kind: 2").replace("c: 2", "c: 5").replace(
         "value: 3", "value: 4"
     )
-    assert said(made(written_out(diagram))) == said(diagram)
+    assert said(made(write_out(diagram))) == said(diagram)
     for path, name in (("drag.variant", "kind"), ("drag.cubic_body.b", "b")):
         with pytest.raises(OptionError) as error:
             set_values(diagram, {path: 2.0})

@@ -49,9 +49,9 @@ from tracewire.diagram.edit_values import written_units
 from tracewire.diagram.effects import EffectType, effects_of
 from tracewire.diagram.files import STDIN, absent_series, load_stdin
 from tracewire.diagram.files import load as load_text
-from tracewire.diagram.layout import laid_out
+from tracewire.diagram.layout import lay_out
 from tracewire.diagram.limits import LIMITS
-from tracewire.diagram.loops import cycles, shown_cycle
+from tracewire.diagram.loops import cycle_text, cycles
 from tracewire.diagram.modeline import is_modeline, with_modeline
 from tracewire.diagram.names import (
     element_name,
@@ -72,8 +72,8 @@ from tracewire.diagram.reader import read, read_readable, read_readable_text, re
 from tracewire.diagram.rename import renamed
 from tracewire.diagram.rewire import rewired
 from tracewire.diagram.schema import schema_of, schema_text
-from tracewire.diagram.writer import write, written_out
-from tracewire.diagram.yaml_text import mapping_text, quoted
+from tracewire.diagram.writer import write, write_out
+from tracewire.diagram.yaml_text import mapping_text, quote
 
 __all__ = [
     "EVENT_KINDS",
@@ -114,6 +114,7 @@ __all__ = [
     "absent_series",
     "apply",
     "complete",
+    "cycle_text",
     "cycles",
     "difference",
     "effects_of",
@@ -125,7 +126,7 @@ __all__ = [
     "is_count",
     "is_modeline",
     "is_quantity",
-    "laid_out",
+    "lay_out",
     "load_stdin",
     "load_text",
     "mapping_text",
@@ -133,7 +134,7 @@ __all__ = [
     "patch",
     "path_text",
     "quantity_problems",
-    "quoted",
+    "quote",
     "read",
     "read_readable",
     "read_readable_text",
@@ -145,7 +146,6 @@ __all__ = [
     "schema_of",
     "schema_text",
     "series_parts",
-    "shown_cycle",
     "signals",
     "split_index",
     "state_names",
@@ -156,6 +156,6 @@ __all__ = [
     "with_series_of",
     "word_before",
     "write",
-    "written_out",
+    "write_out",
     "written_units",
 ]

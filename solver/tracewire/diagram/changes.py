@@ -29,7 +29,7 @@ from tracewire.diagram.rewire import add_to_drive, readers_of, rewired, seen_nam
 from tracewire.diagram.rewrite import as_written
 from tracewire.diagram.uses import check_bounds, check_conditions, in_unit_of, shape_of
 from tracewire.diagram.values import points_of_file
-from tracewire.diagram.yaml_text import mapping_text, quoted
+from tracewire.diagram.yaml_text import mapping_text, quote
 from tracewire.errors import DiagramError, OptionError, Place, unknown
 from tracewire.formula import Number, Unit, number_text, to_text
 from tracewire.library import SENSOR_TERMS, Block
@@ -147,14 +147,14 @@ def apply(diagram: Diagram, changes: Sequence[Change]) -> Diagram:
 
 def _line(change: AddBlock) -> str:
     parts = [f"type: {change.type}"]
-    parts += [f"{port}: {quoted(name)}" for port, name in change.inputs.items()]
+    parts += [f"{port}: {quote(name)}" for port, name in change.inputs.items()]
     parts += [f"{name}: {_setting(value)}" for name, value in change.settings.items()]
     return f"{{{', '.join(parts)}}}" + (f"   # {change.comment}" if change.comment else "")
 
 
 def _setting(value: Value | PointsFile) -> str:
     if isinstance(value, PointsFile):
-        return mapping_text({key: quoted(text) for key, text in vars(value).items()})
+        return mapping_text({key: quote(text) for key, text in vars(value).items()})
     number = to_text(value.formula)
     if not value.named:
         return number

@@ -11,11 +11,11 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from tracewire.diagram.diagram import BlockUse, Diagram, Wire
-from tracewire.diagram.override import localised
+from tracewire.diagram.override import localise
 from tracewire.diagram.rewrite import reread
 from tracewire.diagram.source_map import SourceMap
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
-from tracewire.diagram.text_edits import entry_after, item_last, replaced
+from tracewire.diagram.text_edits import entry_after, item_last, replace_node
 from tracewire.errors import DiagramError, OptionError
 
 
@@ -50,7 +50,7 @@ def add_addend(
         wired = item_last(text, node, wire)
     else:
         assert isinstance(node, Scalar)
-        wired = replaced(node, f"[{text[node.start : node.end]}, {wire}]")
+        wired = replace_node(node, f"[{text[node.start : node.end]}, {wire}]")
     # what is put at one place stands in the text in the reverse order
     new = reread(diagram, [*more, entry_after(text, blocks, name, block_name, line), wired])
     _expect(new, sum_name, port, [*_signals(inside.blocks[name], port), added])
@@ -110,7 +110,7 @@ def _own_sum(diagram: Diagram, sum_name: str) -> tuple[Diagram, Diagram, Entries
     source_map = SourceMap(diagram)
     inside, blocks, name = source_map.block(sum_name)
     _, node = _addends(inside.blocks[name], inside, blocks)
-    diagram = localised(diagram, source_map, [node])
+    diagram = localise(diagram, source_map, [node])
     return diagram, *SourceMap(diagram).block(sum_name)
 
 

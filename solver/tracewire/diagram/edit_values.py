@@ -13,12 +13,12 @@ from tracewire.diagram.diagram import Array, BlockUse, Diagram, Value
 from tracewire.diagram.edit import with_bodies
 from tracewire.diagram.edit_sensors import factor_of, own_value, set_sensors
 from tracewire.diagram.names import find_parameter, is_count, split_index
-from tracewire.diagram.override import localised
+from tracewire.diagram.override import localise
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.rewrite import digits, reread, rounded
 from tracewire.diagram.source_map import SourceMap
 from tracewire.diagram.strict import Entries, Node, Scalar
-from tracewire.diagram.text_edits import entry_last, replaced
+from tracewire.diagram.text_edits import entry_last, replace_node
 from tracewire.diagram.uses import check_bounds, check_conditions
 from tracewire.diagram.written import Written, count_uses, find_written
 from tracewire.diagram.yaml_text import inline, mapping_text
@@ -74,7 +74,7 @@ def set_values(diagram: Diagram, values: Mapping[str, float]) -> Diagram:
     """
     source_map = SourceMap(diagram)
     locations = [source_map.parameter(path) for path in values]
-    diagram = localised(
+    diagram = localise(
         diagram, source_map, (location.into or location.node for location in locations)
     )
     source_map = SourceMap(diagram)
@@ -90,7 +90,7 @@ def set_values(diagram: Diagram, values: Mapping[str, float]) -> Diagram:
             changes.append(entry_last(diagram.text, location.into, location.name, copy))
         else:
             scalar = node.values["value"] if isinstance(node, Entries) else node
-            changes.append(replaced(scalar, number))
+            changes.append(replace_node(scalar, number))
     return reread(diagram, changes)
 
 

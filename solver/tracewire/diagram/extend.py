@@ -20,7 +20,7 @@ MAIN = ("value", "count", "column")
 """What a mapping stands for where a single text is given in its place: `k: 3`, `x: angle`."""
 
 
-def merged(base: Entries, own: Entries) -> Entries:
+def merge(base: Entries, own: Entries) -> Entries:
     """The sections of a diagram with those of its changes."""
     values = {name: _by_name(name, node) for name, _, node in base}
     for section, _, node in own:
@@ -46,7 +46,7 @@ def with_variant(entries: Entries, variant: str, problems: Problems) -> Entries:
     names = removed_parts(changes)
     own = {name: key for name, key in changes.keys.items() if name != "remove"}
     changes = replace(changes, keys=own, values={name: changes.values[name] for name in own})
-    both = merged(without(plain, names, problems), changes)
+    both = merge(without(plain, names, problems), changes)
     return replace(both, place=entries.place, start=entries.start, end=entries.end)
 
 
@@ -93,7 +93,7 @@ def _entry(section: str, old: Node, new: Node) -> Node:
         and isinstance(old, Entries)
         and isinstance(new, Entries)
     ):
-        return merged(old, new)
+        return merge(old, new)
     if section == "blocks" and both and isinstance(new, Entries) and "type" in new.keys:
         return new
     return _changed(old, new)

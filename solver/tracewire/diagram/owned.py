@@ -24,7 +24,7 @@ from tracewire.diagram.problems import Problems
 from tracewire.diagram.rewrite import reread
 from tracewire.diagram.source_map import SourceMap
 from tracewire.diagram.strict import Entries, Node, compose
-from tracewire.diagram.text_edits import TextEdit, end_of, entry_last, lines_last, replaced
+from tracewire.diagram.text_edits import TextEdit, end_of, entry_last, lines_last, replace_node
 from tracewire.diagram.yaml_text import inline
 from tracewire.errors import OptionError, Place, unknown
 
@@ -50,7 +50,7 @@ def patch_own(diagram: Diagram, path: str, sum_path: str) -> tuple[Diagram, str]
     if kind.place.file != str(diagram.file):
         what = f"the line of '{path}' stands in another file"
         raise OptionError.one(what, use.place, hint="Edit that file.")
-    typed = replaced(kind, name)
+    typed = replace_node(kind, name)
     short = f"{{extends: {use.type}}}"
     with_base = reread(diagram, [_defined(diagram, name, short, [f"extends: {use.type}"]), typed])
     _, its_blocks, _ = SourceMap(with_base).block(f"{name}.{sum_name}")

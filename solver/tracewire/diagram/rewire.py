@@ -10,7 +10,7 @@ from typing import TypeGuard
 from tracewire.diagram.diagram import BlockUse, Diagram, Event, Wire
 from tracewire.diagram.edit import add_addend
 from tracewire.diagram.names import find_signal
-from tracewire.diagram.override import localised
+from tracewire.diagram.override import localise
 from tracewire.diagram.rewrite import reread
 from tracewire.diagram.source_map import SourceMap
 from tracewire.diagram.strict import Entries, Items, Node
@@ -144,7 +144,7 @@ def _own_readers(
             raise OptionError.one(what, event.place, hint="Edit that file.")
     lines = [blocks.values[use.name] for use in readers]
     parts = [part for line in lines if isinstance(line, Entries) for part in line.values.values()]
-    diagram = localised(diagram, source_map, parts)
+    diagram = localise(diagram, source_map, parts)
     root = SourceMap(diagram).root
     blocks = root.values["blocks"]
     assert isinstance(blocks, Entries)

@@ -18,7 +18,7 @@ class TextEdit:
     text: str
 
 
-def changed(text: str, changes: Sequence[TextEdit]) -> str:
+def apply_edits(text: str, changes: Sequence[TextEdit]) -> str:
     """The text with all changes made; they must not overlap."""
     for change in sorted(changes, key=lambda change: change.start, reverse=True):
         text = text[: change.start] + change.text + text[change.end :]
@@ -33,7 +33,7 @@ def end_of(node: Node) -> int:
     return max(end_of(part) for part in parts if part.place.file == node.place.file)
 
 
-def replaced(node: Node, new: str) -> TextEdit:
+def replace_node(node: Node, new: str) -> TextEdit:
     """The node's text exchanged; a text block (| or >) is refused."""
     if isinstance(node, Scalar) and node.style in ("|", ">"):
         raise _refused(node)
@@ -77,7 +77,7 @@ def lines_last(text: str, lines: Sequence[str]) -> TextEdit:
     return TextEdit(len(text), len(text), begin + "".join(f"{line}{ending}" for line in lines))
 
 
-def without_entry(text: str, entries: Entries, name: str) -> TextEdit:
+def remove_entry(text: str, entries: Entries, name: str) -> TextEdit:
     """The entry taken out: its lines, or its part of a mapping in braces and a comma beside it."""
     key, node = entries.keys[name], entries.values[name]
     if not entries.flow:

@@ -288,9 +288,7 @@ def test_an_effect_beside_others_that_harms_whole_unseen_runs_is_not_named(
     there.problem.residuals_on = lambda names, windows: [
         np.full(windows[0], (whole if windows[0] == WHOLE else windowed)[tuple(names)])
     ]
-    monkeypatch.setattr(
-        safeguards, "_refitted_with", lambda search, best, names: Names(tuple(names))
-    )
+    monkeypatch.setattr(safeguards, "_refit_with", lambda search, best, names: Names(tuple(names)))
     none: Any = Names(())
     both: Any = Names((DRY, DELAY))
     found: Any = safeguards._without_harmful(there, FinalModels(none, both))

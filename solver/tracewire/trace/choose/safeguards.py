@@ -88,7 +88,7 @@ def safeguard(search: Search, judgement: Judgement) -> Judgement:
         lengths = sorted({min(search.short_length, final.best.length), final.best.length})
         harm = raises_unseen(search, final.declared, final.best, lengths)
         if not harm and judgement.verdict == "effect":
-            judgement = _confirmed(search, judgement)
+            judgement = _confirm(search, judgement)
         if not harm and judgement.verdict == "unexplained":
             harm = raises_whole_runs(search, final.declared, final.best)
         if harm:
@@ -118,7 +118,7 @@ def _without_undetermined(search: Search, judgement: Judgement) -> Judgement:
     names = undetermined_effects(final.best, search.options.confidence)
     kept = [effect for effect in final.best.effects if str(effect) not in names]
     try:
-        fewer = _refitted_with(search, final.best, kept) if names and kept else None
+        fewer = _refit_with(search, final.best, kept) if names and kept else None
     except FitError:
         names = []
     if not names:
@@ -142,7 +142,7 @@ def _without_harmful(search: Search, final: FinalModels) -> FinalModels:
     for effect in best.effects if len(best.effects) > 1 else ():
         kept = [one for one in best.effects if one is not effect]
         try:
-            fewer = _refitted_with(search, best, kept)
+            fewer = _refit_with(search, best, kept)
         except FitError:
             continue
         harm = raises_whole_runs(search, fewer, best)
@@ -153,7 +153,7 @@ def _without_harmful(search: Search, final: FinalModels) -> FinalModels:
     return final
 
 
-def _refitted_with(search: Search, best: Trial, kept: Sequence[PlacedEffect]) -> Trial:
+def _refit_with(search: Search, best: Trial, kept: Sequence[PlacedEffect]) -> Trial:
     """A trial with some of its effects, fitted to its windows. Raises FitError."""
     windows, fixed = best.windows.segments, best.windows.criterion.parameters
     return search.problem.fit(kept, windows, best.length, best.values, fixed=fixed)
@@ -165,7 +165,7 @@ def _with_effects(final: FinalModels, best: Trial) -> FinalModels:
     return replace(final, best=best, rivals=rivals)
 
 
-def _confirmed(search: Search, judgement: Judgement) -> Judgement:
+def _confirm(search: Search, judgement: Judgement) -> Judgement:
     """The judgement, or `unexplained` where unseen data do not confirm the effects.
 
     They hardly lower the error of whole unseen runs: what follows a rest of no block's form on
