@@ -62,7 +62,7 @@ def result_of(
     sigma = dict(problem.sigma)
     units = dict(best.model.flat.units)
     units |= {name: p.unit for name, p in best.model.flat.parameters.items()}
-    interval = float(np.median([np.median(np.diff(m.t)) for m in problem.measured]))
+    interval = float(np.median([m.interval for m in problem.measured]))
     steps = [_step_of(step, interval, search.options.shown) for step in search.steps]
     return Found(
         verdict=judgement.verdict,

@@ -112,6 +112,10 @@ class Search:
         """The windows of some sections."""
         return self.data_split.windows(self.problem.declared, sections, length, self.free)
 
+    def whole_windows(self, sections: Sequence[Section]) -> list[Segment]:
+        """Each section as one window."""
+        return [w for section in sections for w in self.windows([section], section.count)]
+
     def fit_declared(self) -> Trial:
         """The diagram as it is, fitted to the shortest windows."""
         self.tell("fitting the declared model")
@@ -146,7 +150,7 @@ class Search:
         """A trial refitted on longer and longer windows, as far as its residual stays small."""
         sections = self.data_split.train if sections is None else sections
         far = self.options.search.far if far is None else far
-        longest = max(section.end - section.first for section in sections)
+        longest = max(section.count for section in sections)
         lengths = [
             n for n in self.lengths if trial.length < n < self.options.split.nearly_whole * longest
         ]
