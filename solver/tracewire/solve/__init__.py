@@ -137,7 +137,7 @@ from tracewire.solve.parallel import WorkerEnded, carry_out, cores
 from tracewire.solve.parameters import parameter_values
 from tracewire.solve.passage import Passage
 from tracewire.solve.problem import InitialValueProblem, initial_value_problem
-from tracewire.solve.progress import PartProgress, Tell
+from tracewire.solve.progress import PartProgress, ProgressCallback
 from tracewire.solve.run import Event, Run, Sensitivities, Statistics
 from tracewire.solve.runs import Runs
 from tracewire.solve.sampling import DEFAULT_SAMPLES, even_times, sample_times
@@ -159,6 +159,7 @@ __all__ = [
     "Options",
     "PartProgress",
     "Passage",
+    "ProgressCallback",
     "Run",
     "Runs",
     "Section",
@@ -167,7 +168,6 @@ __all__ = [
     "SpanProblem",
     "SpanRuns",
     "Statistics",
-    "Tell",
     "WorkerEnded",
     "beyond_budget",
     "carry_out",
