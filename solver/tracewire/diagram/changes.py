@@ -54,7 +54,7 @@ class AddBlock:
     element: of a sum of vectors the number of the element that it is added to, and how many there
     are: a gain behind the block makes a vector of it. own: the path of the block whose subsystem
     has the sum, where an included file defines that: it gets a definition of its own (`owned`).
-    comment: what the text says behind the line of the block.
+    comment: what the text says behind the line of the block, where it has one of its own.
     """
 
     name: str
@@ -106,12 +106,13 @@ def patch(diagram: Diagram, changes: Sequence[Change]) -> Diagram:
     """
     for change in changes:
         match change:
-            case AddBlock(name, to=to, drive=True):
-                diagram = add_to_drive(diagram, to, name, _line(change))
-            case AddBlock(name, to=to, element=element, own=own):
+            case AddBlock(name, to=to, drive=True, comment=comment):
+                diagram = add_to_drive(diagram, to, name, _line(change), comment)
+            case AddBlock(name, to=to, element=element, own=own, comment=comment):
                 if own:
                     diagram, to = patch_own(diagram, own, to)
-                diagram = add_addend(diagram, to, name, _line(change), element=element)
+                line = _line(change)
+                diagram = add_addend(diagram, to, name, line, element=element, comment=comment)
             case AddSensorTerm(signal, kind, value, fit):
                 diagram = add_sensor(diagram, signal, kind, value, fit)
             case AddOwn(values, fit):
@@ -149,7 +150,7 @@ def _line(change: AddBlock) -> str:
     parts = [f"type: {change.type}"]
     parts += [f"{port}: {quote(name)}" for port, name in change.inputs.items()]
     parts += [f"{name}: {_setting(value)}" for name, value in change.settings.items()]
-    return f"{{{', '.join(parts)}}}" + (f"   # {change.comment}" if change.comment else "")
+    return f"{{{', '.join(parts)}}}"
 
 
 def _setting(value: Value | PointsFile) -> str:

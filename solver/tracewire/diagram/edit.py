@@ -26,6 +26,7 @@ def add_addend(
     block_line: str,
     negative: bool = False,
     element: tuple[int, int] | None = None,
+    comment: str = "",
 ) -> Diagram:
     """The diagram with a new block, on a line behind the sum's, and its output in the sum.
 
@@ -33,7 +34,8 @@ def add_addend(
     the definition of the subsystem `bearing`.
     block_line: what stands behind the name, such as `{type: viscous, rate: omega, c: 0}`.
     negative: the sum takes the output away. element: the number of the element that it is added to,
-    and how many there are, of a sum of vectors: a gain makes a vector of it.
+    and how many there are, of a sum of vectors: a gain makes a vector of it. comment: what is said
+    behind the line.
     """
     diagram, inside, blocks, name = _own_sum(diagram, sum_name)
     port, node = _addends(inside.blocks[name], inside, blocks)
@@ -52,7 +54,9 @@ def add_addend(
         assert isinstance(node, Scalar)
         wired = replace_node(node, f"[{text[node.start : node.end]}, {wire}]")
     # what is put at one place stands in the text in the reverse order
-    new = reread(diagram, [*more, entry_after(text, blocks, name, block_name, line), wired])
+    new = reread(
+        diagram, [*more, entry_after(text, blocks, name, block_name, line, comment), wired]
+    )
     _expect(new, sum_name, port, [*_signals(inside.blocks[name], port), added])
     return new
 

@@ -40,15 +40,19 @@ def replace_node(node: Node, new: str) -> TextEdit:
     return TextEdit(node.start, end_of(node), new)
 
 
-def entry_after(text: str, entries: Entries, after: str, name: str, value: str) -> TextEdit:
-    """`name: value` as a new entry behind the entry `after`, laid out as that is."""
+def entry_after(
+    text: str, entries: Entries, after: str, name: str, value: str, comment: str = ""
+) -> TextEdit:
+    """`name: value` as a new entry behind the entry `after`, laid out as that is; the comment
+    stands behind it where it has a line of its own."""
     key, node = entries.keys[after], entries.values[after]
     end = end_of(node)
     if entries.flow:
         return TextEdit(end, end, f", {name}: {value}")
     indent = _indent(text, key)
     width = node.start - key.start if node.place.line == key.place.line else 0
-    return _line_after(text, end, f"{indent}{f'{name}:'.ljust(width - 1)} {value}")
+    behind = f"   # {comment}" if comment else ""
+    return _line_after(text, end, f"{indent}{f'{name}:'.ljust(width - 1)} {value}{behind}")
 
 
 def entry_last(text: str, entries: Entries, name: str, value: str) -> TextEdit:
