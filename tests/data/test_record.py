@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.interpolate import make_smoothing_spline
 from tracewire.data import STEPS, Record, read_record
-from tracewire.data.filters import smoothed, white_noise
+from tracewire.data.filters import smooth, white_noise
 from tracewire.errors import DataError, OptionError
 
 patient = settings(deadline=None)  # the first run may load scipy
@@ -220,7 +220,7 @@ def test_a_derivative_is_near_the_exact_one_and_says_what_was_left_out() -> None
 def test_the_spline_is_that_of_scipy(lam: float, seed: int) -> None:
     rng = np.random.default_rng(seed)
     u, y = np.cumsum(rng.uniform(0.3, 2, 40)), rng.standard_normal(40)
-    assert smoothed(u, y, lam) == pytest.approx(make_smoothing_spline(u, y, lam=lam)(u), abs=1e-8)
+    assert smooth(u, y, lam) == pytest.approx(make_smoothing_spline(u, y, lam=lam)(u), abs=1e-8)
 
 
 def test_white_noise_is_found_beside_a_slow_signal() -> None:

@@ -8,7 +8,8 @@ from typing import Any
 from diagram.small_library import LIBRARY, PENDULUM, made, refused
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from tracewire.diagram import add_addend, difference, read_text
+from tracewire.diagram import difference, read_text
+from tracewire.diagram.edit import add_addend
 from tracewire.diagram.edit_values import set_values
 from tracewire.errors import DiagramError, Problem, TracewireError
 from tracewire.formula import Number

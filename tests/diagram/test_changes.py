@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ from tracewire.diagram import (
     AddSensorTerm,
     Change,
     Diagram,
+    PointsFile,
     SetValues,
     Value,
     apply,
@@ -174,6 +176,25 @@ def test_a_block_goes_into_each_body_that_has_the_sum(diagram: Diagram) -> None:
     assert wet is not None
     assert "one" in wet.blocks
     assert "one" in new.subsystems["arm"].blocks, "the other variant"
+
+
+def test_a_table_of_a_file_has_its_points_and_a_comment_where_there_is_a_line(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "law.csv").write_text("way, force\n0, 0\n1, 2\n")
+    points = PointsFile("law.csv", "way", "force")
+    change = AddBlock("law", "table", {"of": "x"}, {"points": points}, "s", comment="measured")
+    lines = "inputs: [u]\nblocks:\n  x: {type: integrator, of: s}\n  s: {type: sum, of: [u]}\n"
+    line = "inputs: [u]\nblocks: {x: {type: integrator, of: s}, s: {type: sum, of: [u]}}\n"
+    for text, comment in ((lines, "}}   # measured\n"), (line, "}}}\n")):
+        old = read_text(text, tmp_path / "d.yaml")
+        new = patch(old, [change])
+        assert "points: {file: law.csv, x: way, y: force}" in new.text
+        assert new.text.endswith(comment)
+        assert said(apply(old, [change])) == said(new)
+    for way in (apply, patch):
+        with pytest.raises(DiagramError, match="column 'no'"):
+            way(old, [replace(change, settings={"points": PointsFile("law.csv", "no", "force")})])
 
 
 ONE, LEG = Value(Number(1.0)), "leg.total"

@@ -13,13 +13,13 @@ from tracewire.diagram import (
     Value,
     apply,
     difference,
-    laid_out,
+    lay_out,
     patch,
-    patch_own,
     read_text,
-    written_out,
+    write_out,
 )
 from tracewire.diagram.edit_values import set_values
+from tracewire.diagram.owned import patch_own
 from tracewire.errors import DiagramError, OptionError
 from tracewire.formula import Number
 
@@ -70,7 +70,7 @@ def test_a_subsystem_is_that_of_a_file_with_changes(tmp_path: Path) -> None:
     assert flat.parameters["rough.k"].fit == (1, 20)
     assert "rough.drag" in flat.signals
     assert "free.spring" not in flat.signals
-    alone = read_text(written_out(diagram), tmp_path / "alone.yaml")
+    alone = read_text(write_out(diagram), tmp_path / "alone.yaml")
     (tmp_path / "parts.yaml").unlink()
     assert said(alone.blocks) == said(diagram.blocks)
     assert alone.sources == ()
@@ -124,7 +124,7 @@ def test_values_are_written_into_the_changes(tmp_path: Path) -> None:
     ]
     with pytest.raises(OptionError, match=r"Edit that file, or write one that extends it"):
         set_values(diagram, {"smooth.k": 11.0})
-    assert laid_out(diagram.text) != ""
+    assert lay_out(diagram.text) != ""
 
 
 DRAG = AddBlock("drag", "viscous", {"rate": "v"}, {"c": Value(Number(0.5))}, "cart.force")

@@ -10,15 +10,13 @@ from hypothesis import strategies as st
 from tracewire.diagram import (
     Diagram,
     Value,
-    add_addend,
-    add_sensor,
     difference,
     find_parameter,
     read_text,
-    remove_addend,
     write,
 )
-from tracewire.diagram.edit_sensors import set_sensors
+from tracewire.diagram.edit import add_addend
+from tracewire.diagram.edit_sensors import add_sensor, set_sensors
 from tracewire.diagram.edit_values import set_values
 from tracewire.errors import DiagramError, OptionError
 from tracewire.formula import Number
@@ -61,7 +59,6 @@ def test_an_addend_of_a_list_of_lines_inside_a_subsystem() -> None:
     new = add_addend(old, "journal_bearing.total", "drag", line)
     assert changes(old, new) == ([], ["          - drag", f"      drag: {line}"])
     assert "          - friction   # dry\n          - drag\n      drag:" in new.text
-    assert remove_addend(new, "journal_bearing.total", "drag").text == old.text
 
 
 GAIN = "b: {type: gain, of: i, k: 1}"
@@ -97,46 +94,6 @@ def test_every_layout_of_a_sum_can_be_added_to(layout: str, given: str, ending: 
     assert [c for c in ("# c", "# the second", "# one, and") if c in old.text] == [
         c for c in ("# c", "# the second", "# one, and") if c in new.text
     ]
-    back = remove_addend(new, "s", "drag")
-    assert signals(back, "s") == LISTS[given]
-    assert "drag" not in back.blocks
-
-
-@pytest.mark.parametrize("layout", LAYOUTS)
-@pytest.mark.parametrize("given", ["b", "[b]", "[i, b]", "[b, i, -b]", "[b, # one\n        i]"])
-def test_every_layout_of_a_sum_can_be_taken_from(layout: str, given: str) -> None:
-    old = made(layout % given)
-    new = remove_addend(old, "s", "b")
-    assert signals(new, "s") == [name for name in signals(old, "s") if name != "b"]
-    assert "b" not in new.blocks
-    assert ("# one" in old.text) == ("# one" in new.text)
-
-
-@pytest.mark.parametrize("items", ["- b", "- b   # x\n      - i", "- i\n      - -b", "- b.y"])
-def test_lines_of_a_list_are_taken_out(items: str) -> None:
-    text = f"""\
-blocks:
-  i: {{type: integrator, of: s}}
-  s:
-    type: sum
-    of:   # the addends
-      {items}
-  b: {{type: gain, of: i, k: 1}}
-"""
-    new = remove_addend(made(text), "s", "b")
-    assert "b" not in new.blocks
-    assert "# the addends" in new.text
-    assert signals(new, "s") == (["i"] if "i" in items else [])
-
-
-def test_a_block_that_is_read_elsewhere_stays() -> None:
-    old = made(PENDULUM)
-    new = remove_addend(old, "torque", "column")
-    assert "column" not in new.blocks
-    kept = made(PENDULUM.replace("record: [theta", "record: [column, theta"))
-    assert "column" in remove_addend(kept, "torque", "column").blocks
-    assert signals(remove_addend(old, "torque", "drive"), "torque") == ["column", "bearing.torque"]
-    assert "bearing" in remove_addend(old, "torque", "bearing").blocks  # it is recorded
 
 
 def test_values_are_written_in_the_users_unit() -> None:
@@ -258,8 +215,6 @@ def test_names_that_do_not_exist_are_refused() -> None:
         add_addend(old, "bearing.total", "a", "{}")
     with pytest.raises(OptionError, match="'column' is a gain, and has no input for several"):
         add_addend(old, "column", "a", "{}")
-    with pytest.raises(OptionError, match="unknown addend of 'torque' 'theta'; there are: bearing"):
-        remove_addend(old, "torque", "theta")
     with pytest.raises(DiagramError, match="two definitions of 'theta'"):
         add_addend(old, "torque", "theta", DRAG)
     with pytest.raises(DiagramError, match="unknown block type 'vicous'"):

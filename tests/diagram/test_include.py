@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 from diagram.small_library import LIBRARY, refused
-from tracewire.diagram import add_addend, read_text
+from tracewire.diagram import read_text
+from tracewire.diagram.edit import add_addend
 from tracewire.diagram.edit_values import set_values
 from tracewire.errors import OptionError
 

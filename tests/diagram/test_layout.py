@@ -10,7 +10,7 @@ import pytest
 from diagram.whole import WHOLE
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tracewire.diagram import laid_out
+from tracewire.diagram import lay_out
 from tracewire.diagram.files import load
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.strict import Entries, Items, Node, Scalar, compose
@@ -119,22 +119,22 @@ def meaning_of(text: str) -> object:
 
 
 def test_what_it_does() -> None:
-    assert laid_out(UGLY) == LAID_OUT
-    assert laid_out(LAID_OUT) == LAID_OUT
+    assert lay_out(UGLY) == LAID_OUT
+    assert lay_out(LAID_OUT) == LAID_OUT
 
 
 def test_comments_stay() -> None:
     comments = re.findall("#.*", UGLY)
-    assert sorted(re.findall("#.*", laid_out(UGLY))) == sorted(comments)
+    assert sorted(re.findall("#.*", lay_out(UGLY))) == sorted(comments)
 
 
 def test_every_shipped_diagram_is_laid_out() -> None:
-    assert [file for file in SHIPPED if laid_out(load(file)) != load(file)] == []
+    assert [file for file in SHIPPED if lay_out(load(file)) != load(file)] == []
 
 
 def test_line_ends_and_byte_order_mark_stay() -> None:
     text = "\ufeff" + UGLY.replace("\n", "\r\n")
-    assert laid_out(text) == "\ufeff" + LAID_OUT.replace("\n", "\r\n")
+    assert lay_out(text) == "\ufeff" + LAID_OUT.replace("\n", "\r\n")
 
 
 @pytest.mark.parametrize(
@@ -160,7 +160,7 @@ def test_line_ends_and_byte_order_mark_stay() -> None:
     ],
 )
 def test_quotes_and_text_blocks(text: str, found: str) -> None:
-    assert laid_out(text) == found
+    assert lay_out(text) == found
     assert meaning_of(found) == meaning_of(text)
 
 
@@ -178,11 +178,11 @@ def test_any_blanks_give_the_same_layout_and_meaning(factor: int, seed: int) -> 
         lines.append(" " * (factor * (len(line) - len(line.lstrip(" ")))) + body)
         lines += [""] * (random.random() < 0.1) * 2
     text = "\n".join(lines) + "\n"
-    found = laid_out(text)
+    found = lay_out(text)
     told = [re.sub(" +#", " #", line) for line in found.splitlines() if line]
     assert told == re.sub(" +#", " #", WHOLE).splitlines()
     assert "\n\n\n" not in found
-    assert laid_out(found) == found
+    assert lay_out(found) == found
     assert meaning_of(found) == meaning_of(text)
 
 
@@ -201,9 +201,9 @@ def test_any_blanks_give_the_same_layout_and_meaning(factor: int, seed: int) -> 
 )
 def test_any_nesting_in_brackets_keeps_its_meaning(value: str) -> None:
     text = f"a:\n- b: {value}\n"
-    found = laid_out(text)
+    found = lay_out(text)
     assert meaning_of(found) == meaning_of(text)
-    assert laid_out(found) == found
+    assert lay_out(found) == found
 
 
 @pytest.mark.parametrize(
@@ -217,5 +217,5 @@ def test_any_nesting_in_brackets_keeps_its_meaning(value: str) -> None:
 )
 def test_what_cannot_be_laid_out_is_refused(text: str, words: str) -> None:
     with pytest.raises(DiagramError) as caught:
-        laid_out(text)
+        lay_out(text)
     assert words in str(caught.value)

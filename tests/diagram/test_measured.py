@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 from diagram.small_library import made, refused
-from tracewire.diagram import Series, add_sensor
+from tracewire.diagram import Series
+from tracewire.diagram.edit_sensors import add_sensor
 
 TOP = """
 inputs: {drive: {unit: N m, default: 0}}

@@ -7,13 +7,8 @@ import pytest
 from diagram.alike import said
 from diagram.small_library import LIBRARY, refused
 from tracewire.compile import compile
-from tracewire.diagram import (
-    Diagram,
-    add_addend,
-    read_text,
-    set_variants,
-    written_out,
-)
+from tracewire.diagram import Diagram, read_text, write_out
+from tracewire.diagram.edit import add_addend
 from tracewire.diagram.edit_values import set_values
 from tracewire.errors import OptionError, SimulationError
 from tracewire.solve import simulate
@@ -78,7 +73,7 @@ def test_a_variant_is_as_if_it_were_the_body(variant: str) -> None:
     inside = diagram.blocks["drag"].subsystem
     assert inside is not None and (inside.variant, inside.variants) == (variant, tuple(BODIES))
     assert said(diagram) == said(made(whole(*BODIES[variant])))
-    assert said(made(written_out(diagram))) == said(diagram)
+    assert said(made(write_out(diagram))) == said(diagram)
 
 
 def test_the_first_variant_is_the_usual_one_and_each_use_may_have_another() -> None:
@@ -97,11 +92,6 @@ def test_a_diagram_that_extends_another_one_chooses_a_variant(tmp_path: Path) ->
     diagram = read_text(text, tmp_path / "top.yaml", library=LIBRARY)
     inside = diagram.blocks["drag"].subsystem
     assert inside is not None and inside.variant == "linear"
-    new = set_variants(diagram, {"drag": "none"})
-    assert new.text == text.replace("variant: linear", "variant: none")
-    other = read_text("extends: base.yaml\n", tmp_path / "top.yaml", library=LIBRARY)
-    chosen = set_variants(other, {"drag": "none"})
-    assert chosen.text == "extends: base.yaml\nblocks:\n  drag: {variant: none}\n"
 
 
 def test_edits_reach_the_variant_that_is_used() -> None:
@@ -113,7 +103,8 @@ def test_edits_reach_the_variant_that_is_used() -> None:
     added = add_addend(diagram, "friction.total", "more", line)
     inside = added.blocks["drag"].subsystem
     assert inside is not None and "more" in inside.blocks
-    none = add_addend(set_variants(diagram, {"drag": "none"}), "friction.total", "more", line)
+    other = made(FRICTION + BLOCKS.replace("variant: cubic", "variant: none"))
+    none = add_addend(other, "friction.total", "more", line)
     assert "total: {type: sum, of: [law, more]}" in none.text
 
 
@@ -187,20 +178,6 @@ def test_messages(case: str) -> None:
     assert message in refused(text)
 
 
-@pytest.mark.parametrize(
-    ("name", "variant", "message"),
-    [
-        ("drug", "none", "unknown block 'drug'; there are: drag, v. Did you mean 'drag'?"),
-        ("v", "none", "block 'v' has no variants"),
-        ("drag", "non", "unknown variant of 'drag' 'non'; there are: cubic, linear, none"),
-    ],
-)
-def test_messages_of_a_choice(name: str, variant: str, message: str) -> None:
-    with pytest.raises(OptionError) as error:
-        set_variants(made(FRICTION + BLOCKS), {name: variant})
-    assert message in str(error.value)
-
-
 CHOSEN = """
 parameters: {kind: 1}
 presets: {slow: {kind: 2}, none: {drag.variant: 3}}
@@ -231,7 +208,7 @@ def test_edits_of_a_subsystem_whose_body_a_parameter_chooses() -> None:
     assert new.text == diagram.text.replace("kind: 1", "kind: 2").replace("c: 2", "c: 5").replace(
         "value: 3", "value: 4"
     )
-    assert said(made(written_out(diagram))) == said(diagram)
+    assert said(made(write_out(diagram))) == said(diagram)
     for path, name in (("drag.variant", "kind"), ("drag.cubic_body.b", "b")):
         with pytest.raises(OptionError) as error:
             set_values(diagram, {path: 2.0})

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from diagram.alike import said
-from tracewire.diagram import read, read_text, written_out
+from tracewire.diagram import read, read_text, write_out
 
 DIAGRAMS = Path(__file__).parents[2] / "diagrams"
 FILES = [
@@ -18,10 +18,10 @@ FILES = [
 @pytest.mark.parametrize("file", FILES, ids=lambda file: str(file.relative_to(DIAGRAMS)))
 def test_a_diagram_that_is_written_out_says_the_same(file: Path) -> None:
     diagram = read(file)
-    text = written_out(diagram)
+    text = write_out(diagram)
     again = read_text(text, file)
     assert said(again) == said(diagram)
-    assert written_out(again) == text
+    assert write_out(again) == text
     assert max(map(len, text.splitlines())) < 400
 
 
@@ -30,7 +30,7 @@ def test_a_parameter_with_the_name_of_a_section_is_no_subsystem() -> None:
         "parameters: {blocks: 5, k: 2}\npresets: {one: {blocks: 1, k: 3}}\n"
         "blocks: {y: {type: constant, value: k*blocks}}\n"
     )
-    again = read_text(written_out(read_text(text)))
+    again = read_text(write_out(read_text(text)))
     assert again.parameters.keys() == {"blocks", "k"}
     assert again.presets["one"].keys() == {"blocks", "k"}
 
@@ -45,5 +45,5 @@ def test_files_of_a_base_are_named_from_where_the_changes_are(tmp_path: Path) ->
         "reference: {diagram: other.yaml}}]\n"
     )
     (tmp_path / "top.yaml").write_text("extends: sub/base.yaml\n")
-    text = written_out(read(tmp_path / "top.yaml"))
+    text = write_out(read(tmp_path / "top.yaml"))
     assert 'diagram: "sub/other.yaml"' in text

@@ -10,7 +10,9 @@ from pathlib import Path
 import pytest
 from draw.geometry import faults
 from draw.random_diagrams import text_of
-from tracewire.diagram import Diagram, add_addend, add_sensor, read, read_text
+from tracewire.diagram import Diagram, read, read_text
+from tracewire.diagram.edit import add_addend
+from tracewire.diagram.edit_sensors import add_sensor
 from tracewire.draw import Drawing, Needed, draw
 from tracewire.draw.graph import Node, Plot
 

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tracewire.compile import Model, compile
-from tracewire.diagram import add_own, read, read_text
+from tracewire.diagram import read, read_text
+from tracewire.diagram.edit_own import add_own
 from tracewire.diagram.edit_sensors import set_sensors
 from tracewire.errors import DiagramError, OptionError
 from tracewire.fit import fit

@@ -21,7 +21,7 @@ from tracewire.errors import OptionError
 from tracewire.show import plot_run
 from tracewire.show.event_rows import draw_events, event_rows, is_tick, jump_times
 from tracewire.show.figures import group_signals
-from tracewire.show.sticking import held_intervals, joined, stick_intervals
+from tracewire.show.sticking import held_intervals, join_intervals, stick_intervals
 from tracewire.show.style import panels, styled
 from tracewire.show.summary import run_table
 from tracewire.solve import Event, Run, Statistics, simulate
@@ -181,8 +181,8 @@ def test_a_guard_in_words_holds_the_friction_alone() -> None:
 
 
 def test_intervals_that_touch_are_one() -> None:
-    assert joined([(2, 3), (0, 1), (1, 1.5), (3.25, 4)]) == [(0, 1.5), (2, 3), (3.25, 4)]
-    assert joined([(2, 3), (0, 1), (3.25, 4)], apart=0.25) == [(0, 1), (2, 4)]
+    assert join_intervals([(2, 3), (0, 1), (1, 1.5), (3.25, 4)]) == [(0, 1.5), (2, 3), (3.25, 4)]
+    assert join_intervals([(2, 3), (0, 1), (3.25, 4)], apart=0.25) == [(0, 1), (2, 4)]
 
 
 def test_an_event_strikes_the_panels_of_the_states_that_it_sets() -> None:

@@ -23,7 +23,7 @@ from tracewire.show.fit_tables import (
     fit_tables,
     fit_text,
     fit_words,
-    rounded,
+    round_by_error,
     starts_table,
     tied_table,
 )
@@ -95,7 +95,7 @@ def test_a_value_at_its_bound_is_marked(k: float, remark: str) -> None:
 def test_a_value_has_the_digits_that_its_error_leaves(
     value: float, error: float, text: str
 ) -> None:
-    assert rounded(value, error) == text
+    assert round_by_error(value, error) == text
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from tracewire.show import Report, report
 from tracewire.show.diagram_picture import diagram_figure
 from tracewire.show.document import Figure, Section
 from tracewire.show.summary import Table
-from tracewire.show.tidy import tidied
+from tracewire.show.tidy import tidy_formula
 from tracewire.solve import simulate
 
 
@@ -227,7 +227,7 @@ def test_the_caption_tells_blue_names_only_where_something_is_measured() -> None
     ],
 )
 def test_a_guard_has_no_double_signs(text: str, told: str) -> None:
-    assert tidied(text) == told
+    assert tidy_formula(text) == told
 
 
 def test_the_report_of_a_run_has_its_values_and_its_first_events() -> None:

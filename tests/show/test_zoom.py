@@ -24,7 +24,7 @@ from tracewire.show.limits import FIGURE
 from tracewire.show.plane_figures import plot_portrait
 from tracewire.show.style import panels, saved_figures
 from tracewire.show.uplot import HERE, scripts
-from tracewire.show.zoom import curves_of, thinned
+from tracewire.show.zoom import curves_of, thin_curve
 from tracewire.solve import Run
 
 T = np.linspace(0.0, 4.0, 81)
@@ -99,14 +99,14 @@ def test_a_long_curve_keeps_its_peaks_and_gaps() -> None:
     y = np.sin(20 * t)
     y[[1234, 77_777]] = 50.0, -60.0
     y[5000:7000] = np.nan
-    x, thin = thinned(t, y)
+    x, thin = thin_curve(t, y)
     assert len(x) <= FIGURE.zoom_points + 2
     assert (np.diff(x) > 0).all()
     assert (x[0], x[-1]) == (0.0, 1.0)
     assert (np.nanmax(thin), np.nanmin(thin)) == (50.0, -60.0)
     assert np.isnan(thin[(x > 0.0505) & (x < 0.0695)]).all()
     assert np.abs(np.interp(x, t, y) - thin)[np.isfinite(thin)].max() == 0
-    assert thinned(t[:10], y[:10]) == (pytest.approx(t[:10]), pytest.approx(y[:10]))
+    assert thin_curve(t[:10], y[:10]) == (pytest.approx(t[:10]), pytest.approx(y[:10]))
 
 
 BAD = "</script><script>alert('x')</script><b>&"

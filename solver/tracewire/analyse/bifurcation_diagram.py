@@ -28,7 +28,7 @@ from tracewire.solve import (
     Interrupted,
     PartProgress,
     Passage,
-    Tell,
+    ProgressCallback,
     carry_out,
     parameter_values,
 )
@@ -118,7 +118,7 @@ def bifurcation(
     rtol: float = 1e-6,
     workers: int | None = None,
     executor: Executor | None = None,
-    progress: Tell | None = None,
+    progress: ProgressCallback | None = None,
     partial: str | Path | None = None,
 ) -> Bifurcation:
     """A bifurcation diagram: at each value of a parameter, points of a section after a transient.
@@ -260,7 +260,7 @@ def _carry_out(
     store: Partial,
     workers: int | None,
     executor: Executor | None,
-    progress: Tell | None,
+    progress: ProgressCallback | None,
 ) -> None:
     """Go through the chains side by side, through the values of each one after the other."""
     n, first = len(work.model.states), work.keep * len(work.model.states)

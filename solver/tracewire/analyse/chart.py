@@ -17,7 +17,7 @@ from tracewire.analyse.work import work_through
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem
 from tracewire.result import Result
-from tracewire.solve import Halt, Tell
+from tracewire.solve import Halt, ProgressCallback
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -64,7 +64,7 @@ def stability_chart(
     rtol: float = 1e-9,
     workers: int | None = None,
     executor: Executor | None = None,
-    progress: Tell | None = None,
+    progress: ProgressCallback | None = None,
     partial: str | Path | None = None,
 ) -> StabilityChart:
     """The stability of a periodic motion over the values of two parameters, ("a", values).

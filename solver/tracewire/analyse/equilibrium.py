@@ -237,7 +237,7 @@ def _refuse_outside(passage: Passage) -> None:
             raise AnalysisError([Problem(what, hint=hint)])
 
 
-def told_rates(passage: Passage, sizes: Vector) -> str:
+def describe_rates(passage: Passage, sizes: Vector) -> str:
     """In words: the rates at a stop that are not zero, the largest ones first."""
     rates, closed = passage.rates(), EQUILIBRIUM.closed * rate_sizes(passage, sizes)
     parts = np.abs(rates) * _inverse(closed)
@@ -250,6 +250,6 @@ def told_rates(passage: Passage, sizes: Vector) -> str:
 def _not_found(passage: Passage, sizes: Vector, more: str = "") -> AnalysisError:
     states = zip(passage.model.states, passage.x.tolist(), strict=True)
     where = ", ".join(f"{name} = {x:.6g}" for name, x in states)
-    what = f"no steady state was found: at {where} {told_rates(passage, sizes)}{more}"
+    what = f"no steady state was found: at {where} {describe_rates(passage, sizes)}{more}"
     hint = "Give a guess nearer to it (guess=, --start); there may be none."
     return AnalysisError([Problem(what, hint=hint)])

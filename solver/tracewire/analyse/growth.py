@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.signal import find_peaks
 
 from tracewire.analyse.limits import SIGNAL
-from tracewire.analyse.signal import signal_of
+from tracewire.analyse.signal import signal_of, vertex
 from tracewire.errors import AnalysisError, OptionError, Problem, unknown
 from tracewire.result import Result
 from tracewire.solve import Run
@@ -111,8 +111,7 @@ def _refined(t: Vector, size: Vector, at: NDArray[np.int64]) -> tuple[Vector, Ve
     """Times and heights of peaks between samples: of the parabola through three."""
     at = at[(at > 0) & (at < len(t) - 1)]
     a, b, c = size[at - 1], size[at], size[at + 1]
-    bend = a - 2 * b + c
-    shift = np.where(bend < 0, 0.5 * (a - c) / np.where(bend < 0, bend, 1.0), 0.0)
+    shift = vertex(a, b, c)
     height = b - 0.25 * (a - c) * shift
     return t[at] + shift * (t[at + 1] - t[at - 1]) / 2, height
 

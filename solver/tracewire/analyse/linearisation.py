@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from tracewire.analyse import verdict
 from tracewire.analyse.characteristic import characteristic_roots
-from tracewire.analyse.equilibrium import is_steady, state_sizes, told_rates
+from tracewire.analyse.equilibrium import describe_rates, is_steady, state_sizes
 from tracewire.analyse.internal_delays import InternalDelays
 from tracewire.analyse.limits import EQUILIBRIUM
 from tracewire.compile import Model, at_rest
@@ -180,7 +180,7 @@ def linearise(
         B=slopes("rhs", names, n),
         C=by_x[:q],
         D=by_u[:q],
-        told="" if is_steady(passage, sizes) else told_rates(passage, sizes),
+        told="" if is_steady(passage, sizes) else describe_rates(passage, sizes),
         delays=delays,
     )
     parts: list[tuple[object, str]] = [(found, name) for name in "ABCD"]

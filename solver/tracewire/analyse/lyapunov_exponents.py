@@ -14,7 +14,13 @@ from tracewire.analyse.plane import span_of
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, OptionError, Problem
 from tracewire.result import Result
-from tracewire.solve import PartProgress, Passage, Tell, parameter_values, until_interrupted
+from tracewire.solve import (
+    PartProgress,
+    Passage,
+    ProgressCallback,
+    parameter_values,
+    until_interrupted,
+)
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -73,7 +79,7 @@ def lyapunov(
     method: str = "auto",
     rtol: float = 1e-6,
     seed: int = 0,
-    progress: Tell | None = None,
+    progress: ProgressCallback | None = None,
 ) -> Lyapunov:
     """The Lyapunov exponents of a motion, over `length` s after a `transient` in s.
 

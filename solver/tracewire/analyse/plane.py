@@ -14,7 +14,7 @@ from tracewire.analyse.limits import SECTION
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, OptionError, Problem, unknown
 from tracewire.formula import evaluate
-from tracewire.solve import Passage, parameter_values
+from tracewire.solve import Passage, guard_crossings, parameter_values
 from tracewire.solve.core.codes import LOG_HEAD
 
 Vector = NDArray[np.float64]
@@ -78,18 +78,14 @@ def crossings(passage: Passage, plane: Plane, skip: int, keep: int) -> tuple[Vec
     Raises AnalysisError where it does not cross as often within a hundred spans of the diagram.
     """
     model, n = passage.model, len(passage.model.states)
-    named = [i for i, m in enumerate(model.modes) if plane.guard in (m.text, m.signal)]
-    way = {"up": [1], "down": [-1], "both": [1, -1]}[plane.direction]
     low, high = span_of(model, passage.parameters)
     begin, length = passage.t, abs(high - low) or 1.0
     chunk, count = SECTION.first_chunk * length, 0
     kept: list[Matrix] = []
     while count < skip + keep:
         passage.go_to(passage.t + chunk)
-        rows = passage.log
-        rows = rows[np.isin(rows[:, 2], named) & np.isin(rows[:, 3], way)]
-        _, first = np.unique(rows[:, [0, 2]], axis=0, return_index=True)
-        kept.append(rows[np.sort(first)][:, : LOG_HEAD + n])  # one point of each crossing
+        rows = guard_crossings(model, plane.guard, plane.direction, passage.log)
+        kept.append(rows[:, : LOG_HEAD + n])
         count += len(kept[-1])
         gone = passage.t - begin
         if count < skip + keep and gone > SECTION.longest * length:

@@ -29,6 +29,13 @@ class Signal:
         return float((self.t[-1] - self.t[0]) / (len(self.t) - 1))
 
 
+def vertex(low: Vector, middle: Vector, high: Vector) -> Vector:
+    """How far from the middle one of three samples, in samples, the parabola through them is
+    largest; 0 where it is so nowhere."""
+    bend = low - 2 * middle + high
+    return np.where(bend < 0, 0.5 * (low - high) / np.where(bend < 0, bend, 1.0), 0.0)
+
+
 def signal_of(
     run: Run, name: str, since: float | None, until: float | None, even: bool = True
 ) -> Signal:

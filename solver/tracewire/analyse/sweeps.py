@@ -30,7 +30,7 @@ from tracewire.diagram import quantity_problems, row_ends
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.formula import Expression, parse_quantity
 from tracewire.result import Result
-from tracewire.solve import Halt, Options, Tell, refuse_unknown_options, with_row
+from tracewire.solve import Halt, Options, ProgressCallback, refuse_unknown_options, with_row
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -64,7 +64,7 @@ def sweep(
     since: float | None = None,
     workers: int | None = None,
     executor: Executor | None = None,
-    progress: Tell | None = None,
+    progress: ProgressCallback | None = None,
     partial: str | Path | None = None,
     **options: Unpack[Options],
 ) -> Sweep:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.fft import fft, ifft, next_fast_len
 
 from tracewire.analyse.limits import SIGNAL
-from tracewire.analyse.signal import signal_of
+from tracewire.analyse.signal import signal_of, vertex
 from tracewire.errors import OptionError, Problem
 from tracewire.result import Result
 from tracewire.solve import Run
@@ -85,9 +85,7 @@ def _beside(amplitude: Matrix, best: NDArray[np.int64]) -> Vector:
     """How far between the frequencies the largest amplitudes are: of parabolas through three."""
     column = np.arange(amplitude.shape[1])
     inner = np.clip(best, 1, len(amplitude) - 2)
-    low, middle, high = (amplitude[inner + k, column] for k in (-1, 0, 1))
-    bend = low - 2 * middle + high
-    found = np.where(bend < 0, 0.5 * (low - high) / np.where(bend < 0, bend, 1.0), 0.0)
+    found = vertex(*(amplitude[inner + k, column] for k in (-1, 0, 1)))
     return np.where(inner == best, np.clip(found, -0.5, 0.5), 0.0)
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tracewire.analyse.partial import Partial
 from tracewire.errors import Problem, TracewireError
-from tracewire.solve import Halt, Interrupted, PartProgress, Tell, carry_out
+from tracewire.solve import Halt, Interrupted, PartProgress, ProgressCallback, carry_out
 
 Vector = NDArray[np.float64]
 
@@ -20,7 +20,7 @@ def work_through(
     point: Callable[[int, Halt], Vector],
     partial: Partial,
     workers: int | None = None,
-    progress: Tell | None = None,
+    progress: ProgressCallback | None = None,
     executor: Executor | None = None,
 ) -> None:
     """Make all rows of `partial` that are not done: point(number, halt) gives one of them.

@@ -41,7 +41,7 @@ def format(
       tracewire format pendulum.yaml
       tracewire format diagrams/ --check
     """
-    from tracewire.diagram import STDIN, laid_out, load_stdin, load_text
+    from tracewire.diagram import STDIN, lay_out, load_stdin, load_text
     from tracewire.files import write_file, writing
 
     changed: list[str] = []
@@ -52,7 +52,7 @@ def format(
         file = STDIN if name == "-" else Path(name)
         try:
             text = load_stdin() if name == "-" else load_text(file)
-            found = laid_out(text, file)
+            found = lay_out(text, file)
             if name == "-" and not check:
                 print_text(found.rstrip("\r\n"))
                 continue

@@ -158,15 +158,15 @@ def with_table(model: Model, found: Found, path: str, folder: Path) -> Diagram |
     """
     from tracewire.diagram import SetValues, patch
     from tracewire.trace.candidates.places import find_places
-    from tracewire.trace.missing.table import add_table
+    from tracewire.trace.missing.table import table_block
 
     missing = found.missing
     assert missing is not None
     places = {place.name: place for place in find_places(model)}
     file = Path(os.path.relpath(path, folder)).as_posix()
     try:
-        fitted = patch(found.original, [SetValues(found.declared)])
-        return add_table(fitted, places[missing.place], missing, file)
+        table = table_block(found.original, places[missing.place], missing, file)
+        return patch(found.original, [SetValues(found.declared), table])
     except OptionError as error:
         note(f"the diagram gets no table: {error.problems[0]}")
         return None

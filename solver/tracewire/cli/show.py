@@ -33,7 +33,7 @@ def show(
       tracewire show pendulum.yaml --source > pendulum.py
       tracewire show chain.yaml --text
     """
-    from tracewire.diagram import written_out
+    from tracewire.diagram import write_out
     from tracewire.show import summary
 
     model = load_model(diagram, library)
@@ -45,7 +45,7 @@ def show(
         if source:
             data["source"] = model.source
         if text:
-            data["text"] = written_out(model.diagram)
+            data["text"] = write_out(model.diagram)
         if tree:
             data["tree"] = summary.tree(model.diagram)
         print_json(data)
@@ -73,4 +73,4 @@ def show(
     if source:
         print_text(model.source.rstrip("\n"))
     if text:
-        print_text(written_out(model.diagram).rstrip("\n"))
+        print_text(write_out(model.diagram).rstrip("\n"))

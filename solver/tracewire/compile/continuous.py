@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 from tracewire.compile.flat import FlatEvent, FlatMemory, FlatParameter, FlatState
 from tracewire.errors import FormulaError, Place, Problem
-from tracewire.formula import Call, Expression, Name, Number, evaluate, names_of
+from tracewire.formula import Expression, Name, Number, calls_in, evaluate, names_of
 
 PASSED = ("+", "-", "neg", "stack", "[]", "sum", "join")
 FIRST = ("delayed", "shifted", "/")
@@ -146,6 +146,4 @@ def _in_order(
 
 def _draws(node: Expression) -> bool:
     """Whether a random number is a part of a formula."""
-    if not isinstance(node, Call):
-        return False
-    return node.function == "random_number" or any(map(_draws, node.arguments))
+    return any(call.function == "random_number" for call in calls_in(node))

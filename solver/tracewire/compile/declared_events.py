@@ -121,7 +121,7 @@ def near_ticks(period: Expression, offset: Expression, place: Place) -> list[Con
     return [Condition(Call("<=", (Call("abs", (offset,)), most)), place, NEAR)]
 
 
-def told_clock(formula: Expression) -> str:
+def describe_clock(formula: Expression) -> str:
     """What the formula of a clock says, in words."""
     condition, first = "", ""
     if isinstance(formula, Call) and formula.function == "if":

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from tracewire.compile.flat import Loop
 from tracewire.compile.limits import MODEL
-from tracewire.diagram import cycles, shown_cycle
+from tracewire.diagram import cycle_text, cycles
 from tracewire.errors import DiagramError, Place, Problem
 from tracewire.formula import Expression, evaluation_order, read_at_once
 
@@ -76,7 +76,7 @@ def _opened(
     (cycle,) = cycles(graph, order)
     shown = [name for name in cycle if name in blocks] or cycle
     at = next((places[name] for name in (*shown, *order) if name in places), Place())
-    text = shown_cycle([*shown, shown[0]])
+    text = cycle_text([*shown, shown[0]])
     unknowns: list[str] = []
     rest = graph.copy()
     while loops := [p for p in nx.strongly_connected_components(rest) if _is_loop(rest, p)]:

@@ -22,7 +22,7 @@ from tracewire.formula import Call, Expression, Name, Number, to_text
 PRESCRIBED = frozenset({"t", "param", "const", "table", "mode"})  # leaves that no state moves
 
 
-def comparing(strict: bool) -> str:
+def comparison_text(strict: bool) -> str:
     """What the modes of comparisons are known by."""
     return ">" if strict else ">="
 
@@ -235,7 +235,7 @@ class Lowering:
         mirrored = None
         if entry.op == "-":
             mirrored = self.tape.known.get(Entry("-", entry.operands[::-1]))
-        if mirrored is not None and (comparing(not strict), mirrored) in self.by_guard:
+        if mirrored is not None and (comparison_text(not strict), mirrored) in self.by_guard:
             return push("not", self.compare(mirrored, text, not strict))
         mode = self.mode("sign", guard, shown or text, at_zero=0 if strict else 1, compares=True)
         self.compared.append((mode, self.signal, text))
@@ -316,7 +316,7 @@ class Lowering:
         But for a mode that `compares`.
         """
         modes = self.out.modes
-        name: str = comparing(at_zero == 0) if compares else kind
+        name: str = comparison_text(at_zero == 0) if compares else kind
         key = (name if table < 0 else f"{kind}{table}", guard)
         found = self.by_guard.get(key)
         if found is not None:

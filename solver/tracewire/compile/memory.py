@@ -25,7 +25,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import reduce
 
-from tracewire.compile.declared_events import told_clock
+from tracewire.compile.declared_events import describe_clock
 from tracewire.compile.flat import Flat, FlatMemory
 from tracewire.compile.lowered import Reset, Transition
 from tracewire.compile.lowering import Lowering
@@ -132,17 +132,17 @@ def _on_the_spot(lowering: Lowering, node: Expression) -> int:
 COMPARED = {">=": ("ge", False), ">": ("gt", False), "<": ("ge", True), "<=": ("gt", True)}
 
 
-def told(flat: Flat) -> list[str]:
+def describe_memories(flat: Flat) -> list[str]:
     """The events and memories of a model as lines of text."""
     lines = []
     for event in flat.events:
         sets = ", ".join(f"{name} := {to_text(value)}" for name, value in event.set.items())
         crosses = f"{to_text(event.when)} crosses {event.crosses}"
-        lines.append(f"when {told_clock(event.when) if event.clocked else crosses}: {sets}")
-    return lines + [line for memory in flat.memories for line in _told_memory(memory)]
+        lines.append(f"when {describe_clock(event.when) if event.clocked else crosses}: {sets}")
+    return lines + [line for memory in flat.memories for line in _describe_memory(memory)]
 
 
-def _told_memory(memory: FlatMemory) -> list[str]:
+def _describe_memory(memory: FlatMemory) -> list[str]:
     """Its start, and each transition with what it sets."""
     lines = [f"{memory.name}(t0) = {to_text(memory.start)}"]
     for transition in memory.transitions:

@@ -13,7 +13,7 @@ from tracewire.compile.flatten import flatten
 from tracewire.compile.holding import modes_read
 from tracewire.compile.lower import lower
 from tracewire.compile.lowered import Lowered, Mode, Reset
-from tracewire.compile.memory import told
+from tracewire.compile.memory import describe_memories
 from tracewire.compile.routines import BACKENDS, PREPARE, Backend, Routines
 from tracewire.compile.scene import resolve_scene
 from tracewire.compile.vectors import element_names
@@ -158,7 +158,7 @@ class Model:
         lines = [f"{name} = {to_text(formula)}" for name, formula in self.flat.signals.items()]
         lines += [f"{state.name}' = {to_text(state.rate)}" for state in self.flat.states]
         lines += [f"{state.name}(t0) = {to_text(state.start)}" for state in self.flat.states]
-        return "\n".join([*lines, *told(self.flat)])
+        return "\n".join([*lines, *describe_memories(self.flat)])
 
     @cached_property
     def _labels(self) -> dict[int, str]:

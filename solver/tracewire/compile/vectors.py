@@ -18,7 +18,7 @@ from itertools import product
 from tracewire.compile.elements import Elements, Mismatch, Shape, shape_text
 from tracewire.compile.realise import REALISED
 from tracewire.diagram import element_name
-from tracewire.formula import FUNCTIONS, Call, Expression, Name, Number, names_of, to_text
+from tracewire.formula import FUNCTIONS, Call, Expression, Name, Number, calls_in, names_of, to_text
 
 SHAPED = ("stack", "join", "[]", "dot", "solve", *REALISED)
 
@@ -33,9 +33,7 @@ def _is_list(formula: Expression) -> bool:
 
 def has_vectors(formula: Expression) -> bool:
     """Whether a formula has a part that only vectors need."""
-    if not isinstance(formula, Call):
-        return False
-    return formula.function in SHAPED or any(map(has_vectors, formula.arguments))
+    return any(call.function in SHAPED for call in calls_in(formula))
 
 
 def element_names(name: str, shape: Shape) -> list[str]:

@@ -19,7 +19,7 @@ def jitter(t: Vector) -> tuple[float, float]:
     return median, float(np.max(np.abs(steps - median))) / median
 
 
-def interpolated(t: Vector, y: Vector, grid: Vector, method: str) -> Vector:
+def interpolate(t: Vector, y: Vector, grid: Vector, method: str) -> Vector:
     """Values (N,) at other times: on straight lines, or on the cubic spline through them."""
     if method == "linear":
         return np.asarray(np.interp(grid, t, y))
@@ -33,7 +33,7 @@ def trend(t: Vector, y: Vector, order: int) -> Vector:
     return np.asarray(np.polynomial.Polynomial.fit(t, y, order)(t))
 
 
-def low_passed(y: Vector, step: float, cutoff: float, order: int) -> Vector:
+def low_pass(y: Vector, step: float, cutoff: float, order: int) -> Vector:
     """Values (N,), `step` s apart, through a Butterworth low pass forward and backward.
 
     There is no shift of phase; the gain is 1/2 at `cutoff` (Hz), that of both ways together.
@@ -45,12 +45,12 @@ def low_passed(y: Vector, step: float, cutoff: float, order: int) -> Vector:
 
 
 def low_pass_needs(order: int) -> int:
-    """The least number of samples that `low_passed` takes."""
+    """The least number of samples that `low_pass` takes."""
     sections = (order + 1) // 2
     return 3 * (2 * sections + 1) + 1
 
 
-def smoothed(u: Vector, y: Vector, lam: float) -> Vector:
+def smooth(u: Vector, y: Vector, lam: float) -> Vector:
     """The natural cubic spline f at its knots u (N,) that minimises a sum over samples and a bend.
 
     sum((y - f)^2) + lam*integral(f''^2). Source: Green and Silverman 1994, Nonparametric Regression
@@ -93,7 +93,7 @@ def derivative(t: Vector, y: Vector, noise: float) -> tuple[Vector, float]:
     z = (y - y[0]) / scale
 
     def excess(logarithm: float) -> float:
-        left = smoothed(u, z, 10.0**logarithm) - z
+        left = smooth(u, z, 10.0**logarithm) - z
         return float(np.sqrt(np.mean(left**2))) - noise / scale
 
     low, high = STEP.logarithms
@@ -103,7 +103,7 @@ def derivative(t: Vector, y: Vector, noise: float) -> tuple[Vector, float]:
         best = high
     else:
         best = float(brentq(excess, low, high, xtol=1e-3))
-    made = smoothed(u, z, 10.0**best)
+    made = smooth(u, z, 10.0**best)
     slope = CubicSpline(u, made, bc_type="natural").derivative()(u)
     return np.asarray(slope) * (scale / step), float(np.sqrt(np.mean((made - z) ** 2))) * scale
 

@@ -125,7 +125,7 @@ class Record:
             raise OptionError.one(what, hint="Give an interval between samples, in s.")
         t = np.minimum(self.t[0] + every * np.arange(count), self.t[-1])
         columns = {
-            name: filters.interpolated(self.t, y, t, method) for name, y in self.columns.items()
+            name: filters.interpolate(self.t, y, t, method) for name, y in self.columns.items()
         }
         words = f"resampled every {every:g} s ({method}): {count} samples, {len(self.t)} before"
         return replace(self, t=t, columns=columns)._told(words)
@@ -183,7 +183,7 @@ class Record:
         words = f"low pass {cutoff:g} Hz, Butterworth of order {order} forward and backward"
 
         def filtered(name: str, y: Vector) -> tuple[Vector, str]:
-            made = filters.low_passed(y, step, cutoff, order)
+            made = filters.low_pass(y, step, cutoff, order)
             rest = float(np.sqrt(np.mean((made - y) ** 2)))
             return made, f"{words}; it took {rest:.3g} {self.unit(name).text}".rstrip() + " (rms)"
 

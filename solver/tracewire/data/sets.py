@@ -16,7 +16,6 @@ from tracewire.files import write_file
 from tracewire.shipped import shipped
 
 DIAGRAMS = (".yaml", ".md")
-Tell = Callable[[str], None]
 
 
 def data_set(name: str) -> DataSet:
@@ -27,7 +26,10 @@ def data_set(name: str) -> DataSet:
 
 
 def get_set(
-    name: str, to: str | Path = ".", tell: Tell = lambda text: None, base: str = RAW
+    name: str,
+    to: str | Path = ".",
+    tell: Callable[[str], None] = lambda text: None,
+    base: str = RAW,
 ) -> Path:
     """Bring a set: the folder `to`/`name` with its diagrams, and its files in `data/` below.
 
@@ -59,7 +61,11 @@ def get_set(
 
 
 def fetch(
-    chosen: DataSet, file: Upstream, folder: Path, tell: Tell = lambda text: None, base: str = RAW
+    chosen: DataSet,
+    file: Upstream,
+    folder: Path,
+    tell: Callable[[str], None] = lambda text: None,
+    base: str = RAW,
 ) -> None:
     """Fetch a file of a set into a folder, unless it is there. Raises DownloadError."""
     path = folder / file.name

@@ -6,6 +6,7 @@ from tracewire.diagram.changes import (
     AddOwn,
     AddSensorTerm,
     Change,
+    PointsFile,
     SetValues,
     apply,
     patch,
@@ -35,14 +36,9 @@ from tracewire.diagram.diagram import (
     Wire,
 )
 from tracewire.diagram.edit import (
-    add_addend,
     difference,
-    remove_addend,
-    set_variants,
     with_addend,
 )
-from tracewire.diagram.edit_own import add_own
-from tracewire.diagram.edit_sensors import add_sensor, sensor_numbers
 from tracewire.diagram.edit_series import (
     path_text,
     replace_series,
@@ -53,9 +49,9 @@ from tracewire.diagram.edit_values import written_units
 from tracewire.diagram.effects import EffectType, effects_of
 from tracewire.diagram.files import STDIN, absent_series, load_stdin
 from tracewire.diagram.files import load as load_text
-from tracewire.diagram.layout import laid_out
+from tracewire.diagram.layout import lay_out
 from tracewire.diagram.limits import LIMITS
-from tracewire.diagram.loops import cycles, shown_cycle
+from tracewire.diagram.loops import cycle_text, cycles
 from tracewire.diagram.modeline import is_modeline, with_modeline
 from tracewire.diagram.names import (
     element_name,
@@ -70,15 +66,14 @@ from tracewire.diagram.names import (
     state_names,
     states,
 )
-from tracewire.diagram.owned import patch_own
 from tracewire.diagram.packages import package_subsystems, who_has
 from tracewire.diagram.quantity_names import EVENT_KINDS, is_quantity, quantity_problems
 from tracewire.diagram.reader import read, read_readable, read_readable_text, read_text
 from tracewire.diagram.rename import renamed
-from tracewire.diagram.rewire import add_to_drive, rewired
+from tracewire.diagram.rewire import rewired
 from tracewire.diagram.schema import schema_of, schema_text
-from tracewire.diagram.writer import write, written_out
-from tracewire.diagram.yaml_text import mapping_text, quoted
+from tracewire.diagram.writer import write, write_out
+from tracewire.diagram.yaml_text import mapping_text, quote
 
 __all__ = [
     "EVENT_KINDS",
@@ -103,6 +98,7 @@ __all__ = [
     "Hold",
     "InputPort",
     "Points",
+    "PointsFile",
     "Proposal",
     "ScenePart",
     "Series",
@@ -116,12 +112,9 @@ __all__ = [
     "Value",
     "Wire",
     "absent_series",
-    "add_addend",
-    "add_own",
-    "add_sensor",
-    "add_to_drive",
     "apply",
     "complete",
+    "cycle_text",
     "cycles",
     "difference",
     "effects_of",
@@ -133,31 +126,26 @@ __all__ = [
     "is_count",
     "is_modeline",
     "is_quantity",
-    "laid_out",
+    "lay_out",
     "load_stdin",
     "load_text",
     "mapping_text",
     "package_subsystems",
     "patch",
-    "patch_own",
     "path_text",
     "quantity_problems",
-    "quoted",
+    "quote",
     "read",
     "read_readable",
     "read_readable_text",
     "read_text",
-    "remove_addend",
     "renamed",
     "replace_series",
     "rewired",
     "row_ends",
     "schema_of",
     "schema_text",
-    "sensor_numbers",
     "series_parts",
-    "set_variants",
-    "shown_cycle",
     "signals",
     "split_index",
     "state_names",
@@ -168,6 +156,6 @@ __all__ = [
     "with_series_of",
     "word_before",
     "write",
-    "written_out",
+    "write_out",
     "written_units",
 ]

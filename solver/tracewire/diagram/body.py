@@ -125,7 +125,7 @@ class Body:
         label = self.text(given["label"], "a label", block) if "label" in given else ""
         return unit.text, Shown(clip(label or ""), text, unit.factor)
 
-    def scalars(self, node: Node, what: str, block: str = "") -> list[Scalar]:
+    def scalars(self, node: Node, what: str) -> list[Scalar]:
         """The texts of a list of them; a single text is a list of one."""
         if isinstance(node, Scalar):
             return [node]
@@ -133,8 +133,8 @@ class Body:
             found = [item for item in node.items if isinstance(item, Scalar)]
             for item in node.items:
                 if not isinstance(item, Scalar):
-                    self.problems.add(f"an entry of {what} must be a name", self.place(item, block))
+                    self.problems.add(f"an entry of {what} must be a name", self.place(item))
             return found
         hint = "Write it like [a, b]."
-        self.problems.add(f"{what} must be a list of names", self.place(node, block), (), hint)
+        self.problems.add(f"{what} must be a list of names", self.place(node), (), hint)
         return []

@@ -17,8 +17,8 @@ from typing import Any
 
 from tracewire.diagram.body import Body
 from tracewire.diagram.channels import unit_of_term
-from tracewire.diagram.diagram import Array, BlockUse, Diagram, Value, Wire
-from tracewire.diagram.edit import add_addend, many_port, with_addend
+from tracewire.diagram.diagram import Array, BlockUse, Diagram, Points, Value, Wire
+from tracewire.diagram.edit import add_addend, many_port, with_addend, with_bodies
 from tracewire.diagram.edit_own import add_own, declared_parameter
 from tracewire.diagram.edit_sensors import add_sensor, column_factor, series_of
 from tracewire.diagram.edit_values import apply_values, patch_values
@@ -28,9 +28,20 @@ from tracewire.diagram.problems import Problems
 from tracewire.diagram.rewire import add_to_drive, readers_of, rewired, seen_name, sole_wire
 from tracewire.diagram.rewrite import as_written
 from tracewire.diagram.uses import check_bounds, check_conditions, in_unit_of, shape_of
+from tracewire.diagram.values import points_of_file
+from tracewire.diagram.yaml_text import mapping_text, quote
 from tracewire.errors import DiagramError, OptionError, Place, unknown
 from tracewire.formula import Number, Unit, number_text, to_text
 from tracewire.library import SENSOR_TERMS, Block
+
+
+@dataclass(frozen=True)
+class PointsFile:
+    """The points of a table: two columns of a file, whose path is as the diagram has it."""
+
+    file: str
+    x: str
+    y: str
 
 
 @dataclass(frozen=True)
@@ -43,16 +54,18 @@ class AddBlock:
     element: of a sum of vectors the number of the element that it is added to, and how many there
     are: a gain behind the block makes a vector of it. own: the path of the block whose subsystem
     has the sum, where an included file defines that: it gets a definition of its own (`owned`).
+    comment: what the text says behind the line of the block, where it has one of its own.
     """
 
     name: str
     type: str
     inputs: Mapping[str, str]
-    settings: Mapping[str, Value]
+    settings: Mapping[str, Value | PointsFile]
     to: str
     drive: bool = False
     element: tuple[int, int] | None = None
     own: str = ""
+    comment: str = ""
 
 
 @dataclass(frozen=True)
@@ -93,12 +106,13 @@ def patch(diagram: Diagram, changes: Sequence[Change]) -> Diagram:
     """
     for change in changes:
         match change:
-            case AddBlock(name, to=to, drive=True):
-                diagram = add_to_drive(diagram, to, name, _line(change))
-            case AddBlock(name, to=to, element=element, own=own):
+            case AddBlock(name, to=to, drive=True, comment=comment):
+                diagram = add_to_drive(diagram, to, name, _line(change), comment)
+            case AddBlock(name, to=to, element=element, own=own, comment=comment):
                 if own:
                     diagram, to = patch_own(diagram, own, to)
-                diagram = add_addend(diagram, to, name, _line(change), element=element)
+                line = _line(change)
+                diagram = add_addend(diagram, to, name, line, element=element, comment=comment)
             case AddSensorTerm(signal, kind, value, fit):
                 diagram = add_sensor(diagram, signal, kind, value, fit)
             case AddOwn(values, fit):
@@ -134,17 +148,14 @@ def apply(diagram: Diagram, changes: Sequence[Change]) -> Diagram:
 
 def _line(change: AddBlock) -> str:
     parts = [f"type: {change.type}"]
-    parts += [f"{port}: {_quoted(name)}" for port, name in change.inputs.items()]
+    parts += [f"{port}: {quote(name)}" for port, name in change.inputs.items()]
     parts += [f"{name}: {_setting(value)}" for name, value in change.settings.items()]
     return f"{{{', '.join(parts)}}}"
 
 
-def _quoted(name: str) -> str:
-    """The name of a signal as a value inside braces: that of an element is quoted, as YAML asks."""
-    return f'"{name}"' if "[" in name else name
-
-
-def _setting(value: Value) -> str:
+def _setting(value: Value | PointsFile) -> str:
+    if isinstance(value, PointsFile):
+        return mapping_text({key: quote(text) for key, text in vars(value).items()})
     number = to_text(value.formula)
     if not value.named:
         return number
@@ -223,15 +234,19 @@ def _use(top: Diagram, inside: Diagram, change: AddBlock) -> BlockUse:
             inputs[port.name] = (Wire(signal, index=index),)
         elif port.default is None:
             problems.add(f"input '{port.name}' is not connected", place)
-    settings = {key: change.settings[key] for key in parameters if key in change.settings}
-    for parameter in parameters.values():
-        if parameter.default is None and parameter.name not in settings:
-            problems.add(f"parameter '{parameter.name}' is not given", place)
-    if isinstance(kind, Diagram):
-        settings = {k: in_unit_of(value, kind.parameters[k]) for k, value in settings.items()}
-    else:
-        for key, value in settings.items():
-            check_bounds(replace(value, place=place), parameters[key], body)
+    settings: dict[str, Value | Points] = {}
+    for key, parameter in parameters.items():
+        given: Value | Points | PointsFile | None = change.settings.get(key)
+        if given is None and parameter.default is None:
+            problems.add(f"parameter '{key}' is not given", place)
+        elif isinstance(given, PointsFile):
+            given = points_of_file(top.file.parent / given.file, given.x, given.y, body, place)
+        if isinstance(given, Value) and isinstance(kind, Diagram):
+            given = in_unit_of(given, kind.parameters[key])
+        if given is not None:
+            check_bounds(replace(given, place=place), parameter, body)
+            settings[key] = given
+    if isinstance(kind, Block):
         check_conditions(kind, settings, body, place)
     problems.raise_found(str(top.file))
     subsystem = kind if isinstance(kind, Diagram) else None
@@ -285,17 +300,7 @@ def _changed(
     if diagram.place == place and name in diagram.blocks and diagram.blocks[name].place == line:
         diagram = edit(diagram)
 
-    def inner(inside: Diagram) -> Diagram:
-        return _changed(inside, place, line, name, edit)
-
-    return replace(
-        diagram,
-        blocks={
-            key: use if use.subsystem is None else replace(use, subsystem=inner(use.subsystem))
-            for key, use in diagram.blocks.items()
-        },
-        subsystems={key: inner(inside) for key, inside in diagram.subsystems.items()},
-    )
+    return with_bodies(diagram, lambda inside: _changed(inside, place, line, name, edit))
 
 
 def _with_sensor_term(diagram: Diagram, change: AddSensorTerm) -> Diagram:

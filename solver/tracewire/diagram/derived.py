@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from tracewire.diagram.extend import merged, without
+from tracewire.diagram.extend import merge, removed_parts, without
 from tracewire.diagram.limits import LIMITS
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
@@ -58,10 +58,7 @@ def _extended(own: Entries, bases: Mapping[str, Node], problems: Problems) -> En
         what = f"'{name.text}', which this one extends, has more than {LIMITS.most_extended} parts"
         problems.add(what, name.place, (), "Write the blocks that are needed, or a smaller base.")
         return changes
-    given = own.values.get("remove")
-    names = given.items if isinstance(given, Items) else () if given is None else (given,)
-    removed = [item for item in names if isinstance(item, Scalar)]
-    both = merged(without(_copied(base), removed, problems), changes)
+    both = merge(without(_copied(base), removed_parts(own), problems), changes)
     return replace(both, place=own.place, start=own.start, end=own.end, flow=own.flow)
 
 

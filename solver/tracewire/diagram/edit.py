@@ -6,24 +6,17 @@ that text is no diagram any more. OptionError says that what should be edited do
 
 from __future__ import annotations
 
-import contextlib
 import difflib
-from collections.abc import Mapping
+from collections.abc import Callable
 from dataclasses import replace
 
 from tracewire.diagram.diagram import BlockUse, Diagram, Wire
-from tracewire.diagram.override import localised, with_parts, without_part
+from tracewire.diagram.override import localise
 from tracewire.diagram.rewrite import reread
 from tracewire.diagram.source_map import SourceMap
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
-from tracewire.diagram.text_edits import (
-    entry_after,
-    item_last,
-    replaced,
-    without_entry,
-    without_items,
-)
-from tracewire.errors import DiagramError, OptionError, unknown
+from tracewire.diagram.text_edits import entry_after, item_last, replace_node
+from tracewire.errors import DiagramError, OptionError
 
 
 def add_addend(
@@ -33,6 +26,7 @@ def add_addend(
     block_line: str,
     negative: bool = False,
     element: tuple[int, int] | None = None,
+    comment: str = "",
 ) -> Diagram:
     """The diagram with a new block, on a line behind the sum's, and its output in the sum.
 
@@ -40,7 +34,8 @@ def add_addend(
     the definition of the subsystem `bearing`.
     block_line: what stands behind the name, such as `{type: viscous, rate: omega, c: 0}`.
     negative: the sum takes the output away. element: the number of the element that it is added to,
-    and how many there are, of a sum of vectors: a gain makes a vector of it.
+    and how many there are, of a sum of vectors: a gain makes a vector of it. comment: what is said
+    behind the line.
     """
     diagram, inside, blocks, name = _own_sum(diagram, sum_name)
     port, node = _addends(inside.blocks[name], inside, blocks)
@@ -57,59 +52,13 @@ def add_addend(
         wired = item_last(text, node, wire)
     else:
         assert isinstance(node, Scalar)
-        wired = replaced(node, f"[{text[node.start : node.end]}, {wire}]")
+        wired = replace_node(node, f"[{text[node.start : node.end]}, {wire}]")
     # what is put at one place stands in the text in the reverse order
-    new = reread(diagram, [*more, entry_after(text, blocks, name, block_name, line), wired])
+    new = reread(
+        diagram, [*more, entry_after(text, blocks, name, block_name, line, comment), wired]
+    )
     _expect(new, sum_name, port, [*_signals(inside.blocks[name], port), added])
     return new
-
-
-def remove_addend(diagram: Diagram, sum_name: str, addend: str) -> Diagram:
-    """The diagram without a wire of a sum, and without its block where nothing else needs that.
-
-    addend: the signal as the sum names it, without its sign, or its block.
-    """
-    diagram, inside, blocks, name = _own_sum(diagram, sum_name)
-    port, node = _addends(inside.blocks[name], inside, blocks)
-    before = _signals(inside.blocks[name], port)
-    taken = [i for i, s in enumerate(before) if addend in (s, s.partition(".")[0])]
-    if not taken:
-        raise OptionError([unknown(f"addend of '{sum_name}'", addend, before)])
-    entries = blocks.values[name]
-    assert isinstance(entries, Entries)
-    if isinstance(node, Items):
-        wires = without_items(diagram.text, entries.keys[port], node, taken)
-    else:
-        wires = [replaced(node, "[]")]
-    kept = [signal for i, signal in enumerate(before) if i not in taken]
-    block = before[taken[0]].partition(".")[0]
-    new = reread(diagram, wires)
-    if block in blocks.keys:
-        with contextlib.suppress(DiagramError):  # it stays where something else reads it
-            if blocks.keys[block].place.file == str(diagram.file):
-                new = reread(diagram, [*wires, without_entry(diagram.text, blocks, block)])
-            else:
-                source_map = SourceMap(new)
-                path = (*source_map.path(source_map.block(sum_name)[1]), block)
-                new = without_part(new, ".".join(path))
-    _expect(new, sum_name, port, kept)
-    return new
-
-
-def set_variants(diagram: Diagram, variants: Mapping[str, str]) -> Diagram:
-    """The diagram with other bodies of subsystems: block -> variant. Raises OptionError."""
-    parts: dict[tuple[str, ...], str] = {}
-    for name, variant in variants.items():
-        use = diagram.blocks.get(name)
-        if use is None:
-            raise OptionError([unknown("block", name, diagram.blocks)])
-        known = use.subsystem.variants if use.subsystem is not None else ()
-        if not known:
-            raise OptionError.one(f"block '{name}' has no variants", use.place)
-        if variant not in known:
-            raise OptionError([unknown(f"variant of '{name}'", variant, known, use.place)])
-        parts["blocks", use.row or name, "variant"] = variant
-    return with_parts(diagram, parts)
 
 
 def difference(old: Diagram, new: Diagram) -> str:
@@ -150,12 +99,22 @@ def with_addend(diagram: Diagram, sum_name: str, wire: Wire) -> Diagram:
     return replace(diagram, blocks={**diagram.blocks, sum_name: wired})
 
 
+def with_bodies(diagram: Diagram, edit: Callable[[Diagram], Diagram]) -> Diagram:
+    """The diagram with each subsystem edited that it defines or that one of its blocks is."""
+    blocks = {
+        name: use if use.subsystem is None else replace(use, subsystem=edit(use.subsystem))
+        for name, use in diagram.blocks.items()
+    }
+    subsystems = {name: edit(inside) for name, inside in diagram.subsystems.items()}
+    return replace(diagram, blocks=blocks, subsystems=subsystems)
+
+
 def _own_sum(diagram: Diagram, sum_name: str) -> tuple[Diagram, Diagram, Entries, str]:
     """The diagram with the inputs of a sum in its own text, and where the sum stands."""
     source_map = SourceMap(diagram)
     inside, blocks, name = source_map.block(sum_name)
     _, node = _addends(inside.blocks[name], inside, blocks)
-    diagram = localised(diagram, source_map, [node])
+    diagram = localise(diagram, source_map, [node])
     return diagram, *SourceMap(diagram).block(sum_name)
 
 

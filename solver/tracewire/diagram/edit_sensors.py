@@ -8,11 +8,11 @@ from collections.abc import Iterator, Mapping
 from tracewire.data import column_unit
 from tracewire.diagram.diagram import Diagram, Series, Value
 from tracewire.diagram.names import find_recorded
-from tracewire.diagram.override import localised
+from tracewire.diagram.override import localise
 from tracewire.diagram.rewrite import as_written, bounds, digits, reread
 from tracewire.diagram.source_map import SourceMap
 from tracewire.diagram.strict import Entries, Node, Scalar
-from tracewire.diagram.text_edits import TextEdit, entry_last, replaced
+from tracewire.diagram.text_edits import TextEdit, entry_last, replace_node
 from tracewire.errors import FormulaError, OptionError, unknown
 from tracewire.formula import Number, number_text, read_unit
 from tracewire.library import SENSOR_TERMS
@@ -34,7 +34,7 @@ def add_sensor(
     full, having = series_of(diagram, signal, kind)
     source_map = SourceMap(diagram)
     nodes = [_channel(diagram, source_map.root, series, full) for series in having]
-    diagram = localised(diagram, source_map, nodes)
+    diagram = localise(diagram, source_map, nodes)
     root = SourceMap(diagram).root
     changes = []
     for series in having:
@@ -72,13 +72,13 @@ def set_sensors(diagram: Diagram, values: Mapping[str, float]) -> Diagram:
     """
     source_map = SourceMap(diagram)
     nodes = [node for node, _ in _numbers(diagram, source_map.root, values)]
-    diagram = localised(diagram, source_map, nodes)
+    diagram = localise(diagram, source_map, nodes)
     changes = []
     for node, number in _numbers(diagram, SourceMap(diagram).root, values):
         if not isinstance(node, Entries):
-            changes.append(replaced(node, number))
+            changes.append(replace_node(node, number))
         elif "value" in node.values:
-            changes.append(replaced(node.values["value"], number))
+            changes.append(replace_node(node.values["value"], number))
         else:
             changes.append(entry_last(diagram.text, node, "value", number))
     return reread(diagram, changes)
@@ -180,10 +180,10 @@ def _with_number(text: str, channel: Node, kind: str, number: str) -> TextEdit:
     """The text of a channel with a number of its sensor."""
     if isinstance(channel, Scalar):
         column = text[channel.start : channel.end]
-        return replaced(channel, f"{{column: {column}, {kind}: {number}}}")
+        return replace_node(channel, f"{{column: {column}, {kind}: {number}}}")
     assert isinstance(channel, Entries)
     if kind in channel.values:
-        return replaced(channel.values[kind], number)
+        return replace_node(channel.values[kind], number)
     return entry_last(text, channel, kind, number)
 
 

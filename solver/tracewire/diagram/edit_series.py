@@ -15,13 +15,14 @@ from tracewire.diagram.source_map import SourceMap
 from tracewire.diagram.strict import Entries, Node, compose
 from tracewire.diagram.text_edits import (
     TextEdit,
-    changed,
+    apply_edits,
     end_of,
     entry_last,
-    replaced,
-    without_entry,
+    lines_last,
+    remove_entry,
+    replace_node,
 )
-from tracewire.diagram.yaml_text import inline, quoted
+from tracewire.diagram.yaml_text import inline, quote
 
 SECTION = "measured"
 
@@ -36,7 +37,7 @@ def series_parts(diagram: Diagram, series: str, without: Collection[str] = ()) -
     assert isinstance(node, Entries)
     parts = {key: inline(part) for key, _, part in node if key not in without}
     if "file" in parts and not source_map.is_own(node.values["file"]):
-        parts["file"] = quoted(path_text(diagram.measured[series].file, diagram.file.parent))
+        parts["file"] = quote(path_text(diagram.measured[series].file, diagram.file.parent))
     return parts
 
 
@@ -46,18 +47,16 @@ def replace_series(diagram: Diagram, series: Mapping[str, str]) -> Diagram:
     text, root = diagram.text, SourceMap(diagram).own
     given = root.values.get(SECTION)
     ending = "\r\n" if "\r\n" in text else "\n"
-    lines = [f"{quoted(name)}: {line}" for name, line in series.items()]
+    lines = [f"{quote(name)}: {line}" for name, line in series.items()]
     if given is not None and isinstance(given, Entries) and not given.flow:
         indent = text[text.rfind("\n", 0, given.start) + 1 : given.start]
-        change = replaced(given, f"{ending}{indent}".join(lines))
+        change = replace_node(given, f"{ending}{indent}".join(lines))
     elif given is not None:
-        change = replaced(given, "{" + ", ".join(lines) + "}")
+        change = replace_node(given, "{" + ", ".join(lines) + "}")
     elif root.flow:
         change = entry_last(text, root, SECTION, "{" + ", ".join(lines) + "}")
     else:
-        begin = "" if text.endswith("\n") else ending
-        added = ending.join([f"{SECTION}:", *(f"  {line}" for line in lines)])
-        change = TextEdit(len(text), len(text), f"{begin}{added}{ending}")
+        change = lines_last(text, [f"{SECTION}:", *(f"  {line}" for line in lines)])
     return reread(diagram, [change])
 
 
@@ -78,7 +77,7 @@ def with_series_of(edited: Diagram, original: Diagram, target: Path | None = Non
     elif SECTION not in own.values:
         if numbers:
             return _moved(edited, root, target or original.file)
-        new = reread(edited, [without_entry(edited.text, root, SECTION)])
+        new = reread(edited, [remove_entry(edited.text, root, SECTION)])
         short = not original.text.endswith("\n") and new.text.endswith("\n")
         return (
             reread(new, [TextEdit(len(new.text.rstrip("\r\n")), len(new.text), "")])
@@ -88,7 +87,7 @@ def with_series_of(edited: Diagram, original: Diagram, target: Path | None = Non
     else:
         section = own.values[SECTION]
         text = original.text[section.start : end_of(section)]
-        new = reread(edited, [replaced(root.values[SECTION], text)])
+        new = reread(edited, [replace_node(root.values[SECTION], text)])
     known = sensor_numbers(original)
     measured = {signal for series in original.measured.values() for signal in series.channels}
     for path, (value, fit) in numbers.items():
@@ -114,7 +113,7 @@ def _without_extended(diagram: Diagram) -> Diagram:
         return diagram
     source_map = SourceMap(diagram)
     if SECTION in source_map.own.values:
-        change = without_entry(diagram.text, source_map.own, SECTION)
+        change = remove_entry(diagram.text, source_map.own, SECTION)
         diagram = reread(diagram, [change])
     return without_part(diagram, SECTION)
 
@@ -126,7 +125,7 @@ def _with_sections_of(edited: Diagram, original: Diagram) -> Diagram:
         root = compose(text, edited.file, Problems())
         assert isinstance(root, Entries)
         if section in root.values:
-            text = changed(text, [without_entry(text, root, section)])
+            text = apply_edits(text, [remove_entry(text, root, section)])
         if section in own.values:
             part = original.text[own.keys[section].start : end_of(own.values[section])]
             ending = "\r\n" if "\r\n" in text else "\n"
@@ -141,8 +140,8 @@ def _moved(diagram: Diagram, root: Entries, target: Path) -> Diagram:
     assert isinstance(measured, Entries)
     for name, _, series in measured:
         assert isinstance(series, Entries)
-        text = quoted(path_text(diagram.measured[name].file, target.parent))
-        changes.append(replaced(series.values["file"], text))
+        text = quote(path_text(diagram.measured[name].file, target.parent))
+        changes.append(replace_node(series.values["file"], text))
     return reread(diagram, changes)
 
 

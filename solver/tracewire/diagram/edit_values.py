@@ -10,14 +10,15 @@ from typing import Any
 from tracewire.diagram.body import Body
 from tracewire.diagram.channels import check_term
 from tracewire.diagram.diagram import Array, BlockUse, Diagram, Value
+from tracewire.diagram.edit import with_bodies
 from tracewire.diagram.edit_sensors import factor_of, own_value, set_sensors
 from tracewire.diagram.names import find_parameter, is_count, split_index
-from tracewire.diagram.override import localised
+from tracewire.diagram.override import localise
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.rewrite import digits, reread, rounded
 from tracewire.diagram.source_map import SourceMap
 from tracewire.diagram.strict import Entries, Node, Scalar
-from tracewire.diagram.text_edits import entry_last, replaced
+from tracewire.diagram.text_edits import entry_last, replace_node
 from tracewire.diagram.uses import check_bounds, check_conditions
 from tracewire.diagram.written import Written, count_uses, find_written
 from tracewire.diagram.yaml_text import inline, mapping_text
@@ -73,7 +74,7 @@ def set_values(diagram: Diagram, values: Mapping[str, float]) -> Diagram:
     """
     source_map = SourceMap(diagram)
     locations = [source_map.parameter(path) for path in values]
-    diagram = localised(
+    diagram = localise(
         diagram, source_map, (location.into or location.node for location in locations)
     )
     source_map = SourceMap(diagram)
@@ -89,7 +90,7 @@ def set_values(diagram: Diagram, values: Mapping[str, float]) -> Diagram:
             changes.append(entry_last(diagram.text, location.into, location.name, copy))
         else:
             scalar = node.values["value"] if isinstance(node, Entries) else node
-            changes.append(replaced(scalar, number))
+            changes.append(replace_node(scalar, number))
     return reread(diagram, changes)
 
 
@@ -196,16 +197,7 @@ def _with_body(diagram: Diagram, old: Diagram, new: Diagram) -> Diagram:
     """The diagram with a body in the place of another one, wherever that is."""
     if (diagram.place, diagram.variant) == (old.place, old.variant):
         return new
-
-    def inner(inside: Diagram) -> Diagram:
-        return _with_body(inside, old, new)
-
-    blocks = {
-        name: use if use.subsystem is None else replace(use, subsystem=inner(use.subsystem))
-        for name, use in diagram.blocks.items()
-    }
-    subsystems = {name: inner(inside) for name, inside in diagram.subsystems.items()}
-    return replace(diagram, blocks=blocks, subsystems=subsystems)
+    return with_bodies(diagram, lambda inside: _with_body(inside, old, new))
 
 
 def _with_sensor(diagram: Diagram, path: str, value: float) -> Diagram:

@@ -20,7 +20,7 @@ MAIN = ("value", "count", "column")
 """What a mapping stands for where a single text is given in its place: `k: 3`, `x: angle`."""
 
 
-def merged(base: Entries, own: Entries) -> Entries:
+def merge(base: Entries, own: Entries) -> Entries:
     """The sections of a diagram with those of its changes."""
     values = {name: _by_name(name, node) for name, _, node in base}
     for section, _, node in own:
@@ -43,13 +43,18 @@ def with_variant(entries: Entries, variant: str, problems: Problems) -> Entries:
     changes = given.values[variant] if isinstance(given, Entries) else given
     if not isinstance(changes, Entries):
         return plain
-    removed = changes.values.get("remove")
-    items = removed.items if isinstance(removed, Items) else () if removed is None else (removed,)
-    names = [item for item in items if isinstance(item, Scalar)]
+    names = removed_parts(changes)
     own = {name: key for name, key in changes.keys.items() if name != "remove"}
     changes = replace(changes, keys=own, values={name: changes.values[name] for name in own})
-    both = merged(without(plain, names, problems), changes)
+    both = merge(without(plain, names, problems), changes)
     return replace(both, place=entries.place, start=entries.start, end=entries.end)
+
+
+def removed_parts(changes: Entries) -> list[Scalar]:
+    """What changes take away from what they change."""
+    given = changes.values.get("remove")
+    items = given.items if isinstance(given, Items) else () if given is None else (given,)
+    return [item for item in items if isinstance(item, Scalar)]
 
 
 def _by_name(section: str, node: Node) -> Node:
@@ -88,7 +93,7 @@ def _entry(section: str, old: Node, new: Node) -> Node:
         and isinstance(old, Entries)
         and isinstance(new, Entries)
     ):
-        return merged(old, new)
+        return merge(old, new)
     if section == "blocks" and both and isinstance(new, Entries) and "type" in new.keys:
         return new
     return _changed(old, new)

@@ -23,7 +23,7 @@ GAP = re.compile(r"\n|#[^\n]*|^---|[{}\[\],:-]|\S", re.MULTILINE)
 HEADER = re.compile(r"[|>][+-]?([1-9]?)[+-]?")
 
 
-def laid_out(text: str, file: Path = Path("<text>")) -> str:
+def lay_out(text: str, file: Path = Path("<text>")) -> str:
     """The text of a diagram in its canonical layout.
 
     Levels are indented by two blanks, there is one blank behind a colon or comma, lines have no

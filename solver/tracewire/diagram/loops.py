@@ -31,7 +31,7 @@ def check_parameters(parameters: Mapping[str, Value], problems: Problems) -> Non
     graph: nx.DiGraph[str] = nx.DiGraph()
     graph.add_edges_from((name, read) for name in parameters for read in reads[name])
     for loop in cycles(graph, list(parameters)):
-        what = f"parameters depend on each other: {shown_cycle([*loop, loop[0]])}"
+        what = f"parameters depend on each other: {cycle_text([*loop, loop[0]])}"
         problems.add(what, parameters[loop[0]].place, (), "Give one of them a number.")
 
 
@@ -52,7 +52,7 @@ def cycles(graph: nx.DiGraph[str], order: Sequence[str]) -> list[list[str]]:
     return sorted(found, key=lambda cycle: rank[cycle[0]])
 
 
-def shown_cycle(names: Sequence[str]) -> str:
+def cycle_text(names: Sequence[str]) -> str:
     """A cycle as `a -> b -> a`; a very long one in part."""
     many = len(names) > LIMITS.longest_loop
     return " -> ".join([*names[: LIMITS.longest_loop - 2], "...", names[-1]] if many else names)

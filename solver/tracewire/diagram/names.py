@@ -165,7 +165,7 @@ def events(diagram: Diagram) -> list[str]:
 
 def own_states(diagram: Diagram) -> list[str]:
     """The states of the blocks of a diagram, not of its subsystems."""
-    return _own_states(diagram)
+    return [name for use in diagram.blocks.values() for name in _states_of(diagram, use)]
 
 
 def states(diagram: Diagram) -> list[str]:
@@ -173,16 +173,16 @@ def states(diagram: Diagram) -> list[str]:
     found: list[str] = []
     for use in diagram.blocks.values():
         if use.subsystem is not None:
-            found += [f"{use.name}.{name}" for name in _own_states(use.subsystem)]
+            found += [f"{use.name}.{name}" for name in own_states(use.subsystem)]
         else:
-            found += _own_states(diagram, use)
+            found += _states_of(diagram, use)
     return found
 
 
-def _own_states(diagram: Diagram, *some: BlockUse) -> list[str]:
-    uses = some or diagram.blocks.values()
-    known = [use for use in uses if use.subsystem is None and use.type in diagram.library]
-    return [n for use in known for n in state_names(diagram.library[use.type], use.name).values()]
+def _states_of(diagram: Diagram, use: BlockUse) -> list[str]:
+    if use.subsystem is not None or use.type not in diagram.library:
+        return []
+    return [*state_names(diagram.library[use.type], use.name).values()]
 
 
 def find_parameter(diagram: Diagram, path: str) -> Value | None:

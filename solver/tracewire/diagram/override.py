@@ -12,12 +12,19 @@ from tracewire.diagram.problems import Problems
 from tracewire.diagram.rewrite import reread
 from tracewire.diagram.source_map import SourceMap
 from tracewire.diagram.strict import Entries, Items, Node, compose
-from tracewire.diagram.text_edits import TextEdit, changed, entry_last, item_last, replaced
-from tracewire.diagram.yaml_text import inline, mapping_text, quoted
+from tracewire.diagram.text_edits import (
+    TextEdit,
+    apply_edits,
+    entry_last,
+    item_last,
+    lines_last,
+    replace_node,
+)
+from tracewire.diagram.yaml_text import inline, mapping_text, quote
 from tracewire.errors import OptionError
 
 
-def localised(diagram: Diagram, source_map: SourceMap, nodes: Iterable[Node]) -> Diagram:
+def localise(diagram: Diagram, source_map: SourceMap, nodes: Iterable[Node]) -> Diagram:
     """The diagram with a copy of these parts in its own text; itself where they stand there.
 
     Raises OptionError: a part stands in a file that the diagram includes.
@@ -42,7 +49,7 @@ def with_parts(diagram: Diagram, parts: Mapping[tuple[str, ...], str]) -> Diagra
     for path, value in parts.items():
         root = compose(text, diagram.file, Problems())
         assert isinstance(root, Entries)
-        text = changed(text, [_with_part(text, root, path, value)])
+        text = apply_edits(text, [_with_part(text, root, path, value)])
     return reread(diagram, [TextEdit(0, len(diagram.text), text)])
 
 
@@ -62,21 +69,15 @@ def _with_part(text: str, root: Entries, path: tuple[str, ...], value: str) -> T
         node, rest = inner, rest[1:]
     name, *deeper = rest
     if name in node.keys and not deeper:
-        return replaced(node.values[name], value)
+        return replace_node(node.values[name], value)
     section = node is root and not node.flow and len(deeper) > 0
     for key in reversed(deeper[1:] if section else deeper):
         value = mapping_text({key: value})
     if not section:
         if node is root and not node.flow:
-            return _at_end(text, [f"{name}: {value}"])
-        return entry_last(text, node, quoted(name), value)
-    return _at_end(text, [f"{name}:", f"  {quoted(deeper[0])}: {value}"])
-
-
-def _at_end(text: str, lines: list[str]) -> TextEdit:
-    ending = "\r\n" if "\r\n" in text else "\n"
-    begin = "" if text.endswith("\n") or not text else ending
-    return TextEdit(len(text), len(text), begin + "".join(f"{line}{ending}" for line in lines))
+            return lines_last(text, [f"{name}: {value}"])
+        return entry_last(text, node, quote(name), value)
+    return lines_last(text, [f"{name}:", f"  {quote(deeper[0])}: {value}"])
 
 
 def _at(root: Entries, path: tuple[str, ...]) -> Node:

@@ -19,11 +19,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from tracewire.diagram.diagram import BlockUse, Diagram
+from tracewire.diagram.edit import with_bodies
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.rewrite import reread
 from tracewire.diagram.source_map import SourceMap
 from tracewire.diagram.strict import Entries, Node, compose
-from tracewire.diagram.text_edits import TextEdit, end_of, entry_last, replaced
+from tracewire.diagram.text_edits import TextEdit, end_of, entry_last, lines_last, replace_node
 from tracewire.diagram.yaml_text import inline
 from tracewire.errors import OptionError, Place, unknown
 
@@ -49,7 +50,7 @@ def patch_own(diagram: Diagram, path: str, sum_path: str) -> tuple[Diagram, str]
     if kind.place.file != str(diagram.file):
         what = f"the line of '{path}' stands in another file"
         raise OptionError.one(what, use.place, hint="Edit that file.")
-    typed = replaced(kind, name)
+    typed = replace_node(kind, name)
     short = f"{{extends: {use.type}}}"
     with_base = reread(diagram, [_defined(diagram, name, short, [f"extends: {use.type}"]), typed])
     _, its_blocks, _ = SourceMap(with_base).block(f"{name}.{sum_name}")
@@ -95,19 +96,12 @@ def _found(diagram: Diagram, path: str) -> tuple[Diagram, BlockUse]:
 
 def _with_use(diagram: Diagram, old: BlockUse, new: BlockUse) -> Diagram:
     """The diagram with another block in the place of one, in each body that has its line."""
-
-    def block(use: BlockUse) -> BlockUse:
-        if use.place == old.place and use.name == old.name:
-            return new
-        if use.subsystem is None:
-            return use
-        return replace(use, subsystem=_with_use(use.subsystem, old, new))
-
-    return replace(
-        diagram,
-        blocks={name: block(use) for name, use in diagram.blocks.items()},
-        subsystems={n: _with_use(inside, old, new) for n, inside in diagram.subsystems.items()},
-    )
+    diagram = with_bodies(diagram, lambda inside: _with_use(inside, old, new))
+    blocks = {
+        name: new if (use.place, use.name) == (old.place, old.name) else use
+        for name, use in diagram.blocks.items()
+    }
+    return replace(diagram, blocks=blocks)
 
 
 def _free(diagram: Diagram, type_name: str) -> str:
@@ -137,9 +131,7 @@ def _defined(diagram: Diagram, name: str, short: str, lines: list[str]) -> TextE
         into = known if isinstance(known, Entries) else root
         return entry_last(text, into, name if into is known else "subsystems", value)
     if not isinstance(known, Entries):
-        begin = "" if text.endswith("\n") or not text else ending
-        added = ["subsystems:", f"  {name}:", *(f"    {line}" for line in lines)]
-        return TextEdit(len(text), len(text), begin + "".join(f"{line}{ending}" for line in added))
+        return lines_last(text, ["subsystems:", f"  {name}:", *(f"    {line}" for line in lines)])
     if known.flow:
         return entry_last(text, known, name, short)
     last = list(known.keys)[-1]

@@ -9,7 +9,7 @@ from tracewire.diagram.problems import clip
 from tracewire.diagram.scene_kinds import COLORS, KINDS
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.diagram.values import read_formula
-from tracewire.formula import ALONG, FUNCTIONS, Call, Expression, Number
+from tracewire.formula import ALONG, FUNCTIONS, Expression, Number, calls_in
 
 EXAMPLE = "- rod: {from: [0, 0], to: [l*sin(phi), -l*cos(phi)]}"
 NOT_ALONG = FUNCTIONS.keys() - ALONG.keys()
@@ -78,19 +78,13 @@ def _read_size(node: Node, body: Body) -> Expression | None:
     formula = read_formula(node, body, "either")
     if formula is None:
         return None
-    for function in sorted(_functions(formula) & NOT_ALONG):
+    for function in sorted({call.function for call in calls_in(formula)} & NOT_ALONG):
         text = node.text if isinstance(node, Scalar) else ""
         what = f"formula '{clip(text)}': a scene cannot work out {function}"
         hint = "Make it an expression block of the diagram, and name that here."
         body.problems.add(what, body.place(node), (), hint)
         return None
     return formula
-
-
-def _functions(formula: Expression) -> set[str]:
-    if not isinstance(formula, Call):
-        return set()
-    return {formula.function}.union(*(_functions(argument) for argument in formula.arguments))
 
 
 def _read_color(entries: Entries, body: Body) -> str:

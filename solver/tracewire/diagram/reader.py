@@ -26,7 +26,7 @@ from tracewire.diagram.problems import Problems
 from tracewire.diagram.read_effect import read_effect
 from tracewire.diagram.read_expect import read_expect
 from tracewire.diagram.read_scene import read_scene
-from tracewire.diagram.replicate import counts_of, numbers_of, replicated
+from tracewire.diagram.replicate import counts_of, numbers_of, replicate_rows
 from tracewire.diagram.sections import (
     read_events,
     read_inputs,
@@ -146,7 +146,7 @@ class _Reader:
         scope = Scope(file, text, numbers=numbers_of(entries), counts=counts_of(entries))
         scope.definitions = self.definitions.define(entries, scope)
         scope.definitions |= self.definitions.include(entries, scope)
-        entries = replicated(entries, scope.numbers, body)
+        entries = replicate_rows(entries, scope.numbers, body)
         base = self.common(entries, body, scope, file.stem, Place(str(file), 1, 1))
         diagram = self.with_settings(base, entries, body)
         diagram = replace(diagram, sources=self.sources.others)
@@ -285,7 +285,7 @@ class _Reader:
             counted = counts_of(entries)
             scope = Scope(outer.file, outer.text, path, outer, numbers=numbers, counts=counted)
             scope.definitions = self.definitions.define(entries, scope)
-            entries = replicated(entries, numbers, body)
+            entries = replicate_rows(entries, numbers, body)
             at = body.place(entries if choice.number else definition.key)
             diagram = self.common(entries, body, scope, definition.name, at)
             if "effect" in entries.values:

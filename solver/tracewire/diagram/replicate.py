@@ -59,7 +59,7 @@ def numbers_of(entries: Entries) -> dict[str, float]:
     return found
 
 
-def replicated(entries: Entries, numbers: Mapping[str, float], body: Body) -> Entries:
+def replicate_rows(entries: Entries, numbers: Mapping[str, float], body: Body) -> Entries:
     """The sections of a diagram with its rows written out: `chain` becomes `chain_1`, `chain_2`...
 
     numbers: the parameters that are plain numbers, which a count may name.

@@ -10,7 +10,7 @@ from typing import TypeGuard
 from tracewire.diagram.diagram import BlockUse, Diagram, Event, Wire
 from tracewire.diagram.edit import add_addend
 from tracewire.diagram.names import find_signal
-from tracewire.diagram.override import localised
+from tracewire.diagram.override import localise
 from tracewire.diagram.rewrite import reread
 from tracewire.diagram.source_map import SourceMap
 from tracewire.diagram.strict import Entries, Items, Node
@@ -59,7 +59,9 @@ def rewired(diagram: Diagram, old: str, new: str) -> Diagram:
     )
 
 
-def add_to_drive(diagram: Diagram, drive: str, block_name: str, block_line: str) -> Diagram:
+def add_to_drive(
+    diagram: Diagram, drive: str, block_name: str, block_line: str, comment: str = ""
+) -> Diagram:
     """The diagram with a new block, whose output is added to a drive before all that reads it.
 
     drive: a named input, or the block of a source. block_line: what stands behind the name, such as
@@ -72,7 +74,9 @@ def add_to_drive(diagram: Diagram, drive: str, block_name: str, block_line: str)
     sole = sole_wire(diagram, drive, readers, events)
     if sole is not None:
         name = readers[0].name
-        return add_addend(diagram, name, block_name, block_line, negative=sole.negative)
+        return add_addend(
+            diagram, name, block_name, block_line, negative=sole.negative, comment=comment
+        )
     anchor = drive if drive in diagram.blocks else readers[0].name if readers else ""
     seen = seen_name(diagram, drive)
     diagram, blocks, section = _own_readers(diagram, readers, events)
@@ -98,7 +102,7 @@ def add_to_drive(diagram: Diagram, drive: str, block_name: str, block_line: str)
         if _wiring(use) != _wiring(wanted):
             what = f"what '{name}' reads is laid out in a way that cannot be edited by program"
             raise DiagramError.one(what, use.place, hint="Write each wire and formula on one line.")
-    return add_addend(new, seen, block_name, block_line)
+    return add_addend(new, seen, block_name, block_line, comment=comment)
 
 
 def readers_of(diagram: Diagram, drive: str) -> tuple[list[BlockUse], list[Event]]:
@@ -144,7 +148,7 @@ def _own_readers(
             raise OptionError.one(what, event.place, hint="Edit that file.")
     lines = [blocks.values[use.name] for use in readers]
     parts = [part for line in lines if isinstance(line, Entries) for part in line.values.values()]
-    diagram = localised(diagram, source_map, parts)
+    diagram = localise(diagram, source_map, parts)
     root = SourceMap(diagram).root
     blocks = root.values["blocks"]
     assert isinstance(blocks, Entries)

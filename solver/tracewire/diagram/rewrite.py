@@ -7,13 +7,13 @@ from collections.abc import Sequence
 
 from tracewire.diagram.diagram import Diagram
 from tracewire.diagram.reader import read_text
-from tracewire.diagram.text_edits import TextEdit, changed
+from tracewire.diagram.text_edits import TextEdit, apply_edits
 from tracewire.formula import number_text
 
 
 def reread(diagram: Diagram, changes: Sequence[TextEdit]) -> Diagram:
     """The diagram of the changed text, in the same file. Raises DiagramError."""
-    return read_text(changed(diagram.text, changes), diagram.file, library=diagram.library)
+    return read_text(apply_edits(diagram.text, changes), diagram.file, library=diagram.library)
 
 
 def rounded(value: float, low: float = -math.inf, high: float = math.inf) -> float:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from tracewire.diagram.body import Body
 from tracewire.diagram.derived import with_bases
-from tracewire.diagram.extend import merged, without
+from tracewire.diagram.extend import merge, without
 from tracewire.diagram.files import load
 from tracewire.diagram.grammar import INCLUDED, TOP
 from tracewire.diagram.limits import LIMITS
@@ -79,7 +79,7 @@ class Sources:
             base = self._base(extends, file, body)
             if base is None:
                 return None
-            return self._derived(merged(without(base, names, self.problems), _changes(own)))
+            return self._derived(merge(without(base, names, self.problems), _changes(own)))
         if removed is not None:
             what = "'remove' takes parts of another diagram away, and this one extends none"
             hint = "Write extends: FILE, or take the parts away here."

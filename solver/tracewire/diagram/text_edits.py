@@ -18,7 +18,7 @@ class TextEdit:
     text: str
 
 
-def changed(text: str, changes: Sequence[TextEdit]) -> str:
+def apply_edits(text: str, changes: Sequence[TextEdit]) -> str:
     """The text with all changes made; they must not overlap."""
     for change in sorted(changes, key=lambda change: change.start, reverse=True):
         text = text[: change.start] + change.text + text[change.end :]
@@ -33,22 +33,26 @@ def end_of(node: Node) -> int:
     return max(end_of(part) for part in parts if part.place.file == node.place.file)
 
 
-def replaced(node: Node, new: str) -> TextEdit:
+def replace_node(node: Node, new: str) -> TextEdit:
     """The node's text exchanged; a text block (| or >) is refused."""
     if isinstance(node, Scalar) and node.style in ("|", ">"):
         raise _refused(node)
     return TextEdit(node.start, end_of(node), new)
 
 
-def entry_after(text: str, entries: Entries, after: str, name: str, value: str) -> TextEdit:
-    """`name: value` as a new entry behind the entry `after`, laid out as that is."""
+def entry_after(
+    text: str, entries: Entries, after: str, name: str, value: str, comment: str = ""
+) -> TextEdit:
+    """`name: value` as a new entry behind the entry `after`, laid out as that is; the comment
+    stands behind it where it has a line of its own."""
     key, node = entries.keys[after], entries.values[after]
     end = end_of(node)
     if entries.flow:
         return TextEdit(end, end, f", {name}: {value}")
     indent = _indent(text, key)
     width = node.start - key.start if node.place.line == key.place.line else 0
-    return _line_after(text, end, f"{indent}{f'{name}:'.ljust(width - 1)} {value}")
+    behind = f"   # {comment}" if comment else ""
+    return _line_after(text, end, f"{indent}{f'{name}:'.ljust(width - 1)} {value}{behind}")
 
 
 def entry_last(text: str, entries: Entries, name: str, value: str) -> TextEdit:
@@ -70,36 +74,21 @@ def item_last(text: str, items: Items, value: str) -> TextEdit:
     return _line_after(text, end, text[_line_start(text, last.start) : last.start] + value)
 
 
-def without_entry(text: str, entries: Entries, name: str) -> TextEdit:
-    """The entry taken out: its lines, or its part of a mapping in braces."""
+def lines_last(text: str, lines: Sequence[str]) -> TextEdit:
+    """Lines at the end of the text."""
+    ending = "\r\n" if "\r\n" in text else "\n"
+    begin = "" if text.endswith("\n") or not text else ending
+    return TextEdit(len(text), len(text), begin + "".join(f"{line}{ending}" for line in lines))
+
+
+def remove_entry(text: str, entries: Entries, name: str) -> TextEdit:
+    """The entry taken out: its lines, or its part of a mapping in braces and a comma beside it."""
     key, node = entries.keys[name], entries.values[name]
     if not entries.flow:
         _indent(text, key)
         return TextEdit(_line_start(text, key.start), _line_end(text, end_of(node)), "")
     parts = [(k.start, end_of(entries.values[n])) for n, k in entries.keys.items()]
-    return _without_part(text, parts, list(entries.keys).index(name))
-
-
-def without_items(text: str, key: Scalar, items: Items, indices: Sequence[int]) -> list[TextEdit]:
-    """Items taken out of the list that is the value of `key`."""
-    parts = [(item.start, end_of(item)) for item in items.items]
-    kept = [i for i in range(len(parts)) if i not in indices]
-    if items.flow:
-        if len(indices) == 1:
-            return [_without_part(text, parts, indices[0])]
-        inside = ", ".join(text[parts[i][0] : parts[i][1]] for i in kept)
-        return [TextEdit(parts[0][0], parts[-1][1], inside)]
-    changes = [
-        TextEdit(_line_start(text, parts[i][0]), _line_end(text, parts[i][1]), "") for i in indices
-    ]
-    if not kept:
-        colon = text.index(":", key.end) + 1
-        changes.append(TextEdit(colon, colon, " []"))
-    return changes
-
-
-def _without_part(text: str, parts: Sequence[tuple[int, int]], index: int) -> TextEdit:
-    """One part of a list in brackets taken out with one of the commas beside it."""
+    index = list(entries.keys).index(name)
     start, end = parts[index]
     if len(parts) == 1:
         return TextEdit(start, end, "")

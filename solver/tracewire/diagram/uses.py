@@ -145,8 +145,7 @@ def _read_settings(
         if parameter.kind == "points":
             given = read_points(node, body, name)
             if given is not None:
-                for number in (min(*given.x, *given.y), max(*given.x, *given.y)):
-                    check_bounds(Value(Number(number), place=given.place), parameter, body)
+                check_bounds(given, parameter, body)
         elif parameter.kind == "formula":
             given = read_formulas(node, body, name)
         elif isinstance(kind, Diagram):
@@ -201,7 +200,12 @@ def in_unit_of(given: Value, declared: Value) -> Value:
     return replace(given, unit=unit, factor=factor, fit=bounds, written=declared.written)
 
 
-def check_bounds(value: Value, parameter: Parameter, body: Body) -> None:
+def check_bounds(value: Value | Points, parameter: Parameter, body: Body) -> None:
+    """Note a number that a parameter may not have; of a table the least and the largest one."""
+    if isinstance(value, Points):
+        for number in (min(*value.x, *value.y), max(*value.x, *value.y)):
+            check_bounds(Value(Number(number), place=value.place), parameter, body)
+        return
     if not isinstance(value.formula, Number):
         return
     number = value.formula.value * value.factor

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 from tracewire.data import read_columns
 from tracewire.diagram.body import Body, Reference, Sees
@@ -14,10 +15,10 @@ from tracewire.errors import DataError, FormulaError, Place
 from tracewire.formula import (
     CONSTANTS,
     FUNCTIONS,
-    Call,
     Expression,
     Number,
     Unit,
+    calls_in,
     names_of,
     parse,
     parse_condition,
@@ -48,11 +49,12 @@ def read_formula(
     except FormulaError as error:
         body.problems.take(error)
         return None
-    for function in sorted(_functions(formula) & OF_BLOCKS.keys()):
+    functions = {call.function for call in calls_in(formula)}
+    for function in sorted(functions & OF_BLOCKS.keys()):
         what = f"formula '{clip(node.text)}': {function} is for the formulas of block declarations"
         body.problems.add(what, place, (), OF_BLOCKS[function])
         return None
-    if sees == "parameter" and "[]" in _functions(formula):
+    if sees == "parameter" and "[]" in functions:
         what = f"formula '{clip(node.text)}': a value is made of numbers, which have no elements"
         hint = "A vector is the signal of a block: use an expression block."
         body.problems.add(what, place, (), hint)
@@ -61,12 +63,6 @@ def read_formula(
         if name not in CONSTANTS:
             body.references.append(Reference(name, sees, place))
     return formula
-
-
-def _functions(formula: Expression) -> set[str]:
-    if not isinstance(formula, Call):
-        return set()
-    return {formula.function}.union(*(_functions(argument) for argument in formula.arguments))
 
 
 def read_value(
@@ -160,7 +156,7 @@ def read_points(node: Node, body: Body, block: str) -> Points | None:
     """A table of points: [[x, y], ...], or {file, x, y} with the names of two columns."""
     place = body.place(node, block)
     if isinstance(node, Entries):
-        return _points_of_file(node, body, block)
+        return _points_of_columns(node, body, block)
     if not isinstance(node, Items):
         hint = "Write it like [[0, 0], [1, 2]], or {file: table.csv, x: column, y: column}."
         body.problems.add("a table of points must be a list of pairs", place, (), hint)
@@ -185,18 +181,23 @@ def read_points(node: Node, body: Body, block: str) -> Points | None:
     return Points(tuple(x for x, _ in points), tuple(y for _, y in points), place)
 
 
-def _points_of_file(node: Entries, body: Body, block: str) -> Points | None:
+def _points_of_columns(node: Entries, body: Body, block: str) -> Points | None:
     body.check_keys(node, POINTS_FILE, "key of a table", block)
     parts = [body.required(node, key, "a table from a file", block) for key in POINTS_FILE]
     texts = [None if part is None else body.text(part, "it", block) for part in parts]
     file, (_, x, y) = parts[0], texts
     if not isinstance(file, Scalar) or x is None or y is None:
         return None
+    return points_of_file(file.path, x, y, body, body.place(node, block))
+
+
+def points_of_file(path: Path, x: str, y: str, body: Body, place: Place) -> Points | None:
+    """A table of points in two columns of a file."""
     try:
-        columns = read_columns(file.path, {"y": y}, x, place=body.place(node, block))
+        columns = read_columns(path, {"y": y}, x, place=place)
     except DataError as error:
         body.problems.take(error)
         return None
     # read_columns promises at least two rows, ascending
     xs, ys = (tuple(column.tolist()) for column in (columns.time, columns.values["y"]))
-    return Points(xs, ys, body.place(node, block))
+    return Points(xs, ys, place)

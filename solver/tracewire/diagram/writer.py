@@ -13,7 +13,7 @@ from tracewire.diagram.modeline import moved_modeline
 from tracewire.diagram.packages import Packages
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.reader import read_text
-from tracewire.diagram.replicate import numbers_of, replicated
+from tracewire.diagram.replicate import numbers_of, replicate_rows
 from tracewire.diagram.sources import Sources
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.diagram.yaml_text import document
@@ -48,7 +48,7 @@ def write(diagram: Diagram, path: str | Path, overwrite: bool = False) -> Path:
     return target
 
 
-def written_out(diagram: Diagram) -> str:
+def write_out(diagram: Diagram) -> str:
     """The text of a diagram with what it extends, includes and replicates written out, as YAML.
 
     Rows inside subsystems keep `replicate`, since each use may give a count of its own. Comments
@@ -58,7 +58,7 @@ def written_out(diagram: Diagram) -> str:
     sources = Sources(Packages(diagram.library, Problems()))
     root = sources.tree(diagram.text, diagram.file)
     assert root is not None
-    root = replicated(root, numbers_of(root), Body(sources.problems))
+    root = replicate_rows(root, numbers_of(root), Body(sources.problems))
     subsystems = _all_subsystems(sources, root)
     values = {name: node for name, _, node in root if name not in ("include", "subsystems")}
     if subsystems:

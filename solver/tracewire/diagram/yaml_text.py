@@ -14,7 +14,7 @@ OPENED = ("parameters", "inputs", "blocks", "subsystems", "presets", "measured",
 """Sections that have a line for each entry, however short they are."""
 
 
-def quoted(text: str) -> str:
+def quote(text: str) -> str:
     """A text as YAML has it, anywhere: plain where it can be, else in quotes."""
     plain = _is_plain(text) and not NUMBER.fullmatch(text)
     return text if plain else json.dumps(text, ensure_ascii=False)
@@ -32,7 +32,7 @@ def _is_plain(text: str, flow: bool = True) -> bool:
 
 def mapping_text(parts: Mapping[str, str]) -> str:
     """`{key: value, ...}` of values that are YAML."""
-    return "{" + ", ".join(f"{quoted(key)}: {value}" for key, value in parts.items()) + "}"
+    return "{" + ", ".join(f"{quote(key)}: {value}" for key, value in parts.items()) + "}"
 
 
 def inline(node: Node) -> str:
@@ -62,7 +62,7 @@ def _sections(sections: Mapping[str, Node], indent: int) -> list[str]:
     names = [*(name for name in order if name in sections), *(sections.keys() - {*order})]
     found = []
     for name in names:
-        node, begin = sections[name], f"{' ' * indent}{quoted(name)}:"
+        node, begin = sections[name], f"{' ' * indent}{quote(name)}:"
         if name not in ("subsystems", "variants") or not isinstance(node, Entries):
             found += _entry(begin, node, indent, name in OPENED)
             continue
@@ -70,18 +70,18 @@ def _sections(sections: Mapping[str, Node], indent: int) -> list[str]:
         for part, _, body in node:
             if isinstance(body, Entries) and body.keys:
                 found += [
-                    f"{' ' * (indent + 2)}{quoted(part)}:",
+                    f"{' ' * (indent + 2)}{quote(part)}:",
                     *_sections(body.values, indent + 4),
                 ]
             else:
-                found += _entry(f"{' ' * (indent + 2)}{quoted(part)}:", body, indent + 2, False)
+                found += _entry(f"{' ' * (indent + 2)}{quote(part)}:", body, indent + 2, False)
     return found
 
 
 def _lines(parts: Mapping[str, Node], indent: int) -> list[str]:
     found = []
     for name, node in parts.items():
-        found += _entry(f"{' ' * indent}{quoted(name)}:", node, indent, False)
+        found += _entry(f"{' ' * indent}{quote(name)}:", node, indent, False)
     return found
 
 

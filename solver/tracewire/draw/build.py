@@ -18,12 +18,12 @@ from tracewire.diagram import (
     split_index,
 )
 from tracewire.draw.details import details_of, event_text, input_details, settings_text
-from tracewire.draw.font import shortened
+from tracewire.draw.font import shorten
 from tracewire.draw.graph import Connection, Graph, Look, Mark, Node, Plot, Port
 from tracewire.draw.limits import LETTER
 from tracewire.draw.needed import Needed
 from tracewire.draw.numbers import inner_numbers, numbers_of, setting_numbers
-from tracewire.draw.orient import oriented
+from tracewire.draw.orient import orient
 from tracewire.draw.sensors import sensor_nodes
 from tracewire.draw.shapes import Drawn, port_width, shape_of, subsystem_look, tag_look
 from tracewire.errors import Problem
@@ -69,7 +69,7 @@ def graph_of(
     nodes, wires = builder.level(diagram, "", "", own, numbers_of(diagram, {}), options.depth)
     events = tuple(event_text(event) for event in diagram.events)
     told = tuple(map(_in_short, problems))
-    nodes, wires = oriented((*tags, *nodes), wires)
+    nodes, wires = orient((*tags, *nodes), wires)
     return Graph(diagram.title or diagram.file.stem, nodes, wires, events, told)
 
 
@@ -162,7 +162,7 @@ class _Builder:
         where = ".".join(part for part in (definition, use.name) if part)
         node = Node(
             id=full,
-            name=shortened(use.name, LETTER.most_name),
+            name=shorten(use.name, LETTER.most_name),
             type=use.type,
             look=Look("box", 0, 0),
             ports=tuple(ports),
@@ -193,7 +193,7 @@ class _Builder:
             for wire in self.wire(level_inside, output, f"{full}>{name}", f"{full}>{name}")
         )
         knots, ends = _knotted(ends, own.values())
-        nodes, wires = oriented((*nodes, *knots, *level_inside.strangers.values()), (*wires, *ends))
+        nodes, wires = orient((*nodes, *knots, *level_inside.strangers.values()), (*wires, *ends))
         return replace(node, look=replace(look, outline="frame"), nodes=nodes, wires=wires)
 
     def mark(self, full: str, where: str, type_name: str) -> Mark:
@@ -284,7 +284,7 @@ class _Builder:
         unit = shown.unit or source.unit
         if self.options.units and unit:
             parts.append(f"[{unit}]")
-        return shortened(" ".join(parts), LETTER.most_name, LETTER.small)
+        return shorten(" ".join(parts), LETTER.most_name, LETTER.small)
 
 
 def _closed_on(diagram: Diagram, options: DrawOptions) -> Iterator[str]:
@@ -343,7 +343,7 @@ def _knotted(
 
 
 def _short(text: str) -> str:
-    return shortened(text, LETTER.most_port, LETTER.small)
+    return shorten(text, LETTER.most_port, LETTER.small)
 
 
 def _label_widths(ports: Sequence[Port]) -> tuple[float, float]:

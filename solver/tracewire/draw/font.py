@@ -34,7 +34,7 @@ def text_width(text: str, size: float = LETTER.size) -> float:
     return float(_font().getlength(text)) * size / LETTER.measured_at
 
 
-def shortened(text: str, most: float, size: float = LETTER.size) -> str:
+def shorten(text: str, most: float, size: float = LETTER.size) -> str:
     """The text, cut so that it is no wider than `most` px, with an ellipsis where it was cut."""
     text = " ".join(text[:500].split())
     if text_width(text, size) <= most:

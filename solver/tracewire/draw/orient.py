@@ -14,7 +14,7 @@ SCALES = {"gain", "divide", "matrix_gain", "product"}
 """Types that may stand between two sums on that way: a mass between forces and an acceleration."""
 
 
-def oriented(
+def orient(
     nodes: Sequence[Node], wires: Sequence[Connection]
 ) -> tuple[tuple[Node, ...], tuple[Connection, ...]]:
     """The nodes and wires of one level with `flipped` and `back` set.
@@ -29,16 +29,16 @@ def oriented(
     back = paths.into_heads(way) | paths.closing(way)
     flipped = paths.feedback(way, back)
     return (
-        tuple(turned_around(node) if node.id in flipped else node for node in nodes),
+        tuple(turn_around(node) if node.id in flipped else node for node in nodes),
         tuple(
             replace(wire, back=wire.id in back, main=paths.leads_on(wire, way)) for wire in wires
         ),
     )
 
 
-def turned_around(node: Node) -> Node:
+def turn_around(node: Node) -> Node:
     """A node drawn the other way round, with all that is inside of it where it is open."""
-    inside = tuple(turned_around(inner) for inner in node.nodes)
+    inside = tuple(turn_around(inner) for inner in node.nodes)
     return replace(node, flipped=not node.flipped, nodes=inside)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from tracewire.draw import icons
 from tracewire.draw.curves import curve_of, table_curve
-from tracewire.draw.font import shortened, text_width
+from tracewire.draw.font import shorten, text_width
 from tracewire.draw.fractions import items_of, polynomial, raised, times
 from tracewire.draw.graph import Line, Look
 from tracewire.draw.limits import LETTER, SHAPE
@@ -48,7 +48,7 @@ def shape_of(drawn: Drawn) -> Look:
 
 def text_box(text: str, drawn: Drawn) -> Look:
     """A box with one line of text."""
-    line = shortened(text, LETTER.most_text)
+    line = shorten(text, LETTER.most_text)
     width = max(SHAPE.box[0], text_width(line) + 16)
     return Look("box", round(width), _height(drawn), lines=(line,))
 
@@ -67,7 +67,7 @@ def _gain(drawn: Drawn) -> Look:
     if drawn.ports > 1:  # the formulas of a matrix may read signals
         return text_box(drawn.settings.get("matrix", "k"), drawn)
     gain = drawn.settings.get("k") or drawn.settings.get("matrix", "k")
-    text = shortened(gain, LETTER.most_gain, LETTER.size)
+    text = shorten(gain, LETTER.most_gain, LETTER.size)
     return Look("triangle", round(max(46.0, text_width(text) / 0.62 + 10)), 40.0, lines=(text,))
 
 
@@ -76,7 +76,7 @@ def _fraction(above: str, below: str, drawn: Drawn, short: tuple[str, str] = (""
     lines = (above, below)
     if any(text_width(line) > LETTER.most_text for line in lines) and all(short):
         lines = short
-    lines = (shortened(lines[0], LETTER.most_text), shortened(lines[1], LETTER.most_text))
+    lines = (shorten(lines[0], LETTER.most_text), shorten(lines[1], LETTER.most_text))
     width = max(40.0, *(text_width(line) + 16 for line in lines))
     return Look("box", round(width), _height(drawn), lines=lines, fraction=True)
 
@@ -311,7 +311,7 @@ def subsystem_look(
     The title of an open one is one line above what is inside.
     """
     titles = _in_two(title) if closed else (title,)
-    lines = tuple(shortened(line, LETTER.most_text) for line in titles)
+    lines = tuple(shorten(line, LETTER.most_text) for line in titles)
     width = max(64.0, max(text_width(line) for line in lines) + 20 + sum(labels))
     return Look("box", round(width), max(46.0, SHAPE.pitch * ports + 10), lines=lines)
 
@@ -327,8 +327,8 @@ def _in_two(title: str) -> tuple[str, ...]:
 
 def tag_look(name: str) -> Look:
     """An input of the diagram: a tag with its name."""
-    return Look("tag", round(max(34.0, text_width(shortened(name, LETTER.most_text)) + 22)), 24.0,
-                lines=(shortened(name, LETTER.most_text),))  # fmt: skip
+    return Look("tag", round(max(34.0, text_width(shorten(name, LETTER.most_text)) + 22)), 24.0,
+                lines=(shorten(name, LETTER.most_text),))  # fmt: skip
 
 
 def port_width(text: str) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from html import escape
 
-from tracewire.draw.font import FAMILY, shortened, text_width
+from tracewire.draw.font import FAMILY, shorten, text_width
 from tracewire.draw.graph import Connection, Graph, Node, Plot
 from tracewire.draw.layout import Layout, Point, Rectangle, all_nodes, all_wires
 from tracewire.draw.limits import LETTER, SHAPE
@@ -75,7 +75,7 @@ def svg_of(graph: Graph, layout: Layout) -> str:
         lines.append(_write(text, place.x, place.y + LETTER.small, "small"))
     for row, (kind, text) in enumerate(notes):
         y = layout.height + SHAPE.note_line * (row + 1)
-        lines.append(_write(shortened(text, LETTER.most_note, LETTER.small), 12, y, kind))
+        lines.append(_write(shorten(text, LETTER.most_note, LETTER.small), 12, y, kind))
     return "\n".join([*lines, "</g>", "</svg>"]) + "\n"
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 
@@ -51,11 +51,19 @@ def names_of(expression: Expression) -> tuple[str, ...]:
     return tuple(found)
 
 
+def calls_in(expression: Expression) -> Iterator[Call]:
+    """Every call in the formula."""
+    due = [expression]
+    while due:
+        node = due.pop()
+        if isinstance(node, Call):
+            yield node
+            due += node.arguments
+
+
 def has_delay(expression: Expression) -> bool:
     """Whether a part of the formula is read with a delay."""
-    if not isinstance(expression, Call):
-        return False
-    return expression.function in DELAYS or any(map(has_delay, expression.arguments))
+    return any(call.function in DELAYS for call in calls_in(expression))
 
 
 def read_at_once(expression: Expression, also_before: bool = False) -> tuple[str, ...]:

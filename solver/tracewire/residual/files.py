@@ -17,7 +17,7 @@ from tracewire.diagram import (
     find_recorded,
     mapping_text,
     path_text,
-    quoted,
+    quote,
     replace_series,
     series_parts,
 )
@@ -38,8 +38,8 @@ class _Column:
 
     def text(self) -> str:
         if not self.unit:
-            return quoted(self.column)
-        return mapping_text({"column": quoted(self.column), "unit": quoted(self.unit)})
+            return quote(self.column)
+        return mapping_text({"column": quote(self.column), "unit": quote(self.unit)})
 
 
 def series_from_files(
@@ -86,7 +86,7 @@ class _Attaching:
                 continue
             parts = self.by_template(headings) if self.diagram.measured else self.by_name(headings)
             if parts is not None:
-                file = quoted(path_text(path, self.diagram.file.parent))
+                file = quote(path_text(path, self.diagram.file.parent))
                 found[name] = mapping_text({"file": file, "use": use, **parts})
         if self.problems:
             raise DataError(self.problems)

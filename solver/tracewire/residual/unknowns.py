@@ -72,7 +72,7 @@ def sensor_unknowns(measured: Sequence[Measured]) -> list[Unknown]:
             sizes = {
                 "offset": spread,
                 "gain": max(abs(sensor.gain), 1e-3),
-                "delay": float(np.median(np.diff(series.t))),
+                "delay": series.interval,
                 "quad": spread / (largest**2 or 1.0),
                 "drift": spread / float(series.t[-1] - series.t[0]),
             }

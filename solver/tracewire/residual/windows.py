@@ -35,6 +35,11 @@ class Section:
     first: int
     end: int
 
+    @property
+    def count(self) -> int:
+        """How many samples they are."""
+        return self.end - self.first
+
 
 def cut_windows(model: Model, section: Section, length: int, free: Sequence[str]) -> list[Segment]:
     """A section as windows of about `length` samples, each with free starts of the states `free`.

@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 
 ENDINGS = (".gif", ".mp4")
 
-Tell = Callable[[float], None]
-
 
 def animate(
     run: Run,
@@ -36,7 +34,7 @@ def animate(
     speed: float = 1.0,
     fps: float = 25.0,
     width: int = 480,
-    progress: Tell | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> Path:
     """Write a run as a moving picture to a .gif file, or to .mp4 where ffmpeg is installed.
 
@@ -106,7 +104,9 @@ def _pause(path: Path, fps: float) -> float:
     return max(round(1 / fps / SCENE.tick), 1) * SCENE.tick if path.suffix == ".gif" else 1 / fps
 
 
-def _frames(run: Run, times: NDArray[np.float64], width: int, tell: Tell) -> Iterator[Image]:
+def _frames(
+    run: Run, times: NDArray[np.float64], width: int, tell: Callable[[float], None]
+) -> Iterator[Image]:
     """The pictures of a film. What moves is drawn anew over what does not."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure

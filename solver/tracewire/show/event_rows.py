@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
 from tracewire.show.limits import FIGURE
-from tracewire.show.sticking import Interval, joined, stick_intervals
+from tracewire.show.sticking import Interval, join_intervals, stick_intervals
 from tracewire.show.style import EDGE, MARK, QUIET, STICK, cut
 from tracewire.solve import Event, Run
 
@@ -67,7 +67,7 @@ def draw_events(panel: Axes, run: Run, rows: Sequence[str], shaded: bool = False
                 for event, kind in zip(run.events, kinds_of, strict=True)
                 if kind in kinds and position.get(event.block, last) == row
             ]
-            groups = joined(((time, time) for time in times), apart)
+            groups = join_intervals(((time, time) for time in times), apart)
             many = [(begin, end) for begin, end in groups if end > begin]
             _draw_bars(panel, many, row, half, facecolor=color, alpha=FIGURE.dense, linewidth=0)
             marks = list(dict.fromkeys(time for ends in groups for time in ends))

@@ -213,7 +213,7 @@ def _data(fit: Fit) -> Section:
          shown(m.weight))
         for m in fit.measured
     )  # fmt: skip
-    series = _without_empty(Table("series", header, rows, frozenset({4, 5, 6, 7, 8})))
+    series = Table("series", header, rows, frozenset({4, 5, 6, 7, 8})).without_empty()
     points = [
         f"{m.name}: {sentence(step)}"
         for m in fit.measured
@@ -228,14 +228,6 @@ def _beside(file: str, fit: Fit) -> str:
     folder = fit.model.diagram.file.parent
     path = Path(file)
     return str(path.relative_to(folder)) if path.is_relative_to(folder) else file
-
-
-def _without_empty(table: Table) -> Table:
-    """A table without the columns that hold nothing."""
-    kept = [n for n in range(len(table.header)) if any(row[n] for row in table.rows)]
-    numeric = frozenset(at for at, n in enumerate(kept) if n in table.numeric)
-    rows = tuple(tuple(row[n] for n in kept) for row in table.rows)
-    return Table(table.title, tuple(table.header[n] for n in kept), rows, numeric)
 
 
 def _signals_table(fit: Fit) -> Table:

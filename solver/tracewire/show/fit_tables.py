@@ -29,12 +29,12 @@ def fit_table(fit: Fit) -> Table:
         low, high = (end / factor for end in fit.intervals.get(name, (math.nan, math.nan)))
         interval = UNKNOWN
         if math.isfinite(low) and math.isfinite(high):
-            interval = f"{rounded(low, error, 3)} to {rounded(high, error, 3)}"
+            interval = f"{round_by_error(low, error, 3)} to {round_by_error(high, error, 3)}"
         rows.append(
             (
                 name,
                 shown(fit.began[name] / factor),
-                rounded(value, error),
+                round_by_error(value, error),
                 f"{error:.3g}" if math.isfinite(error) else "–",
                 interval,
                 unit,
@@ -45,7 +45,7 @@ def fit_table(fit: Fit) -> Table:
     return Table("fitted parameters", header, tuple(rows), frozenset({1, 2, 3, 4}))
 
 
-def rounded(value: float, error: float, least: int = 6) -> str:
+def round_by_error(value: float, error: float, least: int = 6) -> str:
     """A number with as many digits as its standard error leaves meaning, at least `least`."""
     digits = least
     if value != 0 and math.isfinite(error) and error > 0:

@@ -33,11 +33,10 @@ def library_report(
 
 def _of_block(library: Library, name: str) -> Section:
     block = library[name]
-    tables = [Table("", part.head, part.rows) for part in describe_parts(block)]
     return Section(
         name,
         (block.doc,),
-        tuple(map(_without_empty, tables)),
+        tuple(Table("", p.head, p.rows).without_empty() for p in describe_parts(block)),
         code="\n".join(describe_formulas(block)),
         points=tuple(describe_origin(name, block)),
     )
@@ -60,7 +59,7 @@ def _of_subsystem(file: str, name: str, diagram: Diagram) -> Section:
     return Section(
         name,
         (diagram.title,) if diagram.title else (),
-        tuple(_without_empty(table) for table in tables if table.rows),
+        tuple(table.without_empty() for table in tables if table.rows),
         code=f"include: {file}",
         figures=(picture,),
     )
@@ -71,10 +70,3 @@ def _value(value: Value) -> str:
     if isinstance(value.formula, Number):
         return shown(value.formula.value * value.factor)
     return to_text(value.formula)
-
-
-def _without_empty(table: Table) -> Table:
-    """The table without columns that are empty in all rows."""
-    kept = [n for n in range(len(table.header)) if any(row[n] for row in table.rows)]
-    rows = tuple(tuple(row[n] for n in kept) for row in table.rows)
-    return Table(table.title, tuple(table.header[n] for n in kept), rows)

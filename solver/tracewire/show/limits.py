@@ -75,8 +75,6 @@ class FitFigureLimits:
     """It reaches this many root mean squares to each side."""
     most_profiles: int = 24
     """Likelihoods that are drawn."""
-    most_series: int = 12
-    """Rows of series."""
     most_parameters: int = 40
     """Rows of parameters, and of their correlation."""
     most_paths: int = 24

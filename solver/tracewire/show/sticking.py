@@ -44,10 +44,10 @@ def held_intervals(run: Run) -> dict[str, list[Interval]]:
         for name in run.signals:
             if name in rates | held | {block}:
                 found.setdefault(name, []).extend(intervals)
-    return {name: joined(intervals) for name, intervals in found.items()}
+    return {name: join_intervals(intervals) for name, intervals in found.items()}
 
 
-def joined(intervals: Iterable[Interval], apart: float = 0.0) -> list[Interval]:
+def join_intervals(intervals: Iterable[Interval], apart: float = 0.0) -> list[Interval]:
     """Intervals in their order, where those that overlap, or are `apart` at most, are one."""
     found: list[Interval] = []
     for begin, end in sorted(intervals):

@@ -13,7 +13,7 @@ from tracewire.compile import Model
 from tracewire.diagram import Diagram
 from tracewire.show.limits import WORD
 from tracewire.show.table import Table, shown
-from tracewire.show.tidy import tidied
+from tracewire.show.tidy import tidy_formula
 
 if TYPE_CHECKING:
     from tracewire.residual import Measured
@@ -251,7 +251,7 @@ def events_table(run: Run, events: Sequence[Event] | None = None) -> Table:
             for name, after in event.after.items()
             if after != event.before[name]
         ]
-        where = f"{tidied(event.guard)} {event.direction}".strip()
+        where = f"{tidy_formula(event.guard)} {event.direction}".strip()
         rows.append((f"{event.time:.9g}", event.kind, event.block, where, ", ".join(jumps)))
     return Table(
         "events", ("t [s]", "kind", "block", "guard", "jumps"), tuple(rows), frozenset({0})

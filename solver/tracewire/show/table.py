@@ -45,6 +45,13 @@ class Table:
         caption = f"<caption>{html.escape(self.title)}</caption>" if self.title else ""
         return f"<table>{caption}<tr>{head}</tr>{''.join(rows)}</table>"
 
+    def without_empty(self) -> Table:
+        """The table without the columns that hold nothing."""
+        kept = [n for n in range(len(self.header)) if any(row[n] for row in self.rows)]
+        numeric = frozenset(at for at, n in enumerate(kept) if n in self.numeric)
+        rows = tuple(tuple(row[n] for n in kept) for row in self.rows)
+        return Table(self.title, tuple(self.header[n] for n in kept), rows, numeric)
+
     def _repr_html_(self) -> str:
         """The table as a notebook shows it."""
         return self.html()

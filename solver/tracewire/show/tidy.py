@@ -8,18 +8,18 @@ from tracewire.formula import Call, Expression, Number, parse, to_text
 ONE = Number(1.0)
 
 
-def tidied(text: str) -> str:
+def tidy_formula(text: str) -> str:
     """The text of a formula without double signs and factors of 1; other text as it is."""
     try:
-        return to_text(_tidied(parse(text)))
+        return to_text(_tidy(parse(text)))
     except FormulaError:  # a guard that is told in words
         return text
 
 
-def _tidied(node: Expression) -> Expression:
+def _tidy(node: Expression) -> Expression:
     if not isinstance(node, Call):
         return node
-    arguments = tuple(_tidied(argument) for argument in node.arguments)
+    arguments = tuple(_tidy(argument) for argument in node.arguments)
     match node.function, arguments:
         case (("*" | "/"), (first, last)) if last == ONE:
             return first

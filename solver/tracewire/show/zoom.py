@@ -125,7 +125,7 @@ def _line(line: Line2D, keep: Any) -> dict[str, Any]:
     y = np.asarray(line.get_ydata(), dtype=float)
     if (np.diff(x) < 0).any():
         raise NotOverTime
-    x, y = thinned(x, y)
+    x, y = thin_curve(x, y)
     label = str(line.get_label())
     return {
         "x": keep(x),
@@ -137,7 +137,7 @@ def _line(line: Line2D, keep: Any) -> dict[str, Any]:
     }
 
 
-def thinned(x: Vector, y: Vector) -> tuple[Vector, Vector]:
+def thin_curve(x: Vector, y: Vector) -> tuple[Vector, Vector]:
     """A curve of `FIGURE.zoom_points` at most: of each stretch the least and the greatest value, in
     order.
 

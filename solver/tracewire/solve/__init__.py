@@ -131,13 +131,13 @@ from tracewire.solve.integrator import Integrator
 from tracewire.solve.interrupt import Halt, Interrupted, until_interrupted
 from tracewire.solve.limits import Limits, beyond_budget
 from tracewire.solve.many import simulate_many
-from tracewire.solve.observers import Section
+from tracewire.solve.observers import Section, guard_crossings
 from tracewire.solve.options import START, Options, refuse_unknown_options, with_options, with_row
 from tracewire.solve.parallel import WorkerEnded, carry_out, cores
 from tracewire.solve.parameters import parameter_values
 from tracewire.solve.passage import Passage
 from tracewire.solve.problem import InitialValueProblem, initial_value_problem
-from tracewire.solve.progress import PartProgress, Tell
+from tracewire.solve.progress import PartProgress, ProgressCallback
 from tracewire.solve.run import Event, Run, Sensitivities, Statistics
 from tracewire.solve.runs import Runs
 from tracewire.solve.sampling import DEFAULT_SAMPLES, even_times, sample_times
@@ -159,6 +159,7 @@ __all__ = [
     "Options",
     "PartProgress",
     "Passage",
+    "ProgressCallback",
     "Run",
     "Runs",
     "Section",
@@ -167,12 +168,12 @@ __all__ = [
     "SpanProblem",
     "SpanRuns",
     "Statistics",
-    "Tell",
     "WorkerEnded",
     "beyond_budget",
     "carry_out",
     "cores",
     "even_times",
+    "guard_crossings",
     "initial_value_problem",
     "parameter_values",
     "refuse_delays",

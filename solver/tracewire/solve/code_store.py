@@ -70,7 +70,7 @@ class CodeStore:
             return None
         except OSError:
             whole = b""
-        content = opened(name, whole)
+        content = unseal(name, whole)
         if content is None:
             self.damaged(name)
         return content
@@ -80,7 +80,7 @@ class CodeStore:
         if not self.works:
             return
         try:
-            write_file(self.folder / name, sealed(name, content), 0o600)
+            write_file(self.folder / name, seal(name, content), 0o600)
         except OSError as error:
             self._give_up(error.strerror or str(error))
 
@@ -158,15 +158,15 @@ class CodeStore:
             return descriptor
 
 
-def sealed(name: str, content: bytes) -> bytes:
+def seal(name: str, content: bytes) -> bytes:
     """A content with the SHA-256 of its name and itself before it."""
     return hashlib.sha256(name.encode() + b"\0" + content).digest() + content
 
 
-def opened(name: str, whole: bytes) -> bytes | None:
+def unseal(name: str, whole: bytes) -> bytes | None:
     """The content that was sealed under a name; None where it is damaged."""
     content = whole[DIGEST:]
-    return content if whole == sealed(name, content) else None
+    return content if whole == seal(name, content) else None
 
 
 def _is_own(status: os.stat_result) -> bool:

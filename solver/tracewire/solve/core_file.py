@@ -23,7 +23,7 @@ import platformdirs
 
 from tracewire.errors import InstallationError
 from tracewire.files import write_file
-from tracewire.solve.code_store import CACHE, CodeStore, opened, sealed, tell
+from tracewire.solve.code_store import CACHE, CodeStore, seal, tell, unseal
 from tracewire.solve.limits import MEMORY
 
 HERE = Path(__file__).resolve().parent
@@ -77,13 +77,13 @@ def put_beside_sources() -> Path:
     PACKAGED.mkdir(exist_ok=True)
     for file in PACKAGED.glob("*.o"):
         file.unlink()
-    return write_file(PACKAGED / name, sealed(name, content))
+    return write_file(PACKAGED / name, seal(name, content))
 
 
 def _packaged(name: str) -> bytes | None:
     """The object file beside the sources; None where there is none, or it is damaged."""
     try:
-        return opened(name, (PACKAGED / name).read_bytes())
+        return unseal(name, (PACKAGED / name).read_bytes())
     except OSError:
         return None
 

@@ -110,7 +110,7 @@ def _as_driving(name: str, given: tuple[ArrayLike, ArrayLike]) -> Driving:
     return Held(t, u) if isinstance(given, Held) else (t, u)
 
 
-def refuse_delays(model: Model, what: str, instead: str = "") -> None:
+def refuse_delays(model: Model, what: str) -> None:
     """Raises OptionError where a model has delays, for `what` begins runs at states and no more."""
     problems = []
     for delay in model.lowered.delays:
@@ -118,7 +118,7 @@ def refuse_delays(model: Model, what: str, instead: str = "") -> None:
         block = model.flat.blocks.get(name)
         said = f"{what} begins at states, and the delay needs what '{delay.text}' was before"
         place = replace(block.place if block else Place(), block=name)
-        hint = f"Take {instead}a block of type pade_delay in its place, whose states are its past."
+        hint = "Take a block of type pade_delay in its place, whose states are its past."
         problems.append(Problem(said, place, (), hint))
     if problems:
         raise OptionError(problems)

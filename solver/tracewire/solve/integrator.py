@@ -36,7 +36,7 @@ from tracewire.solve.interrupt import Halt, Interrupted, until_interrupted
 from tracewire.solve.limits import PAUSE
 from tracewire.solve.once_per_model import once_per_model
 from tracewire.solve.problem import InitialValueProblem
-from tracewire.solve.progress import Tell
+from tracewire.solve.progress import ProgressCallback
 from tracewire.solve.run import EventLog, Run, Statistics
 from tracewire.solve.sensitivities import recorded, undefined
 from tracewire.solve.setup import Records
@@ -78,7 +78,7 @@ class Integrator:
         problem: InitialValueProblem,
         *,
         records: Records = "signals",
-        progress: Tell | None = None,
+        progress: ProgressCallback | None = None,
         halt: Halt | None = None,
     ) -> None:
         self.problem, self.model = problem, problem.model

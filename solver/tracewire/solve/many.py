@@ -18,7 +18,7 @@ from tracewire.solve.interrupt import Interrupted
 from tracewire.solve.observers import Observer, Section
 from tracewire.solve.options import START, Options, refuse_unknown_options
 from tracewire.solve.parallel import carry_out
-from tracewire.solve.progress import PartProgress, Tell
+from tracewire.solve.progress import PartProgress, ProgressCallback
 from tracewire.solve.runs import Runs
 from tracewire.solve.task import Outcome, Row, Task
 
@@ -34,7 +34,7 @@ def simulate_many(
     observe: Observer | Sequence[Observer] = "samples",
     workers: int | None = None,
     executor: Executor | None = None,
-    progress: Tell | None = None,
+    progress: ProgressCallback | None = None,
     **options: Unpack[Options],
 ) -> Runs:
     """Simulate a model for many rows of parameters, in parallel.

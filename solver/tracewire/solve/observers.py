@@ -18,6 +18,7 @@ from tracewire.solve.run import Run
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
+Direction = Literal["up", "down", "both"]
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class Section:
     """
 
     guard: str = ""
-    direction: Literal["up", "down", "both"] = "both"
+    direction: Direction = "both"
     period: float | str | None = None
     since: float | str | None = None
     after: bool = False
@@ -79,14 +80,20 @@ def instants(
 
 def crossings(model: Model, section: Section, log: Matrix, since: float) -> Matrix:
     """The points (K, 1 + n) of a guard's section from the log of a run: time, then the states."""
-    n = len(model.states)
-    named = [i for i, m in enumerate(model.modes) if section.guard in (m.text, m.signal)]
-    way = {"up": [1], "down": [-1], "both": [1, -1]}[section.direction]
-    kept = log[np.isin(log[:, 2], named) & np.isin(log[:, 3], way) & (log[:, 0] >= since)]
-    _, first = np.unique(kept[:, [0, 2]], axis=0, return_index=True)
-    kept = kept[np.sort(first)]  # a crossing that does several things is one point
+    n, kept = len(model.states), guard_crossings(model, section.guard, section.direction, log)
+    kept = kept[kept[:, 0] >= since]
     states = LOG_HEAD + n if section.after else LOG_HEAD
     return np.column_stack((kept[:, 0], kept[:, states : states + n]))
+
+
+def guard_crossings(model: Model, guard: str, direction: Direction, log: Matrix) -> Matrix:
+    """The rows of a log in which a guard crosses, one for each time that it does: a crossing may do
+    several things."""
+    named = [i for i, m in enumerate(model.modes) if guard in (m.text, m.signal)]
+    way = {"up": [1], "down": [-1], "both": [1, -1]}[direction]
+    rows = log[np.isin(log[:, 2], named) & np.isin(log[:, 3], way)]
+    _, first = np.unique(rows[:, [0, 2]], axis=0, return_index=True)
+    return np.asarray(rows[np.sort(first)])
 
 
 def criterion_of(criterion: Callable[[Run], ArrayLike], run: Run) -> NDArray[np.float64]:

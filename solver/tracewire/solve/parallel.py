@@ -131,7 +131,7 @@ def crew(
 
     Raises OptionError: less than one worker, a job that cannot be sent.
     """
-    count = checked(workers)
+    count = worker_count(workers)
     if executor is None and count == 1:
         yield from _working(Crew(job, _Here(), halt, False, 0))
         return
@@ -194,7 +194,7 @@ def carry_out(
         return halt.asked
 
 
-def checked(workers: int | None) -> int:
+def worker_count(workers: int | None) -> int:
     """The number of workers, the cores unless given. Raises OptionError."""
     if workers is not None and workers < 1:
         what = f"{workers} workers cannot work"

@@ -17,9 +17,9 @@ from tracewire.solve.history import Past, past_of
 from tracewire.solve.limits import Limits
 from tracewire.solve.options import Options, refuse_unknown_options, with_row
 from tracewire.solve.parameters import parameter_values
-from tracewire.solve.sampling import ascending, samples_of, span_of, timing_follows
-from tracewire.solve.sensitivities import Moving, checked, moving_with
-from tracewire.solve.tables import packed, tables_follow, tables_of
+from tracewire.solve.sampling import check_times, samples_of, span_of, timing_follows
+from tracewire.solve.sensitivities import Moving, check_sensitivities, moving_with
+from tracewire.solve.tables import pack_tables, tables_follow, tables_of
 from tracewire.solve.tolerance import Tolerance, longest_step, tolerance_of
 
 Vector = NDArray[np.float64]
@@ -104,7 +104,7 @@ def _numbers(
 ) -> _Numbers:
     """What follows from the values of the parameters; `tables` where they are known."""
     if tables is None:
-        tables = packed(tables_of(model, values, given.get("inputs") or {}))
+        tables = pack_tables(tables_of(model, values, given.get("inputs") or {}))
     parameters, preset = given.get("parameters") or {}, given.get("preset", "")
     constants = model.routines.constants_from(list(values.values()))
     if model.lowered.delays:
@@ -142,9 +142,9 @@ def _problem(
 ) -> InitialValueProblem:
     """The problem; `tables` are the packed ones, where they are known."""
     values = parameter_values(model, given.get("parameters") or {}, given.get("preset", ""))
-    asked = checked(model, sensitivities)
+    asked = check_sensitivities(model, sensitivities)
     times = given.get("times")
-    known = None if times is None else ascending(times)
+    known = None if times is None else check_times(times)
     begin, end = span_of(model, values, given.get("span"), known)
     every = given.get("every")
     samples = samples_of(model, values, begin, end, known, every) if sampled else np.empty(0)

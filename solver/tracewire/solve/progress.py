@@ -7,14 +7,14 @@ from collections.abc import Callable
 
 from tracewire.solve.limits import PAUSE
 
-Tell = Callable[[float, float], object]
+ProgressCallback = Callable[[float, float], object]
 """Is told how far the work is: the part that is done, 0 to 1, and the seconds that are left."""
 
 
 class PartProgress:
     """Tells the part of a work of `total` like parts that is done; some were `done` before."""
 
-    def __init__(self, tell: Tell | None, total: int, done: int) -> None:
+    def __init__(self, tell: ProgressCallback | None, total: int, done: int) -> None:
         self.tell, self.total, self.first, self.done = tell, total, done, done
         self.began, self.told = time.monotonic(), -1.0
 

@@ -19,7 +19,7 @@ Vector = NDArray[np.float64]
 DEFAULT_SAMPLES = 1001
 
 
-def ascending(times: ArrayLike) -> Vector:
+def check_times(times: ArrayLike) -> Vector:
     """Sample times (N,) as they are used. Raises OptionError where they do not ascend."""
     samples = np.array(times, dtype=float).ravel()
     increasing = bool((samples[1:] > samples[:-1]).all())  # not so where one is NaN

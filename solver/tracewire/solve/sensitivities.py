@@ -32,7 +32,7 @@ SAID = {
 }
 
 
-def checked(model: Model, names: Sequence[str]) -> tuple[str, ...]:
+def check_sensitivities(model: Model, names: Sequence[str]) -> tuple[str, ...]:
     """The names of what is asked for, each once. Raises OptionError for what does not exist."""
     asked = tuple(dict.fromkeys([names] if isinstance(names, str) else names))
     if not asked:

@@ -11,7 +11,7 @@ from tracewire.solve.integrator import Integrator, refuse_nan
 from tracewire.solve.interrupt import Interrupted
 from tracewire.solve.limits import Limits
 from tracewire.solve.problem import initial_value_problem
-from tracewire.solve.progress import Tell
+from tracewire.solve.progress import ProgressCallback
 from tracewire.solve.run import Run
 
 
@@ -31,7 +31,7 @@ def simulate(
     inputs: Mapping[str, tuple[ArrayLike, ArrayLike]] | None = None,
     past: Mapping[str, tuple[ArrayLike, ArrayLike]] | None = None,
     limits: Limits | Mapping[str, float] | None = None,
-    progress: Tell | None = None,
+    progress: ProgressCallback | None = None,
     sensitivities: Sequence[str] = (),
 ) -> Run:
     """Simulate a model: integrate x' = f(x, t) with frozen modes between located events.

@@ -78,7 +78,6 @@ def simulate_spans(
     *,
     budget: float = np.inf,
     sensitivities: Sequence[str] = (),
-    halt: Halt | None = None,
     **given: Unpack[AnySpan],
 ) -> SpanRuns:
     """Simulate a model over many spans: each run is what `simulate` makes of it, alone.
@@ -87,10 +86,10 @@ def simulate_spans(
 
     `given` are options of `simulate`: parameters, rtol, atol, preset, inputs, past, limits, which
     hold for each run; `budget` holds for the steps of all: a run that begins beyond it fails.
-    `halt` says whether the user wants to stop. A run that fails does not end the others. Raises
-    OptionError for arguments that do not fit, and Interrupted.
+    A run that fails does not end the others. Raises OptionError for arguments that do not fit, and
+    Interrupted.
     """
-    return span_problem(model, spans, sensitivities, **given).run(budget, halt or Halt())
+    return span_problem(model, spans, sensitivities, **given).run(budget, Halt())
 
 
 class Layout(NamedTuple):

@@ -81,7 +81,7 @@ def _following_inputs(model: Model) -> tuple[str, ...]:
     return tuple(name for name, f in model.flat.inputs.items() if f is not None and names_of(f))
 
 
-def packed(tables: Sequence[Table]) -> Vector:
+def pack_tables(tables: Sequence[Table]) -> Vector:
     """All tables in one array: their offsets, then of each its length, points, values, slopes.
 
     One that is held has slopes of 0: it jumps at its points.

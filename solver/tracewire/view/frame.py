@@ -35,7 +35,7 @@ class Arrays:
         return self.keep(values[:1] if still else values)
 
 
-def packed(head: Mapping[str, Any], arrays: Arrays) -> bytes:
+def pack_frame(head: Mapping[str, Any], arrays: Arrays) -> bytes:
     """The length of the head in 4 bytes, the head, the arrays; each part fills a multiple of 8.
 
     The head gets `arrays`, of each the number of its values and their bytes.

@@ -18,7 +18,7 @@ from tracewire.library import load_library
 from tracewire.solve import Limits
 from tracewire.view.comparison import comparison_of, conditions_of
 from tracewire.view.export import DRAWING, figure_of, script_of
-from tracewire.view.frame import Arrays, frame_of, packed, panels_of
+from tracewire.view.frame import Arrays, frame_of, pack_frame, panels_of
 from tracewire.view.job import Job
 from tracewire.view.limits import VIEW
 from tracewire.view.setting import Setting, setting_of
@@ -221,7 +221,7 @@ class Service:
         version.panels = version.panels or panels_of(run, version.shown)
         head["followed"] = {n: v for n, v in setting.values.items() if n not in setting.given}
         head["overruled"] = setting.overruled
-        return packed(head | frame_of(run, version.panels, arrays), arrays)
+        return pack_frame(head | frame_of(run, version.panels, arrays), arrays)
 
     def export(self, request: Request) -> Answer:
         """What a page shows as the text of a file: `figure` as SVG, `script`, or `diagram`."""

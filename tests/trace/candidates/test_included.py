@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from oracles.written import with_effects
 from tracewire.compile import compile
-from tracewire.diagram import Diagram, read_text
+from tracewire.diagram import Diagram, patch, read_text
 from tracewire.solve import simulate
 from tracewire.trace.candidates.candidates import find_candidates
 from tracewire.trace.candidates.places import describe_untried, find_places
 from tracewire.trace.candidates.signal_scales import SignalScale, SignalScales
 from tracewire.trace.found import Missing
-from tracewire.trace.missing.table import add_table
+from tracewire.trace.missing.table import table_block
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.probes import add_probes
 
@@ -127,7 +127,7 @@ def test_a_table_of_what_is_missing_goes_into_an_included_subsystem(tmp_path: Pa
     (tmp_path / "missing.csv").write_text("v, torque\n0, 0\n1, 2\n", encoding="utf-8")
     nothing = np.zeros(2)
     missing = Missing(place.name, ("v",), 1.0, (np.array([0.0, 1.0]),), nothing, nothing)
-    new = add_table(diagram, place, missing, "missing.csv")
+    new = patch(diagram, [table_block(diagram, place, missing, "missing.csv")])
     assert "      force: {of: [-x, u, w, missing]}\n      missing: {type: table, of: v" in new.text
 
 

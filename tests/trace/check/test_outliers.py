@@ -12,7 +12,7 @@ from oracles.oscillator import model_of, record
 from tracewire.residual import Measured
 from tracewire.trace.check.outliers import drop_outliers, find_outliers
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.search.setup import set_up_search
+from tracewire.trace.trace import set_up_search
 
 OPTIONS = TraceOptions()
 

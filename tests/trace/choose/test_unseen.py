@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tracewire.residual import Section
 from tracewire.trace.choose import safeguards, unseen
 from tracewire.trace.choose.choice import Entrant, choose, log_scores
 from tracewire.trace.choose.prediction import Prediction
@@ -109,7 +110,8 @@ class Names(tuple[str, ...]):
 def run_of(left: dict[tuple[str, ...], float]) -> Any:
     """A search with one unseen run of a sine of 1000 sigma, in which a model leaves so many."""
     wave = 1000 * np.sin(np.linspace(0, 20, WHOLE))
-    section = SimpleNamespace(first=0, end=WHOLE, measured=SimpleNamespace(values={"x": wave}))
+    measured: Any = SimpleNamespace(values={"x": wave})
+    section = Section(measured, 0, WHOLE)
     problem = SimpleNamespace(
         residuals_on=lambda names, windows: [np.full(WHOLE, left[names])], sigma={"x": 1.0}
     )
@@ -117,6 +119,7 @@ def run_of(left: dict[tuple[str, ...], float]) -> Any:
         data_split=SimpleNamespace(unseen=[section], validate=[section]),
         problem=problem,
         windows=lambda sections, length: [length],
+        whole_windows=lambda sections: [section.count for section in sections],
         options=TraceOptions(),
     )
 
@@ -288,12 +291,10 @@ def test_an_effect_beside_others_that_harms_whole_unseen_runs_is_not_named(
     there.problem.residuals_on = lambda names, windows: [
         np.full(windows[0], (whole if windows[0] == WHOLE else windowed)[tuple(names)])
     ]
-    monkeypatch.setattr(
-        safeguards, "_refitted_with", lambda search, best, names: Names(tuple(names))
-    )
+    monkeypatch.setattr(safeguards, "_refit_with", lambda search, best, names: Names(tuple(names)))
     none: Any = Names(())
     both: Any = Names((DRY, DELAY))
-    found: Any = safeguards._without_harmful(there, FinalModels(none, both, {}, ()))
+    found: Any = safeguards._without_harmful(there, FinalModels(none, both))
     assert set(found.best) == kept
     told = f"{DELAY} is not named beside {DRY}: it multiplies the error of whole unseen runs by 1.2"
     assert there.words == ([told] if kept == {DRY} else [])

@@ -6,13 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from diagram.alike import said
 from tracewire.compile import compile
-from tracewire.diagram import Diagram, read
+from tracewire.diagram import Diagram, apply, patch, read
 from tracewire.errors import OptionError
 from tracewire.solve import simulate
 from tracewire.trace.candidates.places import Place, find_places
 from tracewire.trace.found import Missing
-from tracewire.trace.missing.table import add_table, missing_table
+from tracewire.trace.missing.table import missing_table, table_block
 
 TEXT = """\
 span: [0, 3]
@@ -45,7 +46,9 @@ def place(of: Diagram, name: str = "torque") -> Place:
 def test_the_table_is_read_and_acts_at_the_sum(tmp_path: Path) -> None:
     old = diagram(tmp_path)
     (tmp_path / "missing.csv").write_text(missing_table(missing("q")))
-    new = add_table(old, place(old), missing("q"), "missing.csv")
+    block = table_block(old, place(old), missing("q"), "missing.csv")
+    new = patch(old, [block])
+    assert said(apply(old, [block])) == said(new)
     assert "# a comment that stays" in new.text
     assert "empirical" in new.text
     times = np.linspace(0, 3, 301)
@@ -69,7 +72,9 @@ def test_the_table_says_that_it_is_empirical_and_leaves_out_what_was_not_seen() 
 def test_a_torque_at_the_drive_is_seen_by_all_that_reads_it(tmp_path: Path) -> None:
     old = diagram(tmp_path)
     (tmp_path / "missing.csv").write_text(missing_table(missing("u")))
-    new = add_table(old, place(old, "drive.u"), missing("u"), "missing.csv")
+    block = table_block(old, place(old, "drive.u"), missing("u"), "missing.csv")
+    new = patch(old, [block])
+    assert said(apply(old, [block])) == said(new)
     assert "missing" in new.blocks
 
 
@@ -82,7 +87,7 @@ def test_two_variables_have_rows_of_pairs_but_no_block(tmp_path: Path) -> None:
     assert len(rows) == 26
     old = diagram(tmp_path)
     with pytest.raises(OptionError, match="depends on q and v; a table has one input"):
-        add_table(old, place(old), both, "missing.csv")
+        table_block(old, place(old), both, "missing.csv")
 
 
 def test_a_torque_with_memory_has_no_table(tmp_path: Path) -> None:
@@ -92,13 +97,13 @@ def test_a_torque_with_memory_has_no_table(tmp_path: Path) -> None:
     with pytest.raises(OptionError, match="no table of a torque that depends on history"):
         missing_table(memory)
     with pytest.raises(OptionError, match=r"cannot be wired to history.*wired to q, v"):
-        add_table(old, place(old), memory, "missing.csv")
+        table_block(old, place(old), memory, "missing.csv")
 
 
 def test_the_error_of_a_sensor_is_no_torque(tmp_path: Path) -> None:
     sensor = Place("sensor.q", "sensor", "q")
     with pytest.raises(OptionError, match=r"missing at 'sensor\.q' is no torque"):
-        add_table(diagram(tmp_path), sensor, missing("y"), "missing.csv")
+        table_block(diagram(tmp_path), sensor, missing("y"), "missing.csv")
 
 
 def test_a_torque_that_no_sample_is_near_has_no_table() -> None:

@@ -16,7 +16,6 @@ from tracewire.trace.results.comparison import (
     rmse,
 )
 from tracewire.trace.trials.free_run import free_run
-from tracewire.trace.trials.intervals import intervals
 from tracewire.trace.trials.trial import TraceProblem
 
 OPTIONS = TraceOptions()
@@ -80,7 +79,7 @@ def test_intervals_cover_the_truth_as_often_as_they_say() -> None:
         x = exact.values["x"] + NOISE * rng.standard_normal(len(exact.t))
         noisy = replace(exact, values={"x": x})
         drawn = [replace(segment, measured=noisy) for segment in segments]
-        ends = intervals(problem.fit((), drawn, 60, {"k": 25.0, "c": 0.2}), OPTIONS.confidence)
+        ends = problem.fit((), drawn, 60, {"k": 25.0, "c": 0.2}).intervals(OPTIONS.confidence)
         inside += [ends[n][0] <= value <= ends[n][1] for n, value in (("k", 25.0), ("c", 0.2))]
     assert np.mean(inside) == pytest.approx(0.95, abs=0.06)
 

@@ -75,6 +75,12 @@ def opened_at(text: str, size: float, hat: np.ndarray, starts: list[dict[str, fl
     )
 
 
+def response(linearisation: TorqueLinearisation, torques: list[np.ndarray]) -> np.ndarray:
+    """What torques at `torque` do to all residuals, in sigma."""
+    pieces = linearisation.window_pieces
+    return np.concatenate([linearisation.window_response(w, {"torque": torques}) for w in pieces])
+
+
 STARTS: list[dict[str, float]] = [
     {"theta": 1.0, "omega": 0.0},
     {"theta": 0.7, "omega": -2.0},
@@ -97,7 +103,7 @@ def test_the_answer_is_the_derivative_by_the_coefficient_of_the_same_torque(
         windows.criterion.model.diagram, windows, places, 1e-8, OPTIONS
     )
     torques = [np.stack(list(PUSHES.values()), axis=1)]
-    found = linearisation.respond({"torque": torques})
+    found = response(linearisation, torques)
     assert found.shape == (linearisation.size, len(PUSHES)) == (len(T), len(PUSHES))
     for column, push in zip(found.T, PUSHES.values(), strict=True):
         up, down = (
@@ -118,7 +124,7 @@ def test_while_it_sticks_no_torque_moves_it() -> None:
     linearisation = TorqueLinearisation(
         windows.criterion.model.diagram, windows, places, 1e-8, OPTIONS
     )
-    answer = linearisation.respond({"torque": [np.ones((len(T), 1))]})
+    answer = response(linearisation, [np.ones((len(T), 1))])
     np.testing.assert_allclose(answer, 0.0, atol=1e-9)
 
 

@@ -29,7 +29,6 @@ def test_what_halves_the_error_everywhere_passes() -> None:
     verdict = judged([10.0] * WINDOWS, [5.0] * WINDOWS)
     assert verdict.passed
     assert verdict.drop == pytest.approx(0.5)
-    assert verdict.improved_fraction == 1.0
     assert verdict.words == "gate: squared error falls by 50%, passed"
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from tracewire.compile import compile
 from tracewire.diagram import read
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.search.setup import set_up_search
+from tracewire.trace.trace import set_up_search
 
 DEMO = Path(__file__).parents[3] / "diagrams/demo/pendulum.yaml"
 ADDED = {

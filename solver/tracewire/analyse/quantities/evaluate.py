@@ -22,6 +22,7 @@ from tracewire.formula import (
     Expression,
     Name,
     Number,
+    calls_in,
     is_condition,
     names_of,
     rename,
@@ -215,18 +216,13 @@ def of_states(model: Model, name: str) -> Expression | None:
 
 
 def _is_smooth(node: Expression) -> bool:
-    if not isinstance(node, Call):
-        return True
-    return node.function in SMOOTH and all(_is_smooth(argument) for argument in node.arguments)
+    return all(call.function in SMOOTH for call in calls_in(node))
 
 
 def is_of_run(node: Expression) -> bool:
     """Whether a quantity is made of numbers of one run."""
-    if not isinstance(node, Call):
-        return True
-    if is_quantity(node) and (QUANTITIES[node.function].study or node.function == "reference"):
-        return False
-    return all(is_of_run(argument) for argument in node.arguments)
+    quantities = (call.function for call in calls_in(node) if is_quantity(call))
+    return not any(QUANTITIES[name].study or name == "reference" for name in quantities)
 
 
 def formulas_in(node: Call) -> list[Expression]:

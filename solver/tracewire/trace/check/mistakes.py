@@ -162,7 +162,7 @@ def _shifts(
 
     The lag is told by the whole series, and to a sample by the declared model on a part of it.
     """
-    step = float(np.median(np.diff(m.t)))
+    step = m.interval
 
     def left(lag: float) -> float:
         length, steps = options.mistake_window, options.mistake_steps
@@ -204,7 +204,7 @@ def likely_lags(model: Model, m: Measured, options: CheckOptions, most: int = 3)
     inputs that long ago; all weighed over short stretches with a smooth bump, whose derivatives
     stand for those of the signals. Positive: the response comes after.
     """
-    step = float(np.median(np.diff(m.t)))
+    step = m.interval
     if not m.inputs or len(m.t) < 8 * options.lag_bump:
         return []
     target, basis = _weak_form(model, m, step, options.lag_bump)

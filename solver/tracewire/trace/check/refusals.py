@@ -114,7 +114,7 @@ def _is_noise(m: Measured, name: str, options: CheckOptions) -> bool:
 
 def _inputs(m: Measured, ends: float) -> Iterator[Problem]:
     """Inputs that are not known over the whole series, or are in another time."""
-    late = ends * float(np.median(np.diff(m.t))) if len(m.t) > 1 else 0.0
+    late = ends * m.interval
     for name, (t, _) in m.inputs.items():
         if len(t) and t[0] <= m.t[0] + late and t[-1] >= m.t[-1] - late:
             continue

@@ -140,8 +140,8 @@ def horizons_of(
     sections, gate = (
         [moving_part(section, sigma, options) for section in some] for some in (sections, gate)
     )
-    total = sum(section.end - section.first for section in sections)
-    interval = float(np.median([np.median(np.diff(s.measured.t)) for s in sections]))
+    total = sum(section.count for section in sections)
+    interval = float(np.median([section.measured.interval for section in sections]))
     period = float(np.median([dominant_period(section) for section in sections]))
     periodic = bool(np.isfinite(period))
     long = options.horizon / interval if options.horizon else options.long_horizon * period
@@ -206,7 +206,7 @@ def _median_period(values: Vector) -> float:
 
 def _pieces(section: Section, block: int) -> list[Section]:
     """A section as blocks of equal length."""
-    count = max(round((section.end - section.first) / block), 1)
+    count = max(round(section.count / block), 1)
     edges = np.linspace(section.first, section.end, count + 1).astype(int).tolist()
     return [Section(section.measured, a, b) for a, b in pairwise(edges) if b > a]
 
@@ -220,8 +220,7 @@ def moving_part(section: Section, sigma: Mapping[str, float], options: TraceOpti
         change = (np.maximum.accumulate(back) - np.minimum.accumulate(back))[::-1]
         still = max(options.still * sigma.get(name, 0.0), options.still_part * float(np.ptp(y)))
         last = max(last, section.first + int(np.sum(change > still)))
-    count = section.end - section.first
-    if section.end - last < max(options.shortest_window, options.long_rest * count):
+    if section.end - last < max(options.shortest_window, options.long_rest * section.count):
         return section
     few = section.first + options.shortest_window
     return Section(section.measured, section.first, max(last, few))
@@ -250,14 +249,14 @@ def _whole(
     segments, blocks = [], []
     for section in sections:
         mine = [(n, p) for n, p in enumerate(pieces) if p.measured is section.measured]
-        for segment in cut_windows(model, section, section.end - section.first, free):
+        for segment in cut_windows(model, section, section.count, free):
             of = np.full(len(segment.rows), REST)
             of[segment.rows < mine[0][1].first] = mine[0][0]
             for number, piece in mine:
                 of[(segment.rows >= piece.first) & (segment.rows < piece.end)] = number
             segments.append(segment)
             blocks.append(of)
-    longest = max(section.end - section.first for section in sections)
+    longest = max(section.count for section in sections)
     return Horizon(longest, tuple(segments), tuple(blocks))
 
 

@@ -60,7 +60,7 @@ def error_left(prediction: Prediction) -> float:
     return float(np.exp(0.5 * np.mean(np.log(np.maximum(named, 1e-300) / declared)[informative])))
 
 
-def held_out(prediction: Prediction, floors: Sequence[float]) -> tuple[HeldOut, ...]:
+def held_out_errors(prediction: Prediction, floors: Sequence[float]) -> tuple[HeldOut, ...]:
     """The errors on held-out blocks at each horizon."""
     horizons = prediction.horizons
     declared, named = (_by_block(prediction, n) for n in (0, prediction.choice.chosen))

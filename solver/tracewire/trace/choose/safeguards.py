@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from tracewire.errors import FitError
+from tracewire.residual import evaluate_windows
 from tracewire.trace.check.mistakes import refuse_mistakes
-from tracewire.trace.check.tolerance import is_loose, tighten_tolerance
 from tracewire.trace.choose.unseen import (
     is_no_better_on_claim,
     join_names,
@@ -20,8 +22,7 @@ from tracewire.trace.choose.unseen import (
 from tracewire.trace.choose.verdict import Judgement, residual_map
 from tracewire.trace.search.refinement import FinalModels
 from tracewire.trace.search.search import Search
-from tracewire.trace.trials.intervals import undetermined_effects
-from tracewire.trace.trials.trial import PlacedEffect, Trial
+from tracewire.trace.trials.trial import PlacedEffect, TraceProblem, Trial
 
 
 def fit_declared(search: Search) -> Trial:
@@ -35,8 +36,31 @@ def fit_declared(search: Search) -> Trial:
     return declared
 
 
+def is_loose(problem: TraceProblem, trial: Trial) -> bool:
+    """Whether the solver's error counts beside the residual of a trial.
+
+    Its windows are run once more, from the same starts, with a tenth of the tolerance. It counts
+    where the residual of half of them moves by more than 0.3 of its size (root mean square, in
+    sigma; at least 0.3 sigma). A window that does not run so precisely does not count.
+    """
+    tighter = _tighter(problem).criterion_on(trial, trial.windows.segments)
+    there = evaluate_windows(tighter).linearisations
+    pairs = [
+        (a, b) for a, b in zip(trial.windows.linearisations, there, strict=True) if a.ran and b.ran
+    ]
+    if not pairs:
+        return False
+    moved = np.median([np.sqrt(np.mean((a.residual - b.residual) ** 2)) for a, b in pairs])
+    return not moved < problem.options.check.solver_error * max(trial.reduced_chi2**0.5, 1.0)
+
+
+def _tighter(problem: TraceProblem) -> TraceProblem:
+    """The problem with a tenth of the tolerance, or what the options say."""
+    return replace(problem, rtol=problem.options.check.tighter * problem.rtol)
+
+
 def _tighten(search: Search) -> None:
-    search.problem = tighten_tolerance(search.problem)
+    search.problem = _tighter(search.problem)
     search.words.append(
         f"the solver's error counted beside the residual: rtol is {search.problem.rtol:.0e} now"
     )
@@ -56,49 +80,59 @@ def safeguard(search: Search, judgement: Judgement) -> Judgement:
             for trial in (final.declared, final.best)
         )
         final = replace(final, declared=declared, best=best)
-    judgement, final = _without_undetermined(search, judgement, final)
+    judgement = _without_undetermined(search, replace(judgement, final=final))
     if judgement.explained is None:  # at the noise; else other runs have been asked already
-        final = _without_harmful(search, final)
+        judgement = replace(judgement, final=_without_harmful(search, judgement.final))
+    final = judgement.final
     if final.best.effects:
         lengths = sorted({min(search.short_length, final.best.length), final.best.length})
         harm = raises_unseen(search, final.declared, final.best, lengths)
         if not harm and judgement.verdict == "effect":
-            judgement = _confirmed(search, judgement, final)
+            judgement = _confirm(search, judgement)
         if not harm and judgement.verdict == "unexplained":
             harm = raises_whole_runs(search, final.declared, final.best)
         if harm:
             names = list(map(str, final.best.effects))
             search.words.append(f"{join_names(names)} is not named: it {harm}")
-            final = FinalModels(final.declared, final.declared, {}, ())
+            final = FinalModels(final.declared, final.declared)
             dependences, missing = residual_map(search, final.declared)
             reason = f"{model_with(names)} {harm}"
             return Judgement("unexplained", final, dependences, missing, reason=reason)
-    return replace(judgement, final=final)
+    return judgement
 
 
-def _without_undetermined(
-    search: Search, judgement: Judgement, final: FinalModels
-) -> tuple[Judgement, FinalModels]:
-    """The judgement and the models without effects whose coefficient may as well be zero."""
+def undetermined_effects(trial: Trial, confidence: float) -> list[str]:
+    """The effects of a trial, by name, whose coefficient may as well be zero."""
+    ends = trial.intervals(confidence)
+    found = []
+    for effect in trial.effects:
+        low, high = ends.get(effect.candidate.coefficient, (1.0, 1.0))
+        if low <= 0 <= high:
+            found.append(str(effect))
+    return found
+
+
+def _without_undetermined(search: Search, judgement: Judgement) -> Judgement:
+    """The judgement without effects whose coefficient may as well be zero."""
+    final = judgement.final
     names = undetermined_effects(final.best, search.options.confidence)
     kept = [effect for effect in final.best.effects if str(effect) not in names]
     try:
-        fewer = _refitted_with(search, final.best, kept) if names and kept else None
+        fewer = _refit_with(search, final.best, kept) if names and kept else None
     except FitError:
         names = []
     if not names:
-        return judgement, final
+        return judgement
     search.words.append(
         f"{join_names(names)} is not named: the {search.options.confidence:.0%} interval of its"
         " coefficient holds zero"
     )
     if fewer is not None:
-        final = _with_effects(final, fewer)
-        return replace(judgement, final=final), final
-    alone = FinalModels(final.declared, final.declared, {}, ())
+        return replace(judgement, final=_with_effects(final, fewer))
+    alone = FinalModels(final.declared, final.declared)
     if final.declared.reduced_chi2 <= search.options.at_noise:
-        return Judgement("null", alone), alone
-    return Judgement("unexplained", alone, *residual_map(search, final.declared)), alone
+        return Judgement("null", alone)
+    return Judgement("unexplained", alone, *residual_map(search, final.declared))
 
 
 def _without_harmful(search: Search, final: FinalModels) -> FinalModels:
@@ -108,7 +142,7 @@ def _without_harmful(search: Search, final: FinalModels) -> FinalModels:
     for effect in best.effects if len(best.effects) > 1 else ():
         kept = [one for one in best.effects if one is not effect]
         try:
-            fewer = _refitted_with(search, best, kept)
+            fewer = _refit_with(search, best, kept)
         except FitError:
             continue
         harm = raises_whole_runs(search, fewer, best)
@@ -119,7 +153,7 @@ def _without_harmful(search: Search, final: FinalModels) -> FinalModels:
     return final
 
 
-def _refitted_with(search: Search, best: Trial, kept: Sequence[PlacedEffect]) -> Trial:
+def _refit_with(search: Search, best: Trial, kept: Sequence[PlacedEffect]) -> Trial:
     """A trial with some of its effects, fitted to its windows. Raises FitError."""
     windows, fixed = best.windows.segments, best.windows.criterion.parameters
     return search.problem.fit(kept, windows, best.length, best.values, fixed=fixed)
@@ -131,13 +165,13 @@ def _with_effects(final: FinalModels, best: Trial) -> FinalModels:
     return replace(final, best=best, rivals=rivals)
 
 
-def _confirmed(search: Search, judgement: Judgement, final: FinalModels) -> Judgement:
+def _confirm(search: Search, judgement: Judgement) -> Judgement:
     """The judgement, or `unexplained` where unseen data do not confirm the effects.
 
     They hardly lower the error of whole unseen runs: what follows a rest of no block's form on
     windows does not carry over to them. Or they do not lower it at all where the claim is made.
     """
-    declared, best = final.declared, final.best
+    declared, best = judgement.final.declared, judgement.final.best
     share = share_of_whole_runs(search, declared, best)
     if share < search.options.whole_runs:
         part = f"{100 * max(share, 0):.0f} %"

@@ -93,8 +93,7 @@ def _squares_of_free_runs(search: Search, sections: Sequence[Section], trial: Tr
     the first part of it alone."""
     runs = [
         free_run(search.problem, trial, whole, search.shortest)
-        for section in sections
-        for whole in search.windows([section], section.end - section.first)
+        for whole in search.whole_windows(sections)
     ]
     return sum(float(np.sum(run**2)) for run in runs)
 
@@ -185,12 +184,12 @@ def squares_on(search: Search, sections: Sequence[Section], trial: Trial, length
 
 def _longest(sections: Sequence[Section]) -> int:
     """The samples of the longest section."""
-    return max((section.end - section.first for section in sections), default=0)
+    return max((section.count for section in sections), default=0)
 
 
 def _count(sections: Sequence[Section]) -> int:
     """How many samples of all signals sections have."""
-    return sum((s.end - s.first) * len(s.measured.values) for s in sections)
+    return sum(s.count * len(s.measured.values) for s in sections)
 
 
 def _tracked(search: Search, sections: Sequence[Section]) -> float:
@@ -198,7 +197,7 @@ def _tracked(search: Search, sections: Sequence[Section]) -> float:
     data: a part of the sum of squares of the measured signals about their means."""
     sigma = search.problem.sigma
     return search.options.tracked**2 * sum(
-        float(np.var(values[section.first : section.end])) * (section.end - section.first)
+        float(np.var(values[section.first : section.end])) * section.count
         / sigma[name] ** 2
         for section in sections
         for name, values in section.measured.values.items()

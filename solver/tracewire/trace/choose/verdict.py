@@ -12,7 +12,12 @@ from tracewire.trace.choose.choice import is_sure, log_scores
 from tracewire.trace.choose.heldout import Finalist
 from tracewire.trace.choose.noisy_inputs import noisy_inputs
 from tracewire.trace.choose.prediction import Prediction
-from tracewire.trace.choose.remainder import error_left, explained_share, held_out, remainders
+from tracewire.trace.choose.remainder import (
+    error_left,
+    explained_share,
+    held_out_errors,
+    remainders,
+)
 from tracewire.trace.choose.unseen import (
     better_unseen,
     join_names,
@@ -190,7 +195,7 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
         share if named else None,
         remainders(prediction, floors, search.problem.sigma, final.best.model.flat.units),
         maps[0][0],
-        held_out(prediction, floors),
+        held_out_errors(prediction, floors),
         noisy,
         reason if verdict == "unexplained" else "",
     )

@@ -166,8 +166,7 @@ def _separation(
 
 def _count(one: Trial, rig: Rig, ends: tuple[int, int]) -> int:
     """How many windows, between two ends: as long as those of the fit."""
-    t = one.windows.segments[0].measured.t
-    length = one.length * float(np.median(np.diff(t)))
+    length = one.length * one.windows.segments[0].measured.interval
     return int(np.clip(round(float(rig.t[-1]) / length), *ends))
 
 

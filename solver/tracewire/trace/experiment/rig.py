@@ -110,7 +110,7 @@ class Rig:
 def rig_of(problem: TraceProblem, one: Trial) -> Rig:
     train = [m for m in problem.measured if m.use == "train"]
     longest = max(train, key=lambda m: float(m.t[-1] - m.t[0]))
-    interval = float(np.median(np.diff(longest.t)))
+    interval = longest.interval
     frequency = main_frequency(longest)
     options = problem.options.experiment
     fine = 1 / (options.samples_a_period * frequency)

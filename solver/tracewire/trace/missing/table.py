@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tracewire.diagram import Diagram, add_addend, add_to_drive, patch_own, quoted
+from tracewire.diagram import AddBlock, Diagram, PointsFile
 from tracewire.errors import OptionError
 from tracewire.formula import number_text
 from tracewire.trace.candidates.inside import diagram_at, local_name
@@ -46,8 +46,8 @@ def missing_table(missing: Missing) -> str:
     )
 
 
-def add_table(diagram: Diagram, place: Place, missing: Missing, file: str) -> Diagram:
-    """The diagram with the missing torque as a `table` block at its place, read from a csv file.
+def table_block(diagram: Diagram, place: Place, missing: Missing, file: str) -> AddBlock:
+    """The missing torque as a `table` block that is added at its place, read from a csv file.
 
     file: the path of the text of `missing_table`, as the diagram names it: the file must be there.
     What free parameters can imitate is no part of the table: fit them again afterwards.
@@ -72,14 +72,14 @@ def add_table(diagram: Diagram, place: Place, missing: Missing, file: str) -> Di
     while name in taken:
         name += "_"
     column = names[0].replace(" ", "_")
-    read = local_name(diagram, place.within, signals[names[0]])
-    line = (
-        f"{{type: table, of: {quoted(read) if '[' in read else read}, "
-        f"points: {{file: {file}, x: {column}, y: torque}}}}   # empirical: no law"
+    return AddBlock(
+        name,
+        "table",
+        {"of": local_name(diagram, place.within, signals[names[0]])},
+        {"points": PointsFile(file, column, "torque")},
+        place.definition,
+        place.kind == "drive",
+        place.element,
+        place.own,
+        comment="empirical: no law",
     )
-    if place.kind == "drive":
-        return add_to_drive(diagram, place.definition, name, line)
-    to = place.definition
-    if place.own:
-        diagram, to = patch_own(diagram, place.own, to)
-    return add_addend(diagram, to, name, line, element=place.element)

@@ -78,7 +78,7 @@ def _compare(
 ) -> ModelComparison:
     problem = replace(search.problem, inputs=None)  # residuals as they are, and not as they count
     windows = search.windows([section], search.short_length)
-    (whole,) = search.windows([section], section.end - section.first)
+    (whole,) = search.whole_windows([section])
     sigma = np.array([problem.sigma[name] for name in whole.signals])
     trials = (declared, best) if best is not declared else (declared,)
     inside = [np.concatenate(problem.residuals_on(trial, windows)) * sigma for trial in trials]
@@ -99,8 +99,7 @@ def with_unseen_phases(search: Search, trial: Trial) -> Trial:
         return trial
     firsts = [
         first_part(whole, search.shortest, search.options.split.first_part)
-        for section in search.data_split.unseen
-        for whole in search.windows([section], section.end - section.first)
+        for whole in search.whole_windows(search.data_split.unseen)
     ]
     return replace(trial, effects=search.problem.fit_unseen_phases(trial, firsts))
 

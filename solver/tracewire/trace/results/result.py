@@ -1,29 +1,35 @@
-"""From a finished search to the result of a trace."""
+"""From a finished search to the result of a trace: effects, ties, steps, and the edited diagram."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tracewire.blas import one_blas_thread
-from tracewire.diagram import Diagram
+from tracewire.compile import Model
+from tracewire.diagram import Diagram, SetValues, patch
 from tracewire.errors import TracewireError
 from tracewire.fit import describe_undetermined
+from tracewire.residual import SENSED
+from tracewire.trace.candidates.changes import changes_of
 from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.choose.verdict import Judgement
 from tracewire.trace.experiment.experiment import design_experiment
 from tracewire.trace.experiment.power import detection_limits
-from tracewire.trace.found import Experiment, Force, Found
-from tracewire.trace.missing.restoring_force import restoring_forces
-from tracewire.trace.results.build import (
-    build_effects,
-    build_steps,
-    candidate_correlations,
-    edit_diagram,
+from tracewire.trace.found import (
+    CandidateScore,
+    Experiment,
+    Force,
+    Found,
+    FoundEffect,
+    SearchStep,
+    Tie,
 )
+from tracewire.trace.missing.restoring_force import restoring_forces
 from tracewire.trace.results.comparison import (
     compare_models,
     parameter_changes,
@@ -31,10 +37,12 @@ from tracewire.trace.results.comparison import (
     with_unseen_phases,
 )
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
-from tracewire.trace.search.refinement import FinalModels
-from tracewire.trace.search.search import Search
+from tracewire.trace.search.refinement import FinalModels, Rival
+from tracewire.trace.search.search import Search, Step
 from tracewire.trace.trials.bounds import at_bounds
-from tracewire.trace.trials.trial import Trial
+from tracewire.trace.trials.trial import PlacedEffect, Trial
+
+Matrix = NDArray[np.float64]
 
 
 def result_of(
@@ -54,10 +62,11 @@ def result_of(
     sigma = dict(problem.sigma)
     units = dict(best.model.flat.units)
     units |= {name: p.unit for name, p in best.model.flat.parameters.items()}
-    interval = float(np.median([np.median(np.diff(m.t)) for m in problem.measured]))
+    interval = float(np.median([m.interval for m in problem.measured]))
+    steps = [_step_of(step, interval, search.options.shown) for step in search.steps]
     return Found(
         verdict=judgement.verdict,
-        effects=build_effects(search, final),
+        effects=_effects_of(search, final),
         dropped=final.dropped,
         values=values,
         declared=declared.values,
@@ -68,18 +77,18 @@ def result_of(
         s2_after=best.reduced_chi2,
         moved=tuple(parameter_changes(problem, declared, best, values)) if best.effects else (),
         errors=tuple(error for part in parts for error in part.errors(sigma, units)),
-        steps=(*build_steps(search, interval), *([prediction.as_step()] if prediction else [])),
+        steps=(*steps, *([prediction.as_step()] if prediction else [])),
         power=detection_limits(search.steps[-1].screen) if search.steps else (),
         dependences=judgement.dependences,
         missing=judgement.missing,
         experiments=() if interrupted else _find_experiments(search, final),
-        confusable=candidate_correlations(search),
+        confusable=_candidate_correlations(search),
         curves=tuple(curve for part in parts for curve in part.curves(sigma, units)),
         find_forces=partial(_find_forces, search, best),
         words=tuple(search.words),
         original=problem.declared.diagram,
         diagram=(
-            edit_diagram(problem.declared, best.effects, values)
+            _edit_diagram(problem.declared, best.effects, values)
             if judgement.verdict == "effect" or interrupted
             else problem.declared.diagram  # an approximation is told, and written where one asks
         ),
@@ -96,16 +105,140 @@ def result_of(
     )
 
 
+def _effects_of(search: Search, final: FinalModels) -> tuple[FoundEffect, ...]:
+    """The effects of the result, the one that brings most first."""
+    ends = final.best.intervals(search.options.confidence) if final.best.effects else {}
+    found = []
+    for effect in final.best.effects:
+        gain, masked, weight = _scores_of(search, effect)
+        rivals = [r for r in final.rivals.get(str(effect), ()) if r.tied]
+        parameters = _fitted_parameters(effect, final.best)
+        found.append(
+            FoundEffect(
+                name=effect.candidate.effect,
+                place=effect.candidate.place.name,
+                params=parameters,
+                ties=tuple(map(_tie_of, rivals)),
+                block=effect.candidate.block,
+                coefficient=effect.candidate.parameter,
+                intervals={
+                    name: ends[effect.unknown(name)]
+                    for name in parameters
+                    if effect.unknown(name) in ends
+                },
+                gain=gain,
+                masked=masked,
+                weight=weight,
+            )
+        )
+    return tuple(found)
+
+
+def _tie_of(rival: Rival) -> Tie:
+    """A rival as a tie of the result."""
+    candidate = rival.effect.candidate
+    return Tie(
+        candidate.effect,
+        candidate.place.name,
+        rival.correlation,
+        _fitted_parameters(rival.effect, rival.trial),
+        rival.delta_bic,
+    )
+
+
+def _fitted_parameters(effect: PlacedEffect, trial: Trial) -> dict[str, float]:
+    """The parameters of an effect that were fitted."""
+    fitted = {**trial.windows.criterion.parameters, **trial.values}
+    return {
+        name: fitted[effect.unknown(name)]
+        for name in effect.values
+        if effect.unknown(name) in fitted
+    }
+
+
+def _scores_of(search: Search, effect: PlacedEffect) -> tuple[float, float, float]:
+    """The gain, the masked part and the weight of an effect in the step that found it."""
+    for step in search.steps:
+        rows = {str(row.candidate): row for row in step.screen.best()}
+        for one in step.refits:
+            if str(effect) in one.proposal.names and one.trial is step.after:
+                row = rows.get(str(effect))
+                return (
+                    -one.delta_bic / 2,
+                    row.absorbed_fraction if row else float("nan"),
+                    one.weight,
+                )
+    return (float("nan"),) * 3
+
+
+def _step_of(step: Step, interval: float, shown: int) -> SearchStep:
+    """A step of the search; `interval` is the time in s between samples."""
+    rows = [
+        CandidateScore(
+            " + ".join(one.proposal.names),
+            one.proposal.gain,
+            -one.delta_bic / 2,
+            one.weight,
+            max(row.absorbed_fraction for row in one.proposal.rows),
+            one.trial.reduced_chi2,
+            one.remark,
+        )
+        for one in step.refits
+    ]
+    seen = {row.effects for row in rows}
+    for row in step.screen.best()[:shown]:
+        if str(row.candidate) not in seen:
+            rows.append(CandidateScore(str(row.candidate), row.gain, masked=row.absorbed_fraction))
+    return SearchStep(
+        step.before.length * interval,
+        step.before.reduced_chi2,
+        step.p_value,
+        tuple(rows),
+        step.words,
+    )
+
+
+def _candidate_correlations(search: Search) -> tuple[tuple[str, ...], Matrix]:
+    """The best candidates of the first step, and the correlation of each two on the data."""
+    if not search.steps:
+        return (), np.zeros((0, 0))
+    screen = search.steps[0].screen
+    rows = screen.best()[: search.options.shown]
+    matrix = np.eye(len(rows))
+    for i, one in enumerate(rows):
+        for j in range(i):
+            matrix[i, j] = matrix[j, i] = screen.columns.canonical_correlation(
+                one.columns, rows[j].columns
+            )
+    return tuple(str(row.candidate) for row in rows), matrix
+
+
+def _edit_diagram(
+    model: Model, effects: Sequence[PlacedEffect], values: Mapping[str, float]
+) -> Diagram:
+    """The original text with effects and with the refitted parameters."""
+    if not effects:
+        return model.diagram
+    chosen = [(effect.candidate, effect.values) for effect in effects]
+    added = {effect.candidate.coefficient for effect in effects}
+    kept = {
+        name: value
+        for name, value in values.items()
+        if name in model.flat.parameters or (name.startswith(SENSED) and name not in added)
+    }
+    return patch(model.diagram, [*changes_of(model.diagram, chosen), SetValues(kept)])
+
+
 def _apply_some(
     search: Search, final: FinalModels, values: Mapping[str, float], effects: Collection[str]
 ) -> Diagram:
     """The diagram with some of the effects, by their texts. Where some are left out, a parameter
     that was dropped has its declared value: the effect that stands for it may be among them."""
-    pairs = zip(final.best.effects, build_effects(search, final), strict=True)
+    pairs = zip(final.best.effects, _effects_of(search, final), strict=True)
     kept = [added for added, effect in pairs if str(effect) in effects]
     left_out = final.dropped if len(kept) < len(final.best.effects) else ()
     restored = {name: final.declared.values[name] for name in left_out}
-    return edit_diagram(search.problem.declared, kept, {**values, **restored})
+    return _edit_diagram(search.problem.declared, kept, {**values, **restored})
 
 
 def _find_experiments(search: Search, final: FinalModels) -> tuple[Experiment, ...]:

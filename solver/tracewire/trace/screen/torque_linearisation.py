@@ -99,16 +99,6 @@ class TorqueLinearisation:
         ]
         self.window_pieces = sorted(window_pieces, key=lambda one: one.index)
 
-    def respond(self, torques: Mapping[str, Sequence[Matrix]]) -> Matrix:
-        """What torques do to the residuals in sigma, shape (M, K), before anything is projected.
-
-        `torques` gives, for some places, for each series, (N, k) torques at its samples; the
-        columns stand in the order of the places given.
-        """
-        return np.concatenate(
-            [self.window_response(window, torques) for window in self.window_pieces]
-        )
-
     def along_torques(self, torques: Mapping[str, Sequence[Matrix]]) -> TorqueLinearisation:
         """The same windows along the data: the residual is what the torques given, (N, 1) for each
         series by place, did to bring them there."""
@@ -154,7 +144,12 @@ class TorqueLinearisation:
     def window_response(
         self, window: WindowPieces, torques: Mapping[str, Sequence[Matrix]]
     ) -> Matrix:
-        """The same for one window."""
+        """What torques do to the residuals of a window in sigma, shape (m, K), before anything is
+        projected.
+
+        `torques` gives, for some places, for each series, (N, k) torques at its samples; the
+        columns stand in the order of the places given.
+        """
         order = {place.name: n for n, place in enumerate(self.places)}
         number = self.series[window.index]
         columns = sum(given[number].shape[1] for given in torques.values())

@@ -4,7 +4,7 @@ superfluous."""
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -39,8 +39,8 @@ class FinalModels:
 
     declared: Trial
     best: Trial
-    rivals: dict[str, tuple[Rival, ...]]
-    dropped: tuple[str, ...]
+    rivals: dict[str, tuple[Rival, ...]] = field(default_factory=dict)
+    dropped: tuple[str, ...] = ()
 
 
 def refine(search: Search, declared: Trial, best: Trial) -> FinalModels:
@@ -50,7 +50,7 @@ def refine(search: Search, declared: Trial, best: Trial) -> FinalModels:
         _refit_on_all_data(search, declared), sections, np.inf
     )  # its best free run
     if not best.effects:
-        return FinalModels(declared, declared, {}, ())
+        return FinalModels(declared, declared)
     best = search.lengthen_windows(_refit_on_all_data(search, best), sections)
     best = _prune(search, best)
     rivals: dict[str, tuple[Rival, ...]] = {}

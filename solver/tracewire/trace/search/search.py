@@ -112,6 +112,10 @@ class Search:
         """The windows of some sections."""
         return self.data_split.windows(self.problem.declared, sections, length, self.free)
 
+    def whole_windows(self, sections: Sequence[Section]) -> list[Segment]:
+        """Each section as one window."""
+        return [w for section in sections for w in self.windows([section], section.count)]
+
     def fit_declared(self) -> Trial:
         """The diagram as it is, fitted to the shortest windows."""
         self.tell("fitting the declared model")
@@ -146,7 +150,7 @@ class Search:
         """A trial refitted on longer and longer windows, as far as its residual stays small."""
         sections = self.data_split.train if sections is None else sections
         far = self.options.search.far if far is None else far
-        longest = max(section.end - section.first for section in sections)
+        longest = max(section.count for section in sections)
         lengths = [
             n for n in self.lengths if trial.length < n < self.options.split.nearly_whole * longest
         ]
@@ -165,23 +169,16 @@ class Search:
 
     def run(self, declared: Trial) -> None:
         """One effect after the other, from the declared fit, until none passes the gate."""
-        self.first = self.best = (
-            declared if self.omits_windows(declared) else self.lengthen_windows(declared)
-        )
-        self._add_effects()
-
-    def _add_effects(self) -> None:
-        """Effects from the best model on, until none passes."""
-        while self.best is not None and len(self.best.effects) < self.options.effects:
-            found = self.add_effect(self.best)
+        whole = not self.omits_windows(declared)
+        self.first = self.best = best = self.lengthen_windows(declared) if whole else declared
+        options = self.options.search
+        while len(best.effects) < self.options.effects:
+            found = self.add_effect(best)
             if found is None:
                 break
-            before, self.best = (
-                self.best.reduced_chi2,
-                self.lengthen_windows(self.refit_on_all(found)),
-            )
-            options = self.options.search
-            if self.best.reduced_chi2 > max(options.far, before / options.nearer):
+            before = best.reduced_chi2
+            self.best = best = self.lengthen_windows(self.refit_on_all(found))
+            if best.reduced_chi2 > max(options.far, before / options.nearer):
                 break  # the noise is out of reach: models are compared otherwise
 
     def add_effect(self, now: Trial) -> Trial | None:

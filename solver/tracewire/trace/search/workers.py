@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from tracewire.blas import one_blas_thread
@@ -27,20 +28,6 @@ class RefitTask:
     values: Mapping[str, float]
     options: Mapping[str, Any]
     words: str = ""
-
-
-@dataclass(frozen=True, eq=False)
-class RefitJob:
-    """The job of the workers: refits of the trials of a trace. It is sent to them once."""
-
-    problem: TraceProblem
-
-    @one_blas_thread()
-    def run(self, number: int, refit: RefitTask, halt: Halt) -> Trial:
-        """The trial of a refit. Raises what `TraceProblem.fit` raises."""
-        return self.problem.fit(
-            refit.effects, refit.segments, refit.length, refit.values, **refit.options
-        )
 
 
 @dataclass
@@ -73,7 +60,7 @@ class Workers:
             if number not in found:
                 _tell(refit, len(found) + 1, len(refits), tell)
                 try:
-                    found[number] = RefitJob(problem).run(number, refit, Halt())
+                    found[number] = _fit(problem, number, refit, Halt())
                 except REFUSED as error:
                     found[number] = error
         return [found[number] for number in range(len(refits))]
@@ -94,8 +81,14 @@ class Workers:
             found[task[0]] = result
             _tell(task[1], len(found), len(refits), tell)
 
-        if carry_out(RefitJob(problem).run, list(enumerate(refits)), take, executor=executor):
+        if carry_out(partial(_fit, problem), list(enumerate(refits)), take, executor=executor):
             raise KeyboardInterrupt
+
+
+@one_blas_thread()
+def _fit(problem: TraceProblem, number: int, refit: RefitTask, halt: Halt) -> Trial:
+    """The trial of a refit: the job of the workers, who get the problem once."""
+    return problem.fit(refit.effects, refit.segments, refit.length, refit.values, **refit.options)
 
 
 def _tell(refit: RefitTask, number: int, count: int, tell: Callable[[str], None]) -> None:

@@ -37,7 +37,7 @@ class DataSplit:
     @property
     def longest(self) -> int:
         """The samples of the longest train section."""
-        return max(section.end - section.first for section in self.train)
+        return max(section.count for section in self.train)
 
     @property
     def unseen(self) -> list[Section]:

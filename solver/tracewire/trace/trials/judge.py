@@ -17,12 +17,11 @@ Vector = NDArray[np.float64]
 @dataclass(frozen=True)
 class GateResult:
     """What the gate says of a trial: whether it passes, by how much the squared error falls there,
-    the paired z over windows, the part of windows that improve, and that in words."""
+    the paired z over windows, and that in words."""
 
     passed: bool
     drop: float
     z: float
-    improved_fraction: float
     words: str
 
 
@@ -50,20 +49,18 @@ def judge_on_gate(
     if at_noise and astray.sum() <= options.gate_few_astray * len(astray):
         before, after = before[~astray], after[~astray]
     if not before.sum() > 0:
-        return GateResult(False, 0.0, 0.0, 0.0, "gate: nothing to improve")
+        return GateResult(False, 0.0, 0.0, "gate: nothing to improve")
     drop = float(1 - after.sum() / before.sum())
     change = before - after
     spread = float(np.std(change, ddof=1)) if len(change) > 1 else 0.0
     mean = float(np.mean(change))
     z = mean / (spread / len(change) ** 0.5) if spread > 0 else np.copysign(np.inf, mean)
-    improved_fraction = float(np.mean(change > 0))
+    improved = float(np.mean(change > 0))
     gained, lost = float(np.maximum(change, 0.0).sum()), -float(np.minimum(change, 0.0).sum())
-    supported = z > options.gate_errors or improved_fraction > options.gate_improved
+    supported = z > options.gate_errors or improved > options.gate_improved
     if bic_reduction > options.gate_decisive:
         supported |= z > options.gate_few_errors or lost < options.gate_harm * gained
     passed = drop > (options.gate_drop if at_noise else options.gate_material) and bool(supported)
     size = f"{abs(drop):.0%}" if not 0.995 <= drop < 1 else "more than 99.5%"
     words = f"gate: squared error {'falls' if drop > 0 else 'rises'} by {size}"
-    return GateResult(
-        passed, drop, float(z), improved_fraction, words + (", passed" if passed else ", refused")
-    )
+    return GateResult(passed, drop, float(z), words + (", passed" if passed else ", refused"))

@@ -9,6 +9,7 @@ from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import stdtrit
 
 from tracewire.compile import Model, compile
 from tracewire.diagram import Diagram, apply, patch
@@ -163,6 +164,15 @@ class Trial:
         spread = np.sqrt(np.maximum(np.diag(covariance) / self.effective_fraction, 0.0))
         spread = np.divide(spread, sizes, out=np.full(len(sizes), np.inf), where=sizes > 0)
         return dict(zip(windows.values, spread.tolist(), strict=True))
+
+    def intervals(self, confidence: float) -> dict[str, tuple[float, float]]:
+        """The interval of each fitted value, which holds the truth with this confidence."""
+        freedom = max(self.degrees_of_freedom * self.effective_fraction, 1.0)
+        quantile, errors = float(stdtrit(freedom, 0.5 + confidence / 2)), self.standard_errors
+        return {
+            name: (value - quantile * errors[name], value + quantile * errors[name])
+            for name, value in self.values.items()
+        }
 
     def bic(self, effective_fraction: float) -> float:
         """BIC, of residuals of which this part is independent."""
