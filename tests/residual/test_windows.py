@@ -243,3 +243,32 @@ def test_what_a_run_hardly_forgets_is_free_where_a_window_follows_no_other() -> 
         errors.append(float(np.abs(fitted.residuals[0]).max()))
     assert errors[0] > 1.0, "the load swings on from before the run began"
     assert errors[1] < 0.05
+
+
+STOPPED = """\
+span: [0, 6]
+inputs: {push: {}}
+blocks:
+  x: {type: integrator, of: v}
+  v: {type: integrator, of: rate}
+  rate: {type: gain, of: force, k: 740}
+  stop: {type: voigt_barrier, of: x, rate: v, high: 0.2, low: -0.2, k: 300, c_l: 120}
+  force: {type: sum, of: [push, stop]}
+"""
+
+
+def test_a_start_inside_a_stop_is_tried_beside_what_the_data_tell() -> None:
+    """A body that lies on a damped stop leaves it when its depth, far below the noise, says so."""
+    model = compile(read_text(STOPPED), record=["x", "v"])
+    t = np.arange(0.0, 6.0, 0.01)
+    drive = {"push": (t, 0.05 * np.cos(4 * t))}
+    run = simulate(model, times=t, inputs=drive, rtol=1e-9)
+    noise = 1e-3 * np.random.default_rng(6).standard_normal(len(t))
+    values = {"x": run["x"] + noise, "v": run["v"] + 10 * noise[::-1]}
+    m = Measured("run", "train", t, values, inputs=drive, start={"x": 0, "v": 0})
+    segments = cut_windows(model, Section(m, 0, len(t)), 20, ("x", "v"))
+    sigma = {"x": 1e-3, "v": 1e-2}
+    criterion = Criterion(model, segments, [], {}, sigma=sigma, weighting="sum", chained=True)
+    windows = fit_initial_states(evaluate_windows(criterion))
+    sizes = [near.residual.size for near in windows.linearisations]
+    assert max(windows.squares / sizes) < 3

@@ -30,27 +30,63 @@ def restart_from_data(windows: Windows, steps: int) -> Windows:
     better: a body that friction holds at its start does not feel where it should begin. The same
     windows where nothing is better.
     """
+    tried: dict[int, Mapping[str, float]] = {}
+    for n in _diverged(windows):
+        known = _start_by_data(windows, n)
+        if not is_far_off(windows, n, known):
+            tried[n] = known
+    if not tried:
+        return windows
+    found = _restart(windows, tried, steps)
+    found = _restart_beside_data(found, steps)
+    changed = any(found.starts[n] is not windows.starts[n] for n in range(len(found.starts)))
+    return update_memories(found) if changed else windows
+
+
+def _restart_beside_data(windows: Windows, steps: int) -> Windows:
+    """Windows that are much worse than most from starts a standard deviation and two beside what
+    the data tell of a measured state: how deep a body is in a stop, which no sample shows, decides
+    when it leaves that."""
+    diverged, criterion = _diverged(windows), windows.criterion
+    best = dict[int, tuple[float, Mapping[str, float]]]()
+    known = {n: _start_by_data(windows, n) for n in diverged}
+    for signal in dict.fromkeys(name for n in diverged for name in criterion.segments[n].signals):
+        for shift in WINDOW.beside:
+            moved: dict[int, Mapping[str, float]] = {}
+            for n in diverged:
+                segment = criterion.segments[n]
+                if signal in segment.signals and signal in known[n]:
+                    sigma = criterion.sigma[segment.measured.name][segment.signals.index(signal)]
+                    size = float(sigma) / abs(segment.measured.sensor(signal).gain)
+                    moved[n] = {**known[n], signal: known[n][signal] + shift * size}
+            there = with_initial_states(windows, moved)
+            for n in moved:
+                square = there.linearisations[n].square
+                if there.linearisations[n].ran and square < best.get(n, (np.inf, {}))[0]:
+                    best[n] = square, moved[n]
+    return _restart(windows, {n: start for n, (_, start) in best.items()}, steps)
+
+
+def _restart(windows: Windows, starts: Mapping[int, Mapping[str, float]], steps: int) -> Windows:
+    """The windows with some fitted from other starts, where that does better."""
+    there = refine_initial_states(with_initial_states(windows, starts), list(starts), steps)
+    return keep_better(windows, there, list(starts))
+
+
+def _diverged(windows: Windows) -> list[int]:
+    """The windows with free starts that are much worse than most."""
     sizes = np.array([near.residual.size for near in windows.linearisations])
     means = windows.squares / np.maximum(sizes, 1)
-    diverged = np.flatnonzero(means > WINDOW.diverged * float(np.median(means))).tolist()
-    criterion, restarts = windows.criterion, {}
-    for n in diverged:
-        segment = criterion.segments[n]
-        row = int(np.searchsorted(segment.measured.t, segment.begin))
-        if windows.starts[n] and not _is_good(windows, n):
-            known = start_from_data(criterion.model, segment.measured, row)
-            start = {name: known.get(name, value) for name, value in windows.starts[n].items()}
-            if not is_far_off(windows, n, start):
-                restarts[n] = start
-    if not restarts:
-        return windows
-    found = keep_better(
-        windows,
-        refine_initial_states(with_initial_states(windows, restarts), list(restarts), steps),
-        list(restarts),
-    )
-    changed = any(found.starts[n] is not windows.starts[n] for n in restarts)
-    return update_memories(found) if changed else windows
+    far = np.flatnonzero(means > WINDOW.diverged * float(np.median(means))).tolist()
+    return [n for n in far if windows.starts[n] and not _is_good(windows, n)]
+
+
+def _start_by_data(windows: Windows, n: int) -> dict[str, float]:
+    """The start of a window with the states that the data tell."""
+    segment = windows.criterion.segments[n]
+    row = int(np.searchsorted(segment.measured.t, segment.begin))
+    known = start_from_data(windows.criterion.model, segment.measured, row)
+    return {name: known.get(name, value) for name, value in windows.starts[n].items()}
 
 
 def restart_from_ends(windows: Windows, rows: Sequence[int], steps: int) -> Windows:

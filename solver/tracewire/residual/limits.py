@@ -164,6 +164,9 @@ class WindowLimits:
     diverged: float = 10.0
     """The mean squared residual of a window, in units of the median of all, from which on its
     initial state may be wrong."""
+    beside: tuple[float, ...] = (-2.0, -1.0, 1.0, 2.0)
+    """Standard deviations of the noise beside what the data tell, at which a measured state of a
+    window that diverged is tried, too."""
     unseen: float = 1e-7
     """A direction of initial states that moves the residual less than this part of the strongest
     is left out."""

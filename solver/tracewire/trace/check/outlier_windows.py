@@ -29,14 +29,13 @@ def fit_without_outliers(
     least = left * len(segments)
     try:
         for _ in range(options.stray_rounds):
-            near = np.flatnonzero(
-                best.window_mean_squares <= options.stray * np.median(best.window_mean_squares)
-            ).tolist()
-            if (
-                best.reduced_chi2 < options.led_astray
-                or len(near) == len(kept)
-                or len(near) < least
-            ):
+            squares = best.windows.squares
+            is_near = best.window_mean_squares <= options.stray * np.median(
+                best.window_mean_squares
+            )
+            near = np.flatnonzero(is_near).tolist()
+            rule = float(squares[~is_near].sum()) > options.ruling * float(squares.sum())
+            if not rule or len(near) < least:
                 break
             kept = [kept[n] for n in near]
             starts = [best.windows.segments[n] for n in near]
