@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from oracles.oscillator import problem_of, trial_of
@@ -80,6 +82,12 @@ def test_a_pitch_that_is_no_part_of_a_turn_is_found_nearly() -> None:
     record = turned(2 * np.pi / 0.37, 1.0)
     assert np.ptp(record.values["x"]) > 30 * 0.37
     assert best_row(record, "cogging", unit="m").shapes["pitch"] == pytest.approx(0.37, rel=0.02)
+
+
+def test_a_way_of_one_wave_has_one_length() -> None:
+    options = replace(OPTIONS, candidate=replace(OPTIONS.candidate, most_waves=1))
+    row = best_row(turned(1, 1.0), "cogging", unit="m", options=options)
+    assert row.shapes["pitch"] > 0
 
 
 def test_friction_that_comes_back_with_the_way_is_scanned_too() -> None:

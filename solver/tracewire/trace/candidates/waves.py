@@ -112,7 +112,7 @@ def _peaks(
     finer = {
         float(lengths[peak]): _between(lengths, peak, options.finer_lengths)
         for peak in best
-        if lengths[peak] not in turns
+        if len(lengths) > 1 and lengths[peak] not in turns
     }
     if finer:
         edges = np.cumsum([len(some) for some in finer.values()])[:-1]
