@@ -269,7 +269,8 @@ def _with_words(found: Diagnosis, measured: Measured) -> Diagnosis:
         for name, p in found.independence.items()
         if p < DIAGNOSIS.doubt and name != found.signal and name not in known
     ]
-    doubtful, lacks = estimate is not None and not estimate.is_sure, False
+    doubtful = estimate is not None and not estimate.is_sure
+    lacks = False
     over = f"correlated over {found.memory:.2g} s"
     if of_inputs:
         names = " and ".join(f"'{name}'" for name in measured.input_sigma)

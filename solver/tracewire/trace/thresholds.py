@@ -121,8 +121,8 @@ class CheckOptions:
     """The same where the fit converged: windows that are many and far off show what is missing."""
     stray_rounds: int = 4
     """Rounds of leaving strays out, at most."""
-    ruling: float = 0.5
-    """The part of the sum of squares from which on windows far from all others rule a fit."""
+    stray_share: float = 0.5
+    """The part of the sum of squares from which on strays rule a fit, and are left out."""
     led_astray: float = 30.0
     """The reduced chi-square from which on strays may lead a fit."""
 

@@ -20,8 +20,9 @@ def fit_without_outliers(
 ) -> Trial:
     """A declared fit that ended far from the noise, without the windows that led it astray.
 
-    It is fitted in rounds of some `steps`. All windows are used again where they are near the noise
-    from there, and where the others are at it: then what is missing shows in the outliers alone.
+    It is fitted in rounds of some `steps`, as long as such windows hold most of the sum of squares.
+    All windows are used again where they are near the noise from there, and where the others are
+    at it: then what is missing shows in the outliers alone.
     """
     options = problem.options.check
     kept, best = list(range(len(segments))), trial
@@ -29,13 +30,11 @@ def fit_without_outliers(
     least = left * len(segments)
     try:
         for _ in range(options.stray_rounds):
-            squares = best.windows.squares
-            is_near = best.window_mean_squares <= options.stray * np.median(
-                best.window_mean_squares
-            )
-            near = np.flatnonzero(is_near).tolist()
-            rule = float(squares[~is_near].sum()) > options.ruling * float(squares.sum())
-            if not rule or len(near) < least:
+            means, squares = best.window_mean_squares, best.windows.squares
+            is_stray = means > options.stray * np.median(means)
+            near = np.flatnonzero(~is_stray).tolist()
+            strays_rule = squares[is_stray].sum() > options.stray_share * squares.sum()
+            if not strays_rule or len(near) < least:
                 break
             kept = [kept[n] for n in near]
             starts = [best.windows.segments[n] for n in near]
