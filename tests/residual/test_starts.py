@@ -36,6 +36,22 @@ def test_a_signal_that_is_no_state_tells_no_start() -> None:
     assert start_from_data(made(OSCILLATOR), measured, 0) == {}
 
 
+@pytest.mark.parametrize("row", [0, 3, 60, 120])
+def test_few_samples_a_period_tell_a_start_through_fewer_of_them(row: int) -> None:
+    rate = 2 * np.pi / (12 * (T[1] - T[0]))  # 12 samples a period
+    coarse = series(np.cos(rate * T))
+    assert coarse.quartic_points == {"x": 7}
+    found = start_from_data(made(OSCILLATOR), coarse, row)
+    assert found["x"] == pytest.approx(np.cos(rate * T[row]), abs=0.01)
+    assert found["v"] == pytest.approx(-rate * np.sin(rate * T[row]), abs=0.1 * rate)
+
+
+def test_noise_alone_makes_no_signal_bend() -> None:
+    noise = np.random.default_rng(5).normal(0, 0.01, (50, len(T)))
+    points = [series(oscillation(T) + one).quartic_points["x"] for one in noise]
+    assert points == [17] * 50
+
+
 @pytest.mark.parametrize("count", [2, 3, 5])
 def test_few_samples_give_a_lower_degree(count: int) -> None:
     t = np.arange(count) * 0.1

@@ -141,8 +141,13 @@ class WindowLimits:
 
     traced: int = 40
     """Samples of a series, at least, in which a missing effect can be traced."""
-    points: int = 17
-    """Samples around a start through which a polynomial is laid."""
+    points: tuple[int, ...] = (17, 11, 7)
+    """Samples around a start through which a polynomial is laid: fewer where the signal bends."""
+    places: int = 40
+    """Places of a record at which these are compared."""
+    bends: float = 2.0
+    """By which factor what a polynomial leaves through more samples may exceed that of the fewest,
+    root mean square. In white noise the median is 1.2."""
     degree: int = 4
     """Of this polynomial."""
     ahead: float = 2.0

@@ -20,6 +20,7 @@ from tracewire.library import SENSOR_TERMS
 from tracewire.residual.arrays import ArrayCheck, fields_of_frame
 from tracewire.residual.inputs import between_samples
 from tracewire.residual.limits import WINDOW
+from tracewire.residual.local_quartics import quartic_points
 from tracewire.residual.remarks import check_quantities, factor_of_column, remarks_of
 from tracewire.residual.sensor import PLAIN, Sensor, read_sensor
 from tracewire.solve import Driving, Options, parameter_values
@@ -161,6 +162,11 @@ class Measured:
     def fastest(self) -> float:
         """The largest standard deviation of a measured signal's rate."""
         return max(float(np.std(np.gradient(v, self.t))) for v in self.values.values())
+
+    @cached_property
+    def quartic_points(self) -> Mapping[str, int]:
+        """Through how many samples a local quartic follows each measured signal."""
+        return {name: quartic_points(self.t, values) for name, values in self.values.items()}
 
     def sensor(self, signal: str) -> Sensor:
         """The sensor of a signal; it shows the signal itself where nothing is said of it."""

@@ -8,13 +8,12 @@ from numpy.typing import NDArray
 from tracewire.compile import Model
 from tracewire.errors import OptionError, unknown
 from tracewire.formula import Name, evaluate
-from tracewire.residual.limits import WINDOW
+from tracewire.residual.local_quartics import LocalQuartics, rows_around
 from tracewire.residual.measured import Measured
 from tracewire.residual.segment import Segment
 from tracewire.solve import parameter_values
 
 Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
 
@@ -26,39 +25,26 @@ def start_from_data(model: Model, measured: Measured, row: int) -> dict[str, flo
 
 def states_from_data(model: Model, measured: Measured, rows: Rows) -> dict[str, Vector]:
     """The states (N,) at rows (N,) of a series that the data tell: by local quartics through 17
-    samples.
+    samples, or fewer where the signal bends too much for one quartic.
 
     A state that is measured is read off the quartic, and a state that is the rate of a measured one
     off its derivative; other states are not in the result.
     """
     found: dict[str, Vector] = {}
-    first = np.clip(rows - WINDOW.points // 2, 0, max(len(measured.t) - WINDOW.points, 0))
-    near = first[:, None] + np.arange(min(WINDOW.points, len(measured.t)))
     states = {state.name: state for state in model.flat.states}
     for name, values in measured.values.items():
         if name not in states:
             continue
+        near = rows_around(rows, measured.quartic_points[name], len(measured.t))
         sensor = measured.sensor(name)
         t = measured.t[near] - measured.t[rows, None] - sensor.delay
         signal = sensor.signal(values[near], measured.t[near] - measured.zero)
-        found[name], slope = _quartics(t, signal)
+        quartics = LocalQuartics(t, signal)
+        found[name] = quartics.values
         rate = states[name].rate
         if isinstance(rate, Name) and rate.name in states and rate.name not in measured.values:
-            found[rate.name] = slope
+            found[rate.name] = quartics.slopes
     return found
-
-
-def _quartics(t: Matrix, signal: Matrix) -> tuple[Vector, Vector]:
-    """The values (N,) and slopes (N,) at t = 0 of the quartics through signals (N, 17)."""
-    middle, half = (t[:, -1] + t[:, 0]) / 2, (t[:, -1] - t[:, 0]) / 2
-    half[half == 0] = 1.0
-    powers = np.arange(min(WINDOW.degree, t.shape[1] - 1) + 1)
-    z = ((t - middle[:, None]) / half[:, None])[:, :, None] ** powers
-    q, r = np.linalg.qr(z)
-    quartic = np.linalg.solve(r, np.einsum("nij,ni->nj", q, signal)[:, :, None])[:, :, 0]
-    zero = (-middle / half)[:, None]
-    slopes = quartic[:, 1:] * powers[1:] * zero ** powers[:-1]
-    return np.sum(quartic * zero**powers, axis=1), np.sum(slopes, axis=1) / half
 
 
 def whole_segment(model: Model, measured: Measured) -> Segment:

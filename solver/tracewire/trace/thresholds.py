@@ -66,6 +66,9 @@ class CheckOptions:
     """Standard deviations by which a single wrong sample is off its neighbours, at least."""
     spike_neighbour: float = 3.0
     """Standard deviations by which these are off theirs once it stands on its own, at most."""
+    spike_share: float = 0.01
+    """The part of what a spike is off by which its neighbours may be off: for a sensor that loses
+    a sample where few samples a period lie far off any cubic. Kinks and steps have over 0.1."""
     spike_alike: float = 1 / 3
     """The part of its height by which both sides agree on what should stand there."""
     most_spikes: float = 0.02

@@ -32,6 +32,25 @@ def test_a_single_wrong_sample_is_found(row: int, size: float, sign: int) -> Non
     assert np.flatnonzero(find_outliers(T, y, NOISE, OPTIONS.check)).tolist() == [row]
 
 
+@given(st.integers(5, 94), st.sampled_from([-1e6, -999.0, 60.0, 65535.0]))
+def test_a_lost_sample_is_found_where_a_period_has_few(row: int, shown: float) -> None:
+    """Twelve samples a period are far off any cubic, in the noise's standard deviation."""
+    y = np.cos(2 * np.pi * np.arange(100) / 12)
+    y[row] = shown
+    assert np.flatnonzero(find_outliers(T[:100], y, NOISE, OPTIONS.check)).tolist() == [row]
+
+
+@given(st.integers(6, 93), st.floats(0.0, 0.99), st.floats(2.0, 12.0))
+def test_a_kink_is_no_spike_where_a_period_has_few_samples(
+    row: int, shift: float, period: float
+) -> None:
+    k = np.arange(100) - row - shift
+    bounce = np.abs(np.sin(np.pi * k / (2 * period)))
+    assert not find_outliers(T[:100], bounce, NOISE, OPTIONS.check).any()
+    step = np.where(k > 0, 1.0, 0.0) * np.cos(np.pi * k / (4 * period))
+    assert not find_outliers(T[:100], step, NOISE, OPTIONS.check).any()
+
+
 def test_noise_hides_a_spike_seldom() -> None:
     """Its neighbours must all be within 3 standard deviations: 97 in 100 are."""
     rows = range(10, 990, 14)

@@ -28,8 +28,10 @@ def drop_outliers(
 
     An outlier is more than 8 standard deviations off both parabolas, that of the five samples
     before it and that of the five after it, which agree on what should be there; its neighbours are
-    less than 3 off the cubic through theirs, once it stands on its own. So the kink of an impact, a
-    turn under dry friction and the step of a body that is stopped are none.
+    less than 3 off the cubic through theirs, once it stands on its own, or less than a hundredth of
+    what the outlier is off: so it is found where few samples a period are far off any cubic, too.
+    The kink of an impact, a turn under dry friction and the step of a body that is stopped are
+    none.
     """
     t = measured.t
     found = {
@@ -62,7 +64,8 @@ def find_outliers(t: Vector, y: Vector, sigma: float, options: CheckOptions) -> 
         alike = (
             max(abs(mended[SIDE] - before), abs(mended[SIDE] - after)) < options.spike_alike * off
         )
-        smooth = bool((_off(mended) < options.spike_neighbour * SPREAD * sigma).all())
+        limit = max(options.spike_neighbour * SPREAD * sigma, options.spike_share * off)
+        smooth = bool((_off(mended) < limit).all())
         even = np.ptp(steps) < options.even * np.median(steps)
         flags[k] = even and smooth and alike and off > options.spike * ONWARD_SPREAD * sigma
     return flags
