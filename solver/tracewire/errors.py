@@ -15,7 +15,7 @@ MOST_NAMES = 12
 
 
 @dataclass(frozen=True, order=True)
-class Place:
+class Location:
     """Where something stands: file, line and column (both from 1; 0 is unknown), block path."""
 
     file: str = ""
@@ -35,7 +35,7 @@ class Problem:
     """One thing that is wrong: the place, what it is, the names that exist there, what to do."""
 
     what: str
-    place: Place = Place()
+    place: Location = Location()
     exists: tuple[str, ...] = ()
     hint: str = ""
 
@@ -53,7 +53,7 @@ MOST_MEANT = 6  # names that are proposed
 
 
 def unknown(
-    kind: str, name: str, existing: Iterable[str], place: Place = Place(), hint: str = ""
+    kind: str, name: str, existing: Iterable[str], place: Location = Location(), hint: str = ""
 ) -> Problem:
     """The problem "unknown KIND 'NAME'", with what exists, and what of that is spelled alike or has
     the name as one of its words."""
@@ -79,7 +79,7 @@ class TracewireError(Exception):
 
     @classmethod
     def one(
-        cls, what: str, place: Place = Place(), exists: Iterable[str] = (), hint: str = ""
+        cls, what: str, place: Location = Location(), exists: Iterable[str] = (), hint: str = ""
     ) -> TracewireError:
         """An error of this class that holds a single problem."""
         return cls([Problem(what, place, tuple(exists), hint)])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-from tracewire.errors import InstallationError, Place, Problem, TracewireError
+from tracewire.errors import InstallationError, Location, Problem, TracewireError
 
 
 def import_extra(
@@ -14,7 +14,7 @@ def import_extra(
     purpose: str,
     *,
     error: type[TracewireError] = InstallationError,
-    place: Place = Place(),
+    place: Location = Location(),
     otherwise: str = "",
 ) -> Any:
     """The module of an optional package.

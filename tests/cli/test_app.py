@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 import tracewire
 from tracewire.cli import main
-from tracewire.errors import DataError, FitError, Place, Problem
+from tracewire.errors import DataError, FitError, Location, Problem
 
 LESSON = Path(__file__).parents[2] / "diagrams" / "lessons" / "pendulum.yaml"
 SOLVER = Path(tracewire.__file__).parents[1]
@@ -81,7 +81,7 @@ def test_problems_stand_one_a_line_and_in_json(
     call: Any, swing: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     problems = [
-        Problem("the first is wrong", Place("a.yaml", 3, 5, "omega"), ("x", "y"), "Do this."),
+        Problem("the first is wrong", Location("a.yaml", 3, 5, "omega"), ("x", "y"), "Do this."),
         Problem("the second\nis wrong"),
     ]
     monkeypatch.setattr("tracewire.diagram.read", raising(DataError(problems)))

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 from tracewire.data import Columns, read_columns, read_record
 from tracewire.data.limits import FileLimits
-from tracewire.errors import DataError, Place
+from tracewire.errors import DataError, Location
 
 patient = settings(deadline=None)  # the first run may load scipy
 Write = Callable[[str | bytes], Path]
@@ -180,7 +180,7 @@ def test_what_is_no_text(write: Write) -> None:
 
 
 def test_problems_of_the_whole_file_stand_where_the_diagram_names_it(tmp_path: Path) -> None:
-    place = Place("pendulum.yaml", 61, 12)
+    place = Location("pendulum.yaml", 61, 12)
     with pytest.raises(DataError, match=r"^pendulum\.yaml:61:12: unknown file 'run\.csv'"):
         read_columns(tmp_path / "run.csv", {}, place=place)
     with pytest.raises(DataError, match=r"^pendulum\.yaml:61:12: '.*' is a folder"):

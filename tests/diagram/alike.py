@@ -7,14 +7,14 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 
 from tracewire.diagram import Diagram
-from tracewire.errors import Place
+from tracewire.errors import Location
 
 ELSEWHERE = {"place", "text", "library", "row", "counts", "variant", "variants"}
 
 
 def said(part: object) -> object:
     """What a diagram, or a part of it, says: without places, texts, rows and names of its files."""
-    if isinstance(part, Place):
+    if isinstance(part, Location):
         return None
     if isinstance(part, Diagram):
         given = {f.name: getattr(part, f.name) for f in fields(part) if f.name not in ELSEWHERE}

@@ -7,7 +7,7 @@ import pytest
 from diagram.small_library import LIBRARY, PENDULUM, made
 from tracewire.compile import compile as compile_model
 from tracewire.diagram import Value, Wire, find_parameter, read, read_text
-from tracewire.errors import DiagramError, Place
+from tracewire.errors import DiagramError, Location
 from tracewire.formula import Name, Number, parse, to_text
 from tracewire.solve import parameter_values
 
@@ -22,7 +22,7 @@ def test_the_example_of_the_design_becomes_nouns() -> None:
     column = diagram.blocks["column"]
     assert column.inputs["of"][0].signal == "theta"
     assert column.settings["k"] == Value(
-        parse("-stiffness"), place=Place("<text>", 14, 39, "column")
+        parse("-stiffness"), place=Location("<text>", 14, 39, "column")
     )
     bearing = diagram.blocks["bearing"].subsystem
     assert bearing is diagram.subsystems["journal_bearing"]
@@ -31,7 +31,7 @@ def test_the_example_of_the_design_becomes_nouns() -> None:
     assert diagram.events[0].crosses == "up"
     assert diagram.events[0].set == {"omega": parse("-0.5*omega")}
     assert diagram.presets["as_printed"]["bearing.slip"].formula == Number(2e-4)
-    assert diagram.blocks["theta"].place == Place("<text>", 11, 3, "theta")
+    assert diagram.blocks["theta"].place == Location("<text>", 11, 3, "theta")
 
 
 def test_a_value_keeps_unit_factor_and_bounds_in_si() -> None:

@@ -54,12 +54,11 @@ def test_a_fit_finds_a_phase_for_each_series(model: Model, method: str) -> None:
 def test_what_a_series_has_of_its_own_goes_before(model: Model) -> None:
     a, b, c = load_measured(model)
     values = {"x.phase": 9.0, "x.period": 1.3, "x.phase@a": 0.4, "gain.x": 2.0}
-    assert of_diagram(values, a) == {"x.phase": 0.4, "x.period": 1.3}
-    assert of_diagram(values, b) == {"x.phase": 1.5, "x.period": 1.3}
-    assert of_diagram(values, c) == {"x.phase": 1.1, "x.period": 1.3}
-    assert of_diagram(values) == {"x.phase": 9.0, "x.period": 1.3}
-    assert [parameter_in(name, a) for name in values] == ["", "x.period", "x.phase", ""]
-    assert [parameter_in(name, b) for name in values] == ["", "x.period", "", ""]
+    assert of_diagram(model, values, a) == {"x.phase": 0.4, "x.period": 1.3}
+    assert of_diagram(model, values, b) == {"x.phase": 1.5, "x.period": 1.3}
+    assert of_diagram(model, values, c) == {"x.phase": 1.1, "x.period": 1.3}
+    assert [parameter_in(model, name, a) for name in values] == ["", "x.period", "x.phase", ""]
+    assert [parameter_in(model, name, b) for name in values] == ["", "x.period", "", ""]
     assert (a.free, c.free) == ({"x.phase": (-7.0, 7.0)}, {})
 
 

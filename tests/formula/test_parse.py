@@ -7,7 +7,7 @@ from contextlib import suppress
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tracewire.errors import FormulaError, Place
+from tracewire.errors import FormulaError, Location
 from tracewire.formula import Call, Name, Number, is_name, names_of, parse, rename, to_text
 from tracewire.formula.functions import FUNCTIONS
 
@@ -145,14 +145,14 @@ def test_an_error_shows_the_formula_and_shortens_a_long_one() -> None:
 )
 def test_an_error_points_at_the_part_of_the_text(text: str, column: int) -> None:
     with pytest.raises(FormulaError) as caught:
-        parse(text, Place("a.yaml", 3, 10, "alpha"))
-    assert caught.value.problems[0].place == Place("a.yaml", 3, column, "alpha")
+        parse(text, Location("a.yaml", 3, 10, "alpha"))
+    assert caught.value.problems[0].place == Location("a.yaml", 3, column, "alpha")
 
 
 def test_a_place_without_a_column_gets_none() -> None:
     with pytest.raises(FormulaError) as caught:
-        parse("x + sine(y)", Place("a.py", 3))
-    assert caught.value.problems[0].place == Place("a.py", 3)
+        parse("x + sine(y)", Location("a.py", 3))
+    assert caught.value.problems[0].place == Location("a.py", 3)
 
 
 @given(st.text(max_size=60))

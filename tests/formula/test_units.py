@@ -9,7 +9,7 @@ from subprocess import run
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tracewire.errors import FormulaError, Place
+from tracewire.errors import FormulaError, Location
 from tracewire.formula import Unit, quantity_hint, read_unit, same_quantity
 from tracewire.formula.common_units import COMMON
 from tracewire.formula.units import COHERENT, _convert
@@ -91,7 +91,7 @@ def test_coherent_units_have_the_factor_1_of_the_unit_library(
 )
 def test_what_is_no_unit_is_refused(text: str) -> None:
     with pytest.raises(FormulaError) as caught:
-        read_unit(text, Place("a.yaml", 2, 5))
+        read_unit(text, Location("a.yaml", 2, 5))
     message = f"a.yaml:2:5: '{text[:60]}' is not a unit. Write it like 'kg m^2'"
     assert str(caught.value).startswith(message)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from solve.models import BALL, OSCILLATOR, made
 from tracewire.errors import OptionError
-from tracewire.solve import Halt, Integrator, Interrupted, initial_value_problem, simulate
+from tracewire.solve import Integrator, Interrupted, StopFlag, initial_value_problem, simulate
 
 TURNING = """
 span: [0, 6.5]
@@ -101,6 +101,6 @@ def test_arrays_that_are_given_back_serve_the_next_run() -> None:
 
 
 def test_a_halt_that_is_asked_for_stops_it() -> None:
-    integrator = Integrator(initial_value_problem(made(BALL)), halt=Halt(asked=True))
+    integrator = Integrator(initial_value_problem(made(BALL)), stop_flag=StopFlag(asked=True))
     with pytest.raises(Interrupted, match="interrupted at t = 0 s, on the way from 0 to 12 s"):
         integrator.go_to()

@@ -20,7 +20,7 @@ from solve.models import BALL, made
 from tracewire import Interrupted, Plane, Run, bifurcation, simulate_many, stability_chart, sweep
 from tracewire.errors import OptionError, SimulationError, TracewireError
 from tracewire.solve import PartProgress, carry_out
-from tracewire.solve.interrupt import Halt
+from tracewire.solve.interrupt import StopFlag
 
 MATHIEU = """
 span: [0, 10]
@@ -43,19 +43,19 @@ def highest(run: Run) -> float:
     return float(run["x"].max())
 
 
-def squared(number: int, halt: Halt) -> int:
+def squared(number: int, stop_flag: StopFlag) -> int:
     if number == 5:
         raise SimulationError.one("five is refused")
     return number**2
 
 
-def slept(number: int, halt: Halt) -> int:
+def slept(number: int, stop_flag: StopFlag) -> int:
     """The first one is done at once, and none of the others."""
     time.sleep(600 if number else 0)
     return number
 
 
-def killed(number: int, halt: Halt) -> int:
+def killed(number: int, stop_flag: StopFlag) -> int:
     if number == 3:
         os.kill(os.getpid(), signal.SIGKILL)
     return number

@@ -24,11 +24,11 @@ from tracewire.errors import OptionError, Problem, TracewireError, unknown
 from tracewire.options import options_of
 from tracewire.result import Result
 from tracewire.solve import (
-    Halt,
     Interrupted,
     PartProgress,
     Passage,
     ProgressCallback,
+    StopFlag,
     carry_out,
     parameter_values,
 )
@@ -225,7 +225,7 @@ class _Work:
         """The numbers that are kept of a value: points, final states, extents, the final time."""
         return (self.keep + 2) * len(self.model.states) + 1
 
-    def value(self, number: int, value: float, carried: Carried, halt: Halt) -> Vector:
+    def value(self, number: int, value: float, carried: Carried, stop_flag: StopFlag) -> Vector:
         """What is kept of one value; `carried` are time and states from the value before."""
         given = {**self.parameters, self.parameter: value}
         rhythm = self.plane.rhythm(self.model, given, self.preset)
@@ -246,7 +246,7 @@ class _Work:
             method=self.method,
             rtol=self.rtol,
             inner=max(self.keep, 100),
-            halt=halt,
+            stop_flag=stop_flag,
         )
         _, points, mean = take_points(passage, self.plane, rhythm, self.skip, self.keep)
         end, final = passage.t, passage.x

@@ -17,7 +17,7 @@ from tracewire.analyse.work import work_through
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem
 from tracewire.result import Result
-from tracewire.solve import Halt, ProgressCallback
+from tracewire.solve import ProgressCallback, StopFlag
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -111,7 +111,7 @@ class _Point:
     x: tuple[str, Vector]
     y: tuple[str, Vector]
 
-    def __call__(self, number: int, halt: Halt) -> Vector:
+    def __call__(self, number: int, stop_flag: StopFlag) -> Vector:
         (x, xs), (y, ys) = self.x, self.y
         row, column = divmod(number, len(xs))
         found = self.tries.floquet({x: float(xs[column]), y: float(ys[row])})

@@ -100,7 +100,7 @@ def lyapunov(
     step = length / 100 if interval is None else interval
     _check(n, many, length, step, transient)
     values = parameter_values(model, parameters or {}, preset)
-    with until_interrupted() as halt:
+    with until_interrupted() as stop_flag:
         make = partial(
             Passage,
             model,
@@ -109,7 +109,7 @@ def lyapunov(
             inputs=inputs,
             method=method,
             rtol=rtol,
-            halt=halt,
+            stop_flag=stop_flag,
         )
         begin = span_of(model, values)[0]
         passage = _after(make, begin, transient, step, start)

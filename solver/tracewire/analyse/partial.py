@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
-from tracewire.errors import OptionError, Place, Problem
+from tracewire.errors import Location, OptionError, Problem
 from tracewire.formula import to_text
 from tracewire.resume import ResumeFile
 
@@ -59,7 +59,7 @@ class Partial:
             self._file.write(content, rows=self.rows, done=self.done)
 
     def _read(self, file: ResumeFile) -> None:
-        place = Place(str(file.path))
+        place = Location(str(file.path))
         try:
             content = file.read()
         except OSError:
@@ -101,4 +101,4 @@ def _check(path: Path) -> None:
         raise OptionError([Problem(what, hint="End its name in .npz.")])
     if path.is_dir() or not path.parent.is_dir():
         what = f"there is no folder '{path.parent}'" if not path.is_dir() else "it is a folder"
-        raise OptionError([Problem(what, Place(str(path)), hint="Name a file in a folder.")])
+        raise OptionError([Problem(what, Location(str(path)), hint="Name a file in a folder.")])

@@ -30,7 +30,7 @@ from tracewire.diagram import quantity_problems, row_ends
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.formula import Expression, parse_quantity
 from tracewire.result import Result
-from tracewire.solve import Halt, Options, ProgressCallback, refuse_unknown_options, with_row
+from tracewire.solve import Options, ProgressCallback, StopFlag, refuse_unknown_options, with_row
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -123,7 +123,7 @@ class _Point:
     since: float | None
     options: Options
 
-    def __call__(self, number: int, halt: Halt) -> Vector:
+    def __call__(self, number: int, stop_flag: StopFlag) -> Vector:
         shape = tuple(len(values) for values in self.axes.values())
         place = np.unravel_index(number, shape)
         here = {n: float(v[i]) for (n, v), i in zip(self.axes.items(), place, strict=True)}

@@ -11,19 +11,19 @@ from numpy.typing import NDArray
 
 from tracewire.analyse.partial import Partial
 from tracewire.errors import Problem, TracewireError
-from tracewire.solve import Halt, Interrupted, PartProgress, ProgressCallback, carry_out
+from tracewire.solve import Interrupted, PartProgress, ProgressCallback, StopFlag, carry_out
 
 Vector = NDArray[np.float64]
 
 
 def work_through(
-    point: Callable[[int, Halt], Vector],
+    point: Callable[[int, StopFlag], Vector],
     partial: Partial,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
     executor: Executor | None = None,
 ) -> None:
-    """Make all rows of `partial` that are not done: point(number, halt) gives one of them.
+    """Make all rows of `partial` that are not done: point(number, stop_flag) gives one of them.
 
     A point that raises a TracewireError fails for itself. Raises the error of the first point where
     all fail, and Interrupted where the user stops the work; what is done is in the file then.

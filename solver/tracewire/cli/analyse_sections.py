@@ -100,7 +100,7 @@ def bifurcation(
     setting = read_setting(diagram, given, target)
     turns = start_values_of(setting.model, modulo or (), "--modulo")
     ((name, grid),) = values_of(setting.model, [over]).items()
-    if name.startswith("start."):
+    if name not in setting.model.flat.parameters:
         what = "a bifurcation diagram goes over a parameter, and a start value is carried along"
         raise OptionError([Problem(what, hint="Name a parameter.")])
     if target.figure is not None:

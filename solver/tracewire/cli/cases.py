@@ -42,8 +42,8 @@ def cases_of(model: Model, over: Sequence[str], presets: Sequence[str]) -> list[
         given = {name: float(value) for name, value in zip(grid, values, strict=True)}
         told = [_told(model, name, value) for name, value in given.items()]
         parts = [*([preset] if len(presets) > 1 else []), *told]
-        start = {n.removeprefix("start."): v for n, v in given.items() if n.startswith("start.")}
-        parameters = {n: v for n, v in given.items() if not n.startswith("start.")}
+        parameters = {n: v for n, v in given.items() if n in model.flat.parameters}
+        start = {n.removeprefix("start."): v for n, v in given.items() if n not in parameters}
         found.append(Case(", ".join(parts), preset, parameters, start))
     if len(found) > LIMITS.most_cases:
         what = f"{len(found)} runs do not go into one figure"

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from tracewire.cli.output import note
-from tracewire.errors import OptionError, Place, Problem, unknown
+from tracewire.errors import Location, OptionError, Problem, unknown
 from tracewire.files import working_folder
 
 NAME = "tracewire.toml"
@@ -50,7 +50,7 @@ def _project_file(start: Path) -> Path | None:
 def _libraries(file: Path) -> list[str]:
     import tomllib
 
-    place = Place(str(file))
+    place = Location(str(file))
     try:
         data = tomllib.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:  # among them text that is not TOML, or not UTF-8

@@ -85,7 +85,7 @@ def values_of(model: Model, texts: Sequence[str], option: str = "--over") -> dic
             problems.append(Problem(what, hint=hint))
             continue
         read, known = parameter_values_of, name
-        if name.startswith("start."):
+        if name.startswith("start.") and name not in model.flat.parameters:
             read, known = start_values_of, name.removeprefix("start.")
         values = [
             next(iter(read(model, [f"{known}={number.strip()} {unit}"], option).values()))

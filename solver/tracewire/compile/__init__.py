@@ -13,6 +13,7 @@ from tracewire.compile.flat import (
 )
 from tracewire.compile.lowered import Mode, Reset, Transition
 from tracewire.compile.model import Model, compile
+from tracewire.compile.name_clashes import find_name_clashes
 from tracewire.compile.remarks import remarks_of
 from tracewire.compile.rest import AtRest, at_rest
 from tracewire.compile.statements import statement_problems
@@ -33,6 +34,7 @@ __all__ = [
     "Transition",
     "at_rest",
     "compile",
+    "find_name_clashes",
     "remarks_of",
     "statement_problems",
     "unit_problems",

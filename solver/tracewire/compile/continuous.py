@@ -18,7 +18,7 @@ from collections.abc import Collection, Container, Iterable, Iterator, Mapping, 
 from dataclasses import dataclass
 
 from tracewire.compile.flat import FlatEvent, FlatMemory, FlatParameter, FlatState
-from tracewire.errors import FormulaError, Place, Problem
+from tracewire.errors import FormulaError, Location, Problem
 from tracewire.formula import Expression, Name, Number, calls_in, evaluate, names_of
 
 PASSED = ("+", "-", "neg", "stack", "[]", "sum", "join")
@@ -33,7 +33,7 @@ class ContinuousPort:
     port: str
     type: str
     wire: Expression
-    place: Place
+    place: Location
 
 
 def jump_problems(

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from tracewire.compile.flat import FlatEvent, FlatMemory, FlatTransition
 from tracewire.compile.limits import MODEL
 from tracewire.diagram import Condition, Crosses, Event, Value
-from tracewire.errors import Place
+from tracewire.errors import Location
 from tracewire.formula import Call, Expression, Name, Number, parse, parse_condition, to_text
 from tracewire.library import Block
 
@@ -22,7 +22,7 @@ def memory_name(block: Block, path: str) -> dict[str, Expression]:
 
 
 def block_events(
-    block: Block, path: str, states: Mapping[str, str], write: Write, place: Place
+    block: Block, path: str, states: Mapping[str, str], write: Write, place: Location
 ) -> list[FlatEvent]:
     """The events of a block; one with several guards is several, of one name."""
     found: list[FlatEvent] = []
@@ -51,7 +51,7 @@ def block_events(
 
 
 def block_memory(
-    block: Block, path: str, states: Mapping[str, str], write: Write, place: Place
+    block: Block, path: str, states: Mapping[str, str], write: Write, place: Location
 ) -> list[FlatMemory]:
     """The memory of a block that has modes, else nothing."""
     transitions = tuple(
@@ -113,7 +113,7 @@ def clock(period: Expression, offset: Expression) -> Expression:
     return Call("if", (Call(">", (offset, Number(0.0))), waiting, periods))
 
 
-def near_ticks(period: Expression, offset: Expression, place: Place) -> list[Condition]:
+def near_ticks(period: Expression, offset: Expression, place: Location) -> list[Condition]:
     """What keeps the ticks of a clock apart: beyond, offset + k*period is the same for many k."""
     if offset == Number(0.0):
         return []

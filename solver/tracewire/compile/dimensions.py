@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from tracewire.compile.flat import Flat, FlatAsked, FlatState
-from tracewire.errors import Place, Problem
+from tracewire.errors import Location, Problem
 from tracewire.formula import (
     CONSTANTS,
     Call,
@@ -41,7 +41,7 @@ def unit_of(flat: Flat, formula: Expression) -> tuple[Term | None, list[Problem]
     units = _Units(flat)
     units.problems()
     units.found.clear()
-    units.where = Place()
+    units.where = Location()
     term = units.term(formula)
     known = None if term is None else units.resolved(term)
     closed = known is not None and not any(name.startswith(OPEN) for name in known)
@@ -54,7 +54,7 @@ class _Units:
         self.states = {state.name: state for state in flat.states}
         self.known: dict[str, Term] = {}
         self.found: list[Problem] = []
-        self.where = Place()
+        self.where = Location()
         for name, unit in flat.units.items():
             dimension = dimension_of(unit)
             if dimension is not None:
@@ -194,10 +194,10 @@ class _Units:
         beside = f" (line {line})" if line and line != self.where.line else ""
         return f"'{formula.name}'{beside} is in {self.text(term, formula)}"
 
-    def place(self, name: str) -> Place:
+    def place(self, name: str) -> Location:
         """Where the diagram has a name; nowhere for an input."""
         tables = (self.flat.parameters, self.flat.blocks, self.states)
-        return next((table[name].place for table in tables if name in table), Place())
+        return next((table[name].place for table in tables if name in table), Location())
 
 
 def _turns(unit: str) -> str:

@@ -9,11 +9,11 @@ from tracewire.compile.elements import Elements, Mismatch, Shape, shape_text
 from tracewire.compile.flat import Flat, FlatMemory, FlatState, FlatTransition
 from tracewire.compile.vectors import Expansion, element_names, find_shapes, has_vectors
 from tracewire.diagram import split_index
-from tracewire.errors import DiagramError, Place, Problem
+from tracewire.errors import DiagramError, Location, Problem
 from tracewire.formula import Expression, Number, names_of, to_text
 
 
-def expand_vectors(flat: Flat, ports: Mapping[str, Place], recorded: Sequence[Place]) -> Flat:
+def expand_vectors(flat: Flat, ports: Mapping[str, Location], recorded: Sequence[Location]) -> Flat:
     """The flat equations with every vector replaced by its elements.
 
     ports: the places of the outputs of subsystems; recorded: those of `flat.record`. Raises
@@ -36,7 +36,9 @@ def _of_memory(memory: FlatMemory) -> Iterator[Expression]:
 
 
 class _Expander:
-    def __init__(self, flat: Flat, ports: Mapping[str, Place], recorded: Sequence[Place]) -> None:
+    def __init__(
+        self, flat: Flat, ports: Mapping[str, Location], recorded: Sequence[Location]
+    ) -> None:
         self.flat, self.ports, self.recorded = flat, ports, recorded
         made: dict[str, Sequence[Expression]]
         made = {state.name: (state.start, state.rate) for state in flat.states}
@@ -60,7 +62,7 @@ class _Expander:
         guesses: dict[str, Expression] = {}
         for name, formula in flat.guesses.items():
             guesses |= self.named(name, formula, self.place(name), "its guess")
-        places = self.recorded or [Place()] * len(flat.record)
+        places = self.recorded or [Location()] * len(flat.record)
         record = [
             element
             for name, place in zip(flat.record, places, strict=False)
@@ -92,16 +94,16 @@ class _Expander:
             shapes=self.shapes,
         )
 
-    def place(self, name: str) -> Place:
+    def place(self, name: str) -> Location:
         block = self.flat.blocks.get(name)
-        return self.ports.get(name, Place()) if block is None else block.place
+        return self.ports.get(name, Location()) if block is None else block.place
 
-    def problem(self, what: str, place: Place, hint: str = "") -> None:
+    def problem(self, what: str, place: Location, hint: str = "") -> None:
         problem = Problem(what, place, (), hint)
         if problem not in self.problems:
             self.problems.append(problem)
 
-    def expand(self, formula: Expression, place: Place, own: str = "") -> Elements:
+    def expand(self, formula: Expression, place: Location, own: str = "") -> Elements:
         """The elements of a formula; a zero with a problem noted where its shapes are wrong.
 
         What reads a name that is wrong itself is not told, but in the formula of that name, `own`.
@@ -114,7 +116,7 @@ class _Expander:
             return Elements((), (Number(0.0),))
 
     def named(
-        self, name: str, formula: Expression, place: Place, what: str, own: str = ""
+        self, name: str, formula: Expression, place: Location, what: str, own: str = ""
     ) -> dict[str, Expression]:
         """The formulas of the elements of a name; a number stands for each of them."""
         _, index = split_index(name)
@@ -134,14 +136,14 @@ class _Expander:
             start, rate = starts.get(name, Number(0.0)), rates.get(name, Number(0.0))
             yield replace(state, name=name, start=start, rate=rate)
 
-    def number(self, formula: Expression, place: Place) -> Expression:
+    def number(self, formula: Expression, place: Location) -> Expression:
         elements = self.expand(formula, place)
         if elements.shape:
             what = f"'{to_text(formula)}' is {shape_text(elements.shape)}, and a number is needed"
             self.problem(what, place, "Name one of its elements.")
         return elements.items[0]
 
-    def values(self, values: Mapping[str, Expression], place: Place) -> dict[str, Expression]:
+    def values(self, values: Mapping[str, Expression], place: Location) -> dict[str, Expression]:
         """New values of states, where a vector or an element of one may be set."""
         found: dict[str, Expression] = {}
         for name, formula in values.items():
@@ -159,7 +161,7 @@ class _Expander:
         start = self.number(memory.start, memory.place)
         return replace(memory, start=start, transitions=tuple(map(changed, memory.transitions)))
 
-    def elements(self, name: str, place: Place) -> list[str]:
+    def elements(self, name: str, place: Location) -> list[str]:
         """The names of the elements behind a name, of which an index takes one."""
         vector, index = split_index(name)
         shape = self.shapes.get(vector, ())

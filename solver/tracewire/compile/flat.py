@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from tracewire.diagram import Condition, Crosses, Points, Shown
-from tracewire.errors import Place
+from tracewire.errors import Location
 from tracewire.formula import Expression
 
 
@@ -23,7 +23,7 @@ class FlatParameter:
     unit: str = ""
     fit: tuple[float, float] | None = None
     factor: float = 1.0
-    place: Place = Place()
+    place: Location = Location()
     written: str = ""
 
     @property
@@ -41,7 +41,7 @@ class FlatAsked:
     name: str
     formula: Expression
     unit: str
-    place: Place = Place()
+    place: Location = Location()
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class FlatState:
     rate: Expression
     start: Expression
     unit: str = ""
-    place: Place = Place()
+    place: Location = Location()
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class FlatEvent:
     when: Expression
     crosses: Crosses
     set: Mapping[str, Expression]
-    place: Place = Place()
+    place: Location = Location()
     kind: Literal["reset", "impact"] = "reset"
     clocked: bool = False
     block: str = ""
@@ -99,7 +99,7 @@ class FlatMemory:
     modes: tuple[str, ...]
     start: Expression
     transitions: tuple[FlatTransition, ...]
-    place: Place = Place()
+    place: Location = Location()
 
 
 @dataclass(frozen=True)
@@ -114,7 +114,7 @@ class FlatBlock:
     type: str
     definition: str
     local: Mapping[str, str] = field(default_factory=dict)
-    place: Place = Place()
+    place: Location = Location()
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ class Loop:
     names: tuple[str, ...]
     unknowns: tuple[str, ...]
     text: str
-    place: Place = Place()
+    place: Location = Location()
 
 
 @dataclass(frozen=True)

@@ -26,6 +26,7 @@ from tracewire.compile.flat import (
 )
 from tracewire.compile.loops import order_signals
 from tracewire.compile.many import write_wires
+from tracewire.compile.name_clashes import find_name_clashes
 from tracewire.compile.realise import without_zero_products
 from tracewire.compile.sampling import SampledPort, sample_ports
 from tracewire.compile.vectors import has_vectors
@@ -43,7 +44,7 @@ from tracewire.diagram import (
     split_index,
     state_names,
 )
-from tracewire.errors import DiagramError, Place
+from tracewire.errors import DiagramError, Location
 from tracewire.formula import CONSTANTS, Call, Expression, Name, Number, names_of, parse, rename
 from tracewire.library import Block, Parameter
 
@@ -51,13 +52,16 @@ from tracewire.library import Block, Parameter
 def flatten(diagram: Diagram) -> Flat:
     """The flat equations of a checked diagram.
 
-    Raises DiagramError where the shapes of vectors do not go together, and where a port that must
-    not get a jump is wired to one.
+    Raises DiagramError where the shapes of vectors do not go together, where a port that must not
+    get a jump is wired to one, and where a parameter has the name of something else.
     """
     flattener = _Flattener(diagram)
     flat = expand_vectors(flattener.flat(), flattener.places, tuple(diagram.record.values()))
     places = {**flattener.places, **{name: block.place for name, block in flat.blocks.items()}}
     signals, loops = order_signals(flat.signals, flat.guesses, flat.blocks, places)
+    measured = {name: None for series in diagram.measured.values() for name in series.channels}
+    if problems := find_name_clashes(flat, measured):
+        raise DiagramError(problems)
     return replace(flat, signals=signals, loops=loops)
 
 
@@ -83,7 +87,7 @@ class _Flattener:
         self.asked: list[FlatAsked] = []
         self.shown: dict[str, Shown] = {}
         self.guesses: dict[str, Expression] = {}
-        self.places: dict[str, Place] = {}  # of the outputs of subsystems
+        self.places: dict[str, Location] = {}  # of the outputs of subsystems
         self.sampled: list[SampledPort] = []
         self.continuous: list[ContinuousPort] = []
         self.told: list[str] = []  # the states that a run keeps where nothing says which
@@ -251,7 +255,7 @@ class _Flattener:
 
     def add_block(self, use: BlockUse, block: Block, scope: _Scope, definition: str) -> None:
         path = scope.path + use.name
-        place = Place(use.place.file, use.place.line, use.place.column, path)
+        place = Location(use.place.file, use.place.line, use.place.column, path)
         names: dict[str, Expression] = {}
         manies: dict[str, list[Expression]] = {}
         for parameter in block.parameters:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from tracewire.compile.flat import Loop
 from tracewire.compile.limits import MODEL
 from tracewire.diagram import cycle_text, cycles
-from tracewire.errors import DiagramError, Place, Problem
+from tracewire.errors import DiagramError, Location, Problem
 from tracewire.formula import Expression, evaluation_order, read_at_once
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ def order_signals(
     signals: Mapping[str, Expression],
     guessed: Iterable[str],
     blocks: Collection[str],
-    places: Mapping[str, Place],
+    places: Mapping[str, Location],
 ) -> tuple[dict[str, Expression], tuple[Loop, ...]]:
     """The signals, each after those it reads, else in the order of the diagram; and the loops.
 
@@ -67,7 +67,7 @@ def _opened(
     position: Mapping[str, int],
     guessed: set[str],
     blocks: Collection[str],
-    places: Mapping[str, Place],
+    places: Mapping[str, Location],
 ) -> Loop:
     """The loop of a strongly connected graph, with the signals at which it is opened."""
     import networkx as nx
@@ -75,7 +75,7 @@ def _opened(
     order = sorted(graph, key=position.__getitem__)
     (cycle,) = cycles(graph, order)
     shown = [name for name in cycle if name in blocks] or cycle
-    at = next((places[name] for name in (*shown, *order) if name in places), Place())
+    at = next((places[name] for name in (*shown, *order) if name in places), Location())
     text = cycle_text([*shown, shown[0]])
     unknowns: list[str] = []
     rest = graph.copy()

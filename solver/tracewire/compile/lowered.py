@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from tracewire.compile.tape import Tape
-from tracewire.errors import Place
+from tracewire.errors import Location
 from tracewire.formula import Expression
 
 ModeKind = Literal["sign", "floor", "segment", "memory", "delay"]
@@ -58,7 +58,7 @@ class Reset:
     trigger: int
     direction: Direction
     values: Mapping[int, int] = field(hash=False)
-    place: Place = Place()
+    place: Location = Location()
     owner: str = ""
 
 

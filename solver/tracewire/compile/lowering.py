@@ -16,7 +16,7 @@ from tracewire.compile.linear import solve_linear, work
 from tracewire.compile.lowered import Delay, Lowered, Mode, ModeKind
 from tracewire.compile.shifting import ShiftError, shift_signals
 from tracewire.compile.tape import BINARY, UNARY, Entry
-from tracewire.errors import DiagramError, Place, Problem
+from tracewire.errors import DiagramError, Location, Problem
 from tracewire.formula import Call, Expression, Name, Number, to_text
 
 PRESCRIBED = frozenset({"t", "param", "const", "table", "mode"})  # leaves that no state moves
@@ -66,12 +66,12 @@ class Lowering:
         self.kept = kept_states(flat)
         self.signal = ""
 
-    def start(self, formula: Expression, name: str, place: Place) -> int:
+    def start(self, formula: Expression, name: str, place: Location) -> int:
         entry = self.lower(formula)
         if not self.tape.leaves([entry]) <= {"param", "const"}:
             what = f"the start '{to_text(formula)}' reads a signal"
             hint = "A start value may only read parameters."
-            at = Place(place.file, place.line, place.column, name)
+            at = Location(place.file, place.line, place.column, name)
             raise DiagramError([Problem(what, at, (), hint)])
         return entry
 
@@ -192,7 +192,7 @@ class Lowering:
     def refused(self, what: str, hint: str) -> DiagramError:
         """What is wrong with the signal that is being lowered, at the place of its block."""
         block = self.flat.blocks.get(self.signal)
-        return DiagramError([Problem(what, block.place if block else Place(), (), hint)])
+        return DiagramError([Problem(what, block.place if block else Location(), (), hint)])
 
     def boolean(self, node: Call) -> int:
         push = self.tape.push

@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 
 from tracewire.compile.flat import FlatEvent, FlatMemory, FlatParameter, FlatState
 from tracewire.diagram import Condition
-from tracewire.errors import Place
+from tracewire.errors import Location
 from tracewire.formula import Call, Expression, Name, Number, has_delay, names_of, rename
 
 APART = (
@@ -38,7 +38,7 @@ class SampledPort:
     name: str
     wire: Expression
     event: str
-    place: Place
+    place: Location
 
 
 def sample_ports(

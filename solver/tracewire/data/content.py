@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from tracewire.data.limits import FILE
-from tracewire.errors import DataError, Place, Problem, unknown
+from tracewire.errors import DataError, Location, Problem, unknown
 
 AS_TEXT = "Save it as text, in UTF-8."
 AS_CSV = "Open it, and save the sheet or table as CSV (text with commas)."
@@ -38,7 +38,7 @@ MARKUP = (b"<html", b"<!doctype html", b"<?xml")
 ZIP, WORKBOOK = b"PK\x03\x04", b"xl/"
 
 
-def content_of(path: Path, place: Place) -> bytes:
+def content_of(path: Path, place: Location) -> bytes:
     """The bytes of a regular file of at most 200 MB; DataError where it is none or is empty."""
     try:
         status = path.stat()
@@ -66,7 +66,7 @@ def is_workbook(content: bytes) -> bool:
     return content.startswith(ZIP) and _in_zip(content, WORKBOOK)
 
 
-def refuse_other_kinds(content: bytes, path: Path, place: Place) -> None:
+def refuse_other_kinds(content: bytes, path: Path, place: Location) -> None:
     """Raise DataError with its name where the file is of a known kind that is not read."""
     head = content[:4096]
     if content.startswith(ZIP):
@@ -123,7 +123,7 @@ def _lines(text: str) -> list[str]:
 
 
 def _at(path: Path, content: bytes, index: int, what: str) -> DataError:
-    spot = Place(str(path), content.count(b"\n", 0, index) + 1)
+    spot = Location(str(path), content.count(b"\n", 0, index) + 1)
     return DataError([Problem(what, spot, hint=AS_TEXT)])
 
 
@@ -134,7 +134,7 @@ def _names(folder: Path) -> list[str]:
         return []
 
 
-def _missing(path: Path, place: Place) -> Problem:
+def _missing(path: Path, place: Location) -> Problem:
     folder = path.parent
     if not folder.is_dir():
         return Problem(
@@ -146,12 +146,12 @@ def _missing(path: Path, place: Place) -> Problem:
     return Problem(f"{problem.what} in '{folder}'", place, problem.exists, problem.hint)
 
 
-def _other(place: Place, path: Path, name: str, hint: str) -> DataError:
+def _other(place: Location, path: Path, name: str, hint: str) -> DataError:
     return _refused(place, path, f"is {name}, and not a table of text", hint)
 
 
 def _refused(
-    place: Place, path: Path, what: str, hint: str, exists: Sequence[str] = ()
+    place: Location, path: Path, what: str, hint: str, exists: Sequence[str] = ()
 ) -> DataError:
     named = f"'{path}'" if place.file != str(path) else "the file"
     return DataError([Problem(f"{named} {what}", place, tuple(exists), hint)])

@@ -18,7 +18,7 @@ from tracewire.data.tdms import groups_of_tdms
 from tracewire.data.text import columns_of_text
 from tracewire.data.vectors import Group, columns_of_groups
 from tracewire.data.workbook import columns_of_workbook, groups_of_sheets, sheets_of
-from tracewire.errors import DataError, Place, Problem
+from tracewire.errors import DataError, Location, Problem
 
 
 class Head(NamedTuple):
@@ -45,12 +45,12 @@ class FileFormat:
     called; `is_table`: its first column may be the time, and columns have numbers."""
 
     marks: tuple[bytes, ...]
-    columns: Callable[[bytes, Path, Request, Place], Found]
-    heads: Callable[[bytes, Path, Form, Place], Sequence[Head]]
+    columns: Callable[[bytes, Path, Request, Location], Found]
+    heads: Callable[[bytes, Path, Form, Location], Sequence[Head]]
     is_table: bool = False
 
 
-def format_of(content: bytes, path: Path, place: Place) -> FileFormat:
+def format_of(content: bytes, path: Path, place: Location) -> FileFormat:
     """The format of a file; DataError with its name where it is of a kind that is not read."""
     for known in FORMATS:
         if any(content.startswith(mark) for mark in known.marks):
@@ -61,24 +61,24 @@ def format_of(content: bytes, path: Path, place: Place) -> FileFormat:
     return MATLAB if path.suffix.lower() == ".mat" and b"\0" in content else TEXT
 
 
-def opened(path: Path, place: Place) -> tuple[FileFormat, bytes]:
+def opened(path: Path, place: Location) -> tuple[FileFormat, bytes]:
     """The format of a file and its bytes. Raises DataError."""
     content = content_of(path, place)
     return format_of(content, path, place), content
 
 
 def _of_groups(
-    open_file: Callable[[bytes, Path, Place], list[Group]],
+    open_file: Callable[[bytes, Path, Location], list[Group]],
     *marks: bytes,
     is_table: bool = False,
 ) -> FileFormat:
     """A format whose files are groups of vectors."""
 
-    def columns(content: bytes, path: Path, request: Request, place: Place) -> Found:
+    def columns(content: bytes, path: Path, request: Request, place: Location) -> Found:
         groups = open_file(content, path, place)
         return columns_of_groups(groups, request, str(path), place, numbered=is_table)
 
-    def heads(content: bytes, path: Path, form: Form, place: Place) -> list[Head]:
+    def heads(content: bytes, path: Path, form: Form, place: Location) -> list[Head]:
         return _heads_of_groups(open_file(content, path, place))
 
     return FileFormat(marks, columns, heads, is_table)
@@ -92,7 +92,7 @@ def _heads_of_groups(groups: Sequence[Group]) -> list[Head]:
     ]
 
 
-def _heads_of_text(content: bytes, path: Path, form: Form, place: Place) -> list[Head]:
+def _heads_of_text(content: bytes, path: Path, form: Form, place: Location) -> list[Head]:
     lines, _ = text_of(content, path)
     dialect = sniff(lines, form.comment, form.delimiter, form.decimal)
     try:
@@ -113,7 +113,7 @@ def _heads_of_text(content: bytes, path: Path, form: Form, place: Place) -> list
     ]
 
 
-def _heads_of_workbook(content: bytes, path: Path, form: Form, place: Place) -> list[Head]:
+def _heads_of_workbook(content: bytes, path: Path, form: Form, place: Location) -> list[Head]:
     sheets = sheets_of(content, path, place)
     if len(sheets) == 1:
         (lines,) = sheets.values()
@@ -122,7 +122,7 @@ def _heads_of_workbook(content: bytes, path: Path, form: Form, place: Place) -> 
     return _heads_of_groups(groups_of_sheets(sheets, form.comment))
 
 
-def _heads_of_matlab(content: bytes, path: Path, form: Form, place: Place) -> list[Head]:
+def _heads_of_matlab(content: bytes, path: Path, form: Form, place: Location) -> list[Head]:
     return [Head(name, "", name, name) for name in names_in_matlab(content, path, place)]
 
 

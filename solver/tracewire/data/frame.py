@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from tracewire.data.read import Columns, columns_of
 from tracewire.data.request import Request
 from tracewire.data.vectors import Column, Group, columns_of_groups
-from tracewire.errors import DataError, Place
+from tracewire.errors import DataError, Location
 
 
 def read_frame(
@@ -32,7 +32,7 @@ def read_frame(
     A unit is that of a name such as `theta [deg]`, or `frame.attrs["units"]["theta"]` of pandas.
     Raises DataError as `read_columns` does, with rows counted from 1.
     """
-    place = Place(name)
+    place = Location(name)
     group = Group("", tuple(_columns(frame, place)))
     names = (*columns.values(), "1" if time is None else time)
     request = Request(names, len(names) - 1, {})
@@ -40,7 +40,7 @@ def read_frame(
     return columns_of(found, columns, name)
 
 
-def _columns(frame: Any, place: Place) -> Iterator[Column]:
+def _columns(frame: Any, place: Location) -> Iterator[Column]:
     """Every column of a frame."""
     if isinstance(frame, Mapping):
         for key, values in frame.items():

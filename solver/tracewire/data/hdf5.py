@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from tracewire.data.limits import FILE
 from tracewire.data.quiet import Attempts
 from tracewire.data.vectors import Column, Group
-from tracewire.errors import DataError, Place
+from tracewire.errors import DataError, Location
 from tracewire.extras import import_extra
 
 UNITS = ("units", "unit", "Units", "Unit")
@@ -27,7 +27,7 @@ class Opened:
     Raises DataError: damaged, or h5py is not installed.
     """
 
-    def __init__(self, content: bytes, path: Path, place: Place, kind: str, extra: str) -> None:
+    def __init__(self, content: bytes, path: Path, place: Location, kind: str, extra: str) -> None:
         h5py = import_extra(
             "h5py",
             extra,
@@ -44,7 +44,7 @@ class Opened:
         return np.asarray(self.attempt(partial(_values, data)))
 
 
-def groups_of_hdf5(content: bytes, path: Path, place: Place) -> list[Group]:
+def groups_of_hdf5(content: bytes, path: Path, place: Location) -> list[Group]:
     """Each group with its data sets: a vector is a column, of a matrix `x[2]` is the second one.
 
     The fields of a compound data set are columns of a group of that name. A unit is that of an

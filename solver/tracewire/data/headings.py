@@ -8,7 +8,7 @@ from pathlib import Path
 
 from tracewire.data.formats import Form, opened
 from tracewire.data.table import matches
-from tracewire.errors import Place
+from tracewire.errors import Location
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ def read_headings(
     For the arguments see `read_columns`. Raises DataError: no such file, no header.
     """
     path = Path(path)
-    place = Place(str(path))
+    place = Location(str(path))
     known, content = opened(path, place)
     heads = known.heads(content, path, Form(delimiter, decimal, comment), place)
     names, units, columns, whole = zip(*heads, strict=True) if heads else ((), (), (), ())

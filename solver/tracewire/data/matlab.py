@@ -16,13 +16,13 @@ from tracewire.data.matfile import Cells, Damaged, Other, Structs, Value, variab
 from tracewire.data.matlab_hdf5 import is_matlab_hdf5, variables_of_hdf5
 from tracewire.data.request import Found, Request, Vector
 from tracewire.data.vectors import found_of
-from tracewire.errors import DataError, Place, Problem, unknown
+from tracewire.errors import DataError, Location, Problem, unknown
 
 STEP = re.compile(r"\.([^\W\d]\w*)|\[(\d{1,9})\]")
 ADDRESS = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*|\[\d{1,9}\])*")
 
 
-def columns_of_matlab(content: bytes, path: Path, request: Request, place: Place) -> Found:
+def columns_of_matlab(content: bytes, path: Path, request: Request, place: Location) -> Found:
     """The wanted columns of a .mat file.
 
     A column is a vector, `x`; a column of a matrix, `x_F[2]`, from 1 (its rows where it has more
@@ -41,12 +41,12 @@ def columns_of_matlab(content: bytes, path: Path, request: Request, place: Place
     return found_of(vectors, [""] * len(vectors), request, file, place)
 
 
-def names_in_matlab(content: bytes, path: Path, place: Place) -> list[str]:
+def names_in_matlab(content: bytes, path: Path, place: Location) -> list[str]:
     """The vectors of a .mat file by their names, the longest first. Raises DataError."""
     return _addresses(_variables(content, path, place))
 
 
-def _variables(content: bytes, path: Path, place: Place) -> Mapping[str, Value]:
+def _variables(content: bytes, path: Path, place: Location) -> Mapping[str, Value]:
     """Every variable of the file by name."""
     try:
         if is_matlab_hdf5(content):
@@ -71,7 +71,9 @@ def _of_version_4(content: bytes) -> Mapping[str, Value]:
     return {name: value for name, value in loaded.items() if not name.startswith("__")}
 
 
-def _column(name: str, variables: Mapping[str, Value], file: str, place: Place) -> Vector | Problem:
+def _column(
+    name: str, variables: Mapping[str, Value], file: str, place: Location
+) -> Vector | Problem:
     """The vector at an address, or what is wrong with it."""
     value = _at(name, variables)
     if value is None:

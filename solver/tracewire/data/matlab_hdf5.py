@@ -15,7 +15,7 @@ import numpy as np
 from tracewire.data.hdf5 import Opened
 from tracewire.data.limits import FILE
 from tracewire.data.matfile import Cells, Other, Structs, Value
-from tracewire.errors import Place
+from tracewire.errors import Location
 
 MARK = b"MATLAB 7.3"
 CLASS = "MATLAB_class"
@@ -33,7 +33,7 @@ def is_matlab_hdf5(content: bytes) -> bool:
     return content.startswith(MARK)
 
 
-def variables_of_hdf5(content: bytes, path: Path, place: Place) -> Mapping[str, Value]:
+def variables_of_hdf5(content: bytes, path: Path, place: Location) -> Mapping[str, Value]:
     """Every variable by name. Raises DataError."""
     opened = Opened(content, path, place, "a MATLAB file of version 7.3", "matlab")
     found: Mapping[str, Value] = opened.attempt(lambda: _variables(opened))

@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from tracewire.data.quiet import Attempts
 from tracewire.data.vectors import Column, Group
-from tracewire.errors import DataError, Place
+from tracewire.errors import DataError, Location
 from tracewire.extras import import_extra
 
 TIME = "time"
 
 
-def groups_of_mdf(content: bytes, path: Path, place: Place) -> list[Group]:
+def groups_of_mdf(content: bytes, path: Path, place: Location) -> list[Group]:
     """The channel groups, each with its channels and its time in s, as `time`. A group has the name
     of its acquisition where there is one that no other has, else its number from 1."""
     asammdf = import_extra(

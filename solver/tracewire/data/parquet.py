@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from tracewire.data.limits import FILE
 from tracewire.data.quiet import Attempts
 from tracewire.data.vectors import Column, Group
-from tracewire.errors import DataError, Place
+from tracewire.errors import DataError, Location
 from tracewire.extras import import_extra
 
 UNITS = (b"units", b"unit")
 
 
-def groups_of_parquet(content: bytes, path: Path, place: Place) -> list[Group]:
+def groups_of_parquet(content: bytes, path: Path, place: Location) -> list[Group]:
     """The table as one group. A unit is that of a name such as `theta [deg]`, or of the metadata
     `units` or `unit` of a column."""
     purpose = f"to read '{path}', a Parquet table"

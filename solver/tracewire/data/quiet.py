@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from tracewire.errors import DataError, Place
+from tracewire.errors import DataError, Location
 
 
 class Attempts:
@@ -20,7 +20,7 @@ class Attempts:
     `logged` is what it wrote to its log meanwhile.
     """
 
-    def __init__(self, package: str, kind: str, path: Path, place: Place) -> None:
+    def __init__(self, package: str, kind: str, path: Path, place: Location) -> None:
         self.package, self.kind, self.path, self.place = package, kind, path, place
         self.logged: list[logging.LogRecord] = []
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from tracewire.data.formats import opened
 from tracewire.data.record import Record
 from tracewire.data.request import Found, Request, Vector
-from tracewire.errors import DataError, FormulaError, OptionError, Place, Problem
+from tracewire.errors import DataError, FormulaError, Location, OptionError, Problem
 from tracewire.formula import Unit, has_offset, read_unit, same_quantity
 
 
@@ -45,7 +45,7 @@ def read_columns(
     time: str | None = None,
     delimiter: str | None = None,
     comment: str = "#",
-    place: Place = Place(),
+    place: Location = Location(),
     *,
     decimal: str | None = None,
     every: float | None = None,
@@ -76,7 +76,7 @@ def read_columns(
     """
     path = Path(path)
     file = str(path)
-    place = place if str(place) else Place(file)
+    place = place if str(place) else Location(file)
     _check_arguments(delimiter, decimal, every, place)
     known, content = opened(path, place)
     if every is None and time is None and not known.is_table:
@@ -132,7 +132,7 @@ def _column_unit(path: Path, column: str, delimiter: str | None, changed: int, s
 
 
 def _check_arguments(
-    delimiter: str | None, decimal: str | None, every: float | None, place: Place
+    delimiter: str | None, decimal: str | None, every: float | None, place: Location
 ) -> None:
     if delimiter is not None and not _is_delimiter(delimiter):
         hint = "Give one character, such as ',' or ';' or a tab; ' ' stands for any blanks."
@@ -178,7 +178,7 @@ def read_record(
     every: float | None = None,
     where: Mapping[str, str | float] | None = None,
     in_any_order: bool = False,
-    place: Place = Place(),
+    place: Location = Location(),
 ) -> Record:
     """Read the named columns of a file as a record in SI.
 
@@ -206,7 +206,7 @@ def record_of(
     units: Mapping[str, str],
     time_unit: str | None = None,
     raw: Collection[str] = (),
-    place: Place = Place(),
+    place: Location = Location(),
 ) -> Record:
     """Columns as a record in SI.
 
@@ -219,7 +219,7 @@ def record_of(
     Raises DataError where a header says another unit than `units`, FormulaError where what is given
     is no unit.
     """
-    place = place if str(place) else Place(read.file)
+    place = place if str(place) else Location(read.file)
     said = _Said(read.file, place)
     clock = said.clock(time_unit, read)
     used = {
@@ -242,7 +242,7 @@ def record_of(
 class _Said:
     """What headers say of units, against what is declared."""
 
-    def __init__(self, file: str, place: Place) -> None:
+    def __init__(self, file: str, place: Location) -> None:
         self.file, self.place = file, place
         self.steps: list[str] = []
         self.remarks: list[str] = []

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.data.limits import FILE
-from tracewire.errors import DataError, Place, Problem
+from tracewire.errors import DataError, Location, Problem
 
 Vector = NDArray[np.float64]
 NO_ROWS = "A series needs at least two rows of numbers."
@@ -55,7 +55,7 @@ def problems_of(found: Found, request: Request, file: str) -> list[Problem]:
     def note(row: int, what: str, hint: str, more: str = "") -> None:
         line = int(found.lines[row])
         where = "" if line else f" (row {row + 1})"
-        problems.append(Problem(what + where + more, Place(file, line), hint=hint))
+        problems.append(Problem(what + where + more, Location(file, line), hint=hint))
 
     told = set()
     for name, series in zip(found.names, found.series, strict=True):
@@ -74,7 +74,7 @@ def raise_first(problems: Sequence[Problem], count: int, file: str) -> None:
     if problems:
         told = sorted(problems, key=lambda problem: problem.place)[: FILE.most_problems]
         if more := count - len(told):
-            told.append(Problem(f"and {more} more such problems", Place(file)))
+            told.append(Problem(f"and {more} more such problems", Location(file)))
         raise DataError(told)
 
 
@@ -111,11 +111,11 @@ def _check_time(found: Found, clock: int, note: Callable[[int, str, str, str], N
 def too_few(count: int, file: str) -> DataError:
     """The error of a file with less than two rows."""
     rows = "only one row" if count else "no row"
-    return DataError([Problem(f"the file has {rows} of numbers", Place(file), hint=NO_ROWS)])
+    return DataError([Problem(f"the file has {rows} of numbers", Location(file), hint=NO_ROWS)])
 
 
 def none_left(
-    where: Mapping[str, str | float], seen: Sequence[Iterable[str]], file: str, place: Place
+    where: Mapping[str, str | float], seen: Sequence[Iterable[str]], file: str, place: Location
 ) -> DataError:
     """The error of a condition that no row fulfils; seen: the values there were, by column."""
     pairs = list(zip(where.items(), map(tuple, seen), strict=True))

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from tracewire.data.index import RAW, SETS, DataSet, Upstream
-from tracewire.errors import DownloadError, OptionError, Place, Problem, unknown
+from tracewire.errors import DownloadError, Location, OptionError, Problem, unknown
 from tracewire.extras import import_extra
 from tracewire.files import write_file
 from tracewire.shipped import shipped
@@ -83,7 +83,7 @@ def fetch(
     except ValueError as error:
         what = f"what came from {address} is not the file of this set: its SHA-256 is another"
         hint = f"It must be {file.sha256}. Nothing was kept."
-        raise DownloadError([Problem(what, Place(str(path)), hint=hint)]) from error
+        raise DownloadError([Problem(what, Location(str(path)), hint=hint)]) from error
     except Exception as error:  # of the library under pooch, whose errors have no common class
         if isinstance(error, OSError) and error.filename:
             raise

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from tracewire.data.dates import read_date
 from tracewire.data.limits import FILE
-from tracewire.errors import FormulaError, Place, Problem, unknown
+from tracewire.errors import FormulaError, Location, Problem, unknown
 from tracewire.formula import read_unit
 
 DELIMITERS = ("\t", ";", ",", " ")  # the semicolon first: where it stands, a comma may be decimal
@@ -237,7 +237,7 @@ def matches(name: str, header: Sequence[str]) -> list[int]:
     return exact or [i for i, cell in enumerate(header) if split_unit(cell)[0] == name]
 
 
-def unknown_column(want: str, names: Sequence[str], place: Place, file: str) -> Problem:
+def unknown_column(want: str, names: Sequence[str], place: Location, file: str) -> Problem:
     """The problem of a column that is not there; the names are `theta [deg]`, `run 1/theta`."""
     problem = unknown("column", want, names, place)
     hint = problem.hint

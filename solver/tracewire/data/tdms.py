@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tracewire.data.quiet import Attempts
 from tracewire.data.vectors import Column, Group
-from tracewire.errors import DataError, Place
+from tracewire.errors import DataError, Location
 from tracewire.extras import import_extra
 
 UNITS = ("unit_string", "NI_UnitDescription", "unit")
@@ -20,7 +20,7 @@ INTERVAL = "wf_increment"
 TIME = "time"
 
 
-def groups_of_tdms(content: bytes, path: Path, place: Place) -> list[Group]:
+def groups_of_tdms(content: bytes, path: Path, place: Location) -> list[Group]:
     """The groups with their channels. A waveform says the interval of its samples; where a group
     has one and no channel `time`, that is a column, in s from the trigger on."""
     nptdms = import_extra(

@@ -35,7 +35,7 @@ from tracewire.data.table import (
     split_unit,
     unknown_column,
 )
-from tracewire.errors import DataError, Place, Problem
+from tracewire.errors import DataError, Location, Problem
 
 DECIMAL_COMMA = "Is it a decimal comma? Write 1.5, and not 1,5."
 REPAIR = "Repair or remove this line."
@@ -66,14 +66,14 @@ HINTS = (
 AMBIGUOUS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")
 
 
-def columns_of_text(content: bytes, path: Path, request: Request, place: Place) -> Found:
+def columns_of_text(content: bytes, path: Path, request: Request, place: Location) -> Found:
     """The wanted columns of a text file; DataError with up to ten problems, each with its line."""
     lines, odd = text_of(content, path)
     found = columns_of_lines(lines, str(path), request, place)
     return found._replace(remarks=(*odd, *found.remarks))
 
 
-def columns_of_lines(lines: Sequence[str], file: str, request: Request, place: Place) -> Found:
+def columns_of_lines(lines: Sequence[str], file: str, request: Request, place: Location) -> Found:
     """The wanted columns of the lines of a table; raises as `columns_of_text` does."""
     given = request.dialect
     dialect = sniff(lines, request.comment, *given) if None in given else Dialect(*map(str, given))
@@ -81,7 +81,7 @@ def columns_of_lines(lines: Sequence[str], file: str, request: Request, place: P
         raise DataError.one(f"'{file}' holds nothing but comments", place, hint=NO_ROWS)
     layout = layout_of(lines, dialect, request.comment, request.names)
     if isinstance(layout, Row):
-        raise DataError.one(layout.broken, Place(file, layout.line), hint=REPAIR)
+        raise DataError.one(layout.broken, Location(file, layout.line), hint=REPAIR)
     found = _find_all(request.names, layout, place, file)
     filters = found[len(request.wanted) :]
 
@@ -119,7 +119,7 @@ def _unit_of(layout: Layout, column: int) -> str:
     return split_unit(layout.names[column])[1] if layout.names else ""
 
 
-def _find_all(wanted: Sequence[str], layout: Layout, place: Place, file: str) -> list[int]:
+def _find_all(wanted: Sequence[str], layout: Layout, place: Location, file: str) -> list[int]:
     """The column (from 0) of each wanted header or number."""
     answers = [_find(want, layout, place, file) for want in wanted]
     problems = [answer for answer in answers if isinstance(answer, Problem)]
@@ -128,7 +128,7 @@ def _find_all(wanted: Sequence[str], layout: Layout, place: Place, file: str) ->
     return [answer for answer in answers if isinstance(answer, int)]
 
 
-def _find(want: str, layout: Layout, place: Place, file: str) -> int | Problem:
+def _find(want: str, layout: Layout, place: Location, file: str) -> int | Problem:
     names, width = layout.names, layout.width
     columns = matches(want, names)
     if len(columns) == 1:
@@ -253,7 +253,7 @@ class _Reading:
     def _note(self, line: int, what: str, hint: str) -> None:
         self.count += 1
         if len(self.problems) < FILE.most_problems:
-            self.problems.append(Problem(what, Place(self.file, line), hint=hint))
+            self.problems.append(Problem(what, Location(self.file, line), hint=hint))
 
     def _note_width(self, row: Row) -> None:
         count = len(row.cells)

@@ -21,7 +21,7 @@ from tracewire.data.request import (
     too_few,
 )
 from tracewire.data.table import matches, split_unit, unknown_column
-from tracewire.errors import DataError, Place, Problem
+from tracewire.errors import DataError, Location, Problem
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Group:
 
 
 def columns_of_groups(
-    groups: Sequence[Group], request: Request, file: str, place: Place, *, numbered: bool = False
+    groups: Sequence[Group], request: Request, file: str, place: Location, *, numbered: bool = False
 ) -> Found:
     """The wanted columns of groups.
 
@@ -82,7 +82,7 @@ def found_of(
     units: Sequence[str],
     request: Request,
     file: str,
-    place: Place,
+    place: Location,
     *,
     in_utc: bool = False,
 ) -> Found:
@@ -135,7 +135,7 @@ def choose(
     groups: Sequence[Group],
     names: Sequence[str],
     file: str,
-    place: Place,
+    place: Location,
     *,
     numbered: bool = False,
 ) -> list[tuple[int, Column]]:
@@ -187,7 +187,7 @@ def _candidates(groups: Sequence[Group], name: str, numbered: bool) -> Iterator[
 
 
 def _rows(
-    arrays: Sequence[NDArray[Any]], where: Mapping[str, str | float], file: str, place: Place
+    arrays: Sequence[NDArray[Any]], where: Mapping[str, str | float], file: str, place: Location
 ) -> NDArray[np.bool_]:
     """Which rows have the values that `where` asks for."""
     rows = np.ones(len(arrays[0]), dtype=bool)

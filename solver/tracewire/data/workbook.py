@@ -19,14 +19,14 @@ from tracewire.data.request import Found, Request
 from tracewire.data.table import Dialect, Row, layout_of
 from tracewire.data.text import columns_of_lines
 from tracewire.data.vectors import Column, Group, choose
-from tracewire.errors import DataError, Place
+from tracewire.errors import DataError, Location
 from tracewire.extras import import_extra
 
 TABS = Dialect("\t", ".")
 ERROR = re.compile(r"#[A-Z0-9/]+[!?]?")  # what a formula shows that has no value
 
 
-def columns_of_workbook(content: bytes, path: Path, request: Request, place: Place) -> Found:
+def columns_of_workbook(content: bytes, path: Path, request: Request, place: Location) -> Found:
     """The wanted columns of a sheet: of the only one, or of the one that has all of them, or that
     names such as `Sheet2/theta` say. Lines are the rows of the sheet. Raises DataError."""
     sheets = sheets_of(content, path, place)
@@ -72,7 +72,7 @@ def groups_of_sheets(sheets: dict[str, list[str]], comment: str) -> list[Group]:
     return found
 
 
-def sheets_of(content: bytes, path: Path, place: Place) -> dict[str, list[str]]:
+def sheets_of(content: bytes, path: Path, place: Location) -> dict[str, list[str]]:
     """The sheets that have rows, by name, as lines of text with tabs. Raises DataError."""
     openpyxl = import_extra(
         "openpyxl",

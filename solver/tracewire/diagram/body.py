@@ -10,7 +10,7 @@ from tracewire.diagram.diagram import Shown
 from tracewire.diagram.grammar import OF_A_BLOCK
 from tracewire.diagram.problems import Problems, clip
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
-from tracewire.errors import FormulaError, Place
+from tracewire.errors import FormulaError, Location
 from tracewire.formula import Unit, is_name, name_hint, number_hint, read_unit
 
 Sees = Literal["parameter", "signal", "either"]
@@ -22,7 +22,7 @@ class Reference:
 
     name: str
     sees: Sees
-    place: Place
+    place: Location
 
 
 @dataclass(eq=False)
@@ -35,12 +35,12 @@ class Body:
     problems: Problems
     path: str = ""
     references: list[Reference] = field(default_factory=list)
-    resets: list[tuple[str, Place]] = field(default_factory=list)
+    resets: list[tuple[str, Location]] = field(default_factory=list)
     # names that stand alone as `when`: events of blocks, or signals; and places of `crosses`
-    happenings: list[tuple[Reference, Place | None]] = field(default_factory=list)
-    defined: dict[str, tuple[str, Place]] = field(default_factory=dict)
+    happenings: list[tuple[Reference, Location | None]] = field(default_factory=list)
+    defined: dict[str, tuple[str, Location]] = field(default_factory=dict)
 
-    def place(self, node: Node, block: str = "") -> Place:
+    def place(self, node: Node, block: str = "") -> Location:
         """The place of a node, with the path of the block it belongs to."""
         where = ".".join(part for part in (self.path, block) if part)
         return replace(node.place, block=where)

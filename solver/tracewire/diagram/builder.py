@@ -9,7 +9,7 @@ from typing import TypeVar
 from tracewire.diagram.built import Data, Names, by_python, caller, node_of, text_of
 from tracewire.diagram.diagram import Diagram
 from tracewire.diagram.reader import read_text
-from tracewire.errors import DiagramError, OptionError, Place, unknown
+from tracewire.errors import DiagramError, Location, OptionError, unknown
 from tracewire.formula import is_name, name_hint
 
 FREE_NAMES = ("presets", "measured", "variants")
@@ -39,7 +39,7 @@ class BodyBuilder:
 
     def __init__(self, path: Names = ()) -> None:
         self._path = path
-        self._places: dict[Names, Place] = {(): caller()}
+        self._places: dict[Names, Location] = {(): caller()}
         self._sections: dict[str, Data] = {}
         self._inner: dict[tuple[str, str], BodyBuilder] = {}
         self._comments: dict[Names, str] = {}
@@ -168,7 +168,7 @@ class BodyBuilder:
             found |= inner._all_comments()
         return found
 
-    def _all_places(self) -> dict[Names, Place]:
+    def _all_places(self) -> dict[Names, Location]:
         found = {(*self._path, *path): place for path, place in self._places.items()}
         for inner in self._inner.values():
             found |= inner._all_places()

@@ -13,7 +13,7 @@ from typing import Any
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.strict import Entries, Items, Node, Scalar, compose
 from tracewire.diagram.yaml_text import document
-from tracewire.errors import DiagramError, OptionError, Place, Problem
+from tracewire.errors import DiagramError, Location, OptionError, Problem
 from tracewire.formula import number_text
 
 PACKAGE = str(Path(__file__).parents[1])
@@ -23,17 +23,17 @@ Names = tuple[str, ...]
 """The names that lead to a part from the top on: `("subsystems", "rod", "blocks", "drag")`."""
 
 
-def caller() -> Place:
+def caller() -> Location:
     """The line of the program that called into this package."""
     frame = sys._getframe(1)
     while frame.f_back is not None and frame.f_code.co_filename.startswith(PACKAGE):
         frame = frame.f_back
-    return Place(frame.f_code.co_filename, frame.f_lineno)
+    return Location(frame.f_code.co_filename, frame.f_lineno)
 
 
 def node_of(value: Data, what: str) -> Node:
     """The node of a value. Raises OptionError: it is no number, text, list or mapping of such."""
-    place = Place()
+    place = Location()
     if isinstance(value, Mapping):
         keys = {key: Scalar(key, place, 0, 0) for key in value if isinstance(key, str)}
         if len(keys) < len(value):
@@ -68,7 +68,7 @@ def text_of(data: Mapping[str, Data], comments: Mapping[Names, str], above: str 
 
 
 def by_python(
-    error: DiagramError, text: str, file: Path, places: Mapping[Names, Place]
+    error: DiagramError, text: str, file: Path, places: Mapping[Names, Location]
 ) -> list[Problem]:
     """The problems of a text, each at the line of Python that gave the part it stands in."""
     lines = {path: line for path, line in _lines_of(text).items() if path in places}

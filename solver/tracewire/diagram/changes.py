@@ -30,7 +30,7 @@ from tracewire.diagram.rewrite import as_written
 from tracewire.diagram.uses import check_bounds, check_conditions, in_unit_of, shape_of
 from tracewire.diagram.values import points_of_file
 from tracewire.diagram.yaml_text import mapping_text, quote
-from tracewire.errors import DiagramError, OptionError, Place, unknown
+from tracewire.errors import DiagramError, Location, OptionError, unknown
 from tracewire.formula import Number, Unit, number_text, to_text
 from tracewire.library import SENSOR_TERMS, Block
 
@@ -209,7 +209,7 @@ def _to_drive(diagram: Diagram, drive: str, change: AddBlock) -> Diagram:
 
 def _use(top: Diagram, inside: Diagram, change: AddBlock) -> BlockUse:
     """The new block as the reader would make it of its line. Raises DiagramError."""
-    problems, name, place = Problems(), change.name, Place(str(top.file), block=change.name)
+    problems, name, place = Problems(), change.name, Location(str(top.file), block=change.name)
     body = Body(problems)
     kind: Block | Diagram | None = inside.subsystems.get(change.type)
     kind = kind or top.subsystems.get(change.type) or inside.library.blocks.get(change.type)
@@ -293,7 +293,7 @@ def _bodies(diagram: Diagram) -> list[Diagram]:
 
 
 def _changed(
-    diagram: Diagram, place: Place, line: Place, name: str, edit: Callable[[Diagram], Diagram]
+    diagram: Diagram, place: Location, line: Location, name: str, edit: Callable[[Diagram], Diagram]
 ) -> Diagram:
     """The diagram with each body of a definition edited that has the block of this line: a block
     may stand in several variants."""

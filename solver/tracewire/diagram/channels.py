@@ -14,7 +14,7 @@ from tracewire.diagram.problems import Problems, clip
 from tracewire.diagram.quantities import SECOND, read_above_zero, read_unit_like
 from tracewire.diagram.strict import Entries, Node, Scalar
 from tracewire.diagram.values import read_bounds, read_value
-from tracewire.errors import Place
+from tracewire.errors import Location
 from tracewire.formula import Number, Unit
 from tracewire.library import SENSOR_TERMS
 
@@ -152,7 +152,7 @@ def _of_sensor(name: str, node: Node, body: Body, unit: Unit) -> Value | None:
     return replace(value, named=True)
 
 
-def check_term(name: str, value: Value, place: Place, problems: Problems) -> None:
+def check_term(name: str, value: Value, place: Location, problems: Problems) -> None:
     """Note a number that a sensor cannot have."""
     if name == "gain" and value.formula == Number(0.0):
         hint = "It is the number that the signal is multiplied by."

@@ -15,7 +15,7 @@ from tracewire.diagram.names import (
     split_index,
 )
 from tracewire.diagram.problems import clip
-from tracewire.errors import Place
+from tracewire.errors import Location
 from tracewire.formula import is_name, number_hint
 
 
@@ -87,7 +87,7 @@ def _new_parameter(name: str) -> str:
 
 
 def _check_happening(
-    diagram: Diagram, reference: Reference, crosses: Place | None, body: Body
+    diagram: Diagram, reference: Reference, crosses: Location | None, body: Body
 ) -> None:
     """A name that stands alone as `when`: the event of a block, else a signal."""
     name, head = reference.name, reference.name.partition(".")[0]
@@ -105,7 +105,7 @@ def _check_happening(
             _explain(diagram, reference, body)
 
 
-def _check_reset(diagram: Diagram, name: str, place: Place, body: Body) -> None:
+def _check_reset(diagram: Diagram, name: str, place: Location, body: Body) -> None:
     head = split_index(name)[0].partition(".")[0]
     use = diagram.blocks.get(head)
     inside = use is not None and use.subsystem is not None

@@ -16,7 +16,7 @@ from tracewire.diagram.problems import Problems, clip
 from tracewire.diagram.replicate import counts_of, numbers_of
 from tracewire.diagram.sources import Included, Sources
 from tracewire.diagram.strict import Entries, Node, Scalar
-from tracewire.errors import Place
+from tracewire.errors import Location
 from tracewire.formula import is_name, name_hint
 from tracewire.library import Library, find_instead, find_synonym
 
@@ -160,7 +160,7 @@ class Definitions:
         return with_variant(entries, variant, self.problems) if variant else entries
 
     def choice(
-        self, definition: Definition, line: Entries, scope: Scope, place: Place
+        self, definition: Definition, line: Entries, scope: Scope, place: Location
     ) -> Choice | None:
         """What a line chooses of a subsystem; None with a problem noted."""
         variant = self._variant(definition, line, scope, place)
@@ -174,7 +174,7 @@ class Definitions:
         return Choice("" if number else variant, number, counts)
 
     def _variant(
-        self, definition: Definition, line: Entries, scope: Scope, place: Place
+        self, definition: Definition, line: Entries, scope: Scope, place: Location
     ) -> str | None:
         """The variant that a line names, or the parameter that has the number of one.
 
@@ -226,7 +226,7 @@ class Definitions:
                 found[name] = number
         return found
 
-    def unknown_type(self, type_name: str, visible: Iterable[str], place: Place) -> None:
+    def unknown_type(self, type_name: str, visible: Iterable[str], place: Location) -> None:
         """Note a type that is neither block nor subsystem; a name of another tool is explained."""
         if self.sources.packages.unknown(type_name, place) or self.problems.skips():
             return

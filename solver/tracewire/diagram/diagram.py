@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from tracewire.errors import Place
+from tracewire.errors import Location
 from tracewire.formula import Expression
 from tracewire.library import Effect, Library
 
@@ -32,7 +32,7 @@ class Value:
     factor: float = 1.0
     fit: tuple[float, float] | None = None
     named: bool = False
-    place: Place = Place()
+    place: Location = Location()
     written: str = ""
 
 
@@ -42,7 +42,7 @@ class Points:
 
     x: tuple[float, ...]
     y: tuple[float, ...]
-    place: Place = Place()
+    place: Location = Location()
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Array:
     """A list of values, for a vector: `start: [1, 0]`."""
 
     items: tuple[Value, ...]
-    place: Place = Place()
+    place: Location = Location()
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class Wire:
 
     signal: str
     negative: bool = False
-    place: Place = Place()
+    place: Location = Location()
     index: tuple[int, ...] = ()
 
 
@@ -94,7 +94,7 @@ class BlockUse:
     local: Mapping[str, str] = field(default_factory=dict)
     subsystem: Diagram | None = None
     guess: Value | Array | None = None
-    place: Place = Place()
+    place: Location = Location()
     shown: Shown = Shown()
     row: str = ""
 
@@ -106,7 +106,7 @@ class InputPort:
     name: str
     unit: str = ""
     default: Value | None = None
-    place: Place = Place()
+    place: Location = Location()
     shown: Shown = Shown()
 
 
@@ -124,7 +124,7 @@ class Event:
     set: Mapping[str, Expression]
     every: Value | None = None
     offset: Value | None = None
-    place: Place = Place()
+    place: Location = Location()
 
 
 @dataclass(frozen=True)
@@ -146,7 +146,7 @@ class Channel:
     unit: str = ""
     sigma: float | None = None
     offset: Value | None = None
-    place: Place = Place()
+    place: Location = Location()
     declared: str | None = None
     gain: Value | None = None
     delay: Value | None = None
@@ -180,7 +180,7 @@ class Cleaning:
 
     step: str
     options: Mapping[str, float | int | str | tuple[str, ...]]
-    place: Place = Place()
+    place: Location = Location()
 
 
 @dataclass(frozen=True)
@@ -213,7 +213,7 @@ class Series:
     preset: str = ""
     begin: float | None = None
     end: float | None = None
-    place: Place = Place()
+    place: Location = Location()
     windows: Mapping[Use, tuple[float, float]] = field(default_factory=dict)
     where: Mapping[str, str | float] = field(default_factory=dict)
     burn_in: float = 0.0
@@ -228,7 +228,7 @@ class Condition:
     """A comparison of parameters that must hold, or the diagram has no meaning; why, as a hint."""
 
     formula: Expression
-    place: Place = Place()
+    place: Location = Location()
     hint: str = "The diagram requires it: see its section 'require'."
 
 
@@ -245,7 +245,7 @@ class ScenePart:
     points: Mapping[str, tuple[Expression, Expression]]
     sizes: Mapping[str, Expression]
     color: str = ""
-    place: Place = Place()
+    place: Location = Location()
 
     @property
     def formulas(self) -> dict[str, Expression]:
@@ -279,7 +279,7 @@ class Setting:
     over: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     file: Path | None = None
     full: Setting | None = None
-    place: Place = Place()
+    place: Location = Location()
 
 
 @dataclass(frozen=True)
@@ -311,7 +311,7 @@ class Statement:
     note: str = ""
     run: Setting = Setting()
     reference: Setting | None = None
-    place: Place = Place()
+    place: Location = Location()
 
 
 @dataclass(frozen=True)
@@ -335,7 +335,7 @@ class Diagram:
     span: tuple[Value, Value] | None = None
     every: Value | None = None
     max_step: Value | None = None
-    record: Mapping[str, Place] = field(default_factory=dict)
+    record: Mapping[str, Location] = field(default_factory=dict)
     inputs: Mapping[str, InputPort] = field(default_factory=dict)
     outputs: Mapping[str, Wire] = field(default_factory=dict)
     parameters: Mapping[str, Value] = field(default_factory=dict)
@@ -345,7 +345,7 @@ class Diagram:
     events: tuple[Event, ...] = ()
     presets: Mapping[str, Mapping[str, Value]] = field(default_factory=dict)
     measured: Mapping[str, Series] = field(default_factory=dict)
-    place: Place = Place()
+    place: Location = Location()
     effect: Effect | None = None
     scene: tuple[ScenePart, ...] = ()
     counts: Mapping[str, float] = field(default_factory=dict)

@@ -22,7 +22,7 @@ from tracewire.diagram.text_edits import entry_last, replace_node
 from tracewire.diagram.uses import check_bounds, check_conditions
 from tracewire.diagram.written import Written, count_uses, find_written
 from tracewire.diagram.yaml_text import inline, mapping_text
-from tracewire.errors import DiagramError, OptionError, Place
+from tracewire.errors import DiagramError, Location, OptionError
 from tracewire.formula import Number
 from tracewire.library import SENSOR_TERMS
 
@@ -174,7 +174,7 @@ def _numbered(path: str, value: float, known: Value, factor: float) -> Value:
     return replace(known, formula=_within(number, low, high, known.place), factor=factor)
 
 
-def _within(number: float, low: float, high: float, place: Place) -> Number:
+def _within(number: float, low: float, high: float, place: Location) -> Number:
     """A number as a text has it. Raises DiagramError where it is out of its bounds."""
     number = rounded(number, low, high)
     if not low <= number <= high:

@@ -8,12 +8,12 @@ from pathlib import Path
 
 from tracewire.diagram.diagram import Diagram
 from tracewire.diagram.limits import LIMITS
-from tracewire.errors import DiagramError, Place, Problem, unknown
+from tracewire.errors import DiagramError, Location, Problem, unknown
 
 STDIN = Path("<stdin>")
 
 
-def problem_of(path: Path, place: Place) -> Problem | None:
+def problem_of(path: Path, place: Location) -> Problem | None:
     """Why `path` is no file that can be read, or None. `place` is where it is named."""
     try:
         if len(str(path)) > LIMITS.longest_path or "\0" in str(path):
@@ -57,7 +57,7 @@ def absent_series(diagram: Diagram) -> dict[str, Problem]:
     return found
 
 
-def load(path: Path, place: Place = Place()) -> str:
+def load(path: Path, place: Location = Location()) -> str:
     """The text of a diagram file, byte for byte (line ends and a byte order mark are kept).
 
     Raises DiagramError: no such file, a folder, larger than 1 MB, not UTF-8.
@@ -76,10 +76,10 @@ def load(path: Path, place: Place = Place()) -> str:
 def load_stdin() -> str:
     """The text of a diagram from stdin. Raises DiagramError, as `load` does."""
     content = b"" if sys.stdin is None else sys.stdin.buffer.read(LIMITS.most_bytes + 1)
-    return _decoded(content, STDIN, Place())
+    return _decoded(content, STDIN, Location())
 
 
-def _decoded(content: bytes, path: Path, place: Place) -> str:
+def _decoded(content: bytes, path: Path, place: Location) -> str:
     if len(content) > LIMITS.most_bytes:
         hint = "Put subsystems into files of their own and include them; data belongs into CSV."
         size = f"{LIMITS.most_bytes // 1_000_000} MB"
@@ -92,9 +92,9 @@ def _decoded(content: bytes, path: Path, place: Place) -> str:
         column = error.start - (content.rfind(b"\n", 0, error.start) + 1) + 1
         what = f"the byte 0x{content[error.start]:02x} is not UTF-8 text"
         hint = "Save the file as text, in UTF-8."
-        raise DiagramError.one(what, Place(str(path), line, column), hint=hint) from None
+        raise DiagramError.one(what, Location(str(path), line, column), hint=hint) from None
 
 
-def _unreadable(path: Path, error: OSError | ValueError, place: Place) -> Problem:
+def _unreadable(path: Path, error: OSError | ValueError, place: Location) -> Problem:
     reason = getattr(error, "strerror", None) or str(error)
     return Problem(f"'{path}' cannot be read: {reason}", place, hint="Check its name and rights.")

@@ -12,7 +12,7 @@ from tracewire.diagram.grammar import TOP
 from tracewire.diagram.limits import LAYOUT
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.strict import NUMBER, Entries, Items, Node, Scalar, compose
-from tracewire.errors import DiagramError, Place
+from tracewire.errors import DiagramError, Location
 
 MARK = "\ufeff"
 BARE = re.compile(r"-?(?:[^\W\d]|[/.]\w)(?:[\w./*^+-]|-(?!\s))*")
@@ -39,7 +39,9 @@ def lay_out(text: str, file: Path = Path("<text>")) -> str:
     found = _in_order(_Printer(plain, root).printed(), file)
     if not _same(root, _composed(found, file), top=True):
         what = "the text is laid out in a way that cannot be changed by program"
-        raise DiagramError.one(what, Place(str(file)), hint="It stays as it is. Please report it.")
+        raise DiagramError.one(
+            what, Location(str(file)), hint="It stays as it is. Please report it."
+        )
     return mark + found.replace("\n", ending)
 
 
@@ -113,7 +115,7 @@ class _Printer:
                 yield _Token("sign", sign, column)
             else:
                 line = self.text.count("\n", 0, found.start()) + 1
-                place = Place(self.root.place.file, line, column + 1)
+                place = Location(self.root.place.file, line, column + 1)
                 what = f"'{sign}' cannot be laid out by program"
                 raise DiagramError.one(what, place, hint="Write 'name: value'.")
 

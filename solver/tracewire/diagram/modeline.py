@@ -6,7 +6,7 @@ import os
 import re
 from pathlib import Path
 
-from tracewire.errors import OptionError, Place
+from tracewire.errors import Location, OptionError
 
 MODELINE = re.compile(r"^#\s*yaml-language-server\s*:.*$", re.MULTILINE)
 ADDRESS = re.compile(r"^#\s*yaml-language-server\s*:\s*\$schema=(\S+)", re.MULTILINE)
@@ -21,7 +21,7 @@ def with_modeline(text: str, file: Path, schema: Path) -> str:
     if re.search(r"\s", address):
         what = f"an editor reads the path '{address}' only up to its blank"
         hint = "Write the schema into the diagram's folder, with --output."
-        raise OptionError.one(what, Place(str(file)), hint=hint)
+        raise OptionError.one(what, Location(str(file)), hint=hint)
     line = f"# yaml-language-server: $schema={address}"
     mark = "\ufeff" if text.startswith("\ufeff") else ""
     found = MODELINE.search(text, len(mark))

@@ -26,7 +26,7 @@ from tracewire.diagram.source_map import SourceMap
 from tracewire.diagram.strict import Entries, Node, compose
 from tracewire.diagram.text_edits import TextEdit, end_of, entry_last, lines_last, replace_node
 from tracewire.diagram.yaml_text import inline
-from tracewire.errors import OptionError, Place, unknown
+from tracewire.errors import Location, OptionError, unknown
 
 
 def patch_own(diagram: Diagram, path: str, sum_path: str) -> tuple[Diagram, str]:
@@ -70,7 +70,7 @@ def apply_own(diagram: Diagram, path: str, sum_path: str) -> tuple[Diagram, str]
     if use.subsystem.file == diagram.file:
         return diagram, f"{use.type}.{sum_name}"
     name = _free(diagram, use.type)
-    place = Place(str(diagram.file), block=name)
+    place = Location(str(diagram.file), block=name)
     own = replace(
         use.subsystem, name=name, file=diagram.file, text=diagram.text, place=place, sources=()
     )

@@ -11,7 +11,7 @@ from tracewire.diagram.body import Body
 from tracewire.diagram.files import load
 from tracewire.diagram.problems import Problems, clip
 from tracewire.diagram.strict import Entries, Items, Node, Scalar, compose
-from tracewire.errors import BlockError, DiagramError, Place
+from tracewire.errors import BlockError, DiagramError, Location
 from tracewire.formula import is_name, name_hint
 from tracewire.library import (
     OWN,
@@ -59,7 +59,7 @@ class Packages:
                 if text is not None:
                     self._check_version(name.text, text, body.place(wanted))
 
-    def load(self, name: str, place: Place) -> bool:
+    def load(self, name: str, place: Location) -> bool:
         """Whether the blocks of an installed library are there; what is wrong is noted once."""
         if name not in self._loaded:
             self._loaded[name] = True
@@ -76,12 +76,12 @@ class Packages:
                 self._loaded[name] = False
         return self._loaded[name]
 
-    def has(self, type_name: str, place: Place) -> bool:
+    def has(self, type_name: str, place: Location) -> bool:
         """Whether the library is there that a type such as `mylab.magnet` names, if it does."""
         name = _library_in(type_name)
         return not name or self.load(name, place)
 
-    def unknown(self, type_name: str, place: Place) -> bool:
+    def unknown(self, type_name: str, place: Location) -> bool:
         """Note that a library does not have a type; False where the type names no library."""
         name = _library_in(type_name)
         if name:
@@ -92,7 +92,7 @@ class Packages:
             self.problems.unknown("block type", type_name, there, place, hint)
         return bool(name)
 
-    def file(self, text: str, folder: Path, place: Place) -> Path | None:
+    def file(self, text: str, folder: Path, place: Location) -> Path | None:
         """The file that `include` names in a diagram of `folder`; None with a problem noted."""
         found = IN_A_PACKAGE.fullmatch(text)
         if found:
@@ -111,7 +111,7 @@ class Packages:
             return None
         return file
 
-    def _find(self, name: str, place: Place) -> Package | None:
+    def _find(self, name: str, place: Location) -> Package | None:
         """An installed library; None where there is none, which is noted once."""
         if name not in self._found:
             self._found[name] = None
@@ -121,7 +121,7 @@ class Packages:
                 self.problems.take(error)
         return self._found[name]
 
-    def _check_version(self, name: str, wanted: str, place: Place) -> None:
+    def _check_version(self, name: str, wanted: str, place: Location) -> None:
         from packaging.specifiers import InvalidSpecifier, SpecifierSet
         from packaging.version import InvalidVersion
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from tracewire.diagram.limits import LIMITS
-from tracewire.errors import DiagramError, Place, Problem, TracewireError, unknown
+from tracewire.errors import DiagramError, Location, Problem, TracewireError, unknown
 
 NO_UNIT = " is not a unit"
 
@@ -26,12 +26,12 @@ class Problems:
         self.more = 0
         self.compared = 0
 
-    def add(self, what: str, place: Place, exists: Iterable[str] = (), hint: str = "") -> None:
+    def add(self, what: str, place: Location, exists: Iterable[str] = (), hint: str = "") -> None:
         """Note one problem."""
         self._note(Problem(what, place, tuple(exists), hint))
 
     def unknown(
-        self, kind: str, name: str, existing: Iterable[str], place: Place, hint: str = ""
+        self, kind: str, name: str, existing: Iterable[str], place: Location, hint: str = ""
     ) -> None:
         """Note that there is no such name, and which there are."""
         if self.skips():
@@ -65,7 +65,7 @@ class Problems:
 
         told = _together(sorted(dict.fromkeys(self.found), key=order))
         if self.more:
-            told.append(Problem(f"and {self.more} more problems", Place(file)))
+            told.append(Problem(f"and {self.more} more problems", Location(file)))
         raise DiagramError(told)
 
     def _note(self, problem: Problem) -> None:

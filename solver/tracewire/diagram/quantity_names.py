@@ -13,7 +13,7 @@ from tracewire.diagram.names import (
     recordable,
 )
 from tracewire.diagram.problems import Problems, clip
-from tracewire.errors import Place, Problem
+from tracewire.errors import Location, Problem
 from tracewire.formula import (
     CONSTANTS,
     FUNCTIONS,
@@ -51,7 +51,7 @@ def quantities_in(node: Expression, reference: bool) -> set[str]:
 def quantity_problems(
     node: Expression,
     diagram: Diagram,
-    place: Place = Place(),
+    place: Location = Location(),
     reference: Setting | None = None,
     fixed: bool = False,
 ) -> list[Problem]:
@@ -69,7 +69,7 @@ def quantity_problems(
 
 class _Names:
     def __init__(
-        self, diagram: Diagram, place: Place, reference: Setting | None, fixed: bool
+        self, diagram: Diagram, place: Location, reference: Setting | None, fixed: bool
     ) -> None:
         self.diagram, self.place = diagram, place
         self.reference, self.fixed = reference, fixed

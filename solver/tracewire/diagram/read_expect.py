@@ -12,7 +12,7 @@ from tracewire.diagram.quantity_names import quantities_in, quantity_problems
 from tracewire.diagram.read_setting import read_setting
 from tracewire.diagram.setting_use import refuse_unused
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
-from tracewire.errors import DiagramError, FormulaError, Place
+from tracewire.errors import DiagramError, FormulaError, Location
 from tracewire.formula import QUANTITIES, Call, Expression, Unit, parse_quantity, to_text
 
 TEXTS = ("name", "says", "what", "source", "erratum", "note")
@@ -29,7 +29,7 @@ def read_expect(node: Node, body: Body, diagram: Diagram) -> tuple[Statement, ..
         return ()
     read = (_read_statement(item, body, diagram) for item in node.items)
     found = [statement for statement in read if statement is not None]
-    first: dict[str, Place] = {}
+    first: dict[str, Location] = {}
     for statement in found:
         if statement.name in first:
             what = f"two statements are called '{clip(statement.name)}'"
@@ -87,7 +87,7 @@ def read_quantity(node: Node, body: Body) -> Expression | None:
         return None
     place = body.place(node)
     if node.style in ("'", '"'):
-        place = Place(place.file, place.line, place.column + 1, place.block)
+        place = Location(place.file, place.line, place.column + 1, place.block)
     try:
         return parse_quantity(node.text, place)
     except FormulaError as error:

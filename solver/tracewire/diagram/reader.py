@@ -45,7 +45,7 @@ from tracewire.diagram.settings import (
 from tracewire.diagram.sources import Sources
 from tracewire.diagram.strict import Entries
 from tracewire.diagram.uses import read_blocks
-from tracewire.errors import DiagramError, Place, Problem
+from tracewire.errors import DiagramError, Location, Problem
 from tracewire.formula import names_of
 from tracewire.library import Block, Library, load_library
 
@@ -147,14 +147,14 @@ class _Reader:
         scope.definitions = self.definitions.define(entries, scope)
         scope.definitions |= self.definitions.include(entries, scope)
         entries = replicate_rows(entries, scope.numbers, body)
-        base = self.common(entries, body, scope, file.stem, Place(str(file), 1, 1))
+        base = self.common(entries, body, scope, file.stem, Location(str(file), 1, 1))
         diagram = self.with_settings(base, entries, body)
         diagram = replace(diagram, sources=self.sources.others)
         self.finish(diagram, body)
         if self.sizes[id(diagram)] > LIMITS.most_blocks:
             what = f"the diagram has {self.sizes[id(diagram)]} blocks with those of its subsystems"
             hint = f"At most {LIMITS.most_blocks} can be compiled."
-            self.problems.add(what, Place(str(file)), (), hint)
+            self.problems.add(what, Location(str(file)), (), hint)
         return diagram
 
     def with_settings(self, diagram: Diagram, entries: Entries, body: Body) -> Diagram:
@@ -181,12 +181,12 @@ class _Reader:
         return diagram
 
     def common(
-        self, entries: Entries, body: Body, scope: Scope, name: str, place: Place
+        self, entries: Entries, body: Body, scope: Scope, name: str, place: Location
     ) -> Diagram:
         """The sections that every diagram may have."""
         given = entries.values
 
-        def find(type_name: str, at: Place, line: Entries) -> Block | Diagram | None:
+        def find(type_name: str, at: Location, line: Entries) -> Block | Diagram | None:
             return self.find(type_name, scope, at, line)
 
         title = read_title(given["title"], body) if "title" in given else ""
@@ -240,7 +240,7 @@ class _Reader:
         )
 
     def find(
-        self, type_name: str, scope: Scope, place: Place, line: Entries
+        self, type_name: str, scope: Scope, place: Location, line: Entries
     ) -> Block | Diagram | None:
         """The block or subsystem of a type, the nearest first; None with a problem noted."""
         visible: dict[str, Definition] = {}

@@ -13,7 +13,7 @@ from tracewire.diagram.rewrite import reread
 from tracewire.diagram.source_map import SourceMap, elsewhere
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.diagram.text_edits import TextEdit
-from tracewire.errors import OptionError, Place, TracewireError, unknown
+from tracewire.errors import Location, OptionError, TracewireError, unknown
 from tracewire.formula import is_name, name_hint, to_text
 
 
@@ -81,12 +81,12 @@ def _refuse_elsewhere(source_map: SourceMap, path: str, name: str) -> None:
         raise _of_base(name, place)
 
 
-def _of_base(name: str, place: Place) -> TracewireError:
+def _of_base(name: str, place: Location) -> TracewireError:
     what = f"'{name}' stands in a diagram that this one extends"
     return OptionError.one(what, place, hint="Rename it there, and then here by hand.")
 
 
-def _key(entries: Entries, name: str) -> Place | None:
+def _key(entries: Entries, name: str) -> Location | None:
     """Where a name is defined in the sections of a diagram, or in a variant; None where not."""
     for section in ("blocks", "parameters", "inputs", "outputs", "subsystems"):
         node = entries.values.get(section)

@@ -12,7 +12,7 @@ from tracewire.diagram.grammar import OF_A_BLOCK, OF_KINDS, REFERENCE, SHAPES, f
 from tracewire.diagram.replicate import NEIGHBOURS
 from tracewire.diagram.shapes import Formula, Mapped, Named, Record, Shape, Text
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
-from tracewire.errors import Place
+from tracewire.errors import Location
 
 ENDS = ("first", "last", "all")
 """What stands behind the name of a row, and is none of its blocks' outputs."""
@@ -28,12 +28,12 @@ class Part:
     """
 
     path: str
-    place: Place
+    place: Location
     name: str
     is_type: bool = False
 
 
-def defined_at(inside: Diagram) -> Place:
+def defined_at(inside: Diagram) -> Location:
     """Where a diagram is defined: that of the bodies where a parameter chooses one."""
     if is_chosen(inside):
         body = next(iter(inside.blocks.values())).subsystem

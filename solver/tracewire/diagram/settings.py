@@ -9,7 +9,7 @@ from tracewire.diagram.problems import clip
 from tracewire.diagram.strict import Items, Node
 from tracewire.diagram.uses import in_unit_of
 from tracewire.diagram.values import read_formula, read_value, two_of
-from tracewire.errors import Place
+from tracewire.errors import Location
 from tracewire.formula import Number
 
 
@@ -52,9 +52,9 @@ def _number(value: Value) -> float | None:
     return value.formula.value * value.factor if isinstance(value.formula, Number) else None
 
 
-def read_record(node: Node, body: Body, diagram: Diagram) -> dict[str, Place]:
+def read_record(node: Node, body: Body, diagram: Diagram) -> dict[str, Location]:
     """`record`: the signals to keep, by full name."""
-    found: dict[str, Place] = {}
+    found: dict[str, Location] = {}
     for name in body.scalars(node, "'record'"):
         text, place = name.text.strip(), body.place(name)
         signal = find_recorded(diagram, text)
@@ -109,7 +109,7 @@ def read_settings(
     return found
 
 
-def _explain(diagram: Diagram, path: str, place: Place, body: Body) -> None:
+def _explain(diagram: Diagram, path: str, place: Location, body: Body) -> None:
     inside, head = diagram, path
     if path.endswith(".variant"):
         what = f"'{clip(path)}' is no parameter: a variant is chosen when the diagram is read"

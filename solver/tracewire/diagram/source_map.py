@@ -14,7 +14,7 @@ from tracewire.diagram.problems import Problems
 from tracewire.diagram.sources import Sources
 from tracewire.diagram.strict import Entries, Items, Node, Scalar, compose
 from tracewire.diagram.written import Written, count_uses, find_written
-from tracewire.errors import DiagramError, OptionError, Place, TracewireError, unknown
+from tracewire.errors import DiagramError, Location, OptionError, TracewireError, unknown
 
 
 @dataclass(frozen=True)
@@ -54,8 +54,8 @@ class SourceMap:
             self.base = sources.tree(load(extends.path), extends.path)
         self.definitions: dict[str, tuple[Diagram, Entries]] = {"": (diagram, root)}
         self.bodies: dict[str, list[tuple[Diagram, Entries]]] = {"": [(diagram, root)]}
-        self.removed: dict[tuple[Place, str], Node] = {}
-        self.nodes: dict[tuple[Place, str], Entries] = {(diagram.place, ""): root}
+        self.removed: dict[tuple[Location, str], Node] = {}
+        self.nodes: dict[tuple[Location, str], Entries] = {(diagram.place, ""): root}
         self.uses, self.used = count_uses(diagram)
         self._define("", diagram, root)
 

@@ -15,7 +15,7 @@ from tracewire.diagram.limits import LIMITS
 from tracewire.diagram.packages import Packages
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.strict import Entries, Node, Scalar, compose
-from tracewire.errors import DiagramError, Place
+from tracewire.errors import DiagramError, Location
 
 BROUGHT = ("parameters", "presets")
 """Sections of an included file that become a part of the diagram."""
@@ -163,7 +163,7 @@ class Sources:
         both = replace(own, keys=new.keys | own.keys, values=new.values | own.values)
         return replace(entries, values={**entries.values, section: both})
 
-    def _included(self, file: Path, place: Place) -> Included | None:
+    def _included(self, file: Path, place: Location) -> Included | None:
         known = resolved(file)
         if known in self.including:
             chain = [path.name for path in self.including[self.including.index(known) :]]
@@ -185,7 +185,7 @@ class Sources:
             self.including.pop()
         return self.files[known]
 
-    def _read_included(self, file: Path, place: Place) -> Included | None:
+    def _read_included(self, file: Path, place: Location) -> Included | None:
         text = load(file, place)
         body = Body(self.problems)
         root = compose(text, file, self.problems)

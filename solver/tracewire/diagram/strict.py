@@ -20,7 +20,7 @@ from yaml.reader import Reader
 
 from tracewire.diagram.limits import LIMITS
 from tracewire.diagram.problems import Problems, clip
-from tracewire.errors import DiagramError, Place
+from tracewire.errors import DiagramError, Location
 
 TOO_DEEP = f"nested deeper than {LIMITS.most_nesting} levels"
 FLATTER = "Use subsystems, or files of them with 'include'."
@@ -37,7 +37,7 @@ class Scalar:
     """A text or number; `text[start:end]` of the file holds it with its quotes."""
 
     text: str
-    place: Place
+    place: Location
     start: int
     end: int
     style: str = ""  # empty where it is plain, else the quote or the sign of a text block
@@ -61,7 +61,7 @@ class Items:
     """A list. `flow`: it stands in brackets; without them `end` is where the next node begins."""
 
     items: tuple[Node, ...]
-    place: Place
+    place: Location
     start: int
     end: int
     flow: bool
@@ -73,7 +73,7 @@ class Entries:
 
     keys: dict[str, Scalar]
     values: dict[str, Node]
-    place: Place
+    place: Location
     start: int
     end: int
     flow: bool
@@ -97,7 +97,7 @@ def compose(text: str, file: Path, problems: Problems) -> Node:
         return _Composer(str(file), mark, problems).compose(text[mark:])
     except yaml.MarkedYAMLError as error:
         spot = error.problem_mark or error.context_mark
-        place = Place(str(file), spot.line + 1, spot.column + 1) if spot else Place(str(file))
+        place = Location(str(file), spot.line + 1, spot.column + 1) if spot else Location(str(file))
         said = " ".join(part for part in (error.context, error.problem) if part)
         tab = "cannot start any token" in said and "\t" in text.splitlines()[place.line - 1]
         if tab:
@@ -116,7 +116,7 @@ def compose(text: str, file: Path, problems: Problems) -> Node:
         raise DiagramError.one(f"this is not YAML: {said}", place, hint=hint) from None
     except yaml.YAMLError as error:
         what = f"this is not YAML: {clip(str(error))}"
-        raise DiagramError.one(what, Place(str(file)), hint=BROKEN) from None
+        raise DiagramError.one(what, Location(str(file)), hint=BROKEN) from None
 
 
 def _check_characters(text: str, file: str, mark: int) -> None:
@@ -129,7 +129,7 @@ def _check_characters(text: str, file: str, mark: int) -> None:
             at = found.start()
             line, column = text.count("\n", 0, at) + 1, at - text.rfind("\n", 0, at)
             what = f"the character U+{ord(found.group()):04X} {what}"
-            raise DiagramError.one(what, Place(file, line, column), hint="Remove it.")
+            raise DiagramError.one(what, Location(file, line, column), hint="Remove it.")
 
 
 @dataclass
@@ -171,12 +171,14 @@ class _Composer:
             if self.problems.found:
                 self.problems.raise_found(self.file)
             hint = "A diagram has at least 'blocks:'."
-            raise DiagramError.one("the file is empty", Place(self.file), hint=hint)
+            raise DiagramError.one("the file is empty", Location(self.file), hint=hint)
         return self.root
 
-    def place(self, event: yaml.Event) -> Place:
+    def place(self, event: yaml.Event) -> Location:
         start = event.start_mark
-        return Place(self.file, start.line + 1, start.column + 1) if start else Place(self.file)
+        return (
+            Location(self.file, start.line + 1, start.column + 1) if start else Location(self.file)
+        )
 
     def span(self, first: yaml.Event, last: yaml.Event) -> tuple[int, int]:
         """Where the text of a node begins and ends; the parser gives each of its events marks."""

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
-from tracewire.errors import DiagramError, Place, TracewireError
+from tracewire.errors import DiagramError, Location, TracewireError
 
 
 @dataclass(frozen=True)
@@ -127,5 +127,5 @@ def _indent(text: str, key: Scalar) -> str:
 
 def _refused(node: Scalar) -> TracewireError:
     what = "the text is laid out here in a way that cannot be edited by program"
-    place = Place(node.place.file, node.place.line, node.place.column)
+    place = Location(node.place.file, node.place.line, node.place.column)
     return DiagramError.one(what, place, hint="Write 'name: value' on one line.")

@@ -15,11 +15,11 @@ from tracewire.diagram.replicate import Replica
 from tracewire.diagram.strict import Entries, Node, Scalar
 from tracewire.diagram.values import read_points, read_value, reads_parameters
 from tracewire.diagram.wires import read_wires
-from tracewire.errors import Place, unknown
+from tracewire.errors import Location, unknown
 from tracewire.formula import Expression, Number, evaluate, is_name, names_of, to_text
 from tracewire.library import Block, Input, Parameter
 
-Find = Callable[[str, Place, Entries], Block | Diagram | None]
+Find = Callable[[str, Location, Entries], Block | Diagram | None]
 """The block or subsystem of a type, as a line uses it; None where a problem is noted already."""
 EXAMPLE = "{type: gain, of: theta, k: 2}"
 
@@ -130,7 +130,7 @@ def _read_settings(
     parameters: Mapping[str, Parameter],
     body: Body,
     name: str,
-    place: Place,
+    place: Location,
 ) -> dict[str, Value | Array | Points | Expression]:
     settings: dict[str, Value | Array | Points | Expression] = {}
     for parameter in parameters.values():
@@ -168,7 +168,7 @@ def check_conditions(
     block: Block,
     settings: Mapping[str, Value | Array | Points | Expression],
     body: Body,
-    place: Place,
+    place: Location,
 ) -> None:
     """Note each condition of a block that numbers do not meet which its line gives."""
     known: dict[str, float] = {}

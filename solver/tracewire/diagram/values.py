@@ -11,7 +11,7 @@ from tracewire.diagram.diagram import Points, Value
 from tracewire.diagram.grammar import FITTED, POINTS_FILE, VALUE
 from tracewire.diagram.problems import clip
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
-from tracewire.errors import DataError, FormulaError, Place
+from tracewire.errors import DataError, FormulaError, Location
 from tracewire.formula import (
     CONSTANTS,
     FUNCTIONS,
@@ -43,7 +43,7 @@ def read_formula(
         body.problems.add("a formula must be a text, such as 2*k", place)
         return None
     if node.style in ("'", '"'):
-        place = Place(place.file, place.line, place.column + 1, place.block)
+        place = Location(place.file, place.line, place.column + 1, place.block)
     try:
         formula = (parse_condition if condition else parse)(node.text, place)
     except FormulaError as error:
@@ -191,7 +191,7 @@ def _points_of_columns(node: Entries, body: Body, block: str) -> Points | None:
     return points_of_file(file.path, x, y, body, body.place(node, block))
 
 
-def points_of_file(path: Path, x: str, y: str, body: Body, place: Place) -> Points | None:
+def points_of_file(path: Path, x: str, y: str, body: Body, place: Location) -> Points | None:
     """A table of points in two columns of a file."""
     try:
         columns = read_columns(path, {"y": y}, x, place=place)

@@ -17,7 +17,7 @@ from tracewire.diagram.replicate import numbers_of, replicate_rows
 from tracewire.diagram.sources import Sources
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.diagram.yaml_text import document
-from tracewire.errors import DiagramError, OptionError, Place
+from tracewire.errors import DiagramError, Location, OptionError
 from tracewire.files import write_file
 
 
@@ -33,7 +33,7 @@ def write(diagram: Diagram, path: str | Path, overwrite: bool = False) -> Path:
         own = target.exists() and diagram.file.exists() and target.samefile(diagram.file)
         if target.exists() and not own and not overwrite:
             hint = "Choose another name, or say that it may be overwritten."
-            raise OptionError.one("there is a file of this name", Place(str(target)), hint=hint)
+            raise OptionError.one("there is a file of this name", Location(str(target)), hint=hint)
         if target.resolve().parent != diagram.file.resolve().parent:
             moved = read_text(diagram.text, target, library=diagram.library)
             there = absent_series(diagram)
@@ -44,7 +44,7 @@ def write(diagram: Diagram, path: str | Path, overwrite: bool = False) -> Path:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         what = f"the file cannot be written: {reason}"
-        raise OptionError.one(what, Place(str(target)), hint="Check its folder.") from None
+        raise OptionError.one(what, Location(str(target)), hint="Check its folder.") from None
     return target
 
 

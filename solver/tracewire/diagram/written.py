@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from tracewire.diagram.choose import NUMBER, is_chosen
 from tracewire.diagram.diagram import BlockUse, Diagram, Value
 from tracewire.diagram.names import find_parameter, parameters, split_index
-from tracewire.errors import OptionError, Place, unknown
+from tracewire.errors import Location, OptionError, unknown
 from tracewire.formula import read_unit, to_text
 
 
@@ -36,7 +36,7 @@ class Written:
 def find_written(
     top: Diagram,
     path: str,
-    uses: Mapping[Place, int],
+    uses: Mapping[Location, int],
     bodies_with: Callable[[Diagram, BlockUse, str], int],
 ) -> Written:
     """Where the parameter of a path is written. Raises OptionError: nowhere, or not for one block.
@@ -78,9 +78,9 @@ def find_written(
     return Written(inside, None, rest, value)
 
 
-def count_uses(top: Diagram) -> tuple[dict[Place, int], dict[Place, Diagram]]:
+def count_uses(top: Diagram) -> tuple[dict[Location, int], dict[Location, Diagram]]:
     """How many parts of the whole diagram are made from each definition, and one of them."""
-    inner_first: dict[Place, Diagram] = {}
+    inner_first: dict[Location, Diagram] = {}
 
     def visit(diagram: Diagram) -> None:
         for use in diagram.blocks.values():

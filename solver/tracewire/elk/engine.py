@@ -12,7 +12,7 @@ from typing import Any
 
 import quickjs
 
-from tracewire.errors import InstallationError, Place
+from tracewire.errors import InstallationError, Location
 
 SCRIPT = Path(__file__).parent / "elk.bundled.js"
 STACK = 64 * 2**20  # bytes: ELK walks along chains of blocks by recursion
@@ -62,7 +62,7 @@ def _context() -> Any:
     except OSError as error:
         what = f"the layout engine cannot be read: {error.strerror or error}"
         hint = "Install tracewire again; in a checkout 'python -m tracewire.elk' fetches it."
-        raise InstallationError.one(what, Place(str(SCRIPT)), hint=hint) from None
+        raise InstallationError.one(what, Location(str(SCRIPT)), hint=hint) from None
     for slow, quick in QUICKER.items():
         script = script.replace(slow, quick)
     context = quickjs.Context()

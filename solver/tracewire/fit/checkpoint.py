@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.errors import OptionError, Place, Problem
+from tracewire.errors import Location, OptionError, Problem
 from tracewire.fit.search import Search
 from tracewire.residual import Criterion
 from tracewire.resume import ResumeFile
@@ -63,7 +63,7 @@ def resume_from(path: str | Path, method: str, criterion: Criterion) -> Mapping[
 
     Raises OptionError: no such file, another content, other unknowns.
     """
-    place = Place(str(path))
+    place = Location(str(path))
     try:
         content = ResumeFile(path, KIND).read()
     except OSError as error:

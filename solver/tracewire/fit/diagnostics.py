@@ -158,7 +158,7 @@ def _drives(fit: Fit, measured: Measured, t: Vector) -> dict[str, Vector]:
     """What drives the model at times t (N,): its measured inputs, and signals of time alone."""
     found = {name: values_at(known, t) for name, known in measured.inputs.items()}
     flat = fit.model.flat
-    given = {**fit.parameters, **of_diagram(fit.values, measured)}
+    given = {**fit.parameters, **of_diagram(fit.model, fit.values, measured)}
     values = parameter_values(fit.model, given, measured.preset)
     timed: dict[str, Expression] = {}
     others = [state.rate for state in flat.states]

@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from tracewire.errors import FormulaError, Place, Problem
+from tracewire.errors import FormulaError, Location, Problem
 from tracewire.formula.expression import Expression, Name, Number
 from tracewire.formula.functions import CONSTANTS, OPERATIONS
 from tracewire.formula.text import to_text
 
 
-def evaluate(expression: Expression, values: Mapping[str, float], place: Place = Place()) -> float:
+def evaluate(
+    expression: Expression, values: Mapping[str, float], place: Location = Location()
+) -> float:
     """The number that a formula is, given the values of its names.
 
     Raises FormulaError where it has no finite value: a division by zero, the root of a negative

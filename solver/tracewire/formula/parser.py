@@ -10,7 +10,7 @@ import re
 import warnings
 from functools import lru_cache
 
-from tracewire.errors import FormulaError, Place, Problem, unknown
+from tracewire.errors import FormulaError, Location, Problem, unknown
 from tracewire.formula.expression import Call, Expression, Name, Number
 from tracewire.formula.functions import CONSTANTS, FUNCTIONS
 from tracewire.formula.limits import LIMITS
@@ -91,7 +91,7 @@ class _Refused(Exception):
         self.what, self.column, self.hint = what, column, hint
 
 
-def parse(text: str, place: Place = Place()) -> Expression:
+def parse(text: str, place: Location = Location()) -> Expression:
     """The formula that `text` writes.
 
     `place` is where the text begins in its file; errors point into the text from there.
@@ -101,7 +101,7 @@ def parse(text: str, place: Place = Place()) -> Expression:
     return _read(text, place, condition=False)
 
 
-def parse_condition(text: str, place: Place = Place()) -> Expression:
+def parse_condition(text: str, place: Location = Location()) -> Expression:
     """The condition that `text` writes: comparisons joined by and, or, not.
 
     Raises FormulaError as `parse` does, and where the text is a number and no condition.
@@ -109,7 +109,7 @@ def parse_condition(text: str, place: Place = Place()) -> Expression:
     return _read(text, place, condition=True)
 
 
-def parse_quantity(text: str, place: Place = Place()) -> Expression:
+def parse_quantity(text: str, place: Location = Location()) -> Expression:
     """The quantity that `text` writes: a formula that knows the functions of QUANTITIES, too.
 
     Raises FormulaError as `parse` does.
@@ -117,12 +117,12 @@ def parse_quantity(text: str, place: Place = Place()) -> Expression:
     return _read(text, place, condition=False, quantity=True)
 
 
-def _read(text: str, place: Place, condition: bool, quantity: bool = False) -> Expression:
+def _read(text: str, place: Location, condition: bool, quantity: bool = False) -> Expression:
     try:
         return _parse(text, condition, quantity)
     except _Refused as refused:
         column = place.column + refused.column if place.column else 0
-        at = Place(place.file, place.line, column, place.block)
+        at = Location(place.file, place.line, column, place.block)
         shown = text if len(text) <= 80 else text[:77] + "..."
         problem = Problem(f"formula '{shown}': {refused.what}", at, (), refused.hint)
         raise FormulaError([problem]) from None

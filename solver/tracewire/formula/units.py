@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from tracewire.errors import FormulaError, Place, Problem
+from tracewire.errors import FormulaError, Location, Problem
 from tracewire.formula.common_units import COMMON
 from tracewire.formula.limits import LIMITS
 
@@ -71,7 +71,7 @@ def _convert(text: str) -> Unit:
     return Unit(text, 1.0) if factor == 1.0 else Unit(f"{quantity.units:~C}", factor, text)
 
 
-def read_unit(text: str, place: Place = Place()) -> Unit:
+def read_unit(text: str, place: Location = Location()) -> Unit:
     """The unit that `text` names, such as `kg m^2`, `N m s/rad` or `deg`; '' is the number 1.
 
     Raises FormulaError where the text is no unit.

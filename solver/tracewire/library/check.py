@@ -6,7 +6,7 @@ import keyword
 import math
 from collections.abc import Sequence
 
-from tracewire.errors import FormulaError, Place, Problem
+from tracewire.errors import FormulaError, Location, Problem
 from tracewire.formula import is_name, read_unit
 from tracewire.library.check_effects import Face, check_effect
 from tracewire.library.check_formula import Use, check_formula
@@ -14,9 +14,9 @@ from tracewire.library.check_memory import check_by_mode, check_memory
 from tracewire.library.parts import Input, Output, Parameter, Parts, State
 
 
-def check_block(block: Parts, place: Place) -> list[Problem]:
+def check_block(block: Parts, place: Location) -> list[Problem]:
     """Every problem of a declaration that stands at `place`, in the order of its parts."""
-    place = Place(place.file, place.line, 0, block.name)
+    place = Location(place.file, place.line, 0, block.name)
     wires: Use = "wires"
     value: Use = "value"
     ports = {port.name: wires if port.many else value for port in block.inputs}
@@ -56,7 +56,7 @@ def _use(parameter: Parameter) -> Use:
     return "points" if parameter.kind == "points" else "value"
 
 
-def _check_names(block: Parts, place: Place) -> list[Problem]:
+def _check_names(block: Parts, place: Location) -> list[Problem]:
     problems = []
     if not block.outputs:
         problems.append(Problem("a block needs at least one output", place))
@@ -80,7 +80,7 @@ def _check_names(block: Parts, place: Place) -> list[Problem]:
     return problems + _check_shared(block, place)
 
 
-def _check_shared(block: Parts, place: Place) -> list[Problem]:
+def _check_shared(block: Parts, place: Location) -> list[Problem]:
     """An output of several has the full name of a state of its name: both must be the same."""
     states = {state.name for state in block.states} | ({"mode"} if block.modes else set())
     hint = "Rename one: a diagram knows both by the same name."
@@ -91,7 +91,7 @@ def _check_shared(block: Parts, place: Place) -> list[Problem]:
     ]
 
 
-def _check_parameters(parameters: Sequence[Parameter], place: Place) -> list[Problem]:
+def _check_parameters(parameters: Sequence[Parameter], place: Location) -> list[Problem]:
     problems = []
     before: dict[str, Use] = {}  # a default reads what stands before it: no default is a circle
     for p in parameters:

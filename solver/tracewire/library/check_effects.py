@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from tracewire.errors import Place, Problem, unknown
+from tracewire.errors import Location, Problem, unknown
 from tracewire.library.effect import SCALES, SYMBOLS, Effect, Shape
 
 WIRING = f"Say which local signal each reads: {', '.join(SYMBOLS)}."
@@ -27,7 +27,7 @@ class Face:
     outputs: int
 
 
-def check_effect(effect: Effect, face: Face, place: Place) -> list[Problem]:
+def check_effect(effect: Effect, face: Face, place: Location) -> list[Problem]:
     """Every problem of an effect with the block or subsystem that it belongs to."""
     problems = []
     if effect.coefficient not in face.bounds:
@@ -67,7 +67,7 @@ def check_effect(effect: Effect, face: Face, place: Place) -> list[Problem]:
     return problems
 
 
-def _check_wiring(effect: Effect, face: Face, place: Place) -> list[Problem]:
+def _check_wiring(effect: Effect, face: Face, place: Location) -> list[Problem]:
     strange = [name for name in effect.inputs if name not in face.ports]
     problems = [unknown("input", name, face.ports, place) for name in strange]
     missing = [name for name, free in face.ports.items() if not free and name not in effect.inputs]
@@ -88,7 +88,7 @@ def _check_wiring(effect: Effect, face: Face, place: Place) -> list[Problem]:
 
 
 def _check_shape(
-    name: str, shape: Shape, bounds: tuple[float, float], place: Place
+    name: str, shape: Shape, bounds: tuple[float, float], place: Location
 ) -> list[Problem]:
     low, high = bounds
     if shape.of not in SCALES:

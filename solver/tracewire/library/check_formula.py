@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Literal
 
-from tracewire.errors import FormulaError, Place, Problem, unknown
+from tracewire.errors import FormulaError, Location, Problem, unknown
 from tracewire.formula import CONSTANTS, FUNCTIONS, Call, Expression, Name, parse, parse_condition
 
 Use = Literal["value", "wires", "points"]
@@ -17,7 +17,7 @@ READ_BY: dict[Use, str] = {
 
 
 def check_formula(
-    text: str, visible: Mapping[str, Use], place: Place, condition: bool = False
+    text: str, visible: Mapping[str, Use], place: Location, condition: bool = False
 ) -> list[Problem]:
     """The problems of a formula, or of a condition, that may read what is visible."""
     try:

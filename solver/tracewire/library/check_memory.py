@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from tracewire.errors import Place, Problem, unknown
+from tracewire.errors import Location, Problem, unknown
 from tracewire.formula import is_name
 from tracewire.library.check_formula import Use, check_formula
 from tracewire.library.parts import ByMode, Event, Parts, Transition
@@ -14,7 +14,7 @@ KINDS = ("reset", "impact")
 
 
 def check_memory(
-    block: Parts, visible: Mapping[str, Use], fixed: Mapping[str, Use], place: Place
+    block: Parts, visible: Mapping[str, Use], fixed: Mapping[str, Use], place: Location
 ) -> list[Problem]:
     """Every problem of modes, transitions and events, in this order.
 
@@ -44,7 +44,7 @@ def check_memory(
     return problems
 
 
-def formulas(block: Parts, given: ByMode, what: str, place: Place) -> Iterator[str | Problem]:
+def formulas(block: Parts, given: ByMode, what: str, place: Location) -> Iterator[str | Problem]:
     """The texts of a formula, one for each mode where it has several, and problems of that form."""
     if isinstance(given, str):
         yield given
@@ -60,7 +60,7 @@ def formulas(block: Parts, given: ByMode, what: str, place: Place) -> Iterator[s
 
 
 def check_by_mode(
-    block: Parts, given: ByMode, what: str, visible: Mapping[str, Use], place: Place
+    block: Parts, given: ByMode, what: str, visible: Mapping[str, Use], place: Location
 ) -> list[Problem]:
     """The problems of a formula that may be one for each mode."""
     problems: list[Problem] = []
@@ -69,7 +69,7 @@ def check_by_mode(
     return problems
 
 
-def _check_modes(block: Parts, visible: Mapping[str, Use], place: Place) -> Iterator[Problem]:
+def _check_modes(block: Parts, visible: Mapping[str, Use], place: Location) -> Iterator[Problem]:
     names = [mode.name for mode in block.modes]
     if len(names) == 1:
         hint = "Declare a second one, or none."
@@ -87,7 +87,7 @@ def _check_modes(block: Parts, visible: Mapping[str, Use], place: Place) -> Iter
 
 
 def _check_transition(
-    block: Parts, transition: Transition, visible: Mapping[str, Use], place: Place
+    block: Parts, transition: Transition, visible: Mapping[str, Use], place: Location
 ) -> list[Problem]:
     modes = [mode.name for mode in block.modes]
     ends = (transition.source, transition.target)
@@ -104,7 +104,7 @@ def _check_transition(
     return problems + _check_set(block, transition.set, shown, visible, place)
 
 
-def _check_reached(block: Parts, place: Place) -> list[Problem]:
+def _check_reached(block: Parts, place: Location) -> list[Problem]:
     """The modes that no run can reach: no start, and no way from one that is."""
     reached = {mode.name for mode in block.modes if mode.start is not None}
     reached |= {mode.name for mode in block.modes[:1]}
@@ -127,7 +127,7 @@ def _check_event(
     event: Event,
     visible: Mapping[str, Use],
     fixed: Mapping[str, Use],
-    place: Place,
+    place: Location,
 ) -> list[Problem]:
     shown, problems = f"event '{event.name}'", []
     if not is_name(event.name):
@@ -158,7 +158,7 @@ def _check_set(
     values: Mapping[str, ByMode],
     shown: str,
     visible: Mapping[str, Use],
-    place: Place,
+    place: Location,
 ) -> list[Problem]:
     states = [state.name for state in block.states]
     problems = []

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
-from tracewire.errors import BlockError, Place
+from tracewire.errors import BlockError, Location
 from tracewire.formula import Call, Expression, Name, Number, parse, parse_condition, read_at_once
 from tracewire.library.check import check_block
 from tracewire.library.parts import ByMode, Parts
@@ -27,7 +27,7 @@ class Block(Parts):
     that does not exist or is never reached, a transition or an event that can do nothing.
     """
 
-    place: Place = field(default_factory=lambda: _caller(), compare=False, repr=False)
+    place: Location = field(default_factory=lambda: _caller(), compare=False, repr=False)
 
     def __post_init__(self) -> None:
         problems = check_block(self, self.place)
@@ -94,12 +94,12 @@ class Block(Parts):
         return frozenset(inputs.intersection(read_at_once(self.formulas[output])))
 
 
-def _caller() -> Place:
+def _caller() -> Location:
     """The line of the block file that makes a declaration."""
     frame = inspect.currentframe()
     # the frame of the dataclass's own __init__ has the globals of this module, too
     while frame is not None and frame.f_globals.get("__name__") == __name__:
         frame = frame.f_back
     if frame is None:
-        return Place()
-    return Place(Path(frame.f_code.co_filename).name, frame.f_lineno)
+        return Location()
+    return Location(Path(frame.f_code.co_filename).name, frame.f_lineno)

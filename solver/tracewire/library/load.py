@@ -11,7 +11,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from tracewire.errors import BlockError, Place, Problem
+from tracewire.errors import BlockError, Location, Problem
 from tracewire.library.declare import Block
 from tracewire.shipped import shipped
 
@@ -59,7 +59,9 @@ def load_library(extra: Iterable[str | Path] = ()) -> Library:
         found = [folder] if folder.is_file() else block_files(folder)
         if not found:
             hint = "A library is a .py file of block declarations, or a folder of them."
-            problems.append(Problem("there are no block files here", Place(str(folder)), (), hint))
+            problems.append(
+                Problem("there are no block files here", Location(str(folder)), (), hint)
+            )
         files += found
     return _library(*load_files(files, problems))
 
@@ -105,7 +107,7 @@ def _library(blocks: dict[str, Block], families: dict[str, str]) -> Library:
 def _read(file: Path, changed: int) -> tuple[Block, ...]:
     """The blocks that a file declares; `changed` is its time, so that a file is read once."""
     if file.suffix != ".py":
-        raise BlockError([Problem("this is not a Python file", Place(str(file)))])
+        raise BlockError([Problem("this is not a Python file", Location(str(file)))])
     try:
         # a full module name, so that a family called math.py cannot shadow the standard library
         found = runpy.run_path(str(file), run_name=f"tracewire.blocks.{file.stem}")
@@ -113,7 +115,7 @@ def _read(file: Path, changed: int) -> tuple[Block, ...]:
         raise
     except Exception as error:  # a user's library may fail in any way while it is read
         what = f"the block file cannot be read: {type(error).__name__}: {error}"
-        raise BlockError([Problem(what, Place(str(file), _line(error, file)))]) from error
+        raise BlockError([Problem(what, Location(str(file), _line(error, file)))]) from error
     return tuple({id(b): b for b in found.values() if isinstance(b, Block)}.values())
 
 

@@ -16,7 +16,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tracewire.errors import BlockError, Place, Problem, unknown
+from tracewire.errors import BlockError, Location, Problem, unknown
 from tracewire.files import working_folder
 from tracewire.formula import is_name, name_hint
 from tracewire.library.declare import Block
@@ -57,7 +57,7 @@ def installed_packages() -> list[Package]:
     return sorted(found, key=lambda p: (p.name, p.distribution))
 
 
-def find_package(name: str, place: Place = Place()) -> Package:
+def find_package(name: str, place: Location = Location()) -> Package:
     """The installed library of a name; `place` is where it is named.
 
     Raises BlockError: it is not installed, two distributions have it, it cannot be a name.
@@ -82,7 +82,7 @@ def find_package(name: str, place: Place = Place()) -> Package:
     return found[0]
 
 
-def folder_of(package: Package, place: Place = Place()) -> Path:
+def folder_of(package: Package, place: Location = Location()) -> Path:
     """The folder with the files of an installed library. Raises BlockError: there is none."""
     if package.name == OWN:
         return package.beside.resolve()
@@ -101,7 +101,7 @@ def folder_of(package: Package, place: Place = Place()) -> Path:
 
 
 def package_blocks(
-    package: Package, place: Place = Place()
+    package: Package, place: Location = Location()
 ) -> tuple[dict[str, Block], dict[str, str]]:
     """The blocks of an installed library by their names in diagrams, and the family of each.
 
@@ -116,7 +116,7 @@ def package_blocks(
     )
 
 
-def package_file(package: Package, name: str, place: Place = Place()) -> Path:
+def package_file(package: Package, name: str, place: Location = Location()) -> Path:
     """A file of an installed library by its path there. Raises BlockError: it leads outside."""
     folder = folder_of(package, place)
     try:
@@ -178,7 +178,7 @@ def _roots(module: str) -> list[Path]:
     return [Path(root) for root in (spec and spec.submodule_search_locations) or ()]
 
 
-def _missing(name: str, place: Place) -> Problem:
+def _missing(name: str, place: Location) -> Problem:
     problem = unknown("library", name, sorted({package.name for package in installed_packages()}))
     what = f"the library '{name}' is not installed"
     hint = (

@@ -27,10 +27,10 @@ from tracewire.residual.noise_of_channels import channel_noise, estimate_noise
 from tracewire.residual.past import longest_delay, with_past
 from tracewire.residual.segment import (
     OWN,
-    SENSED,
     Segment,
     Unknown,
     absolute_tolerances,
+    is_of_sensor,
     of_diagram,
     parameter_in,
 )
@@ -60,7 +60,6 @@ __all__ = [
     "LIMITS",
     "LOSSES",
     "OWN",
-    "SENSED",
     "WINDOW",
     "Criterion",
     "InputCovariance",
@@ -87,6 +86,7 @@ __all__ = [
     "free_names",
     "free_unknowns",
     "half_square",
+    "is_of_sensor",
     "likely_input_noise",
     "load_measured",
     "longest_delay",

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tracewire.data import read_frame, record_of, signal_remarks, time_remarks
 from tracewire.diagram import Hold, Use
-from tracewire.errors import DataError, FormulaError, Place, Problem, unknown
+from tracewire.errors import DataError, FormulaError, Location, Problem, unknown
 from tracewire.residual.inputs import between_samples
 from tracewire.solve import Driving, with_points
 
@@ -128,7 +128,7 @@ def fields_of_frame(
     check.finish()
     read = read_frame(frame, {**measured, **driving}, time, name)
     try:
-        record = record_of(read, units, place=Place(name))
+        record = record_of(read, units, place=Location(name))
     except FormulaError as error:
         raise DataError(error.problems) from None
     steps, driven = list(record.steps), {}

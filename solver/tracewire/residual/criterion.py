@@ -19,7 +19,7 @@ from tracewire.residual.limits import CRITERION
 from tracewire.residual.linearisation import BatchLinearisation, Linearisation, Point, SegmentBatch
 from tracewire.residual.loss import LOSSES
 from tracewire.residual.segment import Segment, Unknown
-from tracewire.solve import Halt, Interrupted, Limits, beyond_budget, cores, until_interrupted
+from tracewire.solve import Interrupted, Limits, StopFlag, beyond_budget, cores, until_interrupted
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -256,7 +256,7 @@ class Criterion:
             steps = sum(len(self.segments[n].rows) for n in starts)
         many = steps > CRITERION.many
         groups = self._groups(sorted(starts), halves=many and not self.remembers)
-        with _Interruptible() as halt:
+        with _Interruptible() as stop_flag:
 
             def linearise_group(group: int, numbers: Sequence[int]) -> BatchLinearisation:
                 if self.steps > self.budget:  # nothing more is run, and nothing counted
@@ -266,7 +266,7 @@ class Criterion:
                 batch = self._batch(group, tuple(numbers), follows)
                 point = self._point(named, [starts[n] for n in numbers])
                 sigma = self.sigma[batch.segments[0].measured.name]
-                return batch.linearise(point, sigma, [*named] if slopes else None, halt)
+                return batch.linearise(point, sigma, [*named] if slopes else None, stop_flag)
 
             apart = _threads().map if many and len(groups) > 1 and cores() > 1 else map
             done = list(apart(linearise_group, range(len(groups)), groups))
@@ -322,9 +322,9 @@ class Criterion:
         Raises SimulationError where it fails, KeyboardInterrupt for Ctrl-C: the whole search shall
         stop.
         """
-        with _Interruptible() as halt:
+        with _Interruptible() as stop_flag:
             batch = self._new_batch([segment], [False])
-            runs, observation = batch.simulate(self._point(named, [start]), halt)
+            runs, observation = batch.simulate(self._point(named, [start]), stop_flag)
         for error in runs.errors.values():
             raise error
         return observation.observe(runs)
@@ -391,7 +391,7 @@ class _Interruptible:
     def __init__(self) -> None:
         self.noting = until_interrupted()
 
-    def __enter__(self) -> Halt:
+    def __enter__(self) -> StopFlag:
         return self.noting.__enter__()
 
     def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:

@@ -21,7 +21,7 @@ from tracewire.diagram import (
     replace_series,
     series_parts,
 )
-from tracewire.errors import DataError, OptionError, Place, Problem, unknown
+from tracewire.errors import DataError, Location, OptionError, Problem, unknown
 from tracewire.formula import names_of
 from tracewire.residual.endings import alike, endings
 
@@ -111,7 +111,7 @@ class _Attaching:
                 both = f"{seen[real]} and {use}" if seen[real] != use else f"{use} twice"
                 what = f"the file is given for {both}"
                 hint = "Data that a fit has seen cannot check it."
-                self.problems.append(Problem(what, Place(str(path)), hint=hint))
+                self.problems.append(Problem(what, Location(str(path)), hint=hint))
             seen[real] = use
 
     def by_template(self, headings: Headings) -> dict[str, str] | None:
@@ -119,7 +119,7 @@ class _Attaching:
         own, same = self.template(headings)
         without = {"file", "use", *(() if same else ("from", "to"))}
         parts = series_parts(self.diagram, own.name, without)
-        place = Place(headings.file)
+        place = Location(headings.file)
         missing = [column for column in _columns(own) if not headings.has(column)]
         hint = f"The series '{own.name}' of the diagram tells the columns of this file."
         for column in missing:
@@ -146,7 +146,7 @@ class _Attaching:
 
     def by_name(self, headings: Headings) -> dict[str, str] | None:
         """The keys of a series whose columns are found by their names."""
-        file, place = Path(headings.file).name, Place(headings.file)
+        file, place = Path(headings.file).name, Location(headings.file)
         before = len(self.problems)
         time: _Column | None = None
         signals: dict[str, _Column] = {}
@@ -249,7 +249,7 @@ class _Attaching:
             if default is None:
                 what = f"no column is the input '{name}' of the diagram, which has no default"
                 hint = f"Name the column '{name}', or bind it under `inputs:` of a series."
-                place = Place(headings.file)
+                place = Location(headings.file)
                 self.problems.append(Problem(what, place, headings.names, hint))
             else:
                 file = Path(headings.file).name

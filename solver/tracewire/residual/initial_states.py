@@ -18,10 +18,13 @@ def fit_initial_states(windows: Windows, steps: int = WINDOW.initial_state_steps
     """The starts alone fitted, each window for itself; the unknowns stay.
 
     A window whose start is led astray (a start inside a stiff barrier kicks it away) is tried from
-    the end of the window before it.
+    the end of the window before it; where nothing happens but at known times, only one that is much
+    worse than most.
     """
     windows = refine_initial_states(windows, range(len(windows.linearisations)), steps)
-    off = [n for n in range(len(windows.linearisations)) if not _is_good(windows, n)]
+    off = _diverged(windows)
+    if _has_events(windows):
+        off = [n for n in range(len(windows.linearisations)) if not _is_good(windows, n)]
     return restart_from_data(update_memories(restart_from_ends(windows, off, steps)), steps)
 
 
@@ -38,7 +41,8 @@ def restart_from_data(windows: Windows, steps: int) -> Windows:
     if not tried:
         return windows
     found = _restart(windows, tried, steps)
-    found = _restart_beside_data(found, steps)
+    if _has_events(windows):
+        found = _restart_beside_data(found, steps)
     changed = any(found.starts[n] is not windows.starts[n] for n in range(len(found.starts)))
     return update_memories(found) if changed else windows
 
@@ -71,6 +75,11 @@ def _restart(windows: Windows, starts: Mapping[int, Mapping[str, float]], steps:
     """The windows with some fitted from other starts, where that does better."""
     there = refine_initial_states(with_initial_states(windows, starts), list(starts), steps)
     return keep_better(windows, there, list(starts))
+
+
+def _has_events(windows: Windows) -> bool:
+    """Whether a start decides what happens in a run: else the squared error is smooth in it."""
+    return any(not mode.timed for mode in windows.criterion.model.modes)
 
 
 def _diverged(windows: Windows) -> list[int]:

@@ -169,7 +169,7 @@ def run_noise(
     asked = [name for name in fitted if name in model.flat.parameters]
     run = simulate(
         compile(model.diagram, record=record, backend="quick"),
-        parameters=of_diagram(values, measured),
+        parameters=of_diagram(model, values, measured),
         start={**segment.start, **start},
         span=(segment.begin, float(measured.t[-1])),
         times=measured.t,

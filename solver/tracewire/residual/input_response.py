@@ -136,7 +136,7 @@ def input_response(
         return simulate_spans(
             quick,
             spans,
-            parameters=of_diagram(values, measured),
+            parameters=of_diagram(model, values, measured),
             rtol=INPUT.rtol,
             preset=measured.preset,
             inputs=driving,
@@ -206,7 +206,7 @@ def states_in_windows(
     runs = simulate_spans(
         quick,
         spans,
-        parameters=of_diagram(values, measured),
+        parameters=of_diagram(model, values, measured),
         preset=measured.preset,
         inputs=measured.inputs,
     )

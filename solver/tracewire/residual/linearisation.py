@@ -17,13 +17,13 @@ from tracewire.residual.limits import CRITERION, WINDOW
 from tracewire.residual.measured import Measured
 from tracewire.residual.observation import ObservationModel
 from tracewire.residual.segment import (
-    SENSED,
     Segment,
     absolute_tolerances,
+    is_of_sensor,
     of_diagram,
     parameter_in,
 )
-from tracewire.solve import Halt, Interrupted, Limits, Span, SpanProblem, SpanRuns, span_problem
+from tracewire.solve import Interrupted, Limits, Span, SpanProblem, SpanRuns, StopFlag, span_problem
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -130,12 +130,16 @@ class SegmentBatch:
 
     def _observation(self, values: Mapping[str, float], rates: bool) -> ObservationModel:
         """The sensors with the values of unknowns."""
-        if rates or any(name.startswith(SENSED) for name in values):
+        if rates or any(is_of_sensor(self.model, name) for name in values):
             return ObservationModel(self.segments, values, rates=rates)
         return self._declared
 
     def simulate(
-        self, point: Point, halt: Halt, asked: Sequence[str] | None = None, rates: bool = False
+        self,
+        point: Point,
+        stop_flag: StopFlag,
+        asked: Sequence[str] | None = None,
+        rates: bool = False,
     ) -> tuple[SpanRuns, ObservationModel]:
         """The runs, with the sensitivities that are `asked` for, and the sensors that look at them;
         `rates` of signals are for the derivatives by a delay. Raises Interrupted."""
@@ -144,7 +148,7 @@ class SegmentBatch:
             start if after else {**segment.start, **start}
             for segment, start, after in zip(self.segments, point.starts, self.follows, strict=True)
         ]
-        parameters = of_diagram(point.values, self.segments[0].measured)
+        parameters = of_diagram(self.model, point.values, self.segments[0].measured)
         key = asked if asked is None else tuple(asked)
         names = [tuple(start) for start in starts]
         kept = self._kept.get(key) if observation is self._declared else None
@@ -154,7 +158,7 @@ class SegmentBatch:
             problem = self._problem(observation, parameters, starts, asked)
             if observation is self._declared and problem.size <= CRITERION.kept:
                 self._kept[key] = names, problem
-        return problem.run(point.budget, halt), observation
+        return problem.run(point.budget, stop_flag), observation
 
     def _problem(
         self,
@@ -190,7 +194,7 @@ class SegmentBatch:
         )
 
     def linearise(
-        self, point: Point, sigma: Vector, moving: Sequence[str] | None, halt: Halt
+        self, point: Point, sigma: Vector, moving: Sequence[str] | None, stop_flag: StopFlag
     ) -> BatchLinearisation:
         """The residuals of the segments with the noise `sigma` (signals,), and their derivatives by
         the unknowns `moving` and the free starts; None: without these."""
@@ -198,12 +202,14 @@ class SegmentBatch:
         if moving is None:
             answers, asked = dict[str, str](), None
         else:
-            answers = {name: parameter_in(name, measured) for name in moving}
+            answers = {name: parameter_in(self.model, name, measured) for name in moving}
             answers |= {f"start.{name}": f"start.{name}" for one in point.starts for name in one}
             asked = [name for name in answers.values() if name]
-        rates = any(name.startswith("delay.") for name in answers)
+        rates = any(
+            name.startswith("delay.") and is_of_sensor(self.model, name) for name in answers
+        )
         try:
-            runs, observation = self.simulate(point, halt, asked, rates)
+            runs, observation = self.simulate(point, stop_flag, asked, rates)
         except Interrupted:
             raise
         except SimulationError as error:  # values that the diagram does not allow: nothing runs

@@ -11,10 +11,10 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.compile import Model, compile
+from tracewire.compile import Model, compile, find_name_clashes
 from tracewire.data import STEPS, Record, read_record
 from tracewire.diagram import Channel, Cleaning, Hold, Series, Use
-from tracewire.errors import DataError, OptionError, Place, Problem, TracewireError, unknown
+from tracewire.errors import DataError, Location, OptionError, Problem, TracewireError, unknown
 from tracewire.formula import evaluate
 from tracewire.library import SENSOR_TERMS
 from tracewire.residual.arrays import ArrayCheck, fields_of_frame
@@ -215,7 +215,7 @@ def load_measured(
     if not chosen:
         what = "the diagram names no measured series" + (f" for {sorted(wanted)}" if wanted else "")
         hint = "Add one under `measured:` with file, time and signals."
-        raise DataError([Problem(what, Place(str(model.diagram.file)), (), hint)])
+        raise DataError([Problem(what, Location(str(model.diagram.file)), (), hint)])
     problems: list[Problem] = []
     loaded: list[Measured] = []
     for one in chosen:
@@ -446,9 +446,12 @@ def _or(value: float | None, default: float) -> float:
 def with_measured_signals(model: Model, series: Sequence[Measured]) -> Model:
     """The model with every signal of the series among the recorded ones.
 
-    Raises OptionError: a signal that the model does not have.
+    Raises OptionError: a signal that the model does not have, or with a sensor of which a number
+    has the name of a parameter.
     """
     signals = dict.fromkeys(signal for m in series for signal in m.values)
+    if problems := find_name_clashes(model.flat, signals):
+        raise OptionError(problems)
     if signals.keys() <= set(model.recorded):
         return model
     return compile(model.diagram, record=[*model.recorded, *signals])

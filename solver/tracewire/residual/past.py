@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model, compile
-from tracewire.errors import OptionError, Place, Problem
+from tracewire.errors import Location, OptionError, Problem
 from tracewire.formula import evaluate
 from tracewire.residual.inputs import between_samples, looks_held
 from tracewire.residual.measured import Measured
@@ -87,7 +87,7 @@ def _why_undetermined(
     free = [name for name in free if name in moving]
     name = model.modes[delay.mode].signal
     block = model.flat.blocks.get(name)
-    place = replace(block.place if block else Place(), block=name)
+    place = replace(block.place if block else Location(), block=name)
     said = f"{what} begins within the record, which must tell what '{text}' was before"
     if unknown:
         reads = f"it reads {', '.join(dict.fromkeys(unknown))}"

@@ -11,12 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
-from tracewire.library import SENSOR_TERMS
 from tracewire.residual.measured import Measured
 
 Vector = NDArray[np.float64]
-SENSED = tuple(f"{term}." for term in SENSOR_TERMS)
-"""What the names of a sensor's unknowns begin with; all other names are the diagram's."""
 OWN = "@"
 """Stands between a parameter and the series that has it of its own: `harmonic.phase@run_1`."""
 
@@ -79,15 +76,13 @@ class Unknown:
     scale: float = 1.0
 
 
-def of_diagram(values: Mapping[str, float], measured: Measured | None = None) -> dict[str, float]:
-    """The parameters of the diagram among named unknowns: all but those of sensors.
+def of_diagram(model: Model, values: Mapping[str, float], measured: Measured) -> dict[str, float]:
+    """The parameters of a model's diagram among named unknowns, in a run of a series.
 
-    In a run of a series, those that it has of its own go before: as it gives them, and as an
-    unknown of that series (`harmonic.phase@run_1`) says. Unknowns of other series are left out.
+    Those that the series has of its own go before: as it gives them, and as an unknown of that
+    series (`harmonic.phase@run_1`) says. Unknowns of sensors and of other series are left out.
     """
-    known = {n: v for n, v in values.items() if not n.startswith(SENSED) and OWN not in n}
-    if measured is None:
-        return known
+    known = {n: v for n, v in values.items() if n in model.flat.parameters}
     known |= measured.parameters
     names = {name: own_name(name, measured) for name in measured.parameters}
     return known | {name: values[own] for name, own in names.items() if own in values}
@@ -111,10 +106,15 @@ def own_name(parameter: str, measured: Measured) -> str:
     return f"{parameter}{OWN}{measured.series or measured.name}"
 
 
-def parameter_in(unknown: str, measured: Measured) -> str:
-    """The parameter of the diagram that an unknown is in a run of a series; '' where it is none, as
-    of a sensor or another series, or where the series has a value of its own."""
-    if unknown.startswith(SENSED):
+def is_of_sensor(model: Model, unknown: str) -> bool:
+    """Whether an unknown is a number of a sensor, as `offset.SIGNAL`, and not the model's."""
+    return OWN not in unknown and unknown not in model.flat.parameters
+
+
+def parameter_in(model: Model, unknown: str, measured: Measured) -> str:
+    """The parameter of a model's diagram that an unknown is in a run of a series; '' where it is
+    none, as of a sensor or another series, or where the series has a value of its own."""
+    if is_of_sensor(model, unknown):
         return ""
     parameter, _, series = unknown.partition(OWN)
     if not series:

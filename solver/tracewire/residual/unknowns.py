@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping, Sequence
 import numpy as np
 
 from tracewire.compile import Model
-from tracewire.errors import OptionError, Place, Problem, unknown
+from tracewire.errors import Location, OptionError, Problem, unknown
 from tracewire.formula import names_of
 from tracewire.library import SENSOR_TERMS
 from tracewire.residual.limits import CRITERION
@@ -44,7 +44,7 @@ def _with_bounds(model: Model) -> list[str]:
 
 
 def _outside(
-    name: str, value: float, low: float, high: float, place: Place = Place()
+    name: str, value: float, low: float, high: float, place: Location = Location()
 ) -> list[Problem]:
     """That a start lies outside its bounds, where it does."""
     if low <= value <= high:

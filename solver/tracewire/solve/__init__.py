@@ -128,7 +128,7 @@ on it keeps its last side while the stop holds.
 from tracewire.solve.held import Driving, Held, values_at, with_points
 from tracewire.solve.history import refuse_delays
 from tracewire.solve.integrator import Integrator
-from tracewire.solve.interrupt import Halt, Interrupted, until_interrupted
+from tracewire.solve.interrupt import Interrupted, StopFlag, until_interrupted
 from tracewire.solve.limits import Limits, beyond_budget
 from tracewire.solve.many import simulate_many
 from tracewire.solve.observers import Section, guard_crossings
@@ -150,7 +150,6 @@ __all__ = [
     "START",
     "Driving",
     "Event",
-    "Halt",
     "Held",
     "InitialValueProblem",
     "Integrator",
@@ -168,6 +167,7 @@ __all__ = [
     "SpanProblem",
     "SpanRuns",
     "Statistics",
+    "StopFlag",
     "WorkerEnded",
     "beyond_budget",
     "carry_out",

@@ -51,9 +51,9 @@ def library() -> Library:
     Ctrl-C is heard when it is loaded: an exception inside of LLVM would end the process.
     """
     code = object_code()
-    with until_interrupted() as halt:
+    with until_interrupted() as stop_flag:
         engine = load_object(code)
-    if halt.asked:
+    if stop_flag.asked:
         raise KeyboardInterrupt
 
     def function(name: str, result: Any, *given: Any) -> Any:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import OF_THE_PAST, Model
-from tracewire.errors import Place, Problem, SimulationError
+from tracewire.errors import Location, Problem, SimulationError
 from tracewire.solve.core.arrays import Arrays, Flow, Progress
 from tracewire.solve.core.codes import (
     BAD_RESET,
@@ -35,11 +35,11 @@ Matrix = NDArray[np.float64]
 HYSTERESIS = "A guard reads what its own mode changes: use hysteresis or a block with memory."
 
 
-def place_of(model: Model, name: str) -> Place:
+def place_of(model: Model, name: str) -> Location:
     """The place of the block behind a signal or a state."""
     block = model.flat.blocks.get(name)
-    place = block.place if block else Place()
-    return Place(place.file, place.line, place.column, name)
+    place = block.place if block else Location()
+    return Location(place.file, place.line, place.column, name)
 
 
 def stopped(
@@ -48,7 +48,7 @@ def stopped(
     """The error of a run that cannot go on: time, values, block and remedy."""
     states = zip(model.states, x.tolist(), strict=True)
     values = ", ".join(f"{state} = {value:.6g}" for state, value in states)
-    place = place_of(model, name) if name else Place()
+    place = place_of(model, name) if name else Location()
     text = f"the run stopped at t = {t:.9g} s: {what}; {values}"
     return SimulationError([Problem(text, place, (), hint)])
 
@@ -113,7 +113,7 @@ def _no_mode(model: Model, t: float, guards: Sequence[int], what: str) -> Simula
         texts = ", ".join(f"'{mode.text}' in {mode.signal}" for mode in modes)
         text = f"no consistent mode at t = {t:.9g} s: {texts} changes with its own mode"
         hint = "A guard reads a signal that jumps with its mode: use hysteresis."
-    place = place_of(model, modes[0].signal) if modes else Place()
+    place = place_of(model, modes[0].signal) if modes else Location()
     return SimulationError([Problem(text, place, (), hint)])
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tracewire.compile import Model
-from tracewire.errors import OptionError, Place, Problem, SimulationError, unknown
+from tracewire.errors import Location, OptionError, Problem, SimulationError, unknown
 from tracewire.solve.core.arrays import FIRST, Arrays, History, Sensitivity
 from tracewire.solve.core.codes import T
 from tracewire.solve.core.history import DEGREE, EACH, HEAD, ROOM
@@ -117,7 +117,7 @@ def refuse_delays(model: Model, what: str) -> None:
         name = model.modes[delay.mode].signal
         block = model.flat.blocks.get(name)
         said = f"{what} begins at states, and the delay needs what '{delay.text}' was before"
-        place = replace(block.place if block else Place(), block=name)
+        place = replace(block.place if block else Location(), block=name)
         hint = "Take a block of type pade_delay in its place, whose states are its past."
         problems.append(Problem(said, place, (), hint))
     if problems:

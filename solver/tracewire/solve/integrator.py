@@ -32,7 +32,7 @@ from tracewire.solve.core_library import library
 from tracewire.solve.event_log import Log
 from tracewire.solve.failures import failure, place_of, too_long, too_many_events
 from tracewire.solve.history import grow
-from tracewire.solve.interrupt import Halt, Interrupted, until_interrupted
+from tracewire.solve.interrupt import Interrupted, StopFlag, until_interrupted
 from tracewire.solve.limits import PAUSE
 from tracewire.solve.once_per_model import once_per_model
 from tracewire.solve.problem import InitialValueProblem
@@ -70,7 +70,7 @@ class Integrator:
     Modes, slides, contacts and memories go on over a stop.
 
     `records` says what is kept at the sample times. `progress` is told about ten times a second how
-    far it is; `halt` says whether the user wants to stop, and Ctrl-C does where none is given.
+    far it is; `stop_flag` says whether the user wants to stop, and Ctrl-C does where none is given.
     """
 
     def __init__(
@@ -79,10 +79,10 @@ class Integrator:
         *,
         records: Records = "signals",
         progress: ProgressCallback | None = None,
-        halt: Halt | None = None,
+        stop_flag: StopFlag | None = None,
     ) -> None:
         self.problem, self.model = problem, problem.model
-        self.tell, self.halt = progress, halt
+        self.tell, self.stop_flag = progress, stop_flag
         self.workspace: Workspace = acquire(problem, records)
         self.arrays: Arrays = self.workspace.arrays
         self.log = Log(problem.model, problem.sensitivities)
@@ -108,8 +108,8 @@ class Integrator:
         happened then.
 
         Raises OptionError for an end that is behind; SimulationError where it cannot go on;
-        Interrupted where the user does not want it: a `halt` that is given is the business of the
-        caller, else Ctrl-C is heard here.
+        Interrupted where the user does not want it: a `stop_flag` that is given is the business of
+        the caller, else Ctrl-C is heard here.
         """
         end = self.problem.span[1] if end is None else end
         if not self.t <= end < math.inf:
@@ -123,18 +123,18 @@ class Integrator:
             progress.ints[SAMPLED] = np.searchsorted(progress.times, end, side="right")
 
     def _go_on(self) -> None:
-        """Integrate to the stop; Ctrl-C is heard here unless there is a `halt`."""
-        if self.halt is not None:
-            if not self.advance(self.halt):
+        """Integrate to the stop; Ctrl-C is heard here unless there is a `stop_flag`."""
+        if self.stop_flag is not None:
+            if not self.advance(self.stop_flag):
                 raise self.interrupted()
             return
-        with until_interrupted() as halt:
+        with until_interrupted() as stop_flag:
             try:
-                self.advance(halt)
+                self.advance(stop_flag)
             except SimulationError:
-                if not halt.asked:
+                if not stop_flag.asked:
                     raise
-        if halt.asked:  # whatever became of the run: the user wants to stop
+        if stop_flag.asked:  # whatever became of the run: the user wants to stop
             raise self.interrupted()
 
     def interrupted(self) -> Interrupted:
@@ -144,7 +144,7 @@ class Integrator:
         what = f"interrupted at t = {now[T]:.9g} s, {way}"
         return Interrupted([Problem(what, hint="What there is of the run is in `.run`.")])
 
-    def advance(self, halt: Halt, status: int | None = None) -> bool:
+    def advance(self, stop_flag: StopFlag, status: int | None = None) -> bool:
         """Integrate until the end, or until the user wants to stop; whether it is the end.
 
         `status` is what the core has said already of a run that has begun.
@@ -153,7 +153,7 @@ class Integrator:
         ints, now, limits = self.arrays.progress.ints, self.arrays.progress.now, self.problem.limits
         code, core = library(), self.workspace.address
         budget, last = first_budget(self.model), -PAUSE.seconds
-        while not halt.asked:
+        while not stop_flag.asked:
             before, done = self.seconds, int(ints[STEPS])
             ints[BUDGET] = min(budget, limits.steps - done)
             status = code.advance(core) if status is None else status

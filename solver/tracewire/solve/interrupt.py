@@ -33,13 +33,13 @@ class Interrupted(SimulationError):
 
 
 @dataclass
-class Halt:
+class StopFlag:
     """Whether the user wants to stop."""
 
     asked: bool = False
 
 
-def until_interrupted() -> AbstractContextManager[Halt]:
+def until_interrupted() -> AbstractContextManager[StopFlag]:
     """Note Ctrl-C instead of raising it; the second one is a KeyboardInterrupt as ever.
 
     An exception that may come between any two lines could lose events, and inside of a callback it
@@ -52,20 +52,20 @@ class _Noted:
     """What `until_interrupted` gives; a generator would take as long as the rest of it."""
 
     def __init__(self) -> None:
-        self.halt, self.noted = Halt(), False
+        self.stop_flag, self.noted = StopFlag(), False
 
-    def __enter__(self) -> Halt:
+    def __enter__(self) -> StopFlag:
         main = threading.get_ident() == threading.main_thread().ident
         if main and _signal.getsignal(CTRL_C) is _signal.default_int_handler:
             self.noted = True
             _signal.signal(CTRL_C, self._note)
-        return self.halt
+        return self.stop_flag
 
     def __exit__(self, *_: object) -> None:
         if self.noted:
             _signal.signal(CTRL_C, _signal.default_int_handler)
 
     def _note(self, number: int, frame: object) -> None:
-        if self.halt.asked:
+        if self.stop_flag.asked:
             raise KeyboardInterrupt
-        self.halt.asked = True
+        self.stop_flag.asked = True

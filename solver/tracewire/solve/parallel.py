@@ -1,10 +1,9 @@
 """Independent work side by side: in threads of this process, or wherever an executor runs it.
 
-A job is a function of a number and a `Halt`. Threads call it as it is: the core and numpy let go of
-Python's lock. An executor of `concurrent.futures` (of processes, dask, MPI) gets the job pickled,
-with several numbers at a time; a process that has seen a job keeps it, and with it the machine code
-of its model.
-"""
+A job is a function of a number and a `StopFlag`. Threads call it as it is: the core and numpy let
+go of Python's lock. An executor of `concurrent.futures` (of processes, dask, MPI) gets the job
+pickled, with several numbers at a time; a process that has seen a job keeps it, and with it the
+machine code of its model."""
 
 from __future__ import annotations
 
@@ -26,16 +25,16 @@ from functools import lru_cache
 from typing import Any, Generic, TypeVar
 
 from tracewire.errors import OptionError, Problem, SimulationError, TracewireError
-from tracewire.solve.interrupt import Halt, Interrupted, until_interrupted
+from tracewire.solve.interrupt import Interrupted, StopFlag, until_interrupted
 from tracewire.solve.limits import PARALLEL
 from tracewire.solve.progress import PartProgress
 
 T = TypeVar("T")
 Job = Callable[..., T]
-"""A function of some arguments and a `Halt`; it is picklable where an executor is to run it."""
+"""A function of some arguments and a `StopFlag`; it is picklable where an executor is to run it."""
 
 Arguments = tuple[Any, ...]
-"""Those of a job, but for the `Halt`."""
+"""Those of a job, but for the `StopFlag`."""
 
 
 class WorkerEnded(SimulationError):
@@ -45,8 +44,10 @@ class WorkerEnded(SimulationError):
 class Crew(Generic[T]):
     """Who carries out a job: `submit` its arguments, and take from `done` what became of them."""
 
-    def __init__(self, job: Job[T], pool: Executor, halt: Halt, remote: bool, workers: int) -> None:
-        self.job, self.pool, self.halt, self.workers = job, pool, halt, workers
+    def __init__(
+        self, job: Job[T], pool: Executor, stop_flag: StopFlag, remote: bool, workers: int
+    ) -> None:
+        self.job, self.pool, self.stop_flag, self.workers = job, pool, stop_flag, workers
         self.waiting: dict[Future[Any], Sequence[tuple[Any, ...]]] = {}
         self.seconds = 0.0  # of a task, the last time
         self.content = pickle.dumps(job) if remote else b""
@@ -67,7 +68,7 @@ class Crew(Generic[T]):
         if self.content:
             future = self.pool.submit(_elsewhere, self.key, self.content, tasks)
         else:
-            future = self.pool.submit(_here, self.job, tasks, self.halt)
+            future = self.pool.submit(_here, self.job, tasks, self.stop_flag)
         self.waiting[future] = tasks
 
     def drop(self) -> None:
@@ -123,7 +124,7 @@ class _Here(Executor):
 
 @contextmanager
 def crew(
-    job: Job[T], halt: Halt, workers: int | None = None, executor: Executor | None = None
+    job: Job[T], stop_flag: StopFlag, workers: int | None = None, executor: Executor | None = None
 ) -> Iterator[Crew[T]]:
     """Threads, as many as there are `workers`, or an executor; what waits at the end is dropped.
 
@@ -133,16 +134,16 @@ def crew(
     """
     count = worker_count(workers)
     if executor is None and count == 1:
-        yield from _working(Crew(job, _Here(), halt, False, 0))
+        yield from _working(Crew(job, _Here(), stop_flag, False, 0))
         return
     if executor is None:
         with ThreadPoolExecutor(count, thread_name_prefix="tracewire") as pool:
-            yield from _working(Crew(job, pool, halt, False, count))
+            yield from _working(Crew(job, pool, stop_flag, False, count))
         return
     if workers is None:
         count = getattr(executor, "_max_workers", None) or count
     try:
-        made = Crew(job, executor, halt, True, count)
+        made = Crew(job, executor, stop_flag, True, count)
     except (pickle.PicklingError, AttributeError, TypeError) as error:
         what = f"this cannot be sent to another process: {error}"
         hint = "Give functions that a module defines, not a lambda or one inside of another."
@@ -154,7 +155,7 @@ def _working(made: Crew[T]) -> Iterator[Crew[T]]:
     try:
         yield made
     except BaseException:
-        made.halt.asked = True
+        made.stop_flag.asked = True
         raise
     finally:
         made.drop()
@@ -178,11 +179,11 @@ def carry_out(
     worker has ended that the executor does not replace.
     """
     ready = list(reversed(tasks))
-    with until_interrupted() as halt, crew(job, halt, workers, executor) as made:
-        while (ready and not halt.asked) or made.waiting:
-            if halt.asked:
+    with until_interrupted() as stop_flag, crew(job, stop_flag, workers, executor) as made:
+        while (ready and not stop_flag.asked) or made.waiting:
+            if stop_flag.asked:
                 made.drop()
-            while ready and made.has_room and not halt.asked:
+            while ready and made.has_room and not stop_flag.asked:
                 share = max(1, len(ready) // max(1, made.workers))  # all workers have something
                 made.submit([ready.pop() for _ in range(min(made.chunk, share))])
             for arguments, result in made.done():
@@ -191,7 +192,7 @@ def carry_out(
                     ready.append(follow)
                 if progress is not None and not isinstance(result, Interrupted):
                     progress.step()
-        return halt.asked
+        return stop_flag.asked
 
 
 def worker_count(workers: int | None) -> int:
@@ -208,16 +209,16 @@ def cores() -> int:
 
 
 def _here(
-    job: Job[T], tasks: Sequence[tuple[Any, ...]], halt: Halt
+    job: Job[T], tasks: Sequence[tuple[Any, ...]], stop_flag: StopFlag
 ) -> tuple[list[T | TracewireError], float]:
     """What the job makes of some tasks, and the seconds that it took."""
     began, results = time.perf_counter(), list[T | TracewireError]()
     for arguments in tasks:
-        if halt.asked:
+        if stop_flag.asked:
             results.append(Interrupted([Problem("interrupted before it began")]))
             continue
         try:
-            results.append(job(*arguments, halt))
+            results.append(job(*arguments, stop_flag))
         except TracewireError as error:
             results.append(error)
     return results, time.perf_counter() - began
@@ -226,7 +227,7 @@ def _here(
 def _elsewhere(
     key: bytes, content: bytes, tasks: Sequence[tuple[Any, ...]]
 ) -> tuple[list[Any], float]:
-    return _here(_job(key, content), tasks, Halt())
+    return _here(_job(key, content), tasks, StopFlag())
 
 
 @lru_cache(maxsize=PARALLEL.jobs)

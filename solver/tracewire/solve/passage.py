@@ -32,7 +32,7 @@ from tracewire.solve.core_library import library
 from tracewire.solve.failures import failure
 from tracewire.solve.history import refuse_delays
 from tracewire.solve.integrator import Integrator
-from tracewire.solve.interrupt import Halt, Interrupted
+from tracewire.solve.interrupt import Interrupted, StopFlag
 from tracewire.solve.limits import STEP
 from tracewire.solve.options import START
 from tracewire.solve.problem import initial_value_problem, start_of
@@ -69,7 +69,7 @@ class Passage:
         atol: float | Mapping[str, float] | None = None,
         tangents: bool = False,
         inner: int = 0,
-        halt: Halt | None = None,
+        stop_flag: StopFlag | None = None,
     ) -> None:
         known = ["auto", *(name for name in NAMES if name not in STEPPED)]
         if method not in known:
@@ -95,7 +95,7 @@ class Passage:
         )
         model.routines.compiled_addresses(FUNCTIONS)  # several passages may run in threads
         problem = replace(self._problem, times=np.zeros(inner))
-        self._integrator = Integrator(problem, records="states", halt=halt or Halt())
+        self._integrator = Integrator(problem, records="states", stop_flag=stop_flag or StopFlag())
         self.arrays: Arrays = self._integrator.arrays
         self._integrator.workspace.keep()
         self._settle()

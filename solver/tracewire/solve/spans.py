@@ -24,9 +24,9 @@ from tracewire.solve.core_library import library
 from tracewire.solve.failures import failure
 from tracewire.solve.history import refuse_delays
 from tracewire.solve.integrator import Integrator, refuse_nan
-from tracewire.solve.interrupt import Halt, Interrupted
+from tracewire.solve.interrupt import Interrupted, StopFlag
 from tracewire.solve.limits import PAUSE, beyond_budget
-from tracewire.solve.options import START, AnySpan, Options
+from tracewire.solve.options import AnySpan, Options
 from tracewire.solve.problem import InitialValueProblem, initial_value_problem
 from tracewire.solve.run import Sensitivities
 from tracewire.solve.sensitivities import recorded
@@ -89,7 +89,7 @@ def simulate_spans(
     A run that fails does not end the others. Raises OptionError for arguments that do not fit, and
     Interrupted.
     """
-    return span_problem(model, spans, sensitivities, **given).run(budget, Halt())
+    return span_problem(model, spans, sensitivities, **given).run(budget, StopFlag())
 
 
 class Layout(NamedTuple):
@@ -128,20 +128,20 @@ class SpanProblem:
         OptionError, SimulationError."""
         return SpanProblem(self.problem.with_parameters(parameters), self.layout, starts)
 
-    def run(self, budget: float, halt: Halt) -> SpanRuns:
+    def run(self, budget: float, stop_flag: StopFlag) -> SpanRuns:
         """The runs; see `simulate_spans`. Raises OptionError, Interrupted."""
         problem, layout = self.problem, self.layout
-        integrator = Integrator(problem, halt=halt)
+        integrator = Integrator(problem, stop_flag=stop_flag)
         space = integrator.workspace
         integrator.progress.ints[BUDGET] = min(problem.limits.steps, PAUSE.steps)
         space.keep()
         many = space.for_spans(len(layout.ends), len(layout.times))
         if space.layout is not layout:
-            _set_layout(many, layout, problem.sensitivities)
+            _set_layout(many, layout, problem)
             space.layout = layout
         self._set_to(many, space.arrays)
         own_places = space.table.copy()
-        errors, warnings = _executed(integrator, many, budget, halt)
+        errors, warnings = _executed(integrator, many, budget, stop_flag)
         space.table[:] = own_places  # the core has set those of samples to what is in `many`
         model = problem.model
         errors |= _undefined(model, many, errors)
@@ -219,15 +219,15 @@ def span_problem(
     return SpanProblem(problem, layout, starts)
 
 
-def _set_layout(many: Spans, layout: Layout, asked: Sequence[str]) -> None:
+def _set_layout(many: Spans, layout: Layout, problem: InitialValueProblem) -> None:
     """Let the arrays of spans have the layout of these."""
     many.ends[:], many.rows[:], many.times[:] = layout.ends, layout.rows, layout.times
     many.follows[:], many.kept[:] = layout.follows, layout.kept
-    many.lasting[:] = [not name.startswith(START) for name in asked]
+    many.lasting[:] = [name in problem.model.flat.parameters for name in problem.sensitivities]
 
 
 def _executed(
-    integrator: Integrator, many: Spans, budget: float, halt: Halt
+    integrator: Integrator, many: Spans, budget: float, stop_flag: StopFlag
 ) -> tuple[dict[int, SimulationError], dict[int, tuple[str, ...]]]:
     """Let the core go over the spans; errors and warnings of some by number."""
     errors: dict[int, SimulationError] = {}
@@ -236,7 +236,7 @@ def _executed(
     addresses = integrator.workspace.address, integrator.workspace.address_of_spans
     limits = integrator.problem.limits
     while at[SPAN] < len(many.ends):
-        if halt.asked:
+        if stop_flag.asked:
             raise Interrupted([Problem("interrupted")])
         taken = int(many.steps.sum()) + limits.steps * len(errors)
         if taken > budget:
@@ -254,7 +254,7 @@ def _executed(
         try:
             if status not in (FINISHED, LOG_FULL, PAUSED, HISTORY_FULL):
                 raise failure(integrator.model, integrator.arrays, status)
-            if not integrator.advance(halt, status):
+            if not integrator.advance(stop_flag, status):
                 raise integrator.interrupted()
             code.keep_end(*addresses)
             if integrator.warnings:

@@ -15,7 +15,7 @@ from tracewire.formula import names_of
 from tracewire.solve.core.flow import FUNCTIONS
 from tracewire.solve.core_library import library
 from tracewire.solve.integrator import Integrator, refuse_nan
-from tracewire.solve.interrupt import Halt
+from tracewire.solve.interrupt import StopFlag
 from tracewire.solve.observers import (
     Observer,
     Section,
@@ -102,7 +102,7 @@ class Task:
                 hint = "Give span= and times=, or observe something else than samples."
                 raise OptionError([Problem(what, hint=hint)])
 
-    def run(self, number: int, row: Row, halt: Halt) -> Outcome:
+    def run(self, number: int, row: Row, stop_flag: StopFlag) -> Outcome:
         """The run of one row, and what is kept of it. Raises TracewireError."""
         model, section = self.model, self.section
         problem = self.problem.with_values(row)
@@ -113,7 +113,7 @@ class Task:
             marks, since = instants(section, problem.parameters, begin, end)
         every = np.union1d(times, marks)
         records: Records = "both" if len(marks) else "signals"
-        integrator = Integrator(replace(problem, times=every), records=records, halt=halt)
+        integrator = Integrator(replace(problem, times=every), records=records, stop_flag=stop_flag)
         integrator.go_to()
         columns, recorded = len(model.recorded), integrator.progress.samples
         points = np.empty((0, 1 + len(model.states)))

@@ -18,7 +18,7 @@ from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 import numpy as np
 
 from tracewire.diagram import Diagram, read_text
-from tracewire.errors import OptionError, Place, Problem, TracewireError
+from tracewire.errors import Location, OptionError, Problem, TracewireError
 from tracewire.files import write_file, writing
 from tracewire.library import load_library
 from tracewire.result import plain
@@ -57,7 +57,7 @@ def load(path: str | Path, libraries: Iterable[str | Path] = ()) -> Found:
     where they were has its text only. Raises OptionError: no such file, another kind of file, a
     damaged one, or one of a newer tracewire.
     """
-    place = Place(str(path))
+    place = Location(str(path))
     try:
         data = json.loads(Path(path).read_text(encoding="utf-8"))
     except OSError as error:

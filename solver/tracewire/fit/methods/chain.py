@@ -133,7 +133,7 @@ def _cut(whole: Criterion, n: int) -> list[Segment]:
     sigma, spread = whole.sigma[measured.name], spread_of(segment, TRACKING.parts)
     least = max(SEGMENTS.fewest_samples, -(-len(rows) // SEGMENTS.most_segments))
     known = parameter_values(
-        model, of_diagram({**whole.parameters, **named}, measured), measured.preset
+        model, of_diagram(model, {**whole.parameters, **named}, measured), measured.preset
     )
     there = {s.name: evaluate(s.start, known, s.place) for s in model.flat.states}
     now = {**there, **segment.start, **starts[n]}

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from tracewire.compile import Model, compile
 from tracewire.diagram import BlockUse, Diagram, InputPort, Value, Wire
 from tracewire.errors import FormulaError, TracewireError
-from tracewire.errors import Place as Spot
+from tracewire.errors import Location as Spot
 from tracewire.formula import Number
 from tracewire.solve import Interrupted, simulate
 from tracewire.trace.candidates.candidate import Candidate

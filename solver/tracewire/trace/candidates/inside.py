@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from tracewire.diagram import BlockUse, Diagram, find_signal
-from tracewire.errors import Place
+from tracewire.errors import Location
 
 
 def extensible_subsystems(diagram: Diagram) -> dict[str, BlockUse]:
@@ -98,14 +98,14 @@ def _blocks(use: BlockUse) -> Iterator[BlockUse]:
             yield from _blocks(inside)
 
 
-def _used(diagram: Diagram) -> Iterator[Place]:
+def _used(diagram: Diagram) -> Iterator[Location]:
     for use in diagram.blocks.values():
         if use.subsystem is not None:
             yield use.subsystem.place
             yield from _used(use.subsystem)
 
 
-def _defined(diagram: Diagram) -> Iterator[tuple[str, Place]]:
+def _defined(diagram: Diagram) -> Iterator[tuple[str, Location]]:
     for inside in diagram.subsystems.values():
         yield inside.name, inside.place
         yield from _defined(inside)

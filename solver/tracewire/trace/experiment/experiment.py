@@ -120,7 +120,7 @@ def _separation(
     shown = maker.outputs(whole, {}, {})
     run = simulate(
         states,
-        parameters=of_diagram(mine, base),
+        parameters=of_diagram(one.model, mine, base),
         start=start,
         span=(0.0, float(rig.t[-1])),
         times=rig.t,

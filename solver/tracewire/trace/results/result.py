@@ -14,7 +14,7 @@ from tracewire.compile import Model
 from tracewire.diagram import Diagram, SetValues, patch
 from tracewire.errors import TracewireError
 from tracewire.fit import describe_undetermined
-from tracewire.residual import SENSED
+from tracewire.residual import is_of_sensor
 from tracewire.trace.candidates.changes import changes_of
 from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.choose.verdict import Judgement
@@ -88,7 +88,7 @@ def result_of(
         words=tuple(search.words),
         original=problem.declared.diagram,
         diagram=(
-            _edit_diagram(problem.declared, best.effects, values)
+            _edit_diagram(problem.declared, best, best.effects, values)
             if judgement.verdict == "effect" or interrupted
             else problem.declared.diagram  # an approximation is told, and written where one asks
         ),
@@ -214,7 +214,7 @@ def _candidate_correlations(search: Search) -> tuple[tuple[str, ...], Matrix]:
 
 
 def _edit_diagram(
-    model: Model, effects: Sequence[PlacedEffect], values: Mapping[str, float]
+    model: Model, best: Trial, effects: Sequence[PlacedEffect], values: Mapping[str, float]
 ) -> Diagram:
     """The original text with effects and with the refitted parameters."""
     if not effects:
@@ -224,7 +224,7 @@ def _edit_diagram(
     kept = {
         name: value
         for name, value in values.items()
-        if name in model.flat.parameters or (name.startswith(SENSED) and name not in added)
+        if name in model.flat.parameters or (is_of_sensor(best.model, name) and name not in added)
     }
     return patch(model.diagram, [*changes_of(model.diagram, chosen), SetValues(kept)])
 
@@ -238,7 +238,7 @@ def _apply_some(
     kept = [added for added, effect in pairs if str(effect) in effects]
     left_out = final.dropped if len(kept) < len(final.best.effects) else ()
     restored = {name: final.declared.values[name] for name in left_out}
-    return _edit_diagram(search.problem.declared, kept, {**values, **restored})
+    return _edit_diagram(search.problem.declared, final.best, kept, {**values, **restored})
 
 
 def _find_experiments(search: Search, final: FinalModels) -> tuple[Experiment, ...]:

@@ -94,7 +94,7 @@ def simulate_windows(
     runs = simulate_spans(
         model,
         spans,
-        parameters=of_diagram(values, segment.measured),
+        parameters=of_diagram(model, values, segment.measured),
         rtol=rtol,
         atol=absolute_tolerances(model, segment.measured, rtol),
         preset=segment.measured.preset,

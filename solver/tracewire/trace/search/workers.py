@@ -11,7 +11,7 @@ from typing import Any
 from tracewire.blas import one_blas_thread
 from tracewire.errors import DiagramError, FitError, OptionError, TracewireError
 from tracewire.residual import Segment
-from tracewire.solve import Halt, WorkerEnded, carry_out
+from tracewire.solve import StopFlag, WorkerEnded, carry_out
 from tracewire.trace.trials.trial import PlacedEffect, TraceProblem, Trial
 
 REFUSED = (FitError, DiagramError, OptionError)
@@ -60,7 +60,7 @@ class Workers:
             if number not in found:
                 _tell(refit, len(found) + 1, len(refits), tell)
                 try:
-                    found[number] = _fit(problem, number, refit, Halt())
+                    found[number] = _fit(problem, number, refit, StopFlag())
                 except REFUSED as error:
                     found[number] = error
         return [found[number] for number in range(len(refits))]
@@ -86,7 +86,7 @@ class Workers:
 
 
 @one_blas_thread()
-def _fit(problem: TraceProblem, number: int, refit: RefitTask, halt: Halt) -> Trial:
+def _fit(problem: TraceProblem, number: int, refit: RefitTask, stop_flag: StopFlag) -> Trial:
     """The trial of a refit: the job of the workers, who get the problem once."""
     return problem.fit(refit.effects, refit.segments, refit.length, refit.values, **refit.options)
 

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from tracewire.residual import OWN, SENSED, Unknown
+from tracewire.residual import OWN, Unknown, is_of_sensor
 from tracewire.trace.trials.trial import PlacedEffect, Trial
 
 Kind = Literal["parameter", "sensor", "coefficient", "shape"]
@@ -91,7 +91,7 @@ def at_bounds(trial: Trial) -> list[AtBound]:
         effect = effects.get(unknown.name)
         low, high = unknown.low, unknown.high
         unit = _unit(trial, unknown.name, effect)
-        kind = _kind(unknown.name, effect)
+        kind = _kind(trial, unknown.name, effect)
         label = "" if effect is None else str(effect)
         found.append(AtBound(unknown.name, kind, value, low, high, upper, unit, label))
     order = ("parameter", "sensor", "coefficient", "shape")
@@ -110,10 +110,10 @@ def _near(unknown: Unknown, value: float, part: float, upper: bool) -> bool:
     return abs(value - bound) <= part * min(size, high - low)
 
 
-def _kind(name: str, effect: PlacedEffect | None) -> Kind:
+def _kind(trial: Trial, name: str, effect: PlacedEffect | None) -> Kind:
     if effect is not None:
         return "coefficient" if name == effect.candidate.coefficient else "shape"
-    return "sensor" if name.startswith(SENSED) else "parameter"
+    return "sensor" if is_of_sensor(trial.model, name) else "parameter"
 
 
 def _unit(trial: Trial, name: str, effect: PlacedEffect | None) -> str:
@@ -126,7 +126,7 @@ def _unit(trial: Trial, name: str, effect: PlacedEffect | None) -> str:
         if of in ("U", "drives"):
             return flat.units.get("".join(place.drive[:1]) or place.definition, "")
         return flat.units.get(place.v if of in ("V", "rates", "top") else place.q, "") if of else ""
-    if name.startswith(SENSED):
+    if is_of_sensor(trial.model, name):
         kind, _, signal = name.partition(".")
         unit = flat.units.get(signal, "")
         return {"offset": unit, "delay": "s", "gain": ""}.get(kind, "")
