@@ -144,6 +144,16 @@ def test_a_value_on_a_bound_is_held_and_has_no_error() -> None:
     assert "b sits on its lower bound 0" in found.words[0]
 
 
+@pytest.mark.parametrize("size", [1e-12, 1e-8, 1e-3])
+def test_a_small_value_between_wide_bounds_is_on_none(size: float) -> None:
+    matrix = np.stack([np.ones(COUNT), T / size], axis=1)
+    data = matrix @ [1.0, 5 * size] + 0.1 * np.random.default_rng(9).standard_normal(COUNT)
+    low, high, sizes = np.array([-np.inf, 0.0]), np.array([np.inf, 1.0]), np.array([1.0, size])
+    found = linear(matrix, data, correlated=False, low=low, high=high, sizes=sizes)
+    assert found.at_bounds == ()
+    assert found.errors["b"] == pytest.approx(0.1 * (12 / COUNT) ** 0.5 * size, rel=0.2)
+
+
 def test_what_the_data_do_not_depend_on_is_told() -> None:
     rng = np.random.default_rng(10)
     matrix = np.stack([np.ones(COUNT), np.zeros(COUNT), 1e-3 * T], axis=1)

@@ -211,7 +211,8 @@ class UncertaintyLimits:
     """Of standard errors, and of parameters that the data do not determine."""
 
     at_bound: float = 1e-6
-    """Part of the width between bounds within which a value sits on one."""
+    """Part of the width between bounds, or of the value's own size where that is less, within which
+    a value sits on one."""
     far: float = 3.0
     """In sigma: beyond it a robust loss takes a residual for an outlier."""
     unmoved: float = 10.0

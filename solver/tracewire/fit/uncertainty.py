@@ -271,7 +271,7 @@ def criterion_unit(
 def _on_bounds(columns: ParameterColumns) -> NDArray[np.bool_]:
     width = columns.high - columns.low
     size = np.maximum(np.abs(columns.values), columns.sizes)
-    near = UNCERTAINTY.at_bound * np.where(np.isfinite(width), width, size)
+    near = UNCERTAINTY.at_bound * np.minimum(width, size)
     inside = (columns.values - columns.low > near) & (columns.high - columns.values > near)
     return np.asarray(~inside)
 

@@ -87,6 +87,11 @@ class ReadingLimits:
     """Steps of the least gap, at most."""
     coarse: float = 1e3
     """Steps of the median gap, at most."""
+    timed: float = 0.2
+    """What local quartics leave of samples that were taken where a counter stepped, in units of
+    what rounding would leave, at most."""
+    moving_places: int = 10
+    """Places at which every sample differs from the one before, to tell that, at least."""
 
 
 READING = ReadingLimits()

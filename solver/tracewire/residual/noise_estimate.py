@@ -54,7 +54,7 @@ def noise_of_signal(values: Vector, t: Vector | None = None) -> NoiseEstimate:
     Short or uneven series have differences of high order instead, and so have those in which
     something happens in most stretches: a difference sees a dozen samples only.
     """
-    step = rounding_step(values)
+    step = rounding_step(values, t)
     if len(values) <= NOISE.orders[0] + 1:
         return NoiseEstimate(step / 12**0.5, 0.0, float(np.ptp(values)), "too few samples", step)
     factor, phase = interpolation(values)

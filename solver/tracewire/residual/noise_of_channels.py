@@ -36,7 +36,8 @@ def estimate_noise(measured: Sequence[Measured]) -> dict[str, NoiseEstimate]:
 def _of_channel(series: Measured, name: str, values: Vector) -> NoiseEstimate:
     declared = series.sigma.get(name)
     if declared is not None:
-        return NoiseEstimate(declared, declared, declared, "declared", rounding_step(values))
+        step = rounding_step(values, series.t)
+        return NoiseEstimate(declared, declared, declared, "declared", step)
     estimate = noise_of_signal(values, series.t)
     least = max(NOISE.least * float(np.std(values)), 1e-300)
     if estimate.level >= least:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.residual.limits import READING
+from tracewire.residual.limits import NOISE, READING, WINDOW
+from tracewire.residual.local_quartics import LocalQuartics, rows_around
 
 Vector = NDArray[np.float64]
 MAD = 1.4826
@@ -33,7 +34,29 @@ def replace_outliers(values: Vector) -> Vector:
     return repaired
 
 
-def rounding_step(values: Vector) -> float:
+def rounding_step(values: Vector, t: Vector | None = None) -> float:
+    """The step to which readings (N,) are rounded, at times t (N,), even ones unless given; 0 where
+    there is none, as where the samples were taken when a counter stepped."""
+    step = _common_step(values)
+    return 0.0 if step and t is not None and _is_timed_by_steps(values, t, step) else step
+
+
+def _is_timed_by_steps(values: Vector, t: Vector, step: float) -> bool:
+    """Whether each sample was taken where a counter stepped: its times are uneven then, and where
+    it moves quartics leave far less than rounding would."""
+    if np.ptp(np.diff(t)) <= NOISE.uneven * np.median(np.diff(t)):
+        return False
+    points = WINDOW.points[-1]
+    rows = np.unique(np.linspace(0, len(t) - 1, WINDOW.places).astype(np.intp))
+    near = rows_around(rows, points, len(t))
+    near = near[(np.diff(values[near], axis=1) != 0).all(axis=1)]
+    if len(near) < READING.moving_places:
+        return False
+    left = LocalQuartics(t[near] - t[near[:, :1]], values[near]).mean_squares
+    return bool(np.median(left) < (READING.timed * step) ** 2 / 12)
+
+
+def _common_step(values: Vector) -> float:
     """The step of which the readings' differences are multiples; 0 where there is none."""
     distinct = np.unique(values)
     steps = np.diff(distinct)

@@ -73,7 +73,7 @@ def unit_of(fit: Fit, name: str) -> tuple[str, float]:
 
 def _remark(fit: Fit, name: str) -> str:
     found = fit.uncertainty
-    if name in found.at_bounds or _at_bound(fit.values[name], fit.bounds[name]):
+    if name in found.at_bounds:
         return "at its bound"
     if name in found.unmoved:
         return unknown_width(fit, name)
@@ -87,12 +87,6 @@ def _remark(fit: Fit, name: str) -> str:
     ]
     more = f" and {len(few) - 3} more" if len(few) > 3 else ""
     return f"only together with {', '.join(few[:3])}{more}" if few else ""
-
-
-def _at_bound(value: float, bounds: tuple[float, float]) -> bool:
-    low, high = bounds
-    near = 1e-6 * (high - low) if math.isfinite(high - low) else 1e-9 * abs(value)
-    return value - low <= near or high - value <= near
 
 
 def tied_table(fit: Fit) -> Table:

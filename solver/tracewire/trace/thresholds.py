@@ -61,6 +61,8 @@ class CheckOptions:
 
     again: float = 1.2
     """The way a body goes over the range of its coordinate, from which on it has come back."""
+    turns: float = 5.0
+    """Turns of a shaft that does not come back, from which on it has no spring and no stop."""
 
     spike: float = 8.0
     """Standard deviations by which a single wrong sample is off its neighbours, at least."""

@@ -14,6 +14,7 @@ from tracewire.library import Block
 from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.candidates.signal_scales import Trajectory
+from tracewire.trace.thresholds import CheckOptions
 
 PITCH = "pitch"
 
@@ -31,15 +32,24 @@ def has_revisits(places: Sequence[Place], trajectories: Sequence[Trajectory], ag
 
 
 def observable_candidates(
-    model: Model, candidates: Sequence[Candidate], trajectories: Sequence[Trajectory]
+    model: Model,
+    candidates: Sequence[Candidate],
+    trajectories: Sequence[Trajectory],
+    options: CheckOptions,
 ) -> list[Candidate]:
     """The candidates that a motion without return can show.
 
     Where a body is nowhere twice, as in one fall, time tells nothing that its coordinate does not:
     effects that read the time are left out, and so are memories, which show in what is different
     when the body comes back, and what is more in one direction than in the other. A wave over the
-    coordinate must fit into its range.
+    coordinate must fit into its range. A shaft that turns on and on has no spring and no stop.
     """
+    angles = [name for name, unit in model.flat.units.items() if unit == "rad"]
+    turns = {
+        name: max(float(np.ptp(run.signals[name])) for run in known) / (2 * np.pi)
+        for name in angles
+        if (known := [run for run in trajectories if name in run.signals])
+    }
     found = []
     for candidate in candidates:
         block = model.diagram.library.blocks.get(candidate.effect)
@@ -49,6 +59,12 @@ def observable_candidates(
         if timed or (block is not None and (block.states or block.modes)):
             continue
         of = candidate.place.q
+        if (
+            block is not None
+            and _reads_travel(block, candidate)
+            and turns.get(of, 0) > options.turns
+        ):
+            continue
         if PITCH in candidate.shapes and of:
             ranges = [float(np.ptp(run.signals[of])) for run in trajectories if of in run.signals]
             widest = max(ranges, default=0.0)
@@ -63,6 +79,12 @@ def observable_candidates(
             )
         found.append(candidate)
     return found
+
+
+def _reads_travel(block: Block, candidate: Candidate) -> bool:
+    """Whether an effect depends on how far a body has come, and is no wave along its way."""
+    reads = block.effect is not None and "q" in block.effect.inputs.values()
+    return reads and not candidate.waves
 
 
 def _even(block: Block) -> bool:

@@ -169,14 +169,14 @@ def _simplest_near_best(
 def _commoner_models(
     entrants: Sequence[Entrant], among: Sequence[int], chosen: int, options: TraceOptions
 ) -> list[int]:
-    """The models with fewer uncommon effects and fewer numbers that leave hardly more of the
+    """The models with fewer uncommon effects and no more numbers that leave hardly more of the
     squared error: waves and drifts follow whatever a law that is nearly right has left."""
     mine = entrants[chosen]
     return [
         n
         for n in among
         if entrants[n].uncommon < mine.uncommon
-        and entrants[n].numbers < mine.numbers
+        and entrants[n].numbers <= mine.numbers
         and entrants[n].is_as_good(mine, options)
     ]
 

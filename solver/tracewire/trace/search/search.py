@@ -300,7 +300,7 @@ class Search:
         )
         self.has_revisits = has_revisits(self.places, runs, options.check.again)
         if not self.has_revisits:
-            found = observable_candidates(declared, found, runs)
+            found = observable_candidates(declared, found, runs, options.check)
         only, without = self.options.only, self.options.without
         return [
             c
