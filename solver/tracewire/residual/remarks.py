@@ -67,7 +67,8 @@ def remarks_of(
         column = read.columns[name]
         low, high = usual_range(column)
         scaled = series.channels[name].gain is not None  # a column of counts, or of volts
-        if given.factor == 1.0 and not scaled and high - low > REMARK.largest_angle:
+        said = bool(given.text) or scaled
+        if given.factor == 1.0 and not said and high - low > REMARK.largest_angle:
             found.append(
                 f"{name} goes from {column.min():.4g} to {column.max():.4g} rad: "
                 "is the column in degrees? Then say unit: deg"
