@@ -228,6 +228,8 @@ class WordLimits:
 
     nothing: float = 1e-6
     """An error of less than this part of the noise is 0."""
+    astray: float = 30.0
+    """A free run that is off by so many times the error in windows tells little."""
     runaway: float = 1e9
     """What grows this many times within a run has most likely a force with the wrong sign."""
     most_names: int = 4

@@ -19,6 +19,7 @@ from tracewire.show.trace_words import (
     percent,
     place_words,
     remainder_numbers,
+    runs_words,
     share_words,
     stood_in,
     unseen_errors,
@@ -114,7 +115,8 @@ def _lacks(found: Found) -> str:
     errors = error_words(found, unseen_errors(found))
     if errors:
         goes = _goes(found)
-        parts.append(f"on unseen data the error of free runs {goes} {both_of(errors)}")
+        runs, _ = runs_words(found)
+        parts.append(f"on unseen data the error of {runs} {goes} {both_of(errors)}")
     return f"{text}; {', and '.join(parts)}." if parts else f"{text}."
 
 
@@ -145,7 +147,8 @@ def _nothing(found: Found) -> str:
     if not parts:
         return f"{text}."
     noise = f" ({in_sigma(errors, 'after'):.3g} σ)" if in_sigma(errors, "after") > 0 else ""
-    return f"{text}; on unseen data a free run is wrong by {both_of(parts)}{noise}."
+    _, runs_are = runs_words(found)
+    return f"{text}; on unseen data {runs_are} wrong by {both_of(parts)}{noise}."
 
 
 def _open(found: Found) -> str:
@@ -188,7 +191,8 @@ def noisy_words(found: Found) -> str:
 def _wrong_by(found: Found) -> str:
     """How wrong the declared diagram is on unseen data, where nothing better is known."""
     parts = [] if found.effects else error_words(found, unseen_errors(found), both=False)
-    return f", and on unseen data a free run is wrong by {both_of(parts)}" if parts else ""
+    _, runs_are = runs_words(found)
+    return f", and on unseen data {runs_are} wrong by {both_of(parts)}" if parts else ""
 
 
 # --- the details --------------------------------------------------------------------------------
@@ -290,7 +294,8 @@ def _unexplained(found: Found) -> list[str]:
         errors = error_words(found, unseen_errors(found))
         if errors:
             goes = _goes(found)
-            parts.append(f"On unseen data the error of free runs {goes} {both_of(errors)}.")
+            runs, _ = runs_words(found)
+            parts.append(f"On unseen data the error of {runs} {goes} {both_of(errors)}.")
         parts += _remains(found)
     return [*parts, _moved(found)]
 

@@ -9,6 +9,7 @@ from tracewire.show.trace_experiments import experiment_words
 from tracewire.show.trace_steps import decided_words
 from tracewire.show.trace_summary import explained_words, noisy_words, ties_words
 from tracewire.show.trace_words import (
+    astray_words,
     chance_words,
     common_powers,
     doubt_words,
@@ -19,6 +20,7 @@ from tracewire.show.trace_words import (
     percent,
     place_words,
     remainder_numbers,
+    runs_words,
     share_words,
     stood_in,
     told_once,
@@ -123,20 +125,23 @@ def _tie_lines(effect: FoundEffect) -> list[str]:
 
 def _error_lines(found: Found) -> list[str]:
     errors = unseen_errors(found)
-    where = "on unseen data"
+    where, (runs, _) = "on unseen data", runs_words(found)
     lines = []
     if not errors:
         lines = ["  no data were kept back: these errors are of data that chose the effects"]
-        errors = tuple(e for e in found.errors if e.kind == "free run")
+        kind = "windowed" if astray_words(found) else "free run"
+        errors = tuple(e for e in found.errors if e.kind == kind)
         where = "on the series"
     before, after = in_sigma(errors, "before"), in_sigma(errors, "after")
     if not math.isfinite(after):
         return []
+    if astray := astray_words(found):
+        lines.append(f"  {astray}")
     if not found.effects:
         signals = ", ".join(error_words(found, errors, both=False))
-        return [*lines, f"  free runs {where}: {after:.3g} σ ({signals})"]
+        return [*lines, f"  {runs} {where}: {after:.3g} σ ({signals})"]
     signals = "; ".join(text.removeprefix("for ") for text in error_words(found, errors))
-    return [*lines, f"  free runs {where}: {before:.3g} σ -> {after:.3g} σ ({signals})"]
+    return [*lines, f"  {runs} {where}: {before:.3g} σ -> {after:.3g} σ ({signals})"]
 
 
 def _remainder_lines(found: Found) -> list[str]:

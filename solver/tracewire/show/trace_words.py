@@ -102,8 +102,37 @@ def share_words(explained: Explained) -> str:
 
 
 def unseen_errors(found: Found) -> tuple[ChannelError, ...]:
-    """The errors of free runs on data that played no part; () where there were no such data."""
-    return tuple(e for e in found.errors if e.kind == "free run" and e.use == "validate")
+    """The errors on data that played no part; () where there were no such data. They are those of
+    free runs, or of windows where free runs tell little."""
+    kind = "windowed" if astray_words(found) else "free run"
+    return tuple(e for e in found.errors if e.kind == kind and e.use == "validate")
+
+
+def astray_words(found: Found) -> str:
+    """That free runs tell little, as those of a model that is unstable or chaotic; '' where they
+    stay near the windows."""
+    windowed = {(e.use, e.series, e.signal): e.after for e in found.errors if e.kind == "windowed"}
+    free = [e for e in found.errors if e.kind == "free run" and math.isfinite(e.after)]
+    far = [
+        e
+        for e in free
+        if e.after > WORD.astray * windowed.get((e.use, e.series, e.signal), e.after)
+    ]
+    if not far:
+        return ""
+    unit, factor = users_unit(found, far[0].signal)
+    near = windowed[far[0].use, far[0].series, far[0].signal]
+    free_run, window = (f"{size / factor:.3g} {unit}".rstrip() for size in (far[0].after, near))
+    return (
+        f"free runs tell little: over '{far[0].series}' one is off by {free_run} in "
+        f"{far[0].signal}, where windows are off by {window}; the model is unstable or chaotic "
+        "there"
+    )
+
+
+def runs_words(found: Found) -> tuple[str, str]:
+    """How a text calls the runs whose errors it tells: `free runs` and `a free run is`."""
+    return ("windows", "windows are") if astray_words(found) else ("free runs", "a free run is")
 
 
 def in_sigma(errors: Iterable[ChannelError], when: str) -> float:

@@ -75,8 +75,8 @@ class CheckOptions:
     """The part of its height by which both sides agree on what should stand there."""
     most_spikes: float = 0.02
     """The part of a record that may be spikes: what is more is no mistake of single samples."""
-    even: float = 0.01
-    """The part by which the sample intervals around a spike may differ."""
+    gap: float = 3.0
+    """The largest sample interval around a spike, in units of their median, at most."""
 
     mistake_from: float = 30.0
     """The reduced chi-square in short windows from which on a record may hold a mistake."""

@@ -111,3 +111,24 @@ def test_a_trace_leaves_them_out_and_says_so() -> None:
     assert len(search.problem.measured[0].t) == len(m.t) - 2
     assert any("2 single samples left out" in words for words in search.words)
     assert search.fit_declared().reduced_chi2 == pytest.approx(1.0, abs=0.25)
+
+
+@given(st.integers(6, 593), st.integers(0, 50), st.sampled_from([-1, 1]))
+def test_a_wrong_sample_is_found_where_times_jitter(row: int, seed: int, sign: int) -> None:
+    """A gyro that sends its time stamps: every 20 ms, give or take 3."""
+    rng = np.random.default_rng(seed)
+    t = 0.02 * np.arange(600) + rng.uniform(-0.003, 0.003, 600)
+    y = 4.0 * np.cos(5.0 * t) + 6e-3 * rng.standard_normal(600)
+    assert not find_outliers(t, y, 6e-3, OPTIONS.check).any()
+    y[row] += sign * 1.5
+    assert set(np.flatnonzero(find_outliers(t, y, 6e-3, OPTIONS.check))) <= {row}
+    y[row - 5 : row + 6] = 4.0 * np.cos(5.0 * t[row - 5 : row + 6])
+    y[row] += sign * 1.5
+    assert np.flatnonzero(find_outliers(t, y, 6e-3, OPTIONS.check)).tolist() == [row]
+
+
+def test_beside_a_gap_nothing_is_an_outlier() -> None:
+    t = np.delete(T, np.s_[500:540])
+    y = np.cos(5.0 * t)
+    y[500] += 0.5
+    assert not find_outliers(t, y, NOISE, OPTIONS.check).any()

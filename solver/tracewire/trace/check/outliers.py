@@ -13,12 +13,10 @@ from tracewire.trace.thresholds import CheckOptions
 
 Vector = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-CUBIC = np.array([-1.0, 4.0, 0.0, 4.0, -1.0]) / 6
-"""A sample from the two before and the two after it, by the cubic through them."""
 SIDE = 5
-ONWARD = np.linalg.pinv(np.vander(np.arange(-SIDE, 0.0), 3))[-1]
-"""A sample from the five before it, by the parabola that fits them best."""
-SPREAD, ONWARD_SPREAD = (float(np.sqrt(1 + np.sum(w**2))) for w in (CUBIC, ONWARD))
+"""Samples on each side of an outlier by whose parabola it is judged."""
+BESIDE = np.array([-2, -1, 1, 2])
+"""The samples through which a cubic is laid, by their numbers from the one between them."""
 
 
 def drop_outliers(
@@ -51,28 +49,54 @@ def drop_outliers(
 
 
 def find_outliers(t: Vector, y: Vector, sigma: float, options: CheckOptions) -> Flags:
-    """Which samples (N,) are outliers beside noise of the standard deviation sigma; none at 0."""
+    """Which samples (N,) at times t (N,) are outliers beside noise of the standard deviation sigma;
+    none at 0."""
     flags = np.zeros(len(y), dtype=bool)
     if len(y) <= 2 * SIDE or sigma <= 0:
         return flags
-    rows = np.flatnonzero(_off(y) > options.spike * SPREAD * sigma)
+    off, noise = _off_cubic(t, y)
+    rows = np.flatnonzero(off > options.spike * sigma * noise)
     for k in rows[(rows >= SIDE) & (rows < len(y) - SIDE)].tolist():
-        before, after = y[k - SIDE : k] @ ONWARD, y[k + 1 : k + 1 + SIDE] @ ONWARD[::-1]
-        off = min(abs(y[k] - before), abs(y[k] - after))
-        mended, steps = y[k - SIDE : k + SIDE + 1].copy(), np.diff(t[k - SIDE : k + SIDE + 1])
-        mended[SIDE] = mended[SIDE - 2 : SIDE + 3] @ CUBIC
-        alike = (
-            max(abs(mended[SIDE] - before), abs(mended[SIDE] - after)) < options.spike_alike * off
-        )
-        limit = max(options.spike_neighbour * SPREAD * sigma, options.spike_share * off)
-        smooth = bool((_off(mended) < limit).all())
-        even = np.ptp(steps) < options.even * np.median(steps)
-        flags[k] = even and smooth and alike and off > options.spike * ONWARD_SPREAD * sigma
+        near = slice(k - SIDE, k + SIDE + 1)
+        flags[k] = _is_outlier(t[near] - t[k], y[near], sigma, options)
     return flags
 
 
-def _off(y: Vector) -> Vector:
-    """How far each sample is off the cubic through its neighbours; 0 for the two at either end."""
-    off = np.zeros(len(y))
-    off[2:-2] = np.abs(y[2:-2] - np.convolve(y, CUBIC, mode="valid"))
-    return off
+def _is_outlier(t: Vector, y: Vector, sigma: float, options: CheckOptions) -> bool:
+    """Whether the middle one of eleven samples is off both parabolas, and alone in that."""
+    steps = np.diff(t)
+    if steps.max() > options.gap * np.median(steps):
+        return False
+    sides = slice(0, SIDE), slice(SIDE + 1, None)
+    weights = [np.linalg.pinv(np.vander(t[side], 3))[-1] for side in sides]
+    before, after = (float(w @ y[side]) for w, side in zip(weights, sides, strict=True))
+    noise = max(float(np.sqrt(1 + w @ w)) for w in weights)
+    off = min(abs(y[SIDE] - before), abs(y[SIDE] - after))
+    if off <= options.spike * noise * sigma:
+        return False
+    mended, beside = y.copy(), SIDE + BESIDE
+    mended[SIDE] = _cubic_weights(t[beside][None])[0] @ mended[beside]
+    alike = max(abs(mended[SIDE] - before), abs(mended[SIDE] - after)) < options.spike_alike * off
+    around, noises = _off_cubic(t, mended)
+    limits = np.maximum(options.spike_neighbour * sigma * noises, options.spike_share * off)
+    return bool(alike and (around < limits).all())
+
+
+def _off_cubic(t: Vector, y: Vector) -> tuple[Vector, Vector]:
+    """How far each sample is off the cubic through two on either side, and what that is in white
+    noise of a standard deviation of 1; 0 and 1 for the two at either end."""
+    off, noise = np.zeros(len(y)), np.ones(len(y))
+    near = np.arange(2, len(y) - 2)[:, None] + BESIDE
+    weights = _cubic_weights(t[near] - t[2:-2, None])
+    off[2:-2] = np.abs(y[2:-2] - np.sum(weights * y[near], axis=1))
+    noise[2:-2] = np.sqrt(1 + np.sum(weights**2, axis=1))
+    return off, noise
+
+
+def _cubic_weights(t: Vector) -> Vector:
+    """The weights (N, 4) of four samples at times t (N, 4) in their cubic at t = 0."""
+    apart = t[:, :, None] - t[:, None, :]
+    numbers = np.arange(t.shape[1])
+    apart[:, numbers, numbers] = 1.0
+    factors = np.where(np.eye(t.shape[1], dtype=bool), 1.0, -t[:, None, :] / apart)
+    return np.asarray(np.prod(factors, axis=2))

@@ -32,6 +32,8 @@ Matrix = NDArray[np.float64]
 Ints = NDArray[np.intp]
 PHASE = "phase"
 """A shape of this name turns a sine into a cosine: the two together span all phases."""
+TOGETHER = 2_000_000
+"""Numbers of torques that are looked at once."""
 NEAR = 1e-6
 SEEN = 1e-10
 """The part of a column's square, beyond what window starts imitate, from which on it is seen."""
@@ -352,16 +354,19 @@ def _rows(
     size = sum(-(-near.residual.size // every) for near in windows.linearisations)
     rows, first = np.empty((len(variants) + len(sensors), size)), 0
     whole = np.empty(len(rows))
+    together = max(TOGETHER // sum(len(run.t) for run in linearisation.trajectories), 1)
     for place, group in by_place.items():
-        given = [np.zeros((len(run.t), len(group))) for run in linearisation.trajectories]
-        for column, variant in enumerate(group):  # all of them twice are much memory
-            for torques, used, output in zip(given, samples, known.pop(variant), strict=True):
-                torques[used, column] = output
-        mine = slice(first, first + len(group))
-        _, whole[mine] = project_out_starts(
-            linearisation, windows.projections, {place: given}, every, rows=rows[mine]
-        )
-        first += len(group)
+        for begin in range(0, len(group), together):  # all of them twice are much memory
+            part = group[begin : begin + together]
+            given = [np.zeros((len(run.t), len(part))) for run in linearisation.trajectories]
+            for column, variant in enumerate(part):
+                for torques, used, output in zip(given, samples, known.pop(variant), strict=True):
+                    torques[used, column] = output
+            mine = slice(first, first + len(part))
+            _, whole[mine] = project_out_starts(
+                linearisation, windows.projections, {place: given}, every, rows=rows[mine]
+            )
+            first += len(part)
     edges = np.cumsum([near.residual.size for near in windows.linearisations])[:-1]
     for row, candidate in enumerate(sensors, start=first):
         shown = linearisation.sensor_response(candidate.effect, candidate.place.definition)
