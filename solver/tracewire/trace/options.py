@@ -83,6 +83,8 @@ class TraceOptions:
     negligible: float = 0.01
     """The part of the excess squared error that a model may leave at each horizon for no further
     effect to be looked for."""
+    looser: float = 0.1
+    """The part of its lower bound to which a deflection on it is freed in the best models."""
     many_effects: int = 3
     """Effects that must predict held-out blocks, although together they come to the noise. On a
     generated record with a floor alone, three small ones did."""

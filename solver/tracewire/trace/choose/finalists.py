@@ -24,6 +24,7 @@ from tracewire.residual import Segment
 from tracewire.trace.choose.choice import log_scores
 from tracewire.trace.choose.heldout import Finalist, errors_by_block, errors_in_sample
 from tracewire.trace.choose.horizons import Horizons
+from tracewire.trace.choose.loosen import loosen_bounds
 from tracewire.trace.choose.promising import no_longer_absorbed, select_promising
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal, Screen
@@ -47,6 +48,7 @@ class ModelPool:
     """The solver's steps that all refits took."""
     first: list[Screen] = field(default_factory=list)
     """The screens beside the declared model, one for each horizon."""
+    _final: set[Key] = field(default_factory=set)
 
     def fit_declared(self, declared_fit: Trial) -> Finalist:
         """The declared model at each horizon, from a fit of it."""
@@ -135,6 +137,7 @@ class ModelPool:
         known = self.models.get(finalist.key)
         if known is None or finalist.rss < (1 - self.options.coarse) * known.rss:
             self.models[finalist.key] = finalist
+            self._final.discard(finalist.key)
 
     def _extend_beside(self, parent: Finalist) -> None:
         """A model with the most promising effects and pairs: what shows in short windows is looked
@@ -290,16 +293,19 @@ class ModelPool:
         return Finalist(tuple(trials[n] for n in sorted(trials)), (*parent.dropped, *dropped))
 
     def converge(self, model: Finalist) -> Finalist:
-        """The model refitted until it converges."""
-        if all(trial.converged for trial in model.trials):
+        """The model refitted until it converges, also below bounds that are a guess."""
+        if model.key in self._final:
             return model
         problem = self.search.problem
+        model = loosen_bounds(problem, model, self.options) or model
         trials = tuple(
             trial if trial.converged else problem.refit(trial, trial.windows.segments, trial.length)
             for trial in model.trials
         )
-        self.models[model.key] = replace(model, trials=trials)
-        return self.models[model.key]
+        model = replace(model, trials=trials)
+        self.models[model.key] = model
+        self._final.add(model.key)
+        return model
 
     def scores(self) -> dict[Key, float]:
         """How well each model fits, the mean of the in-sample log scores."""

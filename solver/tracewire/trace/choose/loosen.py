@@ -1,0 +1,54 @@
+"""Bounds that are a guess: how far a body moves says little of the least deflection that it shows.
+
+A hysteresis over a two hundredth of the longest stroke decides what the short strokes of a record
+do. Searched from there from the start, each friction would take many times the steps of a run.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from tracewire.errors import FitError
+from tracewire.trace.choose.heldout import Finalist
+from tracewire.trace.options import TraceOptions
+from tracewire.trace.trials.bounds import at_bounds
+from tracewire.trace.trials.trial import PlacedEffect, TraceProblem
+
+
+def loosen_bounds(problem: TraceProblem, model: Finalist, options: TraceOptions) -> Finalist | None:
+    """A model refitted with lower bounds for its shapes that sit on the least part of a stroke;
+    None where none does, and where that does no better."""
+    names = {
+        one.name
+        for trial in model.trials
+        for one in at_bounds(trial)
+        if one.kind == "shape" and not one.upper and not one.exact
+    }
+    first = model.trials[0].effects
+    effects = tuple(_loosened(effect, names, options.looser) for effect in first)
+    if all(new is old for new, old in zip(effects, first, strict=True)):
+        return None
+    trials = []
+    for trial in model.trials:
+        pairs = zip(trial.effects, effects, strict=True)
+        freed = tuple(replace(old, candidate=new.candidate) for old, new in pairs)
+        try:
+            trials.append(
+                problem.refit(replace(trial, effects=freed), trial.windows.segments, trial.length)
+            )
+        except FitError:
+            return None
+    found = replace(model, trials=tuple(trials))
+    return found if found.rss < (1 - options.material) * model.rss else None
+
+
+def _loosened(effect: PlacedEffect, names: set[str], part: float) -> PlacedEffect:
+    """An effect whose shapes with these names may be smaller, where they are parts of a stroke."""
+    candidate, limits = effect.candidate, dict(effect.candidate.limits)
+    for shape, of in candidate.scales.items():
+        low, high = limits[shape]
+        if of == "stroke" and low > 0 and effect.unknown(shape) in names:
+            limits[shape] = part * low, high
+    if limits == candidate.limits:
+        return effect
+    return replace(effect, candidate=replace(candidate, limits=limits))
