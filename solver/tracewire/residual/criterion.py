@@ -33,7 +33,7 @@ class Criterion:
 
     The vector of unknowns is scaled: parameters first, then the free starts of each segment. The
     residual of a sample is (shown - measured)/sigma, where the sensor shows gain*y(t - delay) +
-    offset; of a signal with a period it is the shortest way around. The criterion is
+    offset; of a signal with a period it is modulo that (`wrap_to_period`). The criterion is
 
         value = 1/2 sum over segments, signals and samples of w^2 rho(residual^2)
 

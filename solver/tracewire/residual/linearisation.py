@@ -218,7 +218,7 @@ class SegmentBatch:
             return BatchLinearisation({}, errors, 0, frozenset())
         with np.errstate(over="ignore", invalid="ignore"):  # what overflows is not usable
             shown = observation.observe(runs)
-            residual = subtract_measured(measured, self.samples, shown)
+            residual = subtract_measured(measured, self.samples, shown, self._slices)
             residual /= sigma
             slopes = observation.derivatives(runs, answers)
             if answers:
@@ -260,14 +260,29 @@ def _huge(series: str, shown: Vector) -> SimulationError:
     return SimulationError([Problem(what, hint="Begin elsewhere, or narrow `fit:` bounds.")])
 
 
-def subtract_measured(measured: Measured, samples: Vector, shown: Vector) -> Vector:
-    """What sensors show without what was measured, (N, signals): the shortest way around."""
+def subtract_measured(
+    measured: Measured, samples: Vector, shown: Vector, segments: Sequence[slice]
+) -> Vector:
+    """What sensors show without what was measured, (N, signals): in each of the segments modulo the
+    period where a signal has one."""
     off = shown - samples
     for column, name in enumerate(measured.values if measured.periods else ()):
-        off[:, column] = wrap_to_period(off[:, column], measured.periods.get(name, 0.0))
+        for rows in segments:
+            off[rows, column] = wrap_to_period(off[rows, column], measured.periods.get(name, 0.0))
     return off
 
 
 def wrap_to_period(off: Vector, period: float) -> Vector:
-    """Differences by the shortest way around a period; 0 is none."""
-    return off - period * np.round(off / period) if period > 0 else off
+    """Differences (N,) of one run modulo a period, 0 is none: the first one goes the shortest way
+    around, and each other one is as near as can be to the one before.
+
+    The shortest way alone would let a run that falls behind by whole turns look right every turn. A
+    sample that is not finite stays so.
+    """
+    if period <= 0:
+        return off
+    known = np.isfinite(off)
+    near = off[known] - period * np.round(off[known] / period)
+    found = off.copy()
+    found[known] = np.unwrap(near, period=period)
+    return found

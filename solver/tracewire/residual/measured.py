@@ -34,17 +34,17 @@ class Measured:
 
     `sigma` is the standard deviation of the noise by signal (None: not known), `sensors` what
     channels with an offset, gain, delay, quad or drift have of these, `periods` the period of
-    signals that are compared modulo it (2 pi for an angle). `weight` counts the whole series in the
-    criterion, `weights` single signals. A drift counts from `drift_from` (s), the first sample
-    unless given. Samples before `counts_from` (s) do not count. `inputs` maps a named input to its
-    times and values, a smooth one (`residual.inputs`) to points of a spline, and `input_sigma`
-    to the standard deviation of its noise, white from sample to sample. `past` maps a delayed
-    signal to what it was, for runs that begin within the series (`with_past`). `start` holds
-    start values of this series by state, None where free; without any, a run begins at the start of
-    the diagram's span. `parameters` are those of the diagram that have a value of their own in this
-    series, `free` the bounds of those that a fit may change. `series` is its name in the diagram,
-    which is not `name` where it has several windows. `steps` tells what was done to the data since
-    they were read, `remarks` what is odd about them.
+    signals that are compared modulo it (2 pi for an angle); their samples go on from turn to turn.
+    `weight` counts the whole series in the criterion, `weights` single signals. A drift counts from
+    `drift_from` (s), the first sample unless given. Samples before `counts_from` (s) do not count.
+    `inputs` maps a named input to its times and values, a smooth one (`residual.inputs`) to points
+    of a spline, and `input_sigma` to the standard deviation of its noise, white from sample to
+    sample. `past` maps a delayed signal to what it was, for runs that begin within the series
+    (`with_past`). `start` holds start values of this series by state, None where free; without any,
+    a run begins at the start of the diagram's span. `parameters` are those of the diagram that have
+    a value of their own in this series, `free` the bounds of those that a fit may change. `series`
+    is its name in the diagram, which is not `name` where it has several windows. `steps` tells what
+    was done to the data since they were read, `remarks` what is odd about them.
 
     Arrays may be lists, or columns of a frame. Raises DataError: a length that differs from that of
     `t`, a value that is not finite, a time that does not increase, an unknown signal.
@@ -76,15 +76,16 @@ class Measured:
     def __post_init__(self) -> None:
         check = ArrayCheck(self.name)
         t = check.time(self.t)
-        given = {
-            "t": t,
-            "values": check.values(self.values, t),
-            "inputs": check.inputs(self.inputs),
-        }
+        values = check.values(self.values, t)
+        given = {"t": t, "values": values, "inputs": check.inputs(self.inputs)}
         for of in ("sigma", "sensors", "periods", "weights"):
             check.names(of, "signal", getattr(self, of), self.values)
         check.names("input_sigma", "input", self.input_sigma, self.inputs)
         check.finish()
+        given["values"] = {
+            name: np.unwrap(column, period=self.periods[name]) if name in self.periods else column
+            for name, column in values.items()
+        }
         for name, value in given.items():
             object.__setattr__(self, name, value)
 

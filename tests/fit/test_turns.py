@@ -1,0 +1,74 @@
+"""An encoder that begins again after each turn: a fit follows the turns."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from tracewire.compile import compile
+from tracewire.diagram import read_text
+from tracewire.fit import fit
+from tracewire.residual import Measured, wrap_to_period
+
+COAST = """\
+title: Coasting wheel
+span: [0, 10]
+parameters:
+  c: {value: 0.6, unit: 1/s, fit: [0, 5]}
+blocks:
+  q: {type: integrator, of: w, start: 0, unit: rad}
+  w: {type: integrator, of: drag, start: 30, unit: rad/s}
+  drag: {type: gain, of: w, k: -c}
+"""
+TURN = 2 * np.pi
+RATE, C = 30.0, 0.21
+
+
+def coast(t: np.ndarray) -> Measured:
+    angle = 1.0 + RATE / C * (1 - np.exp(-C * t))
+    noise = 1e-3 * np.random.default_rng(4).standard_normal(len(t))
+    return Measured(
+        "coast", "train", t, {"q": np.mod(angle + noise, TURN)}, sigma={"q": 1e-3},
+        periods={"q": TURN}, start={"q": None, "w": None},
+    )  # fmt: skip
+
+
+LOST = slice(200, 215)
+
+
+@pytest.mark.parametrize(
+    ("method", "lost"),
+    [
+        ("least_squares", slice(0)),
+        ("least_squares", LOST),
+        ("fminsearch", slice(0)),
+        ("fminsearch", LOST),
+        ("multiple_shooting", slice(0)),
+    ],
+)
+def test_a_drag_is_found_behind_many_turns(method: str, lost: slice) -> None:
+    """The run from the first values is behind by fourteen turns; and where samples are lost, nobody
+    knows how many turns there were."""
+    found = fit(
+        compile(read_text(COAST, Path("coast.yaml"))),
+        [coast(np.delete(np.linspace(0, 10, 501), lost))],
+        method=method,
+    )
+    assert found.values["c"] == pytest.approx(C, rel=1e-3)
+    assert found.comparisons[0].rmse_after < 1.2e-3
+
+
+@given(st.integers(-5, 5), st.floats(-3.0, 3.0), st.floats(-20, 20))
+def test_differences_modulo_a_period_follow_each_other(
+    turns: int, first: float, slope: float
+) -> None:
+    off = turns * TURN + first + slope * np.linspace(0, 1, 60)
+    assert wrap_to_period(np.mod(off, TURN), TURN) == pytest.approx(off - turns * TURN, abs=1e-9)
+
+
+def test_a_sample_that_is_not_finite_breaks_no_differences() -> None:
+    off = np.array([0.1, np.nan, 0.2 + TURN, 0.3])
+    assert wrap_to_period(off, TURN) == pytest.approx([0.1, np.nan, 0.2, 0.3], nan_ok=True)
