@@ -29,13 +29,14 @@ harmonic = Block(
     ),
     outputs=(Output("force", "amplitude*sin(2*pi*t/period + phase)", doc="acts on the body"),),
     # Whole numbers of waves in the record, so that no frequency up to 60/T is missed, and above it
-    # the lines of the residual's spectrum. The phase is that at t = 0: series that begin anywhere
-    # in the wave give it under their `parameters`.
+    # the lines of the residual's spectrum. What comes less than 2.5 times is no wave that a record
+    # shows: two waves follow whatever goes up and down. The phase is that at t = 0: series that
+    # begin anywhere in the wave give it under their `parameters`.
     effect=Effect(
         "amplitude",
         shapes={
             "period": Shape(
-                tuple(1 / n for n in range(1, 61)), of="T", low=1e-9, most=1.0, line=True
+                tuple(1 / n for n in range(3, 61)), of="T", low=1e-9, most=0.4, line=True
             ),
             "phase": Shape((0.0, QUARTER), low=-4 * QUARTER),  # sine and cosine
         },

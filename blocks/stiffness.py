@@ -17,8 +17,8 @@ OF = Input("of", doc="the deflection")
 # whole numbers of waves in the record, or on the way that is gone: what lies between two of them
 # is at most half a wave off at either end, so that no frequency is missed
 PERIODS = Shape(
-    tuple(1 / n for n in range(1, 61)), of="T", low=1e-9, most=1.0, line=True, modulates="of"
-)
+    tuple(1 / n for n in range(3, 61)), of="T", low=1e-9, most=0.4, line=True, modulates="of"
+)  # what comes less than 2.5 times is no wave that a record shows
 PITCHES = Shape((1.0, 0.5, 0.25), of="stroke", most=1.0, wave=True)
 # sine and cosine; the sign of the amplitude does the other half of the circle
 PHASES = Shape((0.0, QUARTER), low=-4 * QUARTER)

@@ -91,7 +91,7 @@ def test_an_effect_says_what_a_trace_may_do_with_it() -> None:
         "tries at the drive: coefficient tau, positive only, first 2, 6 times the sample interval;"
     ) in describe(library(), "drive_lag")
     assert (
-        "shape period first 1, 0.5, ..., 0.0167 (60 values) times the duration of the longest"
+        "shape period first 0.333, 0.25, ..., 0.0167 (58 values) times the duration of the longest"
         " series; shape phase first 0, 1.57."
     ) in describe(library(), "harmonic")
 

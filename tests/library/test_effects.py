@@ -204,7 +204,7 @@ def test_the_frequencies_of_a_harmonic_lie_as_close_as_the_record_resolves_them(
     periods = effect.shapes["period"]
     assert periods.of == "T"
     frequencies = [1 / at for at in periods.at]
-    assert [b - a for a, b in pairwise(frequencies)] == pytest.approx([1.0] * 59)
+    assert [b - a for a, b in pairwise(frequencies)] == pytest.approx([1.0] * 57)
 
 
 @EACH

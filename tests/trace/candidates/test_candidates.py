@@ -156,7 +156,7 @@ def test_shapes_are_sizes_of_the_signals() -> None:
         "0.04 is less than is resolved"
     )
     assert known["backlash @ torque"].shapes["gap"] == pytest.approx((0.3, 0.75, 1.5))
-    assert known["harmonic @ torque"].shapes["period"][:2] == (10.0, 5.0)
+    assert known["harmonic @ torque"].shapes["period"][:2] == pytest.approx((10 / 3, 2.5))
     assert known["bias @ torque"].scale == pytest.approx(7.0)
     still = find_candidates(
         compile(diagram), places, SignalScales({}, 10.0, 0.01), OPTIONS.candidate
@@ -189,7 +189,7 @@ def test_shapes_stay_within_what_the_record_shows() -> None:
     assert known["cogging @ torque"].limits["pitch"] == pytest.approx((0.2, 4.0)), "four samples"
     assert known["cogging @ torque"].waves == ("pitch",)
     assert known["position_friction @ torque"].limits["pitch"] == pytest.approx((0.2, 8.0))
-    assert known["harmonic @ torque"].limits["period"][1] == 10.0, "one wave in the record"
+    assert known["harmonic @ torque"].limits["period"][1] == 4.0, "2.5 waves in the record"
     assert known["backlash @ torque"].limits["gap"] == pytest.approx((0.03, 3.0))
     fast = {**sizes, "theta": SignalScale(0.5, 3.0, stroke=4.0, step=2.0)}
     left = named(
