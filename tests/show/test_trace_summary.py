@@ -153,6 +153,15 @@ def test_what_declared_parameters_had_absorbed_is_told() -> None:
     )
 
 
+def test_growth_from_a_bound_is_not_doubted() -> None:
+    """On its bound the declared value said nothing that a larger one could contradict."""
+    held = replace(FOUND.moved[1], before=0.01, after=0.3, at_bound=True)
+    assert "is that possible" not in paragraph_of(replace(FOUND, moved=(held,)))
+    assert "is that possible" in paragraph_of(
+        replace(FOUND, moved=(replace(held, at_bound=False),))
+    )
+
+
 def test_a_parameter_that_went_to_zero_is_told() -> None:
     text = paragraph_of(replace(FOUND, dropped=("c",)))
     assert text.endswith(

@@ -32,6 +32,7 @@ FORMATS = {
     "units.py:RATE_OF_COORDINATE": "the same",
     "units.py:SECOND": "the same",
     "check/refusals.py:FACTORS": "between units",
+    "check/outliers.py:SIDE": "the length of a filter",
     "check/outliers.py:BESIDE": "which samples a filter takes",
     "screen/screening.py:QUADRATURE": "0 and a quarter of a turn",
     "trials/phase_fit.py:TURN": "the angles of a turn",

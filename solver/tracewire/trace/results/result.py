@@ -39,7 +39,7 @@ from tracewire.trace.results.comparison import (
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
 from tracewire.trace.search.refinement import FinalModels, Rival
 from tracewire.trace.search.search import Search, Step
-from tracewire.trace.trials.bounds import at_bounds
+from tracewire.trace.trials.bounds import describe_bounds
 from tracewire.trace.trials.trial import PlacedEffect, Trial
 
 Matrix = NDArray[np.float64]
@@ -53,8 +53,7 @@ def result_of(
     final = judgement.final
     final = replace(final, best=with_unseen_phases(search, final.best))
     problem, declared, best = search.problem, final.declared, final.best
-    bounds = (one for t in (declared, best) for one in at_bounds(t))
-    search.words += dict.fromkeys(one.words for one in bounds if not one.exact)
+    search.words += describe_bounds(declared, best)
     search.words += [w for w in describe_undetermined(best.windows) if w not in search.words]
     parts = compare_models(search, declared, best)
     claimed = [part for part in parts if part.use == "validate"]
