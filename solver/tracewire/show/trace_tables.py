@@ -76,7 +76,7 @@ def remainder_table(found: Found) -> Table:
         for left in found.remainder
         for size, floor, unit in [remainder_numbers(found, left)]
     )
-    header = ("signal", "rms left", "unit", "in σ", "share of the error before", "floor")
+    header = ("signal", "rms left", "unit", "in σ", "share of the rms before", "floor")
     return Table("what is left on held-out blocks", header, rows, frozenset({1, 3, 4, 5}))
 
 

@@ -14,6 +14,7 @@ from tracewire.show.trace_words import (
     common_powers,
     doubt_words,
     error_words,
+    excess_words,
     in_sigma,
     missing_words,
     moved_words,
@@ -21,7 +22,6 @@ from tracewire.show.trace_words import (
     place_words,
     remainder_numbers,
     runs_words,
-    share_words,
     stood_in,
     told_once,
     unseen_errors,
@@ -40,8 +40,8 @@ def answer_lines(found: Found) -> tuple[str, ...]:
         lines.append(f"  {partial}{effect}: {values}")
         lines += _tie_lines(effect)
     lines += [f"  the fit sets {name} to zero" for name in found.dropped]
-    if found.explained is not None:
-        lines.append(f"  explained: {share_words(found.explained)} of the excess error")
+    if explained := excess_words(found):
+        lines.append(f"  explained: {explained}")
     lines += _error_lines(found)
     lines += _remainder_lines(found)
     shifts = [moved_words(m) for m in found.moved if stood_in(m) and m.name not in found.dropped]
@@ -151,8 +151,8 @@ def _remainder_lines(found: Found) -> list[str]:
         least = f"; a smooth map would leave {floor} {unit}".rstrip() if floor else ""
         lines.append(
             f"  left on held-out blocks: {size} {unit}".rstrip()
-            + f" of {left.signal} ({left.in_sigma:.3g} σ, {percent(left.share)} of the error "
-            f"before{least})"
+            + f" of {left.signal} ({left.in_sigma:.3g} σ, {percent(left.share)} of the rms "
+            f"error before{least})"
         )
     return lines
 

@@ -98,6 +98,30 @@ def share_words(explained: Explained) -> str:
     return f"{percent(explained.share)} (95 % interval: {low} to {high} %)"
 
 
+def excess_words(found: Found) -> str:
+    """How much the effects explain, and of what: `98 % (...) of the excess error`; '' where that is
+    not known. Where a large part of the error is out of reach of any smooth force, how much of the
+    error the excess is.
+    """
+    if found.explained is None:
+        return ""
+    share, reach = share_words(found.explained), within_reach(found)
+    if not reach <= 1 - WORD.out_of_reach:
+        return f"{share} of the excess error"
+    part = f"{percent(reach)} of the rms error" if reach > 0 else "none of the error"
+    return f"{share} of what a smooth force could explain, which is {part} on held-out blocks"
+
+
+def within_reach(found: Found) -> float:
+    """The part of the declared model's rms error on held-out blocks, at the longest horizon, that
+    the best smooth force takes away; nan where none was fitted."""
+    if not found.held_out or not len(found.held_out[-1].floor):
+        return math.nan
+    held = found.held_out[-1]
+    floor, whole = (math.sqrt(float((x**2).sum())) for x in (held.floor, held.declared))
+    return max(1 - floor / whole, 0.0) if whole > 0 else math.nan
+
+
 # --- errors -------------------------------------------------------------------------------------
 
 

@@ -46,9 +46,7 @@ def test_a_bound_that_only_the_declared_fit_met_is_told_of_that_alone() -> None:
     values = {**declared.windows.values, "c": 1.0}
     inside = replace(declared, windows=replace(declared.windows, values=values))
     assert describe_bounds(declared, declared) == [one.words for one in at_bounds(declared)]
-    assert describe_bounds(declared, inside) == [
-        "without the effects, 'c' sits on its bound 0 1/s"
-    ]
+    assert describe_bounds(declared, inside) == ["without the effects, 'c' sits on its bound 0 1/s"]
 
 
 def test_a_small_value_far_from_zero_by_its_size_is_on_no_bound() -> None:

@@ -106,7 +106,7 @@ def result_of(
 
 def _effects_of(search: Search, final: FinalModels) -> tuple[FoundEffect, ...]:
     """The effects of the result, the one that brings most first."""
-    ends = final.best.intervals(search.options.confidence) if final.best.effects else {}
+    ends = _intervals_of(final.best, search.options.confidence) if final.best.effects else {}
     found = []
     for effect in final.best.effects:
         gain, masked, weight = _scores_of(search, effect)
@@ -131,6 +131,17 @@ def _effects_of(search: Search, final: FinalModels) -> tuple[FoundEffect, ...]:
             )
         )
     return tuple(found)
+
+
+def _intervals_of(trial: Trial, confidence: float) -> dict[str, tuple[float, float]]:
+    """The intervals of fitted values, as far as they lie within the bounds of these: no share is
+    more than all."""
+    bounds = {u.name: (u.low, u.high) for u in trial.windows.criterion.unknowns}
+    found = {}
+    for name, (low, high) in trial.intervals(confidence).items():
+        least, most = bounds.get(name, (-np.inf, np.inf))
+        found[name] = max(low, least), min(high, most)
+    return found
 
 
 def _tie_of(rival: Rival) -> Tie:

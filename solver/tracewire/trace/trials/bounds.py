@@ -64,8 +64,8 @@ class AtBound:
         if self.absent:
             return f"'{self.name}' sits on its bound {known}: the fit does not use it"
         return (
-            f"{self._what} sits on its bound {known}: widen its {ends}, or an effect may be named that "
-            "only makes up for it"
+            f"{self._what} sits on its bound {known}: widen its {ends}, or an effect may be named "
+            "that only makes up for it"
         )
 
     @property
