@@ -6,10 +6,10 @@ import math
 
 from tracewire.show.limits import WORD
 from tracewire.show.trace_experiments import experiment_words
+from tracewire.show.trace_untried import common_powers
 from tracewire.show.trace_words import (
     SENSORS,
     both_of,
-    common_powers,
     doubt_words,
     error_words,
     excess_words,
@@ -36,7 +36,7 @@ PERHAPS = (
 REPEAT = "Do the same run twice: what comes back is a law, and what does not is random."
 LEFT = "of the error on held-out blocks"
 TYPICAL = "of the error on a typical held-out block (geometric mean)"
-"""What a reason calls by the first is the second; what remains of a signal is a root mean square."""
+"""What a reason calls by the first is the second; what is left of a signal is of its rms error."""
 
 
 def paragraph_of(found: Found) -> str:

@@ -9,8 +9,8 @@ from tracewire.show.limits import WORD
 from tracewire.show.table import Table, shown
 from tracewire.show.trace_experiments import settings_words
 from tracewire.show.trace_steps import compares, own_gain
+from tracewire.show.trace_untried import common_powers
 from tracewire.show.trace_words import (
-    common_powers,
     percent,
     remainder_numbers,
     stood_in,

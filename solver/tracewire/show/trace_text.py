@@ -8,10 +8,10 @@ from tracewire.show.limits import WORD
 from tracewire.show.trace_experiments import experiment_words
 from tracewire.show.trace_steps import decided_words
 from tracewire.show.trace_summary import explained_words, noisy_words, ties_words
+from tracewire.show.trace_untried import common_powers, told_of_untried
 from tracewire.show.trace_words import (
     astray_words,
     chance_words,
-    common_powers,
     doubt_words,
     error_words,
     excess_words,
@@ -62,7 +62,9 @@ def answer_lines(found: Found) -> tuple[str, ...]:
 def remarks_of(found: Found) -> tuple[str, ...]:
     """The remarks of a trace; one that is true of several series is told once with all of them."""
     named = [*(e.series for e in found.errors), *(c.series for c in found.curves)]
-    return told_once(found.words, list(dict.fromkeys([*named, *found.original.measured])))
+    return told_once(
+        told_of_untried(found), list(dict.fromkeys([*named, *found.original.measured]))
+    )
 
 
 def step_lines(found: Found) -> tuple[str, ...]:

@@ -14,7 +14,6 @@ from tracewire.trace import (
     Found,
     FoundEffect,
     ParameterChange,
-    Power,
     Remainder,
     is_first_order,
     signal_of,
@@ -31,8 +30,6 @@ VARIABLES = {
     "u": "the drive",
     "y": "the signal",
 }
-COMMON = ("coulomb", "viscous", "quad_drag", "stiffness", "cubic_stiffness", "sensor_offset")
-UNTRIED = re.compile(r"(\S+ @ \S+) was not tried: ")
 
 
 # --- numbers ------------------------------------------------------------------------------------
@@ -279,22 +276,6 @@ def missing_words(found: Found) -> str:
     names = [missing.variables, *alike]
     texts = [variables_words(found, missing.place, variables) for variables in names]
     return f"{both_of(texts, 'or')}, which this record cannot tell apart"
-
-
-def common_powers(found: Found) -> list[Power]:
-    """What these data would have shown, the effects first that a reader is most likely to know.
-
-    What was not tried is left out.
-    """
-    order = {name: n for n, name in enumerate(COMMON)}
-    left_out = untried(found)
-    tried = (p for p in found.power if f"{p.name} @ {p.place}" not in left_out)
-    return sorted(tried, key=lambda p: order.get(p.name, len(order)))
-
-
-def untried(found: Found) -> set[str]:
-    """The effects that were not tried by themselves, as their models do not run."""
-    return {hit[1] for text in found.words if (hit := UNTRIED.match(text))}
 
 
 def few_of(texts: Sequence[str], word: str = "and", most: int = WORD.most_told) -> str:
