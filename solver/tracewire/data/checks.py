@@ -131,9 +131,9 @@ def _spikes(name: str, t: Vector, y: Vector, unit: str) -> list[str]:
     told = ", ".join(f"{y[i]:.6g}{unit} at {_time(t, i)}" for i in alone[: FILE.most_told])
     more = f" and {len(alone) - FILE.most_told} more" if len(alone) > FILE.most_told else ""
     return [
-        f"{name} has samples far from all others, each alone: {told}{more}{_counted(t)}; nearly all "
-        f"are between {low:.4g} and {high:.4g}{unit}. Where they are faults of the measurement, leave them out "
-        f"by clean: [outliers: {name.removeprefix('input ')}]"
+        f"{name} has samples far from all others, each alone: {told}{more}{_counted(t)}; nearly "
+        f"all are between {low:.4g} and {high:.4g}{unit}. Where they are faults of the "
+        f"measurement, leave them out by clean: [outliers: {name.removeprefix('input ')}]"
     ]
 
 
