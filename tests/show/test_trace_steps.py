@@ -115,9 +115,9 @@ def test_what_was_not_tried_is_told_once_with_what_to_do() -> None:
         "another remark",
         "cogging @ torque and bias @ torque were not tried: the run stopped at t = 2 s",
         "play @ torque, coupling_q @ left (of right) and dahl @ torque with bias @ torque were not "
-        "tried: with them the model takes more than 6 times as many steps, as it is stiff or "
-        "switches often; to try one, add it to the diagram and `fit` that, or allow more in Python:"
-        ' `tw.trace(model, options={"search": {"slower": 30}})`',
+        "tried: with them the model takes more than 6 times as many steps, as it is stiff, "
+        "switches often or runs away; to try one, add it to the diagram and `fit` that, or allow "
+        'more in Python: `tw.trace(model, options={"search": {"slower": 30}})`',
     )
     assert untried(skipped) == {"coulomb @ torque", "play @ torque", "coupling_q @ left"}
 

@@ -11,6 +11,7 @@ from tracewire.show.trace_summary import explained_words, noisy_words, ties_word
 from tracewire.show.trace_untried import common_powers, told_of_untried
 from tracewire.show.trace_words import (
     astray_words,
+    both_of,
     chance_words,
     doubt_words,
     error_words,
@@ -87,7 +88,7 @@ def _verdict(found: Found) -> str:
         so_far = ", but not all effects were tried" if found.interrupted else ""
         return f"nothing is missing that these data could show{so_far}"
     if found.verdict == "effect":
-        return f"{' and '.join(map(str, found.effects))} {_is(len(found.effects))} missing"
+        return f"{both_of(list(map(str, found.effects)))} {_is(len(found.effects))} missing"
     none = explained_words(found)
     if noisy_words(found):
         return f"{noisy_words(found)}, and {none}"

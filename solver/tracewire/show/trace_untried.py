@@ -58,8 +58,8 @@ def _costly_words(found: Found, costly: list[str]) -> str:
     were, with_it, it = ("was", "it", "it") if len(costly) == 1 else ("were", "them", "one")
     return (
         f"{few_of(costly)} {were} not tried: with {with_it} the model takes more than {many:g} "
-        f"times as many steps, as it is stiff or switches often; to try {it}, add it to the "
-        "diagram and `fit` that, or allow more in Python: "
+        "times as many steps, as it is stiff, switches often or runs away; "
+        f"to try {it}, add it to the diagram and `fit` that, or allow more in Python: "
         f'`tw.trace(model, options={{"search": {{"slower": {5 * many:g}}}}})`'
     )
 
