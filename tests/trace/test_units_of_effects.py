@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 from show.traces import FOUND
 from tracewire.compile import compile
+from tracewire.compile.dimensions import unit_problems
 from tracewire.diagram import read_text
 from tracewire.trace import FoundEffect
 from tracewire.trace.units import unit_at, unit_of, unit_of_effect
@@ -104,11 +105,16 @@ def test_what_runs_over_at_an_electrical_node_is_a_conductance() -> None:
     assert unit_of_effect(found, "overflow", "node", "edge") == "V"
 
 
-def test_a_diagram_with_an_overflow_at_a_node_has_no_problem_with_units() -> None:
+def test_an_overflow_that_is_written_at_a_node_is_told_and_checked_in_its_unit() -> None:
     changed = NODE.replace("[-probe]", "[-probe, spill]") + (
         "  spill: {type: overflow, of: v1, k: {value: 0.005, fit: [0, 0.1]}, edge: 0.5}\n"
     )
-    compile(read_text(changed))  # refused what is in 1/s
+    flat = compile(read_text(changed)).flat
+    assert unit_problems(flat) == []
+    units = {**flat.units, **{name: p.unit for name, p in flat.parameters.items()}}
+    effect = FoundEffect("overflow", "node", {"k": 0.005}, block="spill")
+    found = replace(FOUND, original=read_text(NODE), units=units)
+    assert unit_of(found, effect, "k") == "A/V"
 
 
 ROPE = """\
