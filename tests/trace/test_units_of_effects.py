@@ -6,8 +6,7 @@ from dataclasses import replace
 
 import pytest
 from show.traces import FOUND
-from tracewire.compile import compile
-from tracewire.compile.dimensions import unit_problems
+from tracewire.compile import compile, unit_problems
 from tracewire.diagram import read_text
 from tracewire.trace import FoundEffect
 from tracewire.trace.units import unit_at, unit_of, unit_of_effect
