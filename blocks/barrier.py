@@ -69,7 +69,7 @@ overflow = Block(
     doc="What runs over above a level, in proportion to the excess.",
     inputs=(Input("of", doc="the level: m, or what is stored"),),
     parameters=(
-        Parameter("k", "1/s", "of what runs over to the excess", low=0.0),
+        Parameter("k", doc="of what runs over to the excess: 1/s, or A/V", low=0.0),
         Parameter("edge", doc="the level from which on it runs over", low=0.0),
     ),
     outputs=(Output("flow", "-k*(of - edge if of >= edge else 0)", doc="leaves what is stored"),),

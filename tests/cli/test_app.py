@@ -59,6 +59,8 @@ def test_version(call: Any) -> None:
         (["run", "a.yaml", "--rtol", "small"], "'--rtol'"),
         (["run", "a.yaml", "--span", "1"], "'--span' requires 2 arguments"),
         (["show", "a.yaml", "--equation"], "--equations"),
+        (["show", "a.yaml", "b"], "unexpected argument: b. See 'tracewire show --help'."),
+        (["show", "a.yaml", "b", "c"], "unexpected arguments: b c. See"),
     ],
 )
 def test_a_wrong_command_line_is_told_in_one_line(
@@ -69,6 +71,14 @@ def test_a_wrong_command_line_is_told_in_one_line(
     assert told.out == ""
     assert said in told.err
     assert told.err.count("\n") == 1
+
+
+def test_a_file_behind_json_is_told_where_results_go(call: Any) -> None:
+    told = call("trace", "a.yaml", "--json", "out.json").data["error"][0]
+    assert told["what"] == "unexpected argument: out.json"
+    assert told["hint"].startswith("--json prints to the screen; --save out.json keeps the result.")
+    told = call("show", "a.yaml", "--json", "out.json").data["error"][0]
+    assert told["hint"].startswith("--json prints to the screen: `--json > out.json` writes that")
 
 
 def test_a_wrong_command_line_is_json_too(call: Any) -> None:

@@ -195,7 +195,7 @@ def test_units_are_listed_and_explained(call: Any) -> None:
     listed = call("units")
     assert "\nacceleration: m/s^2, " in listed.out
     assert "deg = 0.0174533 rad" in listed.out
-    assert call("units", "mN m s/deg").out == "1 mN m s/deg = 0.0572957795131 kg*m**2/rad/s\n"
+    assert call("units", "mN m s/deg").out == "1 mN m s/deg = 0.0572957795131 N m s/rad\n"
     assert call("units", "furlong", "--json").data["factor"] == pytest.approx(201.168, rel=1e-5)
     wrong = call("units", "degC")
     assert (wrong.code, "is in K" in wrong.err) == (2, True)

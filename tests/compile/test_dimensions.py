@@ -192,5 +192,5 @@ def test_a_signal_without_a_unit_has_that_of_its_equations() -> None:
     """That of the acceleration follows from its integral, that of the force from its terms."""
     text = BODY.replace("1/m}", "k/m}")
     assert told(text) == [
-        f"<text>:13:3: block 'a': 'a' is in m/s^2, and its formula is in kg m/s^4. {HINT}"
+        f"<text>:13:3: block 'a': 'a' is in m/s^2, and its formula is in N/s^2. {HINT}"
     ]

@@ -43,6 +43,20 @@ def test_gaps_are_told_with_their_places() -> None:
     ]
 
 
+def test_times_are_told_so_that_they_differ() -> None:
+    """Of a time of day in s, and of a long record with fine steps."""
+    t = np.delete(1700012.345 + T, np.s_[500:600])
+    assert time_remarks(t) == [
+        "a gap in the time, where the step is 0.01 s: 1.01 s after t = 4.99 s (t counts from "
+        "the first sample)"
+    ]
+    long = np.delete(np.arange(2_000_000) * 1e-3, [1_234_567, 1_234_568, 1_234_569])
+    assert time_remarks(long)[0].endswith("0.004 s after t = 1234.566 s")
+    spiked = WAVE.copy()
+    spiked[500] = 50.0
+    assert "at t = 5 s (t counts from the first sample)" in signal_remarks("y", 2e6 + T, spiked)[0]
+
+
 @pytest.mark.parametrize(
     "y",
     [

@@ -35,9 +35,9 @@ def test_a_tribometer_log_says_its_units() -> None:
         moved = 0.10991 if name == "x" else 0.0
         assert part.columns[name] + moved == pytest.approx(derived.columns[name], abs=2e-6)
     assert [step for step in record.steps if "header" in step] == [
-        "normal: from uN to kg*m/s**2, as the header says",
+        "normal: from uN to N, as the header says",
         "x: from mm to m, as the header says",
-        "friction: from uN to kg*m/s**2, as the header says",
+        "friction: from uN to N, as the header says",
     ]
     (remark,) = told(record)
     assert remark.startswith("the time step is not regular: 0.005 to 0.01 s, median 0.005 s")

@@ -192,6 +192,14 @@ def test_values(parameters: str, message: str) -> None:
     assert message in refused(f"parameters: {parameters}\nblocks: {{}}")
 
 
+def test_a_name_that_is_refused_is_not_refused_as_a_function_too() -> None:
+    use = "blocks: {f: {type: gain, of: x, k: dry}, x: {type: integrator, of: f}}"
+    told = refused(f"parameters: {{dry: 3}}\n{use}")
+    assert "'dry' cannot be the name of a parameter" in told
+    assert "is a function" not in told
+    assert "dry is a function. Write dry(...)." in refused(use)
+
+
 @pytest.mark.parametrize(("block", "message"), BLOCKS)
 def test_blocks(block: str, message: str) -> None:
     more = "i: {type: integrator, of: i}"

@@ -11,7 +11,7 @@ import pytest
 from residual.models import LINE, OSCILLATOR, PENDULUM, C, K, T, made, oscillation, series, swing
 from tracewire.errors import DataError, FitError, OptionError
 from tracewire.fit import Fit, Progress, fit, optimset
-from tracewire.fit.remarks import rises, unfinished
+from tracewire.fit.remarks import raises_unseen, rises, unfinished
 from tracewire.residual import Measured, Sensor
 
 METHODS = ("fminsearch", "least_squares")
@@ -422,9 +422,13 @@ def test_a_search_whose_last_slope_promises_much_says_so_though_errors_are_large
 
 
 def test_a_search_that_ends_above_where_it_began_says_so() -> None:
-    (remark,) = rises(2.0, 5.0)
+    (remark,) = rises(2.0, 5.0, "least_squares")
     assert remark.startswith("the criterion is 2.5 times that of the values with which the search")
-    assert rises(2.0, 2.0) == rises(0.0, 0.0) == []
+    assert remark.endswith("--method multiple_shooting takes short ones")
+    (again,) = rises(2.0, 5.0, "multiple_shooting")
+    assert "--method" not in again, "it does not advise itself"
+    assert "cut the series shorter by `from:` and `to:`" in again
+    assert rises(2.0, 2.0, "simplex") == rises(0.0, 0.0, "simplex") == []
 
 
 def test_a_fit_that_raises_the_error_of_what_it_has_not_seen_says_so() -> None:
@@ -433,5 +437,8 @@ def test_a_fit_that_raises_the_error_of_what_it_has_not_seen_says_so() -> None:
     train, other = series(oscillation(T, 0.9)), series(slower, "other", use="validate")
     (remark,) = fitted(OSCILLATOR, train, other).remarks
     assert remark.startswith("other: the fit raises the error of x, which it has not seen, ")
+    assert remark.endswith("(--method multiple_shooting takes short ones)")
+    (again,) = raises_unseen(fitted(OSCILLATOR, train, other).comparisons, "multiple_shooting")
+    assert "--method" not in again
     same = series(oscillation(T, 0.9), "other", use="validate")
     assert fitted(OSCILLATOR, train, same).remarks == ()

@@ -8,13 +8,15 @@ from pathlib import Path
 
 import pytest
 from show.traces import FOUND, NULL
+from tracewire.options import options_of
 from tracewire.show import report
 from tracewire.show.style import saved_figures
 from tracewire.show.trace_figures import plot_candidates
 from tracewire.show.trace_steps import compares, decided_words, own_gain
 from tracewire.show.trace_tables import compared_table, effects_table, power_table, tried_table
-from tracewire.show.trace_text import step_lines
-from tracewire.trace import CandidateScore, SearchStep
+from tracewire.show.trace_text import remarks_of, step_lines
+from tracewire.show.trace_untried import untried
+from tracewire.trace import CandidateScore, SearchStep, TraceOptions
 
 BOTH = "coulomb @ torque + cogging @ torque"
 SEARCHED = (
@@ -91,3 +93,35 @@ def test_what_was_not_tried_would_not_have_been_shown() -> None:
     assert "Not among them: coulomb @ torque, which was not tried." in report(skipped).markdown()
     pair = replace(NULL, words=("play @ torque and coulomb @ torque was not tried: it stops",))
     assert len(power_table(pair).rows) == len(NULL.power)
+
+
+LONG = "the model takes more than 61217 steps in all"
+
+
+def test_what_was_not_tried_is_told_once_with_what_to_do() -> None:
+    skipped = replace(
+        FOUND,
+        words=(
+            f"coulomb @ torque was not tried: {LONG}",  # the verdict names it
+            f"play @ torque was not tried: {LONG}",
+            f"play @ torque and bias @ torque was not tried: {LONG}",
+            f"coupling_q @ left (of right) was not tried: {LONG}",
+            f"dahl @ torque and bias @ torque was not tried: {LONG}",
+            "cogging @ torque and bias @ torque was not tried: the run stopped at t = 2 s",
+            "another remark",
+        ),
+    )
+    assert remarks_of(skipped) == (
+        "another remark",
+        "cogging @ torque and bias @ torque were not tried: the run stopped at t = 2 s",
+        "play @ torque, coupling_q @ left (of right) and dahl @ torque with bias @ torque were not "
+        "tried: with them the model takes more than 6 times as many steps, as it is stiff, "
+        "switches often or runs away; to try one, add it to the diagram and `fit` that, or allow "
+        'more in Python: `tw.trace(model, options={"search": {"slower": 30}})`',
+    )
+    assert untried(skipped) == {"coulomb @ torque", "play @ torque", "coupling_q @ left"}
+
+
+def test_the_options_that_a_remark_names_are_options() -> None:
+    options = options_of(TraceOptions, {"search": {"slower": 30}}, "a trace")
+    assert options.search.slower == 30

@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from show.traces import FOUND, NULL, SIGMA, TEXT, UNEXPLAINED, errors, missing_of_two
 from tracewire.diagram import read_text
@@ -17,8 +18,10 @@ from tracewire.show.trace_summary import (
     paragraph_of,
     ties_words,
 )
+from tracewire.show.trace_text import answer_lines
 from tracewire.show.trace_words import (
     chance_words,
+    excess_words,
     in_sigma,
     percent,
     place_words,
@@ -28,7 +31,7 @@ from tracewire.show.trace_words import (
     unseen_errors,
     value_words,
 )
-from tracewire.trace.found import Dependence, Explained, FoundEffect, Remainder, Tie
+from tracewire.trace.found import Dependence, Explained, FoundEffect, HeldOut, Remainder, Tie
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.units import users_unit
 
@@ -44,7 +47,7 @@ def test_the_headline_has_effect_place_value_share_and_error_in_the_unit_of_the_
     assert headline_of(EXPLAINED) == (
         "The diagram lacks 'coulomb' at the sum 'torque', level = 0.2500 N m (95 %: 0.2430 to "
         "0.2570); it explains 98 % (95 % interval: 96 to 99 %) of the excess error and leaves 4 % "
-        "of the error on held-out blocks, and on unseen data the error of free runs falls for "
+        "of the rms error on held-out blocks, and on unseen data the error of free runs falls for "
         "theta from 0.184 to 0.00408 rad."
     )
     assert paragraph_of(EXPLAINED).startswith(headline_of(EXPLAINED))
@@ -89,7 +92,7 @@ def test_the_details_have_the_fit_the_meaning_and_what_remains() -> None:
     )
     assert "'coulomb': dry friction of one level, which holds" in text
     assert "With it in the diagram, and all free parameters refitted, 1 σ are left." in text
-    assert "remain: 0.005 rad of theta (1.25 σ, 4 % of the error before)." in text
+    assert "remain: 0.005 rad of theta (1.25 σ, 4 % of the rms error before)." in text
     assert (
         "A smooth function of the coordinate theta and the rate omega at the sum 'torque' explains "
         "35 %" in text
@@ -153,6 +156,15 @@ def test_what_declared_parameters_had_absorbed_is_told() -> None:
     )
 
 
+def test_growth_from_a_bound_is_not_doubted() -> None:
+    """On its bound the declared value said nothing that a larger one could contradict."""
+    held = replace(FOUND.moved[1], before=0.01, after=0.3, at_bound=True)
+    assert "is that possible" not in paragraph_of(replace(FOUND, moved=(held,)))
+    assert "is that possible" in paragraph_of(
+        replace(FOUND, moved=(replace(held, at_bound=False),))
+    )
+
+
 def test_a_parameter_that_went_to_zero_is_told() -> None:
     text = paragraph_of(replace(FOUND, dropped=("c",)))
     assert text.endswith(
@@ -189,7 +201,7 @@ def test_what_nothing_explains_is_told_with_place_and_variables() -> None:
     assert "depends on the coordinate theta and the rate omega" in both
     nowhere = paragraph_of(replace(UNEXPLAINED, missing=None))
     assert nowhere.startswith("Something is missing, and its place is not known; no effect")
-    assert "depends on nothing that was tried: a random disturbance" in nowhere
+    assert "depends on nothing that was tried: it may be a random disturbance" in nowhere
     assert "random disturbance" not in text
     assert UNEXPLAINED.missing is not None
     little = paragraph_of(replace(UNEXPLAINED, missing=replace(UNEXPLAINED.missing, share=0.31)))
@@ -214,6 +226,40 @@ def test_a_partial_approximation_is_not_called_an_explanation() -> None:
     assert "; the best approximation is not enough: a model with it leaves a half." in text
     assert "It explains 30 % (95 % interval: 10 to 50 %) of the excess error." in text
     assert "The diagram lacks" not in text
+
+
+def test_an_excess_that_is_a_small_part_of_the_error_is_told_to_be_so() -> None:
+    """The best smooth force leaves 58 % of the error: the effects take all that it could take."""
+    blocks = np.ones(8)
+    held = HeldOut(1.0, ("a",) * 8, blocks, 10 * blocks, 5.8 * blocks, 5.8 * blocks)
+    found = replace(
+        EXPLAINED, explained=Explained(0.99999, 0.99999, 1.0), held_out=(held,),
+        remainder=(Remainder("theta", "rad", 0.1, 6.0, 0.58, 0.1),),
+    )  # fmt: skip
+    whole = (
+        "> 99.99 % of what a smooth force could explain, which is 42 % of the rms error on "
+        "held-out blocks"
+    )
+    assert f"it explains {whole} and leaves 58 % of the rms error" in headline_of(found)
+    assert f"  explained: {whole}" in answer_lines(found)
+    assert f"It explains {whole}." in paragraph_of(replace(found, verdict="unexplained"))
+    assert "The excess error is" not in paragraph_of(found)
+    near = replace(held, floor=2 * blocks)
+    assert excess_words(replace(found, held_out=(near,))) == "> 99.99 % of the excess error"
+    useless = replace(held, floor=11 * blocks)
+    assert "which is none of the error" in excess_words(replace(found, held_out=(useless,)))
+
+
+def test_shares_of_the_error_are_told_with_their_kind_of_mean() -> None:
+    reason = "a model with it leaves 64 % of the error on held-out blocks"
+    text = headline_of(replace(UNEXPLAINED, reason=reason))
+    assert "leaves 64 % of the error on a typical held-out block (geometric mean)" in text
+
+
+def test_a_residual_that_depends_on_nothing_gets_a_next_step() -> None:
+    text = paragraph_of(replace(UNEXPLAINED, missing=None))
+    assert "it may be a random disturbance" in text
+    assert "or a law that depends on the time or on a drive. Do the same run twice" in text
 
 
 def test_the_effect_of_a_sensor_is_called_by_what_it_does() -> None:

@@ -38,6 +38,14 @@ def test_the_answer_to_an_effect() -> None:
     )
 
 
+def test_three_effects_are_a_list() -> None:
+    (one,) = FOUND.effects
+    three = replace(FOUND, effects=(one, replace(one, name="bias"), replace(one, name="cogging")))
+    assert answer_lines(three)[0] == (
+        "VERDICT effect: coulomb @ torque, bias @ torque and cogging @ torque are missing"
+    )
+
+
 def test_the_answer_where_nothing_is_missing() -> None:
     assert answer_lines(NULL) == (
         "VERDICT null: nothing is missing that these data could show",

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 from show.traces import FOUND
+from tracewire.compile import compile, unit_problems
 from tracewire.diagram import read_text
 from tracewire.trace import FoundEffect
 from tracewire.trace.units import unit_at, unit_of, unit_of_effect
@@ -86,3 +87,58 @@ def test_what_a_sensor_adds_has_its_unit(term: str, unit: str) -> None:
     found = replace(FOUND, units={"theta": "rad"})
     effect = FoundEffect(f"sensor_{term}", "sensor.theta", {term: 0.1})
     assert unit_of(found, effect, term) == unit
+
+
+NODE = """\
+blocks:
+  v1: {type: integrator, of: slope, unit: V}
+  probe: {type: gain, of: v1, k: {value: 0.01, unit: A/V}, unit: A}
+  node: {type: sum, of: [-probe], unit: A, place: {v: v1}}
+  slope: {type: gain, of: node, k: {value: 2, unit: V/A/s}}
+"""
+
+
+def test_what_runs_over_at_an_electrical_node_is_a_conductance() -> None:
+    found = replace(FOUND, original=read_text(NODE), units={"v1": "V", "node": "A"})
+    assert unit_of_effect(found, "overflow", "node", "k") == "A/V"
+    assert unit_of_effect(found, "overflow", "node", "edge") == "V"
+
+
+def test_an_overflow_that_is_written_at_a_node_is_told_and_checked_in_its_unit() -> None:
+    changed = NODE.replace("[-probe]", "[-probe, spill]") + (
+        "  spill: {type: overflow, of: v1, k: {value: 0.005, fit: [0, 0.1]}, edge: 0.5}\n"
+    )
+    flat = compile(read_text(changed)).flat
+    assert unit_problems(flat) == []
+    units = {**flat.units, **{name: p.unit for name, p in flat.parameters.items()}}
+    effect = FoundEffect("overflow", "node", {"k": 0.005}, block="spill")
+    found = replace(FOUND, original=read_text(NODE), units=units)
+    assert unit_of(found, effect, "k") == "A/V"
+
+
+ROPE = """\
+blocks:
+  theta: {type: integrator, of: omega, unit: rad}
+  omega: {type: integrator, of: alpha, unit: rad/s}
+  speed: {type: gain, of: omega, k: {value: 2, unit: m}, unit: m/s}
+  weight: {type: gain, of: theta, k: {value: -9.81, unit: m/s^2}}
+  push: {type: sum, of: [weight], unit: m/s^2, place: {q: theta, v: speed}}
+  alpha: {type: gain, of: push, k: {value: 0.5, unit: 1/m}}
+"""
+ROPE_UNITS = {"theta": "rad", "omega": "rad/s", "speed": "m/s", "push": "m/s^2"}
+
+
+@pytest.mark.parametrize(
+    ("effect", "parameter", "unit"),
+    [
+        ("quad_drag", "c", "1/m"),
+        ("viscous", "c", "1/s"),
+        ("coulomb", "width", "m/s"),
+        ("dahl", "deflection", "m"),
+        ("stiffness", "k", "m/s^2/rad"),
+        ("hunt_crossley", "k", ""),
+    ],
+)
+def test_a_rate_that_is_not_that_of_the_coordinate(effect: str, parameter: str, unit: str) -> None:
+    found = replace(FOUND, original=read_text(ROPE), units=ROPE_UNITS)
+    assert unit_of_effect(found, effect, "push", parameter) == unit

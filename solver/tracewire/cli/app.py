@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import traceback
 from collections.abc import Sequence
 from importlib import import_module
+from itertools import pairwise
 from typing import Annotated
 
 import typer
@@ -20,6 +22,8 @@ from tracewire.errors import Problem, TracewireError
 STOPPED = Problem("interrupted; nothing was finished")
 USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
 """The base of every usage error; typer has its own copy of click or uses the installed one."""
+
+EXTRA = re.compile(r"[Uu]nexpected extra arguments?(?:\(s\))? \((.+)\)")
 
 VERBS = (
     *("check", "show", "draw", "view", "run", "animate", "fit", "trace", "report", "sweep"),
@@ -100,7 +104,7 @@ def _ended(given: list[str], as_json: bool, debug: bool) -> int:
     except SystemExit as end:  # what typer makes of a reader that has gone
         return end.code if isinstance(end.code, int) else 1
     except (Exception, KeyboardInterrupt) as error:
-        problems, code = _told(error)
+        problems, code = _told(error, given)
         if debug:
             traceback.print_exception(error)
     print_problems(problems, as_json)
@@ -112,12 +116,12 @@ def _version() -> str:
     return str(sys.modules["tracewire"].__version__)
 
 
-def _told(error: BaseException) -> tuple[list[Problem], int]:
+def _told(error: BaseException, given: Sequence[str]) -> tuple[list[Problem], int]:
     """What to say of an error, and the exit code."""
     if isinstance(error, TracewireError):
         return list(error.problems), error.exit_code
     if isinstance(error, USAGE_ERROR):
-        return [_usage(error)], 2
+        return [_usage(error, given)], 2
     cause = (
         error.__cause__ if isinstance(error, RuntimeError) else None
     )  # of Python 3.11, in a class
@@ -127,10 +131,18 @@ def _told(error: BaseException) -> tuple[list[Problem], int]:
     return [Problem(what, hint="Please report it; --debug shows the traceback.")], 1
 
 
-def _usage(error: Exception) -> Problem:
+def _usage(error: Exception, given: Sequence[str]) -> Problem:
     context = getattr(error, "ctx", None)
     path = context.command_path if context is not None else "tracewire"
     message = error.format_message() if hasattr(error, "format_message") else str(error)
     what, _, meant = message.strip().partition(" Did you mean ")
     hint = f"Did you mean {meant} " if meant else ""
+    if extra := EXTRA.search(what):
+        names = extra[1].split()
+        what = f"unexpected {'argument' if len(names) == 1 else 'arguments'}: {' '.join(names)}"
+        if ("--json", names[0]) in pairwise(given):
+            hint = f"--json prints to the screen: `--json > {names[0]}` writes that to a file. "
+            options = context.command.params if context is not None else ()
+            if any("--save" in option.opts for option in options):
+                hint = f"--json prints to the screen; --save {names[0]} keeps the result. "
     return Problem(what.rstrip("."), hint=f"{hint}See '{path} --help'.")

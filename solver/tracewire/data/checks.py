@@ -31,11 +31,31 @@ def time_remarks(t: Vector) -> list[str]:
             f"{count} of {len(steps)} are more than {CHECK.jitter:.0%} off"
         )
     if gaps.size:
-        told = ", ".join(f"{steps[i]:.4g} s after t = {t[i]:.6g} s" for i in gaps[: FILE.most_told])
+        told = ", ".join(f"{steps[i]:.4g} s after {_time(t, i)}" for i in gaps[: FILE.most_told])
         more = f" and {gaps.size - FILE.most_told} more" if gaps.size > FILE.most_told else ""
         some = "a gap" if gaps.size == 1 else f"{gaps.size} gaps"
-        remarks.append(f"{some} in the time, where the step is {median:.4g} s: {told}{more}")
+        remarks.append(
+            f"{some} in the time, where the step is {median:.4g} s: {told}{more}" + _counted(t)
+        )
     return remarks
+
+
+def _time(t: Vector, number: int) -> str:
+    """The time of a sample, up to a tenth of the usual step: `t = 4.99 s`."""
+    value, step = float(t[number]), float(np.median(np.diff(t)))
+    value -= float(t[0]) if _is_far(t) else 0.0
+    digits = math.log10(abs(value) / step) + 2 if value and step > 0 else 0.0
+    return f"t = {value:.{min(max(math.ceil(digits), CHECK.least_digits), CHECK.most_digits)}g} s"
+
+
+def _is_far(t: Vector) -> bool:
+    """Whether a record begins far from zero, as at a time of day."""
+    return abs(float(t[0])) > CHECK.far_zero * float(t[-1] - t[0])
+
+
+def _counted(t: Vector) -> str:
+    """From where on times are told, where that is not their zero."""
+    return " (t counts from the first sample)" if _is_far(t) else ""
 
 
 def signal_remarks(
@@ -108,12 +128,12 @@ def _spikes(name: str, t: Vector, y: Vector, unit: str) -> list[str]:
     alone = np.flatnonzero(far & ~beside)
     if high == low or not len(alone):
         return []
-    told = ", ".join(f"{y[i]:.6g}{unit} at t = {t[i]:.6g} s" for i in alone[: FILE.most_told])
+    told = ", ".join(f"{y[i]:.6g}{unit} at {_time(t, i)}" for i in alone[: FILE.most_told])
     more = f" and {len(alone) - FILE.most_told} more" if len(alone) > FILE.most_told else ""
     return [
-        f"{name} has samples far from all others, each alone: {told}{more}; nearly all are between "
-        f"{low:.4g} and {high:.4g}{unit}. Where they are faults of the measurement, leave them out "
-        f"by clean: [outliers: {name.removeprefix('input ')}]"
+        f"{name} has samples far from all others, each alone: {told}{more}{_counted(t)}; nearly "
+        f"all are between {low:.4g} and {high:.4g}{unit}. Where they are faults of the "
+        f"measurement, leave them out by clean: [outliers: {name.removeprefix('input ')}]"
     ]
 
 

@@ -65,6 +65,12 @@ class CheckLimits:
     """Of the median interval: times that are off by more are told."""
     gap: float = 3.0
     """Steps of this many medians are gaps."""
+    far_zero: float = 10.0
+    """A record that begins this many times its length from zero is told times of its own."""
+    least_digits: int = 6
+    """Of a time that is told ..."""
+    most_digits: int = 15
+    """... and as many as there are."""
     fewest_samples: int = 20
     """Less say nothing about how they were taken."""
     run: int = 4

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import replace
 
@@ -9,6 +10,7 @@ from tracewire.diagram.limits import LIMITS
 from tracewire.errors import DiagramError, Location, Problem, TracewireError, unknown
 
 NO_UNIT = " is not a unit"
+REFUSED = re.compile(r"'(\w+)' cannot be the name of ")
 
 
 def clip(text: str) -> str:
@@ -74,7 +76,10 @@ class Problems:
 
 
 def _together(problems: list[Problem]) -> list[Problem]:
-    """Units that are refused in several places of a file are told at the first, with all lines."""
+    """Units that are refused in several places of a file are told at the first, with all lines; a
+    name that is refused is not refused again as the word of formulas that it is."""
+    words = [f": {hit[1]} is a function" for p in problems if (hit := REFUSED.match(p.what))]
+    problems = [p for p in problems if not p.what.endswith(tuple(words))]
     alike: dict[object, list[Problem]] = {}
     for problem in problems:
         once = problem.what.endswith(NO_UNIT)

@@ -200,9 +200,9 @@ def fit(
         remarks=(
             *(store.remarks if store else ()),
             *short,
-            *rises(criterion_before, value),
+            *rises(criterion_before, value, method),
             *starts_elsewhere(model, series, shown),
-            *raises_unseen(shown),
+            *raises_unseen(shown, method),
             *collect_remarks(series, failures, last),
         ),
     )

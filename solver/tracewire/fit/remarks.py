@@ -56,18 +56,18 @@ def unfinished(
     ]
 
 
-def rises(before: float, after: float) -> list[str]:
+def rises(before: float, after: float, method: str) -> list[str]:
     """That a search ended above where it began, which only a criterion without slopes can do."""
     if not after > DIAGNOSIS.raised * before:
         return []
     return [
         f"the criterion is {after / before:.3g} times that of the values with which the search "
         "began: a rounding of values changes runs as long as these (chaos); "
-        "--method multiple_shooting takes short ones"
+        f"{_shorter(method)}"
     ]
 
 
-def raises_unseen(comparisons: Sequence[Comparison]) -> list[str]:
+def raises_unseen(comparisons: Sequence[Comparison], method: str) -> list[str]:
     """Series that were not fitted, and of which a fit has raised the error."""
     found = []
     for c in comparisons:
@@ -82,9 +82,16 @@ def raises_unseen(comparisons: Sequence[Comparison]) -> list[str]:
                 f"{c.series}: the fit raises the error of {c.signal}, which it has not seen, "
                 f"{after / before:.3g}-fold: the fitted data want other values than these, so that "
                 "something is missing (`tracewire trace`), or their runs are too long for this "
-                "model (--method multiple_shooting)"
+                f"model ({_shorter(method)})"
             )
     return found
+
+
+def _shorter(method: str) -> str:
+    """How a fit follows a model that runs astray."""
+    if method == "multiple_shooting":
+        return "cut the series shorter by `from:` and `to:`, or begin nearer to the right values"
+    return "--method multiple_shooting takes short ones"
 
 
 def starts_elsewhere(

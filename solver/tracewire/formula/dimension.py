@@ -24,6 +24,10 @@ POWERS: dict[str, Term] = {
 # fmt: on
 SHOWN = ("N", "N m", "N/m", "N s/m", "N m s", "Pa", "W", "V", "Ohm", "H", "F", "C", "T", "Wb")
 """Derived units by which a dimension is told."""
+DERIVED = ("N", "W", "V", "ohm", "Pa", "H", "F", "S")
+"""Units of which a product may have one in place of kg; of those that are as short the first."""
+HEAT = ("K", "mol")
+"""Beside these energy is in J: without them it may be a torque."""
 PART = re.compile(
     r"\s*([*/])?\s*(\()?\s*([A-Za-z]+|1)\s*(?:(?:\^|\*\*)\s*([+-]?\d+(?:\.\d+)?))?\s*(\))?"
 )
@@ -33,6 +37,12 @@ PART = re.compile(
 @lru_cache(maxsize=1024)
 def dimension_of(text: str) -> Term | None:
     """The dimension of a coherent SI unit such as `N m s/rad`; None for '' and for other texts."""
+    found = powers_of(text)
+    return None if found is None else {n: power for n, power in found.items() if n != "rad"}
+
+
+def powers_of(text: str) -> Term | None:
+    """The dimension of a coherent SI unit, with its power of rad; None for '' and other texts."""
     at, end, found = 0, len(text.rstrip()), Term()
     outer = 0  # the sign before an open parenthesis; 0 where none is open
     while at < end:
@@ -42,7 +52,8 @@ def dimension_of(text: str) -> Term | None:
         sign = -1 if part[1] == "/" else 1
         if part[2]:
             outer, sign = sign, 1
-        found = times(found, POWERS[part[3]], float(part[4] or 1) * sign * (outer or 1))
+        base: Term = {"rad": 1.0} if part[3] == "rad" else POWERS[part[3]]
+        found = times(found, base, float(part[4] or 1) * sign * (outer or 1))
         if part[5]:
             if not outer:
                 return None
@@ -56,9 +67,28 @@ def dimension_text(dimension: Mapping[str, float]) -> str:
     for text in SHOWN:
         if dimension_of(text) == dimension:
             return text
-    over = [_power(name, power) for name, power in dimension.items() if power > 0]
-    under = [_power(name, -power) for name, power in dimension.items() if power < 0]
+    return shortest_text(dimension)
+
+
+def shortest_text(powers: Mapping[str, float]) -> str:
+    """The shortest product for powers of base units: `V/s`, `N m/rad`, `kg/m^3`."""
+    one = dict(powers)
+    derived = (*DERIVED, "J") if any(name in one for name in HEAT) else DERIVED
+    ways = [one]
+    for name in derived:
+        for power in (1.0, -1.0):
+            rest = times(one, POWERS[name], -power)
+            ways += [{name: power, **rest}] if "kg" in one and "kg" not in rest else []
+    best = min(ways, key=_length)
+    over = [_power(name, power) for name, power in best.items() if power > 0]
+    under = [_power(name, -power) for name, power in best.items() if power < 0]
     return "/".join([" ".join(over) or "1", *under])
+
+
+def _length(way: Mapping[str, float]) -> tuple[float, int, bool]:
+    """What a product is long by: its powers, what it is divided by, and a 1 above the line."""
+    under = sum(power < 0 for power in way.values())
+    return sum(map(abs, way.values())), under, under == len(way)
 
 
 def _power(name: str, power: float) -> str:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from tracewire.errors import FormulaError, Location, Problem
 from tracewire.formula.common_units import COMMON
+from tracewire.formula.dimension import powers_of, shortest_text
 from tracewire.formula.limits import LIMITS
 
 if TYPE_CHECKING:
@@ -68,7 +69,11 @@ def _convert(text: str) -> Unit:
     # pint's base of mass is the kilogram and its base of angle is the radian, as ours
     if not math.isfinite(factor) or factor <= 0:
         raise ValueError("factor")
-    return Unit(text, 1.0) if factor == 1.0 else Unit(f"{quantity.units:~C}", factor, text)
+    if factor == 1.0:
+        return Unit(text, 1.0)
+    shown = f"{quantity.units:~C}"
+    powers = powers_of(shown)
+    return Unit(shortest_text(powers) if powers else shown, factor, text)
 
 
 def read_unit(text: str, place: Location = Location()) -> Unit:

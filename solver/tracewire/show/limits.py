@@ -183,6 +183,8 @@ class TraceFigureLimits:
     """Samples that scatter by more than this part of the axis are noise, and are not drawn."""
     far: float = 3.0
     """Means with an error of more than this many median errors set no limits."""
+    title_width: int = 90
+    """Letters of a title that is as wide as a figure."""
     law_points: int = 80
     """Of a line in a plot of the diagram, which is 100 px wide."""
     among: tuple[float, ...] = (0.1, 0.5, 0.9)
@@ -264,6 +266,9 @@ class WordLimits:
     """Of the excess: variables whose shares differ by less explain as much."""
     little: float = 0.5
     """The share of the excess below which the variables found explain little of it."""
+    out_of_reach: float = 0.3
+    """The part of the declared model's rms error that no smooth force takes away, from which on the
+    excess needs a word about how much of the error it is."""
     far: float = 2.0
     """Times the noise from which on a null needs a word about what the noise is not."""
     least_separation: float = 0.1

@@ -37,7 +37,8 @@ from tracewire.show.trace_tables import (
     where_table,
 )
 from tracewire.show.trace_text import answer_lines, remarks_of, step_lines
-from tracewire.show.trace_words import both_of, stood_in, untried
+from tracewire.show.trace_untried import untried
+from tracewire.show.trace_words import both_of, stood_in
 from tracewire.trace import Found
 
 ERRORS = (

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from itertools import groupby
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tracewire.show.limits import TRACE
 from tracewire.show.style import AFTER, BAND, BEFORE, QUIET, cut, plain_log, save, styled
-from tracewire.show.trace_words import share_words
+from tracewire.show.trace_words import excess_words
 from tracewire.trace import Explained, Found, HeldOut
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ def plot_held_out(found: Found, path: Path) -> Path:
         figure = Figure(figsize=(9.0, sum(heights) + 0.9), layout="constrained")
         grid = figure.subplots(len(heights), 1, squeeze=False, height_ratios=heights)[:, 0]
         if found.explained is not None:
-            _draw_share(grid[0], found.explained)
+            _draw_share(grid[0], found.explained, excess_words(found))
         for panel, held in zip(grid[int(bar) :], found.held_out, strict=True):
             _draw_blocks(panel, held)
         lines, labels = grid[-1].get_legend_handles_labels()
@@ -40,7 +41,7 @@ def plot_held_out(found: Found, path: Path) -> Path:
         return save(figure, path)
 
 
-def _draw_share(panel: Axes, explained: Explained) -> None:
+def _draw_share(panel: Axes, explained: Explained, words: str) -> None:
     share = float(np.clip(explained.share, 0, 1))
     panel.barh(0, 1, height=0.7, color=BAND)
     panel.barh(0, share, height=0.7, color=AFTER)
@@ -51,7 +52,7 @@ def _draw_share(panel: Axes, explained: Explained) -> None:
     panel.set_yticks([])
     panel.grid(False)
     panel.spines["left"].set_visible(False)
-    panel.set_title(f"explained: {share_words(explained)} of the excess error", loc="left")
+    panel.set_title(fill(f"explained: {words}", TRACE.title_width), loc="left")
 
 
 def _draw_blocks(panel: Axes, held: HeldOut) -> None:

@@ -6,12 +6,13 @@ import math
 
 from tracewire.show.limits import WORD
 from tracewire.show.trace_experiments import experiment_words
+from tracewire.show.trace_untried import common_powers
 from tracewire.show.trace_words import (
     SENSORS,
     both_of,
-    common_powers,
     doubt_words,
     error_words,
+    excess_words,
     few_of,
     in_sigma,
     missing_words,
@@ -20,7 +21,6 @@ from tracewire.show.trace_words import (
     place_words,
     remainder_numbers,
     runs_words,
-    share_words,
     stood_in,
     unseen_errors,
     value_words,
@@ -28,10 +28,15 @@ from tracewire.show.trace_words import (
 )
 from tracewire.trace import Found, FoundEffect, Tie, TraceOptions, coefficient_of, unit_of_power
 
-RANDOM = (
-    "a random disturbance of the motion (process noise), or something that is not measured, looks "
-    "like that"
+PERHAPS = (
+    "a random disturbance of the motion (process noise)",
+    "something that is not measured",
+    "a law that depends on the time or on a drive",
 )
+REPEAT = "Do the same run twice: what comes back is a law, and what does not is random."
+LEFT = "of the error on held-out blocks"
+TYPICAL = "of the error on a typical held-out block (geometric mean)"
+"""What a reason calls by the first is the second; what is left of a signal is of its rms error."""
 
 
 def paragraph_of(found: Found) -> str:
@@ -108,10 +113,10 @@ def _lacks(found: Found) -> str:
         who = "it explains" if one else "together they explain"
         left = max((part.share for part in found.remainder), default=0.0)
         leaves = (
-            f" and {'leaves' if one else 'leave'} {percent(left)} of the error on held-out blocks"
+            f" and {'leaves' if one else 'leave'} {percent(left)} of the rms error on held-out "
+            "blocks"
         )
-        whole = f"{share_words(found.explained)} of the excess error"
-        parts.append(f"{who} {whole}{leaves if left > 0 else ''}")
+        parts.append(f"{who} {excess_words(found)}{leaves if left > 0 else ''}")
     errors = error_words(found, unseen_errors(found))
     if errors:
         goes = _goes(found)
@@ -171,9 +176,10 @@ def explained_words(found: Found) -> str:
     """Why a trace that ends `unexplained` names nothing as the explanation."""
     if found.interrupted:
         return "no effect was accepted by then"
+    reason = found.reason.replace(LEFT, TYPICAL)
     if found.effects:
-        return f"the best approximation is not enough: {found.reason}".removesuffix(": ")
-    return f"no effect of the library explains it: {found.reason}".removesuffix(": ")
+        return f"the best approximation is not enough: {reason}".removesuffix(": ")
+    return f"no effect of the library explains it: {reason}".removesuffix(": ")
 
 
 def noisy_words(found: Found) -> str:
@@ -216,7 +222,8 @@ def _null(found: Found) -> list[str]:
         if found.s2_before**0.5 > WORD.far:
             parts.append(
                 "It is more than the noise that was assumed, and follows nothing that was tried: "
-                f"{RANDOM}, and so does a noise that is larger than assumed."
+                f"it may be {both_of([*PERHAPS, 'a noise that is larger than assumed'], 'or')}. "
+                f"{REPEAT}"
             )
     if found.power:
         few = [
@@ -231,7 +238,7 @@ def _null(found: Found) -> list[str]:
 def _effect(found: Found) -> list[str]:
     parts = [_meaning(found, effect) for effect in found.effects]
     parts.append(_left(found))
-    if found.explained is not None:
+    if found.explained is not None and "excess" in excess_words(found):
         parts.append(
             "The excess error is what the declared model leaves above the best smooth force that "
             "the data allow."
@@ -259,7 +266,7 @@ def _remains(found: Found) -> list[str]:
     for left in found.remainder[: WORD.most_told]:
         size, _, unit = remainder_numbers(found, left)
         size = f"{size} {unit}".rstrip()
-        share = f"{left.in_sigma:.3g} σ, {percent(left.share)} of the error before"
+        share = f"{left.in_sigma:.3g} σ, {percent(left.share)} of the rms error before"
         parts.append(f"{size} of {left.signal} ({share})")
     if not parts:
         return []
@@ -283,14 +290,14 @@ def _unexplained(found: Found) -> list[str]:
         names = both_of([f"'{one.name}'" for one in found.noisy_inputs])
         parts.append(f"If {names} is measured with such noise, say its `sigma:` and trace again.")
     elif found.missing is None:
-        parts.append(f"The residual depends on nothing that was tried: {RANDOM}.")
+        parts.append(f"The residual depends on nothing that was tried: {_perhaps()}")
     elif found.missing.share < WORD.little:
-        parts.append(f"The rest depends on no variable that was tried: {RANDOM}.")
+        parts.append(f"The rest depends on no variable that was tried: {_perhaps()}")
     if found.effects:
         names = both_of([_named(found, effect) for effect in found.effects])
         parts.append(f"The best approximation is {names}. {_left(found)} That is not enough.")
         if found.explained is not None:
-            parts.append(f"It explains {share_words(found.explained)} of the excess error.")
+            parts.append(f"It explains {excess_words(found)}.")
         errors = error_words(found, unseen_errors(found))
         if errors:
             goes = _goes(found)
@@ -298,6 +305,11 @@ def _unexplained(found: Found) -> list[str]:
             parts.append(f"On unseen data the error of {runs} {goes} {both_of(errors)}.")
         parts += _remains(found)
     return [*parts, _moved(found)]
+
+
+def _perhaps() -> str:
+    """What a residual may be that depends on nothing that was tried, and how to find out."""
+    return f"it may be {both_of(PERHAPS, 'or')}. {REPEAT}"
 
 
 def _ties(found: Found) -> list[str]:

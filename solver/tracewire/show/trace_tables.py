@@ -9,8 +9,8 @@ from tracewire.show.limits import WORD
 from tracewire.show.table import Table, shown
 from tracewire.show.trace_experiments import settings_words
 from tracewire.show.trace_steps import compares, own_gain
+from tracewire.show.trace_untried import common_powers
 from tracewire.show.trace_words import (
-    common_powers,
     percent,
     remainder_numbers,
     stood_in,
@@ -76,7 +76,7 @@ def remainder_table(found: Found) -> Table:
         for left in found.remainder
         for size, floor, unit in [remainder_numbers(found, left)]
     )
-    header = ("signal", "rms left", "unit", "in σ", "share of the error before", "floor")
+    header = ("signal", "rms left", "unit", "in σ", "share of the rms before", "floor")
     return Table("what is left on held-out blocks", header, rows, frozenset({1, 3, 4, 5}))
 
 

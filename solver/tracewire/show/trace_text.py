@@ -8,12 +8,14 @@ from tracewire.show.limits import WORD
 from tracewire.show.trace_experiments import experiment_words
 from tracewire.show.trace_steps import decided_words
 from tracewire.show.trace_summary import explained_words, noisy_words, ties_words
+from tracewire.show.trace_untried import common_powers, told_of_untried
 from tracewire.show.trace_words import (
     astray_words,
+    both_of,
     chance_words,
-    common_powers,
     doubt_words,
     error_words,
+    excess_words,
     in_sigma,
     missing_words,
     moved_words,
@@ -21,7 +23,6 @@ from tracewire.show.trace_words import (
     place_words,
     remainder_numbers,
     runs_words,
-    share_words,
     stood_in,
     told_once,
     unseen_errors,
@@ -40,8 +41,8 @@ def answer_lines(found: Found) -> tuple[str, ...]:
         lines.append(f"  {partial}{effect}: {values}")
         lines += _tie_lines(effect)
     lines += [f"  the fit sets {name} to zero" for name in found.dropped]
-    if found.explained is not None:
-        lines.append(f"  explained: {share_words(found.explained)} of the excess error")
+    if explained := excess_words(found):
+        lines.append(f"  explained: {explained}")
     lines += _error_lines(found)
     lines += _remainder_lines(found)
     shifts = [moved_words(m) for m in found.moved if stood_in(m) and m.name not in found.dropped]
@@ -62,7 +63,9 @@ def answer_lines(found: Found) -> tuple[str, ...]:
 def remarks_of(found: Found) -> tuple[str, ...]:
     """The remarks of a trace; one that is true of several series is told once with all of them."""
     named = [*(e.series for e in found.errors), *(c.series for c in found.curves)]
-    return told_once(found.words, list(dict.fromkeys([*named, *found.original.measured])))
+    return told_once(
+        told_of_untried(found), list(dict.fromkeys([*named, *found.original.measured]))
+    )
 
 
 def step_lines(found: Found) -> tuple[str, ...]:
@@ -85,7 +88,7 @@ def _verdict(found: Found) -> str:
         so_far = ", but not all effects were tried" if found.interrupted else ""
         return f"nothing is missing that these data could show{so_far}"
     if found.verdict == "effect":
-        return f"{' and '.join(map(str, found.effects))} {_is(len(found.effects))} missing"
+        return f"{both_of(list(map(str, found.effects)))} {_is(len(found.effects))} missing"
     none = explained_words(found)
     if noisy_words(found):
         return f"{noisy_words(found)}, and {none}"
@@ -151,8 +154,8 @@ def _remainder_lines(found: Found) -> list[str]:
         least = f"; a smooth map would leave {floor} {unit}".rstrip() if floor else ""
         lines.append(
             f"  left on held-out blocks: {size} {unit}".rstrip()
-            + f" of {left.signal} ({left.in_sigma:.3g} σ, {percent(left.share)} of the error "
-            f"before{least})"
+            + f" of {left.signal} ({left.in_sigma:.3g} σ, {percent(left.share)} of the rms "
+            f"error before{least})"
         )
     return lines
 

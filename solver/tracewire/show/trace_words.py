@@ -14,7 +14,6 @@ from tracewire.trace import (
     Found,
     FoundEffect,
     ParameterChange,
-    Power,
     Remainder,
     is_first_order,
     signal_of,
@@ -31,8 +30,6 @@ VARIABLES = {
     "u": "the drive",
     "y": "the signal",
 }
-COMMON = ("coulomb", "viscous", "quad_drag", "stiffness", "cubic_stiffness", "sensor_offset")
-UNTRIED = re.compile(r"(\S+ @ \S+) was not tried: ")
 
 
 # --- numbers ------------------------------------------------------------------------------------
@@ -96,6 +93,30 @@ def share_words(explained: Explained) -> str:
     if low == high:
         return "> 99.99 %" if low == "100.00" else f"{low} %"
     return f"{percent(explained.share)} (95 % interval: {low} to {high} %)"
+
+
+def excess_words(found: Found) -> str:
+    """How much the effects explain, and of what: `98 % (...) of the excess error`; '' where that is
+    not known. Where a large part of the error is out of reach of any smooth force, how much of the
+    error the excess is.
+    """
+    if found.explained is None:
+        return ""
+    share, reach = share_words(found.explained), within_reach(found)
+    if not reach <= 1 - WORD.out_of_reach:
+        return f"{share} of the excess error"
+    part = f"{percent(reach)} of the rms error" if reach > 0 else "none of the error"
+    return f"{share} of what a smooth force could explain, which is {part} on held-out blocks"
+
+
+def within_reach(found: Found) -> float:
+    """The part of the declared model's rms error on held-out blocks, at the longest horizon, that
+    the best smooth force takes away; nan where none was fitted."""
+    if not found.held_out or not len(found.held_out[-1].floor):
+        return math.nan
+    held = found.held_out[-1]
+    floor, whole = (math.sqrt(float((x**2).sum())) for x in (held.floor, held.declared))
+    return max(1 - floor / whole, 0.0) if whole > 0 else math.nan
 
 
 # --- errors -------------------------------------------------------------------------------------
@@ -187,11 +208,13 @@ def stood_in(moved: ParameterChange) -> bool:
 
 
 def doubt_words(found: Found) -> str:
-    """What to ask of declared parameters that grow far with the effects; '' where none does."""
+    """What to ask of declared parameters that grow far with the effects; '' where none does. One
+    that sits on its bound without them has no value there that another one could be held against.
+    """
     grown = [
         f"'{m.name}' is {m.after / m.before:.2g} times as large"
         for m in found.moved
-        if stood_in(m) and m.before and abs(m.after) > WORD.grown * abs(m.before)
+        if stood_in(m) and m.before and not m.at_bound and abs(m.after) > WORD.grown * abs(m.before)
     ]
     if not grown or not found.effects:
         return ""
@@ -253,22 +276,6 @@ def missing_words(found: Found) -> str:
     names = [missing.variables, *alike]
     texts = [variables_words(found, missing.place, variables) for variables in names]
     return f"{both_of(texts, 'or')}, which this record cannot tell apart"
-
-
-def common_powers(found: Found) -> list[Power]:
-    """What these data would have shown, the effects first that a reader is most likely to know.
-
-    What was not tried is left out.
-    """
-    order = {name: n for n, name in enumerate(COMMON)}
-    left_out = untried(found)
-    tried = (p for p in found.power if f"{p.name} @ {p.place}" not in left_out)
-    return sorted(tried, key=lambda p: order.get(p.name, len(order)))
-
-
-def untried(found: Found) -> set[str]:
-    """The effects that were not tried by themselves, as their models do not run."""
-    return {hit[1] for text in found.words if (hit := UNTRIED.match(text))}
 
 
 def few_of(texts: Sequence[str], word: str = "and", most: int = WORD.most_told) -> str:

@@ -115,6 +115,7 @@ class ParameterChange:
     """A declared parameter without and with the effects, in SI, and its standard error with.
 
     `written` is the unit in the file where that is not of SI; `factor` brings its numbers to SI.
+    `at_bound`: without the effects it sits on a bound, so that its value says nothing there.
     """
 
     name: str
@@ -124,6 +125,7 @@ class ParameterChange:
     error: float
     written: str = ""
     factor: float = 1.0
+    at_bound: bool = False
 
     @property
     def users_unit(self) -> str:

@@ -1,8 +1,8 @@
 """The units of a result; that of a parameter of an effect follows from its formulas and its place.
 
 The rules of units (`tracewire.formula.unit_rules`), with the units of the place (of its sum, its
-coordinate, s), are linear equations for the exponents of each parameter, which are solved for all
-at once.
+coordinate, its rate, s), are linear equations for the exponents of each parameter, which are solved
+for all at once. A rate need not be that of the coordinate: a place may have an angle and a speed.
 """
 
 from __future__ import annotations
@@ -15,17 +15,19 @@ import numpy as np
 from tracewire.compile import compile
 from tracewire.diagram import EffectType, effects_of
 from tracewire.errors import TracewireError
-from tracewire.formula import Expression, Term, times, unit_term
+from tracewire.formula import Expression, Term, dimension_of, times, unit_term
 from tracewire.library import SENSOR_TERMS
 from tracewire.trace.candidates.places import Place, find_places
 from tracewire.trace.found import Found, FoundEffect, Power
 
-BASES = 3
-"""Of exponents: what is summed at the place, its coordinate, and time."""
-SYMBOL_UNITS = {
-    "q": (0, 1, 0), "v": (0, 1, -1), "a": (0, 1, -2), "other_q": (0, 1, 0),
-    "other_v": (0, 1, -1), "u": (1, 0, 0),
+BASES = "FQVT"
+"""Of exponents: what is summed at the place, its coordinate, its rate, and time."""
+SYMBOL_UNITS: dict[str, Term] = {
+    "q": {"\0Q": 1.0}, "v": {"\0V": 1.0}, "a": {"\0V": 1.0, "\0T": -1.0}, "u": {"\0F": 1.0},
+    "other_q": {"\0Q": 1.0}, "other_v": {"\0V": 1.0},
 }  # fmt: skip
+RATE_OF_COORDINATE: Term = {"\0V": 1.0, "\0Q": -1.0, "\0T": 1.0}
+SECOND: Term = {"s": 1.0}
 PART = re.compile(r"([A-Za-z]+|1)(?:\s*(?:\^|\*\*)\s*(-?\d+(?:\.\d+)?))?")
 
 
@@ -65,8 +67,8 @@ def unit_of_effect(found: Found, effect: str, place: str, parameter: str) -> str
     block = kinds[effect].block
     if any(p.name == parameter and p.unit == "s" for p in (block.parameters if block else ())):
         return "s"  # as of a lag or a delay
-    exponents = _exponents(kinds[effect]).get(parameter)
     units = _units_of(found, known)
+    exponents = _exponents(kinds[effect], _is_of_coordinate(units)).get(parameter)
     if exponents is None or any(e and not u for e, u in zip(exponents, units, strict=True)):
         return ""
     return _product(zip(units, exponents, strict=True))
@@ -82,17 +84,24 @@ def _places(found: Found) -> Mapping[str, Place]:
     return {place.name: place for place in find_places(model)}
 
 
-def _units_of(found: Found, place: Place) -> tuple[str, str, str]:
-    """The units of the sum (or drive), of the coordinate, and of time."""
+def _units_of(found: Found, place: Place) -> tuple[str, str, str, str]:
+    """The units of the sum (or drive), of the coordinate, of the rate, and of time."""
     units = found.units
     if place.kind != "sum":
-        return units.get(place.definition, ""), "", "s"
+        return units.get(place.definition, ""), "", "", "s"
     rate = units.get(place.v, "")
     coordinate = units.get(place.q, "") or (_product([(rate, 1.0), ("s", 1.0)]) if rate else "")
     own = units.get(place.name, "")
     if not own and place.a == place.name and coordinate:
         own = _product([(coordinate, 1.0), ("s", -2.0)])
-    return own, coordinate, "s"
+    rate = rate or (_product([(coordinate, 1.0), ("s", -1.0)]) if coordinate else "")
+    return own, coordinate, rate, "s"
+
+
+def _is_of_coordinate(units: tuple[str, str, str, str]) -> bool:
+    """Whether the rate of a place is in the unit of its coordinate over time."""
+    _, coordinate, rate, _ = map(dimension_of, units)
+    return coordinate is None or rate is None or times(rate, SECOND) == coordinate
 
 
 def unit_of(found: Found, effect: FoundEffect, name: str) -> str:
@@ -160,23 +169,23 @@ def users_unit(found: Found, signal: str) -> tuple[str, float]:
 # --- exponents ----------------------------------------------------------------------------------
 
 
-def _exponents(kind: EffectType) -> dict[str, tuple[float, ...]]:
-    """The exponents of (sum, coordinate, time) of each parameter that its formulas determine."""
+def _exponents(kind: EffectType, of_coordinate: bool) -> dict[str, tuple[float, ...]]:
+    """The exponents of (sum, coordinate, rate, time) of each parameter that its formulas determine.
+
+    of_coordinate: the rate of the place is that of its coordinate.
+    """
     block = kind.block
     if block is None or block.modes:
         return {}
-    equations: list[Term] = []
-    known: dict[str, tuple[float, ...]] = {"t": (0.0, 0.0, 1.0), "pi": (0.0,) * BASES}
-    for port, symbol in kind.effect.inputs.items():
-        known[port] = tuple(map(float, SYMBOL_UNITS[symbol]))
+    known: dict[str, Term] = {"t": {"\0T": 1.0}, "pi": {}}
+    known |= {port: SYMBOL_UNITS[symbol] for port, symbol in kind.effect.inputs.items()}
     for parameter in block.parameters:
         if parameter.unit in ("s", "rad", "1"):
-            known[parameter.name] = (0.0, 0.0, float(parameter.unit == "s"))
+            known[parameter.name] = {"\0T": 1.0} if parameter.unit == "s" else {}
+    equations: list[Term] = []
 
     def named(name: str) -> Term:
-        if name not in known:
-            return {name: 1.0}
-        return {f"\0{base}": e for base, e in zip("FQT", known[name], strict=True) if e}
+        return known.get(name, {name: 1.0})
 
     def note(one: Term, other: Term, *nodes: Expression | None) -> None:
         equations.append(times(one, other, -1.0))
@@ -191,11 +200,23 @@ def _exponents(kind: EffectType) -> dict[str, tuple[float, ...]]:
     for state in block.states:
         same(block.rates[state.name], {state.name: 1.0, "\0T": -1.0})
         same(block.starts[state.name], {state.name: 1.0})
+    if of_coordinate:
+        equations = [_without_rate(equation) for equation in equations]
+    return _solved(equations)
+
+
+def _without_rate(term: Term) -> Term:
+    """A unit where a rate is in that of the coordinate over time."""
+    return times(term, RATE_OF_COORDINATE, -term.get("\0V", 0.0))
+
+
+def _solved(equations: list[Term]) -> dict[str, tuple[float, ...]]:
+    """The exponents of each name that the equations determine; none where they contradict."""
     names = sorted({n for e in equations for n in e if not n.startswith("\0")})
     if not names:
         return {}
     matrix = np.array([[e.get(n, 0.0) for n in names] for e in equations])
-    right = np.array([[-e.get(f"\0{b}", 0.0) for b in "FQT"] for e in equations])
+    right = np.array([[-e.get(f"\0{b}", 0.0) for b in BASES] for e in equations])
     solution, _, rank, _ = np.linalg.lstsq(matrix, right, rcond=None)
     if not np.allclose(matrix @ solution, right, atol=1e-6):
         return {}  # the formulas do not agree on units

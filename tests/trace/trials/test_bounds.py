@@ -8,7 +8,7 @@ import numpy as np
 from oracles.oscillator import DIAGRAM, candidates_of, problem_of, record, trial_of
 from tracewire.fit import describe_undetermined
 from tracewire.residual.sensor import Sensor
-from tracewire.trace.trials.bounds import AtBound, at_bounds
+from tracewire.trace.trials.bounds import AtBound, at_bounds, describe_bounds
 from tracewire.trace.trials.trial import PlacedEffect
 
 
@@ -38,6 +38,15 @@ def test_a_term_that_goes_to_zero_is_not_used() -> None:
     (one,) = at_bounds(trial)
     assert one.absent
     assert one.words == "'c' sits on its bound 0 1/s: the fit does not use it"
+
+
+def test_a_bound_that_only_the_declared_fit_met_is_told_of_that_alone() -> None:
+    problem = problem_of(record(lambda x, v: 0.5 * v))
+    declared = trial_of(problem)
+    values = {**declared.windows.values, "c": 1.0}
+    inside = replace(declared, windows=replace(declared.windows, values=values))
+    assert describe_bounds(declared, declared) == [one.words for one in at_bounds(declared)]
+    assert describe_bounds(declared, inside) == ["without the effects, 'c' sits on its bound 0 1/s"]
 
 
 def test_a_small_value_far_from_zero_by_its_size_is_on_no_bound() -> None:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from tracewire.residual import Section, Segment
 from tracewire.trace.found import ChannelError, Curve, ParameterChange, RunKind
 from tracewire.trace.search.search import Search
+from tracewire.trace.trials.bounds import at_bounds
 from tracewire.trace.trials.free_run import first_part, free_run
 from tracewire.trace.trials.trial import TraceProblem, Trial
 
@@ -115,6 +116,7 @@ def parameter_changes(
     """The declared parameters without and with the effects."""
     errors, flat = best.standard_errors, problem.declared.flat
     known = flat.parameters
+    held = {one.name for one in at_bounds(declared)}
     return [
         ParameterChange(
             name,
@@ -123,6 +125,7 @@ def parameter_changes(
             values.get(name, 0.0),
             errors.get(name, 0.0),
             *(known[name].users_unit if name in known else ("", 1.0)),
+            at_bound=name in held,
         )
         for name, value in declared.values.items()
     ]

@@ -39,7 +39,7 @@ from tracewire.trace.results.comparison import (
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
 from tracewire.trace.search.refinement import FinalModels, Rival
 from tracewire.trace.search.search import Search, Step
-from tracewire.trace.trials.bounds import at_bounds
+from tracewire.trace.trials.bounds import describe_bounds
 from tracewire.trace.trials.trial import PlacedEffect, Trial
 
 Matrix = NDArray[np.float64]
@@ -53,8 +53,7 @@ def result_of(
     final = judgement.final
     final = replace(final, best=with_unseen_phases(search, final.best))
     problem, declared, best = search.problem, final.declared, final.best
-    bounds = (one for t in (declared, best) for one in at_bounds(t))
-    search.words += dict.fromkeys(one.words for one in bounds if not one.exact)
+    search.words += describe_bounds(declared, best)
     search.words += [w for w in describe_undetermined(best.windows) if w not in search.words]
     parts = compare_models(search, declared, best)
     claimed = [part for part in parts if part.use == "validate"]
@@ -107,7 +106,7 @@ def result_of(
 
 def _effects_of(search: Search, final: FinalModels) -> tuple[FoundEffect, ...]:
     """The effects of the result, the one that brings most first."""
-    ends = final.best.intervals(search.options.confidence) if final.best.effects else {}
+    ends = _intervals_of(final.best, search.options.confidence) if final.best.effects else {}
     found = []
     for effect in final.best.effects:
         gain, masked, weight = _scores_of(search, effect)
@@ -132,6 +131,17 @@ def _effects_of(search: Search, final: FinalModels) -> tuple[FoundEffect, ...]:
             )
         )
     return tuple(found)
+
+
+def _intervals_of(trial: Trial, confidence: float) -> dict[str, tuple[float, float]]:
+    """The intervals of fitted values, as far as they lie within the bounds of these: no share is
+    more than all."""
+    bounds = {u.name: (u.low, u.high) for u in trial.windows.criterion.unknowns}
+    found = {}
+    for name, (low, high) in trial.intervals(confidence).items():
+        least, most = bounds.get(name, (-np.inf, np.inf))
+        found[name] = max(low, least), min(high, most)
+    return found
 
 
 def _tie_of(rival: Rival) -> Tie:

@@ -48,7 +48,7 @@ class AtBound:
     @property
     def words(self) -> str:
         """What sits where, and what to do."""
-        known = f"{self.bound:.4g} {self.unit}".strip()
+        known = self._known
         ends = f"`fit: [{self.low:.4g}, {self.high:.4g}]`"
         short = self.name.rpartition(".")[2]
         if self.kind == "shape":
@@ -63,15 +63,27 @@ class AtBound:
             )
         if self.absent:
             return f"'{self.name}' sits on its bound {known}: the fit does not use it"
-        if self.kind == "sensor":
-            kind, _, signal = self.name.partition(".")
-            what = f"the {kind} of the sensor of '{signal}'"
-        else:
-            what = f"'{self.name}'"
         return (
-            f"{what} sits on its bound {known}: widen its {ends}, or an effect may be named that "
-            "only makes up for it"
+            f"{self._what} sits on its bound {known}: widen its {ends}, or an effect may be named "
+            "that only makes up for it"
         )
+
+    @property
+    def words_without(self) -> str:
+        """What sits where in the fit of the declared diagram, of which another one came."""
+        return f"without the effects, {self._what} sits on its bound {self._known}"
+
+    @property
+    def _known(self) -> str:
+        return f"{self.bound:.4g} {self.unit}".strip()
+
+    @property
+    def _what(self) -> str:
+        """The name of a declared parameter, or of a number of a sensor."""
+        if self.kind != "sensor":
+            return f"'{self.name}'"
+        kind, _, signal = self.name.partition(".")
+        return f"the {kind} of the sensor of '{signal}'"
 
 
 def at_bounds(trial: Trial) -> list[AtBound]:
@@ -96,6 +108,14 @@ def at_bounds(trial: Trial) -> list[AtBound]:
         found.append(AtBound(unknown.name, kind, value, low, high, upper, unit, label))
     order = ("parameter", "sensor", "coefficient", "shape")
     return sorted(found, key=lambda one: order.index(one.kind))
+
+
+def describe_bounds(declared: Trial, best: Trial) -> list[str]:
+    """What sits on bounds in the final model, and what does so only without its effects."""
+    final = [one for one in at_bounds(best) if not one.exact]
+    known = {one.name for one in final}
+    only = [one for one in at_bounds(declared) if one.name not in known]
+    return [*(one.words_without for one in only), *(one.words for one in final)]
 
 
 def _near(unknown: Unknown, value: float, part: float, upper: bool) -> bool:
