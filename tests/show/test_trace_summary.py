@@ -250,12 +250,6 @@ def test_an_excess_that_is_a_small_part_of_the_error_is_told_to_be_so() -> None:
     assert "which is none of the error" in excess_words(replace(found, held_out=(useless,)))
 
 
-def test_shares_of_the_error_are_told_with_their_kind_of_mean() -> None:
-    reason = "a model with it leaves 64 % of the error on held-out blocks"
-    text = headline_of(replace(UNEXPLAINED, reason=reason))
-    assert "leaves 64 % of the error on a typical held-out block (geometric mean)" in text
-
-
 def test_a_residual_that_depends_on_nothing_gets_a_next_step() -> None:
     text = paragraph_of(replace(UNEXPLAINED, missing=None))
     assert "it may be a random disturbance" in text

@@ -34,9 +34,6 @@ PERHAPS = (
     "a law that depends on the time or on a drive",
 )
 REPEAT = "Do the same run twice: what comes back is a law, and what does not is random."
-LEFT = "of the error on held-out blocks"
-TYPICAL = "of the error on a typical held-out block (geometric mean)"
-"""What a reason calls by the first is the second; what is left of a signal is of its rms error."""
 
 
 def paragraph_of(found: Found) -> str:
@@ -176,10 +173,9 @@ def explained_words(found: Found) -> str:
     """Why a trace that ends `unexplained` names nothing as the explanation."""
     if found.interrupted:
         return "no effect was accepted by then"
-    reason = found.reason.replace(LEFT, TYPICAL)
     if found.effects:
-        return f"the best approximation is not enough: {reason}".removesuffix(": ")
-    return f"no effect of the library explains it: {reason}".removesuffix(": ")
+        return f"the best approximation is not enough: {found.reason}".removesuffix(": ")
+    return f"no effect of the library explains it: {found.reason}".removesuffix(": ")
 
 
 def noisy_words(found: Found) -> str:

@@ -228,6 +228,8 @@ class TraceOptions:
     """Of the intervals of fitted values and of shares."""
     shown: int = 12
     """Rows of each table of what was tried."""
+    told: int = 3
+    """Remarks on models with several effects that predict as well."""
 
     split: SplitOptions = field(default_factory=SplitOptions)
     check: CheckOptions = field(default_factory=CheckOptions)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -223,7 +223,7 @@ def _describe_shortfall(prediction: Prediction, share: float, surely: float) -> 
     left = error_left(prediction)
     if trials[-1].reduced_chi2 <= options.at_noise or left <= options.error_left:
         return ""
-    return f"leaves {100 * left:.0f} % of the error on held-out blocks"
+    return f"leaves {100 * left:.0f} % of the error on a typical held-out block (geometric mean)"
 
 
 def _only_uncommon(model: Finalist, options: TraceOptions) -> bool:
@@ -262,7 +262,7 @@ def final_of(search: Search, prediction: Prediction) -> FinalModels:
     chosen = prediction.chosen
     best, declared = chosen.trials[-1], prediction.models[0].trials[-1]
     rivals: dict[str, list[Rival]] = {str(effect): [] for effect in best.effects}
-    blocks = prediction.horizons.count
+    options, blocks = prediction.options, prediction.horizons.count
     totals = log_scores(prediction.errors).mean(axis=(1, 2, 3))
     known = {number for number, _ in prediction.choice.ties}
     unseen = [
@@ -270,6 +270,7 @@ def final_of(search: Search, prediction: Prediction) -> FinalModels:
         for number in better_unseen(search, prediction)
         if number not in known
     ]
+    others: list[tuple[float, str]] = []
     for number, cost in (*prediction.choice.ties, *unseen):
         other = prediction.models[number]
         if chosen.names < other.names:
@@ -286,10 +287,12 @@ def final_of(search: Search, prediction: Prediction) -> FinalModels:
             correlation = prediction.correlation(name, rival)
             rivals[name].append(Rival(added, correlation, trial, delta_bic, tied=True))
         else:
-            search.words.append(
-                f"{join_names(other.names)} predicts as well: {_change(cost)} error,"
-                f" {abs(more)} fitted number(s) {'more' if more > 0 else 'less'}"
-            )
+            others.append((cost, _as_good_words(other.names, cost, more)))
+    others.sort()
+    search.words += [words for _, words in others[: options.told]]
+    if len(others) > options.told:
+        more = len(others) - options.told
+        search.words.append(f"{more} other models with several effects predict as well, too")
     search.words += _describe_refinement(prediction)
     own = search.problem.declared.flat.parameters
     dropped = (*chosen.dropped, *(name for name in chosen.vanished if name in own))
@@ -360,6 +363,14 @@ def _gate_mean_square(search: Search, best: Trial) -> float:
     residuals = search.problem.residuals_on(best, windows)
     count = sum(r.size for r in residuals) - sum(len(w.free) for w in windows)
     return sum(float(np.sum(r**2)) for r in residuals) / max(count, 1)
+
+
+def _as_good_words(names: Collection[str], cost: float, more: int) -> str:
+    """That another model predicts as well, with how many fitted numbers more."""
+    numbers = f"{abs(more)} fitted number{'s' * (abs(more) != 1)} {'more' if more > 0 else 'fewer'}"
+    predict = "predict" if len(names) > 1 else "predicts"
+    with_them = numbers if more else "as many fitted numbers"
+    return f"{join_names(names)} {predict} as well: {_change(cost)} error, {with_them}"
 
 
 def _change(cost: float) -> str:
