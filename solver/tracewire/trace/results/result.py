@@ -32,6 +32,7 @@ from tracewire.trace.found import (
 from tracewire.trace.missing.restoring_force import restoring_forces
 from tracewire.trace.results.comparison import (
     compare_models,
+    on_equal_windows,
     parameter_changes,
     rmse,
     with_unseen_phases,
@@ -73,7 +74,7 @@ def result_of(
         rmse_before=rmse(claimed, 0),
         rmse_after=rmse(claimed, 1),
         sigma=sigma,
-        s2_before=declared.reduced_chi2,
+        s2_before=on_equal_windows(problem, declared, best).reduced_chi2,
         s2_after=best.reduced_chi2,
         moved=tuple(parameter_changes(problem, declared, best, values)) if best.effects else (),
         errors=tuple(error for part in parts for error in part.errors(sigma, units)),
