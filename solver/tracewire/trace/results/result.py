@@ -38,7 +38,7 @@ from tracewire.trace.results.comparison import (
     with_unseen_phases,
 )
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
-from tracewire.trace.search.refinement import FinalModels, Rival
+from tracewire.trace.search.refinement import FinalModels, Rival, largest_first
 from tracewire.trace.search.search import Search, Step
 from tracewire.trace.trials.bounds import at_bounds
 from tracewire.trace.trials.trial import PlacedEffect, Trial
@@ -52,7 +52,8 @@ def result_of(
     """The result of a search."""
     search.tell("checking on what played no part")
     final = judgement.final
-    final = replace(final, best=with_unseen_phases(search, final.best))
+    best = final.best if interrupted else largest_first(search, final.best)
+    final = replace(final, best=with_unseen_phases(search, best))
     problem, declared, best = search.problem, final.declared, final.best
     bounds = (one for t in (declared, best) for one in at_bounds(t))
     search.words += dict.fromkeys(one.words for one in bounds if not one.exact)
