@@ -253,7 +253,12 @@ def _find_experiments(search: Search, final: FinalModels) -> tuple[Experiment, .
             try:
                 found.append(
                     design_experiment(
-                        search.problem, final.best, rival.trial, str(effect), str(rival.effect)
+                        search.problem,
+                        final.best,
+                        rival.trial,
+                        str(effect),
+                        str(rival.effect),
+                        search.has_revisits,
                     )
                 )
             except TracewireError as error:
