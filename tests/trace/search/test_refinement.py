@@ -93,6 +93,9 @@ def test_a_wrong_effect_is_exchanged_for_its_better_rival() -> None:
         (9.0, slice(None), True),  # next to nothing
         (40.0, slice(None), False),  # everywhere
         (40.0, slice(100, 150), True),  # in one block of time
+        (350.0, slice(100, 150), True),  # a third more, in one block
+        (450.0, slice(100, 150), False),  # clearly more, however few blocks show it
+        (8000.0, slice(100, 150), False),
     ],
 )
 def test_a_rival_is_tied_that_is_not_surely_behind(
@@ -103,7 +106,9 @@ def test_a_rival_is_tied_that_is_not_surely_behind(
     law[where] = np.sin(np.arange(1000.0))[where, None]
     law *= (delta_bic / np.sum(law**2)) ** 0.5
     best, rival = (
-        SimpleNamespace(windows=SimpleNamespace(residuals=[residual]))
+        SimpleNamespace(
+            windows=SimpleNamespace(residuals=[residual]), rss=float(np.sum(residual**2))
+        )
         for residual in (noise, noise + law)
     )
     assert _is_tied(best, rival, delta_bic, OPTIONS.search) is tied  # type: ignore[arg-type]

@@ -165,9 +165,12 @@ def _exchange_effect(
 
 def _is_tied(best: Trial, rival: Trial, delta_bic: float, options: SearchOptions) -> bool:
     """Whether a rival is as good: BIC puts it next to nothing behind, or it is not surely behind
-    over blocks of time, as where all that speaks against it is in one of them."""
+    over blocks of time, as where all that speaks against it is in one of them. What leaves clearly
+    more is behind however few blocks show it."""
     if delta_bic < options.tied:
         return True
+    if rival.rss > options.tie_left * best.rss:
+        return False
     one, other = best.windows.residuals, rival.windows.residuals
     return errors_behind(one, other, options.tie_blocks) < options.tie_errors
 
