@@ -37,6 +37,14 @@ blocks:
   out: {type: gain, of: h, k: -k}
   net: {type: sum, of: [pump, out]}
 """
+SWING = """\
+span: [0, 2]
+parameters: {k: {value: 30, fit: [1, 90]}}
+blocks:
+  q: {type: integrator, of: v, start: 0.4, unit: rad}
+  v: {type: integrator, of: torque, unit: rad/s}
+  torque: {type: gain, of: q, k: -k}
+"""
 T = np.arange(0.0, 2.0, 0.01)
 ROPE = 1 + 0.2 * np.sin(2 * T)
 
@@ -52,7 +60,8 @@ def problem(text: str, q: np.ndarray, signal: str, **inputs: np.ndarray) -> Trac
 def rig_on(bench: TraceProblem, returns: bool = True) -> Rig:
     (series,) = bench.measured
     windows = cut_windows(bench.declared, Section(series, 0, len(T)), 50, bench.states)
-    return rig_of(bench, bench.fit((), windows, 50, {}), returns)
+    states = compile(bench.declared.diagram, record=bench.states, backend="quick")
+    return rig_of(bench, bench.fit((), windows, 50, {}), states, returns)
 
 
 @pytest.fixture(scope="module")
@@ -133,6 +142,19 @@ def test_a_body_is_released_to_the_side_where_it_was() -> None:
     q = -0.4 * np.exp(-5 * T)
     rig = rig_on(problem(DRIVEN, q, "q", u=0 * T, rope=ROPE, rope_rate=0 * T))
     assert -0.45 < rig.start(Design(release=1.0))["q"] < -0.3
+
+
+def test_how_far_a_coordinate_went_that_is_not_measured_is_known_from_the_fit() -> None:
+    """Of a swing of 0.4 rad only the rate is measured, in one window."""
+    t = np.arange(0.0, 2.0, 0.01)
+    series = Measured("run", "train", t, {"v": -2.4 * np.sin(6 * t)}, start={"q": None, "v": None})
+    model = compile(read_text(SWING), record=("v",))
+    bench = TraceProblem(model, (series,), {"v": 1e-3}, 1e-6)
+    windows = cut_windows(model, Section(series, 0, len(t)), len(t), bench.states)
+    states = compile(model.diagram, record=bench.states, backend="quick")
+    rig = rig_of(bench, bench.fit((), windows, len(t), {}), states)
+    assert abs(rig.rest["q"]) < 0.1
+    assert abs(rig.width["q"]) == pytest.approx(0.4, abs=0.1)
 
 
 def test_nothing_beyond_what_was_measured(rig: Rig) -> None:

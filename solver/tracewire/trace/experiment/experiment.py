@@ -56,8 +56,8 @@ def design_experiment(
     """
     places = [effect.candidate.place for effect in one.effects if str(effect) == name]
     first_order = any(place.kind == "sum" and not place.q for place in places)
-    rig = rig_of(problem, one, returns and not first_order)
     states = compile(one.diagram, record=[*problem.signals, *problem.states], backend="quick")
+    rig = rig_of(problem, one, states, returns and not first_order)
     # what the data at hand say of the rival's unknowns
     known, _ = project_out_initial_states(other.windows)
     information = known.T @ known

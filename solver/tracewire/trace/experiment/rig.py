@@ -10,10 +10,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.compile import Model
 from tracewire.formula import Name
 from tracewire.residual import Measured
 from tracewire.solve import parameter_values, values_at
 from tracewire.trace.experiment.drives import Drive, drive_of, rates_of
+from tracewire.trace.screen.trajectories import simulate_signals
 from tracewire.trace.thresholds import ExperimentOptions
 from tracewire.trace.trials.trial import TraceProblem, Trial
 
@@ -154,8 +156,8 @@ class Rig:
         return found
 
 
-def rig_of(problem: TraceProblem, one: Trial, returns: bool = True) -> Rig:
-    """The rig of a fitted trial; `returns` as there."""
+def rig_of(problem: TraceProblem, one: Trial, states: Model, returns: bool = True) -> Rig:
+    """The rig of a fitted trial, whose diagram `states` records its states; `returns` as there."""
     train = [m for m in problem.measured if m.use == "train"]
     longest = max(train, key=lambda m: float(m.t[-1] - m.t[0]))
     interval = longest.interval
@@ -165,7 +167,7 @@ def rig_of(problem: TraceProblem, one: Trial, returns: bool = True) -> Rig:
     step = max(interval, min(fine, options.coarser * interval))
     duration = min(float(longest.t[-1] - longest.t[0]), (options.samples - 1) * step)
     t = step * np.arange(int(duration / step) + 1, dtype=np.float64)
-    rest, width = _reach(problem, one, train, longest)
+    rest, width = _reach(problem, one, states, longest)
     drives = {
         name: drive_of([m.inputs[name][1] for m in problem.measured if name in m.inputs], options)
         for name in longest.inputs
@@ -213,30 +215,29 @@ def _range_of(measured: Sequence[Measured], signal: str) -> tuple[float, float]:
 
 
 def _reach(
-    problem: TraceProblem, one: Trial, train: Sequence[Measured], longest: Measured
+    problem: TraceProblem, one: Trial, states: Model, longest: Measured
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Where each state begins, and how far each coordinate went from there, to its farther side.
 
     A rate begins at zero, a coordinate in the middle of its motion, and what has no rate, as the
-    level of a tank, where the longest record begins. What is not measured is known where windows
-    begin.
+    level of a tank, where the longest record begins. What is not measured is known along the
+    windows.
     """
-    states = {state.name: state for state in problem.declared.flat.states}
-    rates = {s.rate.name for s in states.values() if isinstance(s.rate, Name)} & set(states)
+    known = {state.name: state for state in problem.declared.flat.states}
+    rates = {s.rate.name for s in known.values() if isinstance(s.rate, Name)} & set(known)
+    runs = simulate_signals(states, one.windows, problem.rtol)
     mine = [s for s in one.windows.segments if s.measured.name == longest.name]
     first = min(mine, key=lambda s: s.begin).start if mine else {}
     rest, width = {}, {}
     for name in problem.states:
-        parts = [m.values[name] for m in train if name in m.values]
-        if not parts:
-            parts = [np.array([s.start[name]]) for s in one.windows.segments if name in s.start]
-        values = np.concatenate(parts) if parts else np.zeros(1)
         if name in rates:
             rest[name] = 0.0
             continue
+        measured = [m.values[name] for m in problem.measured if name in m.values]
+        values = np.concatenate(measured or [run[name] for run in runs])
         rest[name] = float(np.mean(values))
-        rate = states[name].rate
-        if isinstance(rate, Name) and rate.name in states:
+        rate = known[name].rate
+        if isinstance(rate, Name) and rate.name in known:
             away = values - rest[name]
             width[name] = float(away[np.argmax(np.abs(away))])
         elif name in longest.values:
