@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from show.traces import FOUND, NULL, SIGMA, TEXT, UNEXPLAINED, errors, missing_of_two
 from tracewire.diagram import read_text
-from tracewire.show.trace_experiments import experiment_words
+from tracewire.show.trace_experiments import experiment_words, setting_unit, settings_words
 from tracewire.show.trace_summary import (
     details_of,
     headline_of,
@@ -107,24 +107,30 @@ def test_ties_and_the_experiment_that_separates_them_are_told() -> None:
     assert "To decide between coulomb @ torque and bias @ torque: release it from rest at" in text
 
 
-def test_an_experiment_has_units_and_what_else_was_searched() -> None:
+def test_an_experiment_is_told_with_what_else_was_searched() -> None:
     one = FOUND.experiments[0]
     rows = ({"F amplitude": 2, "F frequency": 3, "separation": 4.0},
             {"F amplitude": 1, "F frequency": 3, "separation": 1.5},
             {"start.theta": 1, "separation": 0.1})  # fmt: skip
-    driven = replace(one, settings={"F amplitude": 2, "F frequency": 3}, separation=4.0, map=rows)
-    found = replace(FOUND, units={"F": "N"})
-    assert experiment_words(found, driven) == (
-        "To decide between coulomb @ torque and bias @ torque: start at rest, and drive 'F' with a "
-        "sine of 2 N at 3 Hz. The predictions then differ by 4 times the sensor noise (by 1.5 to 4 "
-        "at the settings that were searched)."
+    settings = {"F amplitude": 2, "F frequency": 3}
+    driven = replace(one, settings=settings, separation=4.0, map=rows, words="Drive it. By 4.")
+    assert experiment_words(FOUND, driven) == (
+        "Drive it. By 4 (by 1.5 to 4 at the settings that were searched)."
     )
     blunt = replace(one, separation=0.3, words="No experiment within reach tells them apart")
     assert experiment_words(FOUND, blunt) == "No experiment within reach tells them apart."
-    off = replace(one, settings={"start.theta": 0.2}, words="without drive, released", map=())
-    assert "no drive, release it from rest at theta = 0.2 rad. The predictions then differ by" in (
-        experiment_words(FOUND, off)
+
+
+def test_settings_have_the_units_of_the_users_files() -> None:
+    found = replace(
+        FOUND, units={**FOUND.units, "F": "N"}, users_units={"theta": ("deg", math.pi / 180)}
     )
+    settings = {"start.theta": math.pi / 6, "F mean": 1.0, "F amplitude": 2.0, "F frequency": 3.0}
+    assert settings_words(found, settings) == (
+        "start.theta = 30 deg, F mean = 1 N, F amplitude = 2 N, F frequency = 3 Hz"
+    )
+    assert settings_words(found, {"F held": 0.25}) == "F held = 0.25 N"
+    assert [setting_unit(found, name) for name in settings] == ["rad", "N", "N", "Hz"]
 
 
 def test_a_tie_is_told_once() -> None:

@@ -153,7 +153,9 @@ FOUND = Found(
     experiments=(
         Experiment(
             "coulomb @ torque", "bias @ torque", {"start.theta": 0.2, "start.omega": 0.0}, 6.9,
-            "A swing that begins at theta = 0.2 rad would tell coulomb from bias by 6.9 σ",
+            "To decide between coulomb @ torque and bias @ torque: release it from rest at theta = "
+            "0.2 rad and omega = 0 rad/s. The predictions then differ by 6.9 times the sensor "
+            "noise.",
             tuple({"start.theta": float(a), "separation": float(7 * np.exp(-8 * (a - 0.2) ** 2))}
                   for a in np.linspace(0.05, 2, 12)),
         ),

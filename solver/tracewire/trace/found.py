@@ -299,8 +299,9 @@ class Found(Result):
     then partial approximations). `rmse_before` and `rmse_after` are root mean square errors in SI
     of free runs on data that played no part, over all measured signals; `sigma` is the noise of
     each. `s2_before` and `s2_after` are squared residuals per degree of freedom in units of the
-    noise, on the fitted windows. `dropped` are declared parameters that went to zero, `values` the
-    refitted and `declared` the fitted parameters of the diagram as it was.
+    noise, both on the windows to which the model with the effects was fitted. `dropped` are
+    declared parameters that went to zero, `values` the refitted and `declared` the fitted
+    parameters of the diagram as it was.
 
     `explained` is the share of the excess that the effects explain, `remainder` what is left of
     each signal, `remainder_depends` on what that depends (the map of the remainder, the best

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping
 import numpy as np
 
 from tracewire.compile import compile
-from tracewire.diagram import EffectType, effects_of
+from tracewire.diagram import Diagram, EffectType, effects_of
 from tracewire.errors import TracewireError
 from tracewire.formula import Expression, Term, dimension_of, times, unit_term
 from tracewire.library import SENSOR_TERMS
@@ -156,14 +156,18 @@ def users_unit(found: Found, signal: str) -> tuple[str, float]:
     """
     if signal in found.users_units:
         return found.users_units[signal]
-    channels = [
-        s.channels[signal] for s in found.original.measured.values() if signal in s.channels
-    ]
-    units = {(c.declared, c.factor) for c in channels if c.declared}
-    if len(units) == 1 and all(c.declared for c in channels):
-        ((unit, factor),) = units
+    return unit_in_files(found.original, found.units, signal)
+
+
+def unit_in_files(diagram: Diagram, units: Mapping[str, str], signal: str) -> tuple[str, float]:
+    """The same of a signal or an input of a diagram, with the SI units of signals."""
+    series = [{**s.inputs, **s.channels} for s in diagram.measured.values()]
+    channels = [known[signal] for known in series if signal in known]
+    declared = {(c.declared, c.factor) for c in channels if c.declared}
+    if len(declared) == 1 and all(c.declared for c in channels):
+        ((unit, factor),) = declared
         return str(unit), factor
-    return found.units.get(signal, ""), 1.0
+    return units.get(signal, ""), 1.0
 
 
 # --- exponents ----------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from tracewire.compile import compile
 from tracewire.diagram import read
+from tracewire.errors import OptionError
 from tracewire.residual import Measured
 from tracewire.residual.windows import Section, cut_windows
 from tracewire.trace.candidates.candidates import find_candidates
@@ -18,6 +20,7 @@ from tracewire.trace.experiment.experiment import design_experiment
 from tracewire.trace.experiment.rig import main_frequency
 from tracewire.trace.found import Experiment
 from tracewire.trace.options import TraceOptions
+from tracewire.trace.thresholds import ExperimentOptions
 from tracewire.trace.trials.trial import PlacedEffect, TraceProblem
 
 OPTIONS = TraceOptions()
@@ -43,7 +46,13 @@ def drive(t: np.ndarray) -> np.ndarray:
     return np.asarray(4 * np.sin(5.6 * t))
 
 
-def between(folder: Path, one: str, values: dict[str, float], other: str) -> Experiment:
+def between(
+    folder: Path,
+    one: str,
+    values: dict[str, float],
+    other: str,
+    options: TraceOptions = OPTIONS,
+) -> Experiment:
     """The experiment for two effects, fitted to an oscillator with a cubic damping (or a bias)."""
 
     def rates(t: float, x: np.ndarray) -> list[float]:
@@ -59,7 +68,7 @@ def between(folder: Path, one: str, values: dict[str, float], other: str) -> Exp
     path = folder / "oscillator.yaml"
     path.write_text(OSCILLATOR)
     model = compile(read(path), record=("q",))
-    problem = TraceProblem(model, (series,), {"q": NOISE}, 1e-6)
+    problem = TraceProblem(model, (series,), {"q": NOISE}, 1e-6, options=options)
     places = find_places(model)
     signals = {"q": run[0], "v": run[1], "u": drive(T), "torque": np.gradient(run[1], T)}
     levels = signal_scales_of([Trajectory(T, signals)], OPTIONS.candidate)
@@ -75,7 +84,8 @@ def between(folder: Path, one: str, values: dict[str, float], other: str) -> Exp
 def test_a_drag_that_was_seen_at_one_amplitude_shows_its_power_at_others(tmp_path: Path) -> None:
     found = between(tmp_path, "cubic_damping", {"c": 0.2}, "quad_drag")
     assert found.separation > 1
-    assert found.words.startswith("To tell cubic_damping @ torque from quad_drag @ torque: ")
+    beginning = "To decide between cubic_damping @ torque and quad_drag @ torque: "
+    assert found.words.startswith(beginning)
     rows = [row["separation"] for row in found.map]
     assert found.separation == max(rows)
     assert min(rows) < 0.3 * max(rows), "many experiments would not have told"
@@ -83,10 +93,25 @@ def test_a_drag_that_was_seen_at_one_amplitude_shows_its_power_at_others(tmp_pat
     assert {k: v for k, v in at_best[0].items() if k != "separation"} == found.settings
 
 
+def test_what_is_searched_stays_in_the_range_of_the_records(tmp_path: Path) -> None:
+    """The drive was a sine of 4 rad/s^2, the swing began at 0.25 rad."""
+    found = between(tmp_path, "cubic_damping", {"c": 0.2}, "quad_drag")
+    released = [row["start.q"] for row in found.map if "start.q" in row]
+    driven = [row["u amplitude"] for row in found.map if "u amplitude" in row]
+    assert 0.2 < max(map(abs, released)) < 0.6 and 3.9 < max(driven) <= 4.0
+    little = replace(OPTIONS, experiment=ExperimentOptions(reach=0.5))
+    less = between(tmp_path, "cubic_damping", {"c": 0.2}, "quad_drag", little)
+    assert 0 < len(less.map) < len(found.map)
+    nothing = replace(OPTIONS, experiment=ExperimentOptions(reach=1e-3))
+    with pytest.raises(OptionError, match="within the range of these records no experiment tells"):
+        between(tmp_path, "cubic_damping", {"c": 0.2}, "quad_drag", nothing)
+
+
 def test_no_motion_tells_an_offset_from_a_torque_on_a_linear_spring(tmp_path: Path) -> None:
     found = between(tmp_path, "bias", {"level": 0.36}, "sensor_offset")
     assert found.separation < 0.1
-    assert found.words.startswith("No experiment within reach tells bias @ torque from ")
+    beginning = "Within the range of these records no experiment tells bias @ torque from "
+    assert found.words.startswith(beginning)
     assert "Turn the sensor" in found.words
 
 

@@ -12,6 +12,7 @@ from tracewire.residual.windows import Section, cut_windows
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.results.comparison import (
     compare_models,
+    on_equal_windows,
     parameter_changes,
     rmse,
 )
@@ -67,6 +68,22 @@ def test_each_stretch_is_compared_by_use_and_told_in_si() -> None:
         np.testing.assert_allclose(curve.measured, part.segment.samples()[:, 0])
         shown = np.sqrt(np.mean((curve.after - curve.measured) ** 2))
         assert shown == pytest.approx(free.after)
+
+
+def test_two_models_are_compared_on_windows_of_one_length() -> None:
+    """A damping that is a little wrong loses a long free run, and hardly shows in short windows."""
+    problem = problem_of(record())
+    fixed = {"c": 0.0}
+    long = trial_of(problem, length=400)
+    lost = problem.fit((), long.windows.segments, 400, {}, fixed=fixed)
+    best = trial_of(problem, length=20)
+    there = on_equal_windows(problem, lost, best)
+    assert there.length == best.length
+    assert [s.begin for s in there.windows.segments] == [s.begin for s in best.windows.segments]
+    alone = problem.fit((), best.windows.segments, 20, {}, fixed=fixed)
+    assert there.reduced_chi2 == pytest.approx(alone.reduced_chi2, rel=1e-3)
+    assert there.reduced_chi2 < 0.1 * lost.reduced_chi2
+    assert on_equal_windows(problem, best, best) is best
 
 
 def test_intervals_cover_the_truth_as_often_as_they_say() -> None:

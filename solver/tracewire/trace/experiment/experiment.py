@@ -2,7 +2,8 @@
 
 One effect makes the data of a new experiment; the other fits them as well as it can: it chooses
 the starts of windows, and moves its unknowns as far as the data at hand allow. What is left, in
-sigma, is how clearly the experiment would decide. Drives and releases within reach are searched.
+sigma, is how clearly the experiment would decide. Drives and releases are searched that stay in the
+range of the records.
 """
 
 from __future__ import annotations
@@ -27,35 +28,36 @@ from tracewire.residual import (
 )
 from tracewire.solve import Limits, simulate
 from tracewire.trace.experiment.rig import Design, Rig, rig_of
+from tracewire.trace.experiment.words import alias_hint, decision, none_within
 from tracewire.trace.found import Experiment
 from tracewire.trace.trials.trial import TraceProblem, Trial
+from tracewire.trace.units import unit_in_files
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-ALIASES = {
-    ("bias", "sensor_offset"): "Turn the sensor by a known angle, or rest the part at a second "
-    "equilibrium: an offset stays with the sensor, a torque does not",
-    ("inertia", "sensor_gain"): "Weigh the part, or calibrate the sensor",
-    ("drive_gain", "inertia"): "Weigh the part, or calibrate the drive",
-    ("drive_gain", "sensor_gain"): "Calibrate the sensor, or the drive",
-    ("backlash", "barrier"): "Beside a free stiffness they are the same law: what a barrier adds "
-    "outside its gap, a stiffer spring with backlash lacks inside it",
-}
-"""What tells effects apart that are the same law on a rig."""
 
 
 def design_experiment(
-    problem: TraceProblem, one: Trial, other: Trial, name: str, rival: str
+    problem: TraceProblem,
+    one: Trial,
+    other: Trial,
+    name: str,
+    rival: str,
+    returns: bool = True,
 ) -> Experiment:
     """The experiment that best tells two fitted trials apart, and by how many sigma (rms).
 
     Searched: the body released from rest without drive, and at rest driven by a sine, on each named
     input and each sine or square block whose amplitude and frequency are parameters; first
-    coarsely, then around the best. Deterministic.
-    Raises OptionError where nothing can be simulated.
+    coarsely, then around the best. All of it stays in the range of the records (`Rig`): starts,
+    drives, and the motion of both models. Where no body comes back (`returns`), and at a sum
+    without a coordinate, nothing is released. Deterministic.
+    Raises OptionError where nothing within that range can be simulated.
     """
-    rig = rig_of(problem, one)
+    places = [effect.candidate.place for effect in one.effects if str(effect) == name]
+    first_order = any(place.kind == "sum" and not place.q for place in places)
     states = compile(one.diagram, record=[*problem.signals, *problem.states], backend="quick")
+    rig = rig_of(problem, one, states, returns and not first_order)
     # what the data at hand say of the rival's unknowns
     known, _ = project_out_initial_states(other.windows)
     information = known.T @ known
@@ -78,7 +80,8 @@ def design_experiment(
             for design in _best(separations).near(options):
                 tell(design)
     if not any(math.isfinite(value) for value in separations.values()):
-        what = f"no experiment for {name} and {rival} can be simulated"
+        hint = alias_hint(name, rival)
+        what = f"{none_within(name, rival)}{f'. {hint}' if hint else ''}"
         raise OptionError.one(what, hint="Simulate the diagram by itself first.")
     best = _best(separations)
     rows = tuple(
@@ -86,7 +89,11 @@ def design_experiment(
         for design, value in separations.items()
         if math.isfinite(value)
     )
-    words = _words(rig, best, separations[best], name, rival)
+
+    def units(signal: str) -> tuple[str, float]:
+        return unit_in_files(problem.declared.diagram, one.model.flat.units, signal)
+
+    words = decision(rig, best, separations[best], name, rival, units)
     return Experiment(name, rival, rig.as_parameters(best), separations[best], words, rows)
 
 
@@ -105,7 +112,8 @@ def _separation(
     information: Matrix,
     design: Design,
 ) -> float:
-    """The residual of the rival on what the pick does, root mean square in sigma."""
+    """The residual of the rival on what the pick does, root mean square in sigma; nan where one of
+    both leaves the range that the rig is known to bear."""
     options = problem.options.experiment
     limits = Limits(options.steps, options.seconds, options.events)
     set_here, inputs = rig.parameters(design), rig.inputs(design)
@@ -118,6 +126,12 @@ def _separation(
         one.model, [whole], [], mine, problem.rtol, problem.sigma, weighting="sum", limits=limits
     )
     shown = maker.outputs(whole, {}, {})
+    fixed = {**problem.all_values(other), **set_here}
+    follower = Criterion(
+        other.model, [whole], [], fixed, problem.rtol, problem.sigma, weighting="sum", limits=limits
+    )
+    if not rig.stays(shown) or not rig.stays(follower.outputs(whole, {}, {})):
+        return math.nan
     run = simulate(
         states,
         parameters=of_diagram(one.model, mine, base),
@@ -140,7 +154,6 @@ def _separation(
         segments.append(Segment(measured, float(rig.t[begin]), rows, there, problem.states))
     unknowns = other.windows.criterion.unknowns
     unknowns = tuple(replace(u, value=other.values[u.name]) for u in unknowns)
-    fixed = {**problem.all_values(other), **set_here}
     free = [n for n, u in enumerate(unknowns) if u.name not in set_here]
     criterion = Criterion(
         other.model,
@@ -168,31 +181,3 @@ def _count(one: Trial, rig: Rig, ends: tuple[int, int]) -> int:
     """How many windows, between two ends: as long as those of the fit."""
     length = one.length * one.windows.segments[0].measured.interval
     return int(np.clip(round(float(rig.t[-1]) / length), *ends))
-
-
-# --- words ----------------------------------------------------------------------------------------
-
-
-def _words(rig: Rig, design: Design, separation: float, one: str, other: str) -> str:
-    """The experiment as a sentence, or that there is none."""
-    settings = rig.as_parameters(design)
-    if not design.drive:
-        states = " and ".join(
-            f"{name.removeprefix('start.')} = {value:g}" for name, value in settings.items()
-        )
-        off = "without drive, " if rig.drives else ""
-        how = f"{off}released from rest at {states}" if states else f"{off}left at rest"
-    else:
-        amplitude, frequency = settings.values()
-        how = f"from rest, {design.drive} a sine of amplitude {amplitude:g} and {frequency:g} Hz"
-    if separation >= rig.options.decides:
-        difference = f"There they differ by {separation:.2g} sigma (rms)."
-        return f"To tell {one} from {other}: {how}. {difference}"
-    words = (
-        f"No experiment within reach tells {one} from {other}: "
-        f"at best {separation:.2g} sigma (rms; {how})."
-    )
-    effects = sorted(label.split(" @ ")[0] for label in (one, other))
-    alike = separation < rig.options.alike
-    hint = ALIASES.get((effects[0], effects[1])) if alike else None
-    return f"{words} {hint}." if hint else words

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.errors import FitError
 from tracewire.residual import Section, Segment
 from tracewire.trace.found import ChannelError, Curve, ParameterChange, RunKind
 from tracewire.trace.search.search import Search
@@ -91,6 +92,18 @@ def _compare(
         (free[0], free[-1]),
         np.array([window.begin for window in windows]),
     )
+
+
+def on_equal_windows(problem: TraceProblem, declared: Trial, best: Trial) -> Trial:
+    """The declared model on the windows of the best one, refitted where its own have another
+    length: what a model leaves on long windows is no measure of what another leaves on short ones.
+    Where it does not run there, it is as it was."""
+    if declared.length == best.length:
+        return declared
+    try:
+        return problem.refit(declared, best.windows.segments, best.length)
+    except FitError:
+        return declared
 
 
 def with_unseen_phases(search: Search, trial: Trial) -> Trial:

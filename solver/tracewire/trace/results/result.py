@@ -32,12 +32,13 @@ from tracewire.trace.found import (
 from tracewire.trace.missing.restoring_force import restoring_forces
 from tracewire.trace.results.comparison import (
     compare_models,
+    on_equal_windows,
     parameter_changes,
     rmse,
     with_unseen_phases,
 )
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
-from tracewire.trace.search.refinement import FinalModels, Rival
+from tracewire.trace.search.refinement import FinalModels, Rival, largest_first
 from tracewire.trace.search.search import Search, Step
 from tracewire.trace.trials.bounds import describe_bounds
 from tracewire.trace.trials.trial import PlacedEffect, Trial
@@ -51,7 +52,8 @@ def result_of(
     """The result of a search."""
     search.tell("checking on what played no part")
     final = judgement.final
-    final = replace(final, best=with_unseen_phases(search, final.best))
+    best = final.best if interrupted else largest_first(search, final.best)
+    final = replace(final, best=with_unseen_phases(search, best))
     problem, declared, best = search.problem, final.declared, final.best
     search.words += describe_bounds(declared, best)
     search.words += [w for w in describe_undetermined(best.windows) if w not in search.words]
@@ -72,7 +74,7 @@ def result_of(
         rmse_before=rmse(claimed, 0),
         rmse_after=rmse(claimed, 1),
         sigma=sigma,
-        s2_before=declared.reduced_chi2,
+        s2_before=on_equal_windows(problem, declared, best).reduced_chi2,
         s2_after=best.reduced_chi2,
         moved=tuple(parameter_changes(problem, declared, best, values)) if best.effects else (),
         errors=tuple(error for part in parts for error in part.errors(sigma, units)),
@@ -261,7 +263,12 @@ def _find_experiments(search: Search, final: FinalModels) -> tuple[Experiment, .
             try:
                 found.append(
                     design_experiment(
-                        search.problem, final.best, rival.trial, str(effect), str(rival.effect)
+                        search.problem,
+                        final.best,
+                        rival.trial,
+                        str(effect),
+                        str(rival.effect),
+                        search.has_revisits,
                     )
                 )
             except TracewireError as error:

@@ -61,7 +61,7 @@ def refine(search: Search, declared: Trial, best: Trial) -> FinalModels:
     best = _share_phases(search, best)
     best = _drop_trifles(search, _prune(search, best), declared, rivals)
     best, dropped = _drop_terms(search, best)
-    return FinalModels(declared, order_effects(best), rivals, dropped)
+    return FinalModels(declared, best, rivals, dropped)
 
 
 def _refit_on_all_data(search: Search, trial: Trial) -> Trial:
@@ -165,9 +165,12 @@ def _exchange_effect(
 
 def _is_tied(best: Trial, rival: Trial, delta_bic: float, options: SearchOptions) -> bool:
     """Whether a rival is as good: BIC puts it next to nothing behind, or it is not surely behind
-    over blocks of time, as where all that speaks against it is in one of them."""
+    over blocks of time, as where all that speaks against it is in one of them. What leaves clearly
+    more is behind however few blocks show it."""
     if delta_bic < options.tied:
         return True
+    if rival.rss > options.tie_left * best.rss:
+        return False
     one, other = best.windows.residuals, rival.windows.residuals
     return errors_behind(one, other, options.tie_blocks) < options.tie_errors
 
@@ -382,6 +385,22 @@ def order_effects(best: Trial) -> Trial:
     """The best model with the effects that are surest first."""
     effects = sorted(best.effects, key=lambda effect: -_errors_from_nothing(best, effect))
     return replace(best, effects=tuple(effects))
+
+
+def largest_first(search: Search, best: Trial) -> Trial:
+    """The best model with the effect first without which the squared error rises most, all others
+    and the free parameters refitted in a few steps on a few of its windows. A standard error tells
+    how sure a coefficient is, not how much its effect does: a tiny one may be the surest."""
+    if len(best.effects) < 2:
+        return best
+    segments = best.windows.segments
+    few = [segments[n] for n in few_of(segments, search.options.search.few)]
+    steps = search.options.search.first_steps
+    each = [[e for e in best.effects if e is not effect] for effect in best.effects]
+    tasks = [search.refits.prepare(best, others, few, steps=steps) for others in each]
+    left = [np.inf if t is None else t.rss for t in search.refits.run(best, tasks)]
+    order = sorted(range(len(left)), key=lambda n: -left[n])
+    return replace(best, effects=tuple(best.effects[n] for n in order))
 
 
 def _drop_terms(search: Search, best: Trial) -> tuple[Trial, tuple[str, ...]]:
