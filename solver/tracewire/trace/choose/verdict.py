@@ -36,7 +36,7 @@ from tracewire.trace.found import (
 )
 from tracewire.trace.missing.dependence import map_dependence
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.search.refinement import FinalModels, Rival, order_effects, refine
+from tracewire.trace.search.refinement import FinalModels, Rival, refine
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.bounds import at_bounds
 from tracewire.trace.trials.trial import Trial
@@ -296,9 +296,7 @@ def final_of(search: Search, prediction: Prediction) -> FinalModels:
     search.words += _describe_refinement(prediction)
     own = search.problem.declared.flat.parameters
     dropped = (*chosen.dropped, *(name for name in chosen.vanished if name in own))
-    return FinalModels(
-        declared, order_effects(best), {k: tuple(v) for k, v in rivals.items()}, dropped
-    )
+    return FinalModels(declared, best, {k: tuple(v) for k, v in rivals.items()}, dropped)
 
 
 def _describe_refinement(prediction: Prediction) -> list[str]:

@@ -203,14 +203,8 @@ def main_frequency(measured: Measured) -> float:
 
 
 def _range_of(measured: Sequence[Measured], signal: str) -> tuple[float, float]:
-    """The least and the largest value of a signal in the records; one that is compared modulo a
-    period goes on and on."""
-    parts = []
-    for m in measured:
-        if signal in m.values:
-            period = m.periods.get(signal)
-            x = m.values[signal]
-            parts.append(x if period is None else np.unwrap(x, period=period))
+    """The least and the largest value of a signal in the records."""
+    parts = [m.values[signal] for m in measured if signal in m.values]
     return min(float(np.min(x)) for x in parts), max(float(np.max(x)) for x in parts)
 
 

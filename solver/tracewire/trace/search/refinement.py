@@ -381,12 +381,6 @@ def _is_complete(search: Search, best: Trial) -> bool:
     return search.screen(best).p_value() > search.options.screen.chance
 
 
-def order_effects(best: Trial) -> Trial:
-    """The best model with the effects that are surest first."""
-    effects = sorted(best.effects, key=lambda effect: -_errors_from_nothing(best, effect))
-    return replace(best, effects=tuple(effects))
-
-
 def largest_first(search: Search, best: Trial) -> Trial:
     """The best model with the effect first without which the squared error rises most, all others
     and the free parameters refitted in a few steps on a few of its windows. A standard error tells
