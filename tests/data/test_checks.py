@@ -102,8 +102,10 @@ def test_a_signal_from_a_lower_rate(k: int, seed: int) -> None:
     (lines,) = signal_remarks("y", t[: 4000 - k], between)
     assert f"y lies on straight lines between samples {k} apart" in lines
     assert lines.endswith(f"it was taken at {1000 / k:.4g} Hz")
-    (held,) = signal_remarks("y", t, np.repeat(rough[::k], k)[:4000])
-    assert f"y changes only every {k} samples: it was taken at {1000 / k:.4g} Hz" in held
+    held = np.repeat(rough[::k], k)[:4000]
+    (told,) = signal_remarks("y", t, held)
+    assert f"y changes only every {k} samples: it was taken at {1000 / k:.4g} Hz" in told
+    assert signal_remarks("u", t, held, exact=True) == [], "set points of a command"
 
 
 def test_samples_far_from_all_others() -> None:
@@ -128,6 +130,9 @@ def test_a_coarse_reading() -> None:
         "y is read in steps of 0.0628 rad (32 over its range): the rounding alone has a standard "
         "deviation of 0.0181 rad"
     )
+    coarse = np.round(np.sin(3 * T) / step) * step
+    assert signal_remarks("y", T, coarse, "rad", noise=0.02) == []
+    assert signal_remarks("y", T, coarse, "rad", noise=0.01) == [told]
 
 
 def test_a_command_in_steps_is_not_rounded() -> None:

@@ -66,12 +66,14 @@ def signal_remarks(
     *,
     exact: bool = False,
     cleaned: bool = False,
+    noise: float = 0.0,
 ) -> list[str]:
     """What is odd about a signal y(t), (N,): constant, clipped, with spikes, made from a lower
     rate, coarse.
 
-    exact: its values are what they were meant to be, such as those of a command: none is rounded.
-    cleaned: its outliers are left out.
+    exact: its values are what they were meant to be, such as those of a command: none is rounded,
+    and it may rest as long as it likes. cleaned: its outliers are left out. noise: its declared
+    standard deviation, beside which a smaller rounding is nothing odd.
     """
     if len(y) < 3:
         return []
@@ -85,8 +87,10 @@ def signal_remarks(
         *([] if exact else _clipped(name, y, levels, shown)),
         *([] if exact or cleaned else _spikes(name, t, y, shown)),
     ]
+    if exact:
+        return found
     made = [] if len(levels) < CHECK.fewest_levels else _from_lower_rate(name, t, y)
-    return [*found, *made, *([] if made or exact else _coarse(name, y, levels, shown))]
+    return [*found, *(made or _coarse(name, y, levels, shown, noise))]
 
 
 def _clipped(name: str, y: Vector, levels: Vector, unit: str) -> list[str]:
@@ -184,8 +188,9 @@ def _pattern(places: NDArray[np.intp], count: int, moving: Marks) -> int:
     return every if rests.max() >= CHECK.regular * len(places) else 0
 
 
-def _coarse(name: str, y: Vector, levels: Vector, unit: str) -> list[str]:
-    """Readings in few equal steps: their rounding is noise that no model explains."""
+def _coarse(name: str, y: Vector, levels: Vector, unit: str, noise: float) -> list[str]:
+    """Readings in few equal steps: their rounding is noise that no model explains. That of a sensor
+    with more noise of its own is not told."""
     if not CHECK.fewest_levels <= len(levels) <= len(y) / 2:
         return []
     gaps = np.diff(levels)
@@ -193,6 +198,8 @@ def _coarse(name: str, y: Vector, levels: Vector, unit: str) -> list[str]:
     multiples = gaps / step
     count = float(np.ptp(levels)) / step
     if count > CHECK.most_levels or float(np.max(np.abs(multiples - np.round(multiples)))) > 0.05:
+        return []
+    if step / math.sqrt(12) < noise:
         return []
     return [
         f"{name} is read in steps of {step:.3g}{unit} ({count:.0f} over its range): the rounding "

@@ -56,7 +56,10 @@ def remarks_of(
     for name, column in read.columns.items():
         exact = _is_command(series.inputs.get(name.removeprefix("input ")), column)
         unit, cleaned = read.unit(name).text, name in _without_outliers(series)
-        found += signal_remarks(name, read.t, column, unit, exact=exact, cleaned=cleaned)
+        said = _declared_noise(series, read, name)
+        found += signal_remarks(
+            name, read.t, column, unit, exact=exact, cleaned=cleaned, noise=said
+        )
     found += _on_span(model, series, read, values, zero)
     states = {state.name: state for state in model.flat.states}
     for name in series.channels:
@@ -84,6 +87,14 @@ def remarks_of(
     found += _on_rest(model, series, read)
     found += _on_hold(series, read)
     return tuple(found)
+
+
+def _declared_noise(series: Series, read: Record, name: str) -> float:
+    """The standard deviation that is declared of a column, in SI; 0 where nothing is said."""
+    channel = series.channels.get(name) or series.inputs.get(name.removeprefix("input "))
+    if channel is None or channel.sigma is None:
+        return 0.0
+    return float(channel.sigma * factor_of_column(read, name, channel))
 
 
 def _without_outliers(series: Series) -> set[str]:

@@ -195,9 +195,9 @@ class Refits:
         ended = self.workers.run(self.problem, refits, self.tell, self.words.append)
         for refit, result in zip(refits, ended, strict=True):
             if isinstance(result, TracewireError):
-                names = " and ".join(str(e) for e in refit.effects if str(e) not in there)
-                beginning = f"{names} was not tried: "
-                if names and not any(words.startswith(beginning) for words in self.words):
+                new = [str(e) for e in refit.effects if str(e) not in there]
+                beginning = f"{' and '.join(new)} {'was' if len(new) == 1 else 'were'} not tried: "
+                if new and not any(words.startswith(beginning) for words in self.words):
                     self.words.append(f"{beginning}{result.problems[0].what}")
                 trials.append(None)
             else:
