@@ -10,7 +10,14 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.fit.result import Comparison
-from tracewire.residual import Criterion, Measured, Segment, own_unknowns, solve_least_squares
+from tracewire.residual import (
+    Criterion,
+    Measured,
+    Segment,
+    own_unknowns,
+    solve_least_squares,
+    wrap_to_period,
+)
 
 Vector = NDArray[np.float64]
 
@@ -72,8 +79,8 @@ def compare_series(
             unit=model.flat.units.get(signal, ""),
             t=m.t,
             measured=values,
-            before=before[m.name][:, n],
-            after=after[m.name][:, n],
+            before=_on_turns(values, before[m.name][:, n], m.periods.get(signal, 0.0)),
+            after=_on_turns(values, after[m.name][:, n], m.periods.get(signal, 0.0)),
             counts=m.t >= m.counts_from,
             period=m.periods.get(signal, 0.0),
             sigma=m.sigma.get(signal),
@@ -81,3 +88,8 @@ def compare_series(
         for m in series
         for n, (signal, values) in enumerate(m.values.items())
     )
+
+
+def _on_turns(measured: Vector, shown: Vector, period: float) -> Vector:
+    """What a model shows (N,) on the turns of what was measured; a period of 0 is none."""
+    return measured - wrap_to_period(measured - shown, period) if period > 0 else shown

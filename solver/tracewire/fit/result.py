@@ -21,7 +21,8 @@ class Comparison:
     """One measured signal of one series beside the model before and after the fit.
 
     `t` (N,) in s; `measured`, `before` and `after` (N,) in SI; `counts` (N,) marks the samples that
-    the criterion counts. `period` is that of a signal compared modulo it, else 0.
+    the criterion counts. `period` is that of a signal compared modulo it, whose turns go on from
+    sample to sample, and `before` and `after` are on the turns of `measured`; else 0.
     """
 
     series: str
@@ -37,7 +38,7 @@ class Comparison:
     sigma: float | None = None
 
     def residual(self, simulated: Vector) -> Vector:
-        """Measured - simulated (N,) in SI, of a periodic signal between - and + half a period."""
+        """Measured - simulated (N,) in SI, of a periodic signal modulo its period."""
         return wrap_to_period(self.measured - simulated, self.period)
 
     @property
