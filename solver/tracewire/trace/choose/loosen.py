@@ -17,7 +17,8 @@ from tracewire.trace.trials.trial import PlacedEffect, TraceProblem
 
 def loosen_bounds(problem: TraceProblem, model: Finalist, options: TraceOptions) -> Finalist | None:
     """A model refitted with lower bounds for its shapes that sit on the least part of a stroke;
-    None where none does, and where that does no better."""
+    None where none does, and where that leaves more than half of the squared error at a horizon: a
+    small gain is what any more freedom brings."""
     names = {
         one.name
         for trial in model.trials
@@ -30,16 +31,17 @@ def loosen_bounds(problem: TraceProblem, model: Finalist, options: TraceOptions)
         return None
     trials = []
     for trial in model.trials:
-        pairs = zip(trial.effects, effects, strict=True)
-        freed = tuple(replace(old, candidate=new.candidate) for old, new in pairs)
+        both = zip(trial.effects, effects, strict=True)
+        freed = tuple(replace(old, candidate=new.candidate) for old, new in both)
         try:
             trials.append(
                 problem.refit(replace(trial, effects=freed), trial.windows.segments, trial.length)
             )
         except FitError:
             return None
-    found = replace(model, trials=tuple(trials))
-    return found if found.rss < (1 - options.material) * model.rss else None
+    pairs = zip(trials, model.trials, strict=True)
+    halved = all(new.rss < old.rss / options.hopeful for new, old in pairs)
+    return replace(model, trials=tuple(trials)) if halved else None
 
 
 def _loosened(effect: PlacedEffect, names: set[str], part: float) -> PlacedEffect:
