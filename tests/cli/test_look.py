@@ -107,6 +107,17 @@ def test_check_tells_the_noise_that_is_declared_in_si(call: Any, swing: Path) ->
     assert series["sigma"]["theta"] == pytest.approx(np.radians(0.1))
 
 
+def test_check_tells_the_noise_that_it_estimates(call: Any, swing: Path) -> None:
+    noise = 0.01 * np.random.default_rng(2).standard_normal(400)
+    rows = [f"{t:.3f},{x:.6f}" for t, x in zip(0.01 * np.arange(400), noise, strict=True)]
+    (swing.parent / "run_1.csv").write_text("\n".join(["t,angle [rad]", *rows, ""]))
+    (series,) = call("check", swing, "--json").data["measured"]
+    assert series["sigma"] == {}
+    assert series["estimated_sigma"]["theta"] == pytest.approx(0.01, rel=0.2)
+    told = f"- theta: noise of σ = {series['estimated_sigma']['theta']:.4g} rad, estimated ("
+    assert told in call("check", swing).out
+
+
 def test_check_tells_the_windows_of_a_series(call: Any, swing: Path) -> None:
     replaced(swing, "time: t, ", "time: t, use: {train: [1, 1.6], gate: [1.6, 2]}, ")
     replaced(swing, "start: {theta: 0.5}", "start: {theta: free}")

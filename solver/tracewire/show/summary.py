@@ -134,15 +134,21 @@ def contents(model: Model) -> dict[str, object]:
 
 def series_contents(series: Measured, units: Mapping[str, str]) -> dict[str, object]:
     """What is in a measured series; `units` are those of the signals in SI."""
-    from tracewire.residual import WINDOW  # a check without series reads no residuals
+    from tracewire.residual import WINDOW, estimate_noise  # a check without series reads none
 
     noises = {**series.sigma, **series.input_sigma}
     sigma = {name: value for name, value in noises.items() if value is not None}
+    enough = len(series.t) >= WINDOW.traced
+    noise = estimate_noise([series]) if enough else {}
+    seen = {name: estimate for name, estimate in noise.items() if name not in sigma}
+    estimated = {name: estimate.level for name, estimate in seen.items()}
+    how = {name: f", estimated ({estimate.method})" for name, estimate in seen.items()}
     told = [
-        f"{name}: noise of σ = {s:.4g} {units.get(name, '')}".rstrip() for name, s in sigma.items()
+        f"{name}: noise of σ = {s:.4g} {units.get(name, '')}".rstrip() + how.get(name, "")
+        for name, s in {**sigma, **estimated}.items()
     ]
     short = []
-    if len(series.t) < WINDOW.traced:
+    if not enough:
         words = f"{len(series.t)} samples: a trace needs {WINDOW.traced} at least"
         short.append(words)
     return {
@@ -156,6 +162,7 @@ def series_contents(series: Measured, units: Mapping[str, str]) -> dict[str, obj
         "signals": list(series.values),
         "inputs": list(series.inputs),
         "sigma": sigma,
+        "estimated_sigma": estimated,
         "steps": list(series.steps),
         "noise": told,
         "remarks": [*series.remarks, *short],
