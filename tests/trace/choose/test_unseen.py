@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -270,6 +270,23 @@ def test_an_effect_whose_coefficient_may_be_zero_is_not_named(
 
 
 DELAY = "sensor_delay @ sensor.v"
+
+
+def test_what_is_left_without_such_an_effect_is_asked_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Beside a delay the friction is sure, and alone it is not."""
+    there = run_of({})
+    there.words, there.short_length = [], 50
+    declared: Any = SimpleNamespace(reduced_chi2=1.0, effects=())
+    final = safeguards.FinalModels(declared, cast(Any, Names((DRY, DELAY))))
+    monkeypatch.setattr(safeguards, "is_loose", lambda problem, trial: False)
+    monkeypatch.setattr(safeguards, "undetermined_effects", lambda trial, confidence: [trial[-1]])
+    monkeypatch.setattr(safeguards, "_refit_with", lambda search, trial, kept: Names(kept))
+    found = safeguards.safeguard(there, safeguards.Judgement("effect", final))
+    assert (found.verdict, found.final.best) == ("null", declared)
+    what = "is not named: the 95% interval of its coefficient holds zero"
+    assert there.words == [f"{name} {what}" for name in (DELAY, DRY)]
 
 
 @pytest.mark.parametrize(

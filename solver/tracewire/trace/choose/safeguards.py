@@ -113,7 +113,8 @@ def undetermined_effects(trial: Trial, confidence: float) -> list[str]:
 
 
 def _without_undetermined(search: Search, judgement: Judgement) -> Judgement:
-    """The judgement without effects whose coefficient may as well be zero."""
+    """The judgement without effects whose coefficient may as well be zero, also of what is left
+    where some of them are gone."""
     final = judgement.final
     names = undetermined_effects(final.best, search.options.confidence)
     kept = [effect for effect in final.best.effects if str(effect) not in names]
@@ -123,12 +124,15 @@ def _without_undetermined(search: Search, judgement: Judgement) -> Judgement:
         names = []
     if not names:
         return judgement
+    one = len(names) == 1
     search.words.append(
-        f"{join_names(names)} is not named: the {search.options.confidence:.0%} interval of its"
-        " coefficient holds zero"
+        f"{join_names(names)} {'is' if one else 'are'} not named: the"
+        f" {search.options.confidence:.0%} interval of {'its' if one else 'their'}"
+        f" coefficient{'s' * (not one)} holds zero"
     )
     if fewer is not None:
-        return replace(judgement, final=_with_effects(final, fewer))
+        fewer_effects = replace(judgement, final=_with_effects(final, fewer))
+        return _without_undetermined(search, fewer_effects)
     alone = FinalModels(final.declared, final.declared)
     if final.declared.reduced_chi2 <= search.options.at_noise:
         return Judgement("null", alone)
