@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.fit import fit
-from tracewire.residual import Measured, wrap_to_period
+from tracewire.residual import Measured, load_measured, wrap_to_period
 
 COAST = """\
 title: Coasting wheel
@@ -74,3 +74,37 @@ def test_differences_modulo_a_period_follow_each_other(
 def test_a_sample_that_is_not_finite_breaks_no_differences() -> None:
     off = np.array([0.1, np.nan, 0.2 + TURN, 0.3])
     assert wrap_to_period(off, TURN) == pytest.approx([0.1, np.nan, 0.2, 0.3], nan_ok=True)
+
+
+@pytest.mark.parametrize(
+    "step",
+    [
+        "resample: 0.01",
+        "lowpass: {signals: q, cutoff: 10}",
+        "outliers: q",
+        "differentiate: {signal: q, to: w}",
+    ],
+)
+def test_a_step_of_cleaning_goes_on_from_turn_to_turn(tmp_path: Path, step: str) -> None:
+    """Between 359 and 1 degree there is 0, and no 180."""
+    rng = np.random.default_rng(1)
+    t = 0.01 * np.arange(1000) + rng.uniform(0, 1e-3, 1000) * (step[0] == "r")
+    shown = np.mod(20 + 100 * t + 30 * np.sin(2 * t), 360)
+    rows = "\n".join(f"{a:.6f},{b:.4f}" for a, b in zip(t, shown, strict=True))
+    (tmp_path / "encoder.csv").write_text(f"t,q\n{rows}\n")
+    text = f"""{COAST}measured:
+  run:
+    file: encoder.csv
+    time: t
+    signals: {{q: {{column: q, unit: deg, modulo: 360}}}}
+    clean: [{{{step}}}]
+    start: {{q: free, w: free}}
+"""
+    (series,) = load_measured(compile(read_text(text, tmp_path / "wheel.yaml")))
+    assert len(series.t) > 990
+    s = series.t
+    true = np.radians(20 + 100 * s + 30 * np.sin(2 * s))
+    assert wrap_to_period(series.values["q"] - true, TURN) == pytest.approx(0 * s, abs=0.02)
+    if "w" in series.values:
+        rate = np.radians(100 + 60 * np.cos(2 * s))
+        assert series.values["w"] == pytest.approx(rate, abs=0.1)

@@ -26,6 +26,8 @@ from tracewire.residual.sensor import PLAIN, Sensor, read_sensor
 from tracewire.solve import Driving, Options, parameter_values
 
 Vector = NDArray[np.float64]
+SAMPLE_BY_SAMPLE = ("sort", "trim", "calibrate")
+"""The steps of `clean` that look at one sample at a time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -377,6 +379,8 @@ def _cleaned(series: Series, record: Record, steps: Sequence[Cleaning]) -> Recor
     channels = _columns(series)
     for step in steps:
         options: dict[str, object] = dict(step.options)
+        if step.step not in SAMPLE_BY_SAMPLE:
+            record = _on_turns(series, record)
         try:
             if step.step == "calibrate":
                 signal = str(options["signal"])
@@ -399,6 +403,17 @@ def _cleaned(series: Series, record: Record, steps: Sequence[Cleaning]) -> Recor
             ]
             raise DataError(problems) from None
     return record
+
+
+def _on_turns(series: Series, record: Record) -> Record:
+    """The record whose signals with a period go on from turn to turn: a step that looks at several
+    samples would make something between the last one of a turn and the first one of the next."""
+    columns = dict(record.columns)
+    for name, channel in series.channels.items():
+        if channel.modulo is not None and name in columns:
+            period = channel.modulo * factor_of_column(record, name, channel)
+            columns[name] = np.unwrap(columns[name], period=period)
+    return replace(record, columns=columns)
 
 
 def _check_size(series: Series, record: Record) -> None:
