@@ -147,7 +147,14 @@ def inside_a_class() -> RuntimeError:
     return error
 
 
-@pytest.mark.parametrize("error", [KeyboardInterrupt(), inside_a_class()])
+def inside_a_module() -> ImportError:
+    """What pybind11 makes of an interrupt while a module of C++ is loaded."""
+    error = ImportError("initialization failed")
+    error.__cause__ = KeyboardInterrupt()
+    return error
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt(), inside_a_class(), inside_a_module()])
 def test_an_interrupt_is_told_and_exits_with_130(
     error: BaseException, call: Any, swing: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

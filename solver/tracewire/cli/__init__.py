@@ -31,8 +31,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         from tracewire.cli.app import main as run
 
         code = run(arguments)
-    except (KeyboardInterrupt, RuntimeError) as error:
-        # Python 3.11 makes a RuntimeError of what is raised while it makes a class
+    except (KeyboardInterrupt, RuntimeError, ImportError) as error:
+        # Python 3.11 makes a RuntimeError of what is raised while it makes a class, and pybind11 an
+        # ImportError of what is raised while a module of C++ is loaded
         if KeyboardInterrupt not in (type(error), type(error.__cause__)):
             raise
         if sys.stderr is not None:

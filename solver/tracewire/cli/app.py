@@ -122,9 +122,8 @@ def _told(error: BaseException, given: Sequence[str]) -> tuple[list[Problem], in
         return list(error.problems), error.exit_code
     if isinstance(error, USAGE_ERROR):
         return [_usage(error, given)], 2
-    cause = (
-        error.__cause__ if isinstance(error, RuntimeError) else None
-    )  # of Python 3.11, in a class
+    # Python 3.11 makes a RuntimeError of it in a class, pybind11 an ImportError in a module of C++
+    cause = error.__cause__ if isinstance(error, RuntimeError | ImportError) else None
     if isinstance(cause or error, KeyboardInterrupt | typer.Abort):
         return [STOPPED], INTERRUPTED
     what = f"internal error ({type(error).__name__}: {error})"
