@@ -12,7 +12,7 @@ from tracewire.residual import Measured
 from tracewire.residual.windows import Section
 from tracewire.trace.choose.heldout import Finalist
 from tracewire.trace.choose.horizons import horizons_of
-from tracewire.trace.choose.loosen import loosen_bounds
+from tracewire.trace.choose.loosen import _loosened, loosen_bounds
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.trials.trial import PlacedEffect, TraceProblem
 
@@ -70,3 +70,10 @@ def test_a_small_gain_frees_none() -> None:
     """A deflection that is hardly below its bound fits nearly as well on it."""
     problem = swing(0.0199)
     assert loosen_bounds(problem, fitted(problem), OPTIONS) is None
+
+
+def test_a_wave_is_not_freed_below_what_its_samples_show() -> None:
+    candidate = candidates_of(swing(0.06))["cogging @ force"]
+    low, _ = candidate.limits["pitch"]
+    effect = PlacedEffect(candidate, {"amplitude": 1.0, "pitch": low, "phase": 0.0})
+    assert _loosened(effect, {effect.unknown("pitch")}, 0.1) is effect

@@ -1,6 +1,6 @@
 """Bounds that are a guess: how far a body moves says little of the least deflection that it shows.
 
-A hysteresis over a two hundredth of the longest stroke decides what the short strokes of a record
+A hysteresis over a two-hundredth of the longest stroke decides what the short strokes of a record
 do. Searched from there from the start, each friction would take many times the steps of a run.
 """
 
@@ -45,11 +45,13 @@ def loosen_bounds(problem: TraceProblem, model: Finalist, options: TraceOptions)
 
 
 def _loosened(effect: PlacedEffect, names: set[str], part: float) -> PlacedEffect:
-    """An effect whose shapes with these names may be smaller, where they are parts of a stroke."""
+    """An effect whose shapes with these names may be smaller, where they are parts of a stroke. A
+    wave may not: its least length is that of a few samples, and a shorter one is an alias."""
     candidate, limits = effect.candidate, dict(effect.candidate.limits)
     for shape, of in candidate.scales.items():
         low, high = limits[shape]
-        if of == "stroke" and low > 0 and effect.unknown(shape) in names:
+        part_of_stroke = of == "stroke" and low > 0 and shape not in candidate.waves
+        if part_of_stroke and effect.unknown(shape) in names:
             limits[shape] = part * low, high
     if limits == candidate.limits:
         return effect
