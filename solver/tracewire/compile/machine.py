@@ -17,6 +17,7 @@ from collections.abc import Mapping, Sequence
 
 from tracewire.compile import libm
 from tracewire.compile.constants import Constants
+from tracewire.compile.hyperbolic import COPY_SIGN, exponential, from_exponential
 from tracewire.compile.limits import CODE
 from tracewire.compile.past import PAST
 from tracewire.compile.search import SearchText
@@ -27,6 +28,7 @@ ARITHMETIC = {name: o.instruction for name, o in OPERATIONS.items() if o.instruc
 ARITHMETIC |= {"and": "fmul"}  # of 0 and 1
 LIBRARY = {name: o.library for name, o in OPERATIONS.items() if o.library}
 INTRINSIC = {name: o.intrinsic for name, o in OPERATIONS.items() if o.intrinsic}
+HYPERBOLIC = {name for name, o in OPERATIONS.items() if o.steps}
 PREFIX = "tracewire."
 ARGUMENTS = "double %t, " + ", ".join(f"ptr noalias readonly %{a}" for a in "xmck")
 PURE = "nounwind willreturn readnone"
@@ -104,6 +106,7 @@ def _module(functions: Sequence[str]) -> str:
     heads += [f"declare double @{PREFIX}{name}(double, double) {PURE}" for name in libm.TWO]
     heads.append(f"declare void @{PREFIX}{libm.BOTH}(double, ptr, ptr) nounwind")
     heads += [f"declare double @{name}(double)" for name in INTRINSIC.values()]
+    heads.append(f"declare double @{COPY_SIGN}(double, double)")
     heads += [text for name, text in HELPERS.items() if f"@{name}(" in body]
     return "\n".join([*heads, body, ""])
 
@@ -151,6 +154,7 @@ class _Body:
         self.entries = writer.tape.entries
         self.lines: list[str] = []
         self.names: dict[int, str] = {}  # of the entries that have been computed
+        self.exponentials: dict[int, str] = {}  # of entries of which a sinh, cosh or tanh is known
         self.pairs = self.sines_with_cosines(order) if writer.has_sincos else {}
         self.leaves: dict[int, str] = {}  # those that were loaded in this part of the function
         self.parts = 0
@@ -276,8 +280,19 @@ class _Body:
         name = self.names[index] = f"%v{index}"
         if entry.op == "newton":
             self.search(index, operands)
+        elif entry.op in HYPERBOLIC:
+            self.lines += from_exponential(
+                entry.op, operands[0], self.exponential(entry.operands[0], operands[0]), name
+            )
         else:
             self.lines += self.operation(entry, name, operands)
+
+    def exponential(self, index: int, u: str) -> str:
+        """The name of the exponential of an entry, which is computed here if it is not known."""
+        if index not in self.exponentials:
+            self.exponentials[index] = f"e{index}"
+            self.lines += exponential(u, f"e{index}", PREFIX)
+        return self.exponentials[index]
 
     def search(self, index: int, operands: Sequence[str]) -> None:
         """The search of a nonlinear system, with its equations in the middle of it."""

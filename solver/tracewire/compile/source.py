@@ -15,6 +15,7 @@ from typing import Any
 
 from tracewire.compile import libm
 from tracewire.compile.constants import OF_THE_PAST, Constants
+from tracewire.compile.hyperbolic import BASE, hyperbolic
 from tracewire.compile.limits import CODE, SEARCH
 from tracewire.compile.past import past
 from tracewire.compile.tape import Tape
@@ -91,12 +92,13 @@ SHARED: dict[str, Any] = {
     "newton": _newton,
 }
 FAST: dict[str, Any] = {name: getattr(math, name) for name in (*libm.ONE, *libm.TWO, "sqrt")}
-FAST |= {**SHARED, "floor": _floor}
+FAST |= {**SHARED, "floor": _floor, **hyperbolic(math.expm1)}
 
 
 def _careful() -> dict[str, Any]:
     names = (*libm.ONE, *libm.TWO, "sqrt", "floor")
-    return {**SHARED, "divide": _divide} | {name: libm.function(name) for name in names}
+    called = {name: libm.function(name) for name in names}
+    return {**SHARED, "divide": _divide, **called, **hyperbolic(called[BASE])}
 
 
 class Writer:

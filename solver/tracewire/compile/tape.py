@@ -50,7 +50,8 @@ from tracewire.formula import OPERATIONS
 COMPUTED = {
     name: operation.value
     for name, operation in OPERATIONS.items()
-    if operation.value and (operation.library or operation.intrinsic or operation.instruction)
+    if operation.value
+    and (operation.library or operation.intrinsic or operation.instruction or operation.steps)
 }
 UNARY: dict[str, Callable[[float], float]] = {
     **{name: value for name, value in COMPUTED.items() if OPERATIONS[name].most == 1},

@@ -162,9 +162,14 @@ class Measured:
         return {name: float(np.std(values)) for name, values in self.values.items()}
 
     @cached_property
+    def rate_spreads(self) -> Mapping[str, float]:
+        """The standard deviation of the rate of each measured signal."""
+        return {name: float(np.std(np.gradient(v, self.t))) for name, v in self.values.items()}
+
+    @property
     def fastest(self) -> float:
         """The largest standard deviation of a measured signal's rate."""
-        return max(float(np.std(np.gradient(v, self.t))) for v in self.values.values())
+        return max(self.rate_spreads.values())
 
     @cached_property
     def quartic_points(self) -> Mapping[str, int]:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
+from tracewire.formula import Name
 from tracewire.residual.measured import Measured
 
 Vector = NDArray[np.float64]
@@ -91,12 +92,16 @@ def of_diagram(model: Model, values: Mapping[str, float], measured: Measured) ->
 def absolute_tolerances(model: Model, measured: Measured, rtol: float) -> dict[str, float]:
     """The absolute tolerance of each state in runs of a series, for `simulate_spans`.
 
-    rtol/1000 of the spread of its signal; of a state that is not measured, of the least spread of a
-    signal or of the fastest rate of one. Sizes are rounded down to a power of ten, and at most 1: a
-    record in m is run as exactly as the same record in mm.
+    rtol/1000 of the spread of its signal; of a state that is the rate of a measured one, of the
+    spread of that rate; of another one, of the least of all these. Sizes are rounded down to a
+    power of ten, and at most 1: a record in m is run as exactly as the same record in mm.
     """
     sizes = {name: size for name, size in measured.spreads.items() if size > 0}
     least = min([1.0, *sizes.values(), *([measured.fastest] if measured.fastest > 0 else [])])
+    for state in model.flat.states:
+        size = measured.rate_spreads.get(state.name, 0.0)
+        if isinstance(state.rate, Name) and size > 0:
+            sizes.setdefault(state.rate.name, size)
     known = {name: min(sizes.get(name, least), 1.0) for name in model.states}
     return {name: rtol * 10.0 ** (math.floor(math.log10(size)) - 3) for name, size in known.items()}
 
