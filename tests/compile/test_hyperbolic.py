@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tracewire.compile.hyperbolic import FAR, hyperbolic
+from tracewire.compile.hyperbolic import hyperbolic
+from tracewire.compile.limits import CODE
 
 MADE = hyperbolic(math.expm1)
 EACH = pytest.mark.parametrize("name", ["sinh", "cosh", "tanh"])
@@ -36,7 +37,7 @@ def test_values_are_within_three_units_in_the_last_place(name: str, u: float) ->
 @EACH
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 def test_values_join_where_the_far_formula_takes_over(name: str, side: float) -> None:
-    near, far = side * FAR, side * math.nextafter(FAR, math.inf)
+    near, far = side * CODE.far, side * math.nextafter(CODE.far, math.inf)
     assert MADE[name](far) == pytest.approx(MADE[name](near), rel=1e-14)
 
 

@@ -4,9 +4,9 @@ With e = expm1(|u|), which is exact to the last digits for small u, too:
 
     cosh u = 1 + e/2*e/(1 + e)      sinh |u| = e/2 + e/(1 + e)/2      tanh |u| = s/(s + 2)
 
-where s = e*(e + 2) = expm1(2|u|). From |u| = 22 on cosh and sinh |u| are (e + 1)/2 and tanh |u| is
-1, to the last digit. Python and machine code take the same steps in the same order, so that both
-give the same bits. They are within three units in the last place of the true values. The largest
+where s = e*(e + 2) = expm1(2|u|). From |u| = `CODE.far` on cosh u and sinh |u| are (e + 1)/2 and
+tanh |u| is 1, to the last digit. Python and machine code take the same steps in the same order, so
+that both give the same bits. They are within three units in the last place of the true values. The largest
 |u| is that of exp, 709.78; beyond it sinh and cosh are infinite.
 
 A friction law with a bump reads cosh and tanh of one speed: two functions of the C library cost it
@@ -18,8 +18,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-FAR = 22.0
-"""From here on 1 is less than half a digit of exp(2u)/4, and of exp(u)**2."""
+from tracewire.compile.limits import CODE
+
 BASE = "expm1"
 COPY_SIGN = "llvm.copysign.f64"
 
@@ -32,17 +32,17 @@ def hyperbolic(expm1: Real) -> dict[str, Real]:
     def sinh(u: float) -> float:
         e = expm1(abs(u))
         half = 0.5 * e
-        return math.copysign(half + (0.5 if abs(u) > FAR else 0.5 * (e / (1.0 + e))), u)
+        return math.copysign(half + (0.5 if abs(u) > CODE.far else 0.5 * (e / (1.0 + e))), u)
 
     def cosh(u: float) -> float:
         e = expm1(abs(u))
         half = 0.5 * e
-        return half + 0.5 if abs(u) > FAR else 1.0 + half * (e / (1.0 + e))
+        return half + 0.5 if abs(u) > CODE.far else 1.0 + half * (e / (1.0 + e))
 
     def tanh(u: float) -> float:
         e = expm1(abs(u))
         s = e * (e + 2.0)
-        return math.copysign(1.0 if abs(u) > FAR else s / (s + 2.0), u)
+        return math.copysign(1.0 if abs(u) > CODE.far else s / (s + 2.0), u)
 
     return {"sinh": sinh, "cosh": cosh, "tanh": tanh}
 
@@ -51,7 +51,7 @@ def exponential(u: str, name: str, prefix: str) -> list[str]:
     """The IR of e and of whether |u| is far out, `%name` and `%name.far`; they serve all three."""
     return [
         f"%{name}.abs = call double @llvm.fabs.f64(double {u})",
-        f"%{name}.far = fcmp ogt double %{name}.abs, {FAR}",
+        f"%{name}.far = fcmp ogt double %{name}.abs, {CODE.far}",
         f"%{name} = call double @{prefix}{BASE}(double %{name}.abs)",
         f"%{name}.half = fmul double 0.5, %{name}",
     ]

@@ -230,10 +230,10 @@ class CriterionLimits:
     penalty: float = 100.0
     """The residual where a run fails, in units of the spread of the samples."""
     many: int = 2000
-    """Steps from which on series run in parallel, about 4 ms with sensitivities: below, threads cost
-    more than they save, as what Python does around a run waits for its lock. Traces of five systems
-    of one degree of freedom took 3.2 to 4.5 s with 400 steps and 2.3 to 4.5 s with 2000; one of the
-    double torsion pendulum as long."""
+    """Steps from which on series run in parallel, about 4 ms with sensitivities: below, threads
+    cost more than they save, as what Python does around a run waits for its lock. Traces of five
+    systems of one degree of freedom took 3.2 to 4.5 s with 400 steps and 2.3 to 4.5 s with 2000;
+    one of the double torsion pendulum as long."""
     kept: int = 50_000
     """Numbers in the inputs and times of a series up to which the problem of its runs is kept: to
     make it again takes a small part of a longer run, and many criteria live at once."""

@@ -21,7 +21,7 @@ from scipy.integrate import solve_ivp
 from tracewire.errors import DiagramError, FitError
 from tracewire.residual import Measured
 from tracewire.residual.windows import Section, cut_windows
-from tracewire.trace.trials.trial import PlacedEffect
+from tracewire.trace.trials.trial import PlacedEffect, with_fitted_starts
 
 COULOMB = "coulomb @ force"
 
@@ -86,6 +86,22 @@ def test_what_is_fixed_is_not_fitted() -> None:
     assert set(trial.values) == {"k"}
     assert problem.all_values(trial) == {**trial.values, "c": 0.0}
     assert problem.refit(trial, segments, 60).values == pytest.approx(trial.values, rel=1e-3)
+
+
+def test_a_refit_begins_at_the_fitted_starts_of_the_same_windows() -> None:
+    """A start that the samples tell may lead to another minimum: a trial of the double torsion
+    pendulum left 92 times as much on one of the windows that it had been fitted to."""
+    m = record()
+    problem = problem_of(m)
+    trial = trial_of(problem)
+    fitted = trial.windows.segments
+    far = [replace(s, start={**s.start, "v": 9e9}) for s in fitted]
+    assert [s.start for s in with_fitted_starts(far, trial)] == [s.start for s in fitted]
+    assert problem.refit(trial, far, 60).rss == pytest.approx(trial.rss, rel=1e-6)
+    held = [replace(s, free=("x",)) for s in far]
+    assert all(s.start["v"] == 9e9 for s in with_fitted_starts(held, trial)), "v is not free"
+    others = cut_windows(problem.declared, Section(m, 7, 270), 90, problem.states)
+    assert with_fitted_starts(others, trial) == others, "they begin at other times"
 
 
 def test_on_other_windows_only_the_starts_are_fitted() -> None:

@@ -5,10 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from tracewire.errors import FitError
-from tracewire.residual import evaluate_windows
 from tracewire.trace.check.mistakes import refuse_mistakes
 from tracewire.trace.choose.unseen import (
     is_no_better_on_claim,
@@ -22,7 +19,8 @@ from tracewire.trace.choose.unseen import (
 from tracewire.trace.choose.verdict import Judgement, residual_map
 from tracewire.trace.search.refinement import FinalModels
 from tracewire.trace.search.search import Search
-from tracewire.trace.trials.trial import PlacedEffect, TraceProblem, Trial
+from tracewire.trace.trials.precision import is_loose
+from tracewire.trace.trials.trial import PlacedEffect, Trial
 
 
 def fit_declared(search: Search) -> Trial:
@@ -31,39 +29,9 @@ def fit_declared(search: Search) -> Trial:
     for _ in range(search.options.check.tightened):
         if not is_loose(search.problem, declared):
             break
-        _tighten(search)
+        search.tighten()
         declared = search.fit_declared()
     return declared
-
-
-def is_loose(problem: TraceProblem, trial: Trial) -> bool:
-    """Whether the solver's error counts beside the residual of a trial.
-
-    Its windows are run once more, from the same starts, with a tenth of the tolerance. It counts
-    where the residual of half of them moves by more than 0.3 of its size (root mean square, in
-    sigma; at least 0.3 sigma). A window that does not run so precisely does not count.
-    """
-    tighter = _tighter(problem).criterion_on(trial, trial.windows.segments)
-    there = evaluate_windows(tighter).linearisations
-    pairs = [
-        (a, b) for a, b in zip(trial.windows.linearisations, there, strict=True) if a.ran and b.ran
-    ]
-    if not pairs:
-        return False
-    moved = np.median([np.sqrt(np.mean((a.residual - b.residual) ** 2)) for a, b in pairs])
-    return not moved < problem.options.check.solver_error * max(trial.reduced_chi2**0.5, 1.0)
-
-
-def _tighter(problem: TraceProblem) -> TraceProblem:
-    """The problem with a tenth of the tolerance, or what the options say."""
-    return replace(problem, rtol=problem.options.check.tighter * problem.rtol)
-
-
-def _tighten(search: Search) -> None:
-    search.problem = _tighter(search.problem)
-    search.words.append(
-        f"the solver's error counted beside the residual: rtol is {search.problem.rtol:.0e} now"
-    )
 
 
 def safeguard(search: Search, judgement: Judgement) -> Judgement:
@@ -74,7 +42,7 @@ def safeguard(search: Search, judgement: Judgement) -> Judgement:
     for _ in range(search.options.check.tightened):
         if not (final.best.effects and is_loose(search.problem, final.best)):
             break
-        _tighten(search)
+        search.tighten()
         declared, best = (
             search.problem.refit(trial, trial.windows.segments, trial.length)
             for trial in (final.declared, final.best)

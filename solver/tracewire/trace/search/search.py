@@ -25,6 +25,7 @@ from tracewire.trace.search.refits import RefitResult, Refits, new_effects
 from tracewire.trace.search.workers import Workers
 from tracewire.trace.trials.data_split import DataSplit
 from tracewire.trace.trials.judge import GateResult, judge_on_gate
+from tracewire.trace.trials.precision import is_loose, tighter
 from tracewire.trace.trials.trial import TraceProblem, Trial
 
 
@@ -144,10 +145,28 @@ class Search:
             return trial
         return whole if whole.reduced_chi2 < self.options.search.far else trial
 
+    def tighten(self) -> None:
+        """Let the solver have a tenth of its tolerance from now on."""
+        self.problem = tighter(self.problem)
+        self.words.append(
+            f"the solver's error counted beside the residual: rtol is {self.problem.rtol:.0e} now"
+        )
+
+    def refit_precisely(self, trial: Trial) -> Trial:
+        """A trial with a tolerance at which the solver's error does not count. It grows with the
+        windows: on long ones another effect may seem to explain it."""
+        for _ in range(self.options.check.tightened):
+            if not is_loose(self.problem, trial):
+                break
+            self.tighten()
+            trial = self.problem.refit(trial, trial.windows.segments, trial.length)
+        return trial
+
     def lengthen_windows(
         self, trial: Trial, sections: Sequence[Section] | None = None, far: float | None = None
     ) -> Trial:
-        """A trial refitted on longer and longer windows, as far as its residual stays small."""
+        """A trial refitted on longer and longer windows, as far as its residual stays small, with a
+        solver that is precise enough for these."""
         sections = self.data_split.train if sections is None else sections
         far = self.options.search.far if far is None else far
         longest = max(section.count for section in sections)
@@ -160,6 +179,7 @@ class Search:
             self.tell(f"refitting on windows of {length} samples")
             try:
                 longer = self.problem.refit(trial, self.windows(sections, length), length)
+                longer = self.refit_precisely(longer)
             except FitError:
                 break
             if not longer.converged or longer.reduced_chi2 > far:

@@ -283,7 +283,7 @@ class TraceProblem:
         effects = self.fit_unseen_phases(trial, segments)
         found = self.fit(
             effects,
-            segments,
+            with_fitted_starts(segments, trial),
             length,
             trial.values,
             fixed=fixed,
@@ -454,6 +454,22 @@ def with_starts_of(segments: Sequence[Segment], trial: Trial, rows: Sequence[int
     found = list(segments)
     for n, segment in zip(rows, trial.windows.segments, strict=True):
         found[n] = segment
+    return found
+
+
+def with_fitted_starts(segments: Sequence[Segment], trial: Trial) -> list[Segment]:
+    """Windows with the free starts that a trial has where it has a window that begins so: that of
+    the samples alone may lead to another minimum."""
+
+    def begin_of(segment: Segment) -> tuple[str, float, int]:
+        return segment.measured.name, segment.begin, int(segment.rows[0])
+
+    known = {begin_of(segment): segment.start for segment in trial.windows.segments}
+    found = []
+    for segment in segments:
+        fitted = known.get(begin_of(segment), {})
+        own = {name: fitted[name] for name in segment.free if name in fitted}
+        found.append(replace(segment, start={**segment.start, **own}) if own else segment)
     return found
 
 
