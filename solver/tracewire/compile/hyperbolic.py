@@ -6,8 +6,8 @@ With e = expm1(|u|), which is exact to the last digits for small u, too:
 
 where s = e*(e + 2) = expm1(2|u|). From |u| = `CODE.far` on cosh u and sinh |u| are (e + 1)/2 and
 tanh |u| is 1, to the last digit. Python and machine code take the same steps in the same order, so
-that both give the same bits. They are within three units in the last place of the true values. The largest
-|u| is that of exp, 709.78; beyond it sinh and cosh are infinite.
+that both give the same bits. They are within three units in the last place of the true values. The
+largest |u| is that of exp, 709.78; beyond it sinh and cosh are infinite.
 
 A friction law with a bump reads cosh and tanh of one speed: two functions of the C library cost it
 a tenth of a run.
