@@ -57,7 +57,8 @@ def refine(search: Search, declared: Trial, best: Trial) -> FinalModels:
     for number in range(len(best.effects)):
         best, found = _exchange_effect(search, declared, best, number)
         rivals[str(best.effects[number])] = found
-    best = _free_shapes(search, best)
+    for number in range(len(best.effects)):
+        best = _free_shapes(search, best, number)
     best = _share_phases(search, best)
     best = _drop_trifles(search, _prune(search, best), declared, rivals)
     best, dropped = _drop_terms(search, best)
@@ -124,6 +125,8 @@ def _exchange_effect(
     near = [_prepare_refit(search, best, effects) for effects in _not_far_behind(search, few, each)]
     for trial in search.refits.run(best, near):
         if trial is not None:
+            if _count_numbers(trial.effects[number]) < _count_numbers(effect):
+                trial = _free_shapes(search, trial, number)  # it may have as many
             results.append((trial.bic(effective_fraction), trial, trial.effects[number]))
     results.append((best.bic(effective_fraction), best, effect))
     # where BIC is the same, a law with a physical sign goes before others, and a sensor comes last
@@ -231,27 +234,31 @@ def _known_rivals(search: Search, effect: PlacedEffect) -> list[tuple[PlacedEffe
     return []
 
 
-def _free_shapes(search: Search, best: Trial) -> Trial:
-    """The best model with shapes free that had kept their default, where that is worth it."""
-    for number, effect in enumerate(best.effects):
-        candidate = effect.candidate
-        for shape, grid in candidate.shapes.items():
-            current = effect.values.get(shape, 0.0)
-            if not is_default(candidate, shape, current):
-                continue
-            first = min((value for value in grid if value > 0), default=0.0)
-            if not first:
-                continue
-            wider = replace(effect, values={**effect.values, shape: first})
-            effects = [*best.effects[:number], wider, *best.effects[number + 1 :]]
-            trial = _run_refit(search, best, effects)
-            worth = search.options.search.cheap
-            if (
-                trial is not None
-                and trial.bic(best.effective_fraction) < best.bic(best.effective_fraction) - worth
-            ):
-                best = trial
-                effect = best.effects[number]
+def _count_numbers(effect: PlacedEffect) -> int:
+    """The numbers of an effect that are fitted: the coefficient, and shapes that are not off."""
+    shapes = effect.candidate.shapes
+    return 1 + sum(not is_default(effect.candidate, s, effect.values.get(s, 0.0)) for s in shapes)
+
+
+def _free_shapes(search: Search, best: Trial, number: int) -> Trial:
+    """A model with shapes of one effect free that had kept their default, where that is worth
+    it."""
+    effect = best.effects[number]
+    for shape, grid in effect.candidate.shapes.items():
+        current = effect.values.get(shape, 0.0)
+        first = min((value for value in grid if value > 0), default=0.0)
+        if not first or not is_default(effect.candidate, shape, current):
+            continue
+        wider = replace(effect, values={**effect.values, shape: first})
+        effects = [*best.effects[:number], wider, *best.effects[number + 1 :]]
+        trial = _run_refit(search, best, effects)
+        worth = search.options.search.cheap
+        if (
+            trial is not None
+            and trial.bic(best.effective_fraction) < best.bic(best.effective_fraction) - worth
+        ):
+            best = trial
+            effect = best.effects[number]
     return best
 
 
