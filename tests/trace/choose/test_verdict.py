@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import tracewire as tw
 from tracewire.trace.choose import verdict
-from tracewire.trace.choose.finalists import ModelPool
+from tracewire.trace.choose.finalists import _extend_without, _takes_all
 from tracewire.trace.choose.remainder import error_left
 from tracewire.trace.choose.verdict import _only_uncommon, judge_at_noise
 from tracewire.trace.options import TraceOptions
@@ -46,7 +46,7 @@ def pool(best: Any, declared: tuple[float, ...]) -> Any:
     ],
 )
 def test_no_effect_is_looked_for_where_too_little_is_left(best: Any, all_taken: bool) -> None:
-    assert ModelPool._takes_all(pool(best, (1000.0, 10_000.0)), 1) is all_taken
+    assert _takes_all(pool(best, (1000.0, 10_000.0)), 1) is all_taken
 
 
 def test_several_waves_or_drifts_and_nothing_else_are_no_effect() -> None:
@@ -101,7 +101,7 @@ def test_a_term_that_is_left_out_does_not_come_back_as_an_effect() -> None:
         extend=lambda smaller, number, proposals: tried.extend(proposals),
     )
     smaller: Any = None
-    ModelPool._extend_without(there, smaller)
+    _extend_without(there, smaller)
     assert tried == [asked[1]]
 
 

@@ -16,9 +16,10 @@ from tracewire.trace.choose.choice import (
     floor_of,
     log_scores,
 )
-from tracewire.trace.choose.finalists import Key, ModelPool
+from tracewire.trace.choose.finalists import fill_pool
 from tracewire.trace.choose.heldout import Finalist, errors_held_out, errors_in_sample
 from tracewire.trace.choose.horizons import Horizons, horizons_of
+from tracewire.trace.choose.model_pool import Key, ModelPool
 from tracewire.trace.found import CandidateScore, SearchStep
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Screen
@@ -120,7 +121,7 @@ def predict(search: Search, declared_fit: Trial) -> Prediction:
     search.tell("fitting the declared model at both horizons")
     pool = ModelPool(search, horizons, options)
     declared = pool.fit_declared(declared_fit)
-    pool.fill(declared)
+    fill_pool(pool, declared)
     errors: dict[Key, Array] = {}
     _compare(pool, declared, errors)
     pruned: set[Key] = set()

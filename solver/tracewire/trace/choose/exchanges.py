@@ -1,0 +1,92 @@
+"""Effects of the best models exchanged for others that look alike."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tracewire.errors import FitError
+from tracewire.trace.choose.heldout import Finalist
+from tracewire.trace.choose.model_pool import ModelPool
+from tracewire.trace.trials.trial import PlacedEffect, Trial
+
+
+def exchange_single_effects(pool: ModelPool) -> None:
+    """The best models of one effect with each of those that do most like it to the residual of the
+    declared model. A screen is linear: where an effect lets a declared parameter come far, as drag
+    does that of a friction that falls with the speed, another law may promise more and leave more.
+    """
+    for model in pool.best(1, pool.options.exchanged):
+        (name,) = model.names
+        _replace_effect(pool, model, name, _look_alikes(pool, name))
+
+
+def exchange_effects(pool: ModelPool, size: int) -> None:
+    """The best models of a size with each effect exchanged for those that may stand there."""
+    for model in pool.best(size, pool.options.exchanged):
+        for name in sorted(model.names):
+            _replace_effect(pool, model, name, _alternatives(pool, model, name))
+
+
+def _look_alikes(pool: ModelPool, name: str) -> list[PlacedEffect]:
+    """The effects that do most like one to the declared model's residual, at any horizon."""
+    found: dict[str, tuple[float, PlacedEffect]] = {}
+    for screen in pool.first:
+        rows = screen.observable()
+        mine = rows.pop(name, None)
+        if mine is None:
+            continue
+        for other, row in rows.items():
+            alike = screen.columns.canonical_correlation(mine.columns, row.columns)
+            if other not in found or alike > found[other][0]:
+                found[other] = alike, row.placed_effect
+    nearest = sorted(found.values(), key=lambda pair: -pair[0])
+    return [effect for _, effect in nearest[: pool.options.alike]]
+
+
+def _alternatives(pool: ModelPool, model: Finalist, name: str) -> list[PlacedEffect]:
+    """The effects that promise the most in the place of one, at the values that the model has
+    with it: refitted without it these may be far away, and others look alike there."""
+    number = len(pool.horizons.each) - 1
+    now = pool.on_sparse_windows(model, number)
+    kept = [effect for effect in now.effects if str(effect) != name]
+    fixed = now.windows.criterion.parameters
+    pool.search.tell(f"screening effects in the place of {name}")
+    try:
+        bare = pool.search.problem.fit(
+            kept, now.windows.segments, now.length, now.values, fixed=fixed, steps=0
+        )
+        screen = pool.search.screen(bare)
+    except FitError:
+        return []
+    count = pool.options.alike
+    proposals = pool.select_promising(number, screen, count + 1, 0)
+    found = [row.placed_effect for proposal in proposals for row in proposal.rows]
+    return [one for one in found if str(one) not in model.names][:count]
+
+
+def _replace_effect(
+    pool: ModelPool, model: Finalist, name: str, others: Sequence[PlacedEffect]
+) -> None:
+    """Refit a model with others in the place of an effect, from its values: also one that is
+    known and far behind, as its fit may have ended in another minimum."""
+    for other in others:
+        names = model.names - {name} | {str(other)}
+        known = pool.models.get((names, model.dropped))
+        near = known is not None and known.rss <= pool.options.hopeful * model.rss
+        if near or pool.spent > pool.options.most_steps:
+            continue
+        pool.search.tell(f"refitting with {' and '.join(sorted(names))}")
+        trials: list[Trial] = []
+        replacement = other
+        for trial in reversed(model.trials):
+            kept = [effect for effect in trial.effects if str(effect) != name]
+            fixed = dict(trial.windows.criterion.parameters)
+            target = pool.target(trial.length, len(kept) + 1)
+            steps = pool.options.steps
+            fitted = pool.run_refit(trial, (*kept, replacement), fixed, steps, target)
+            if fitted is None:
+                break
+            trials.append(fitted)
+            replacement = fitted.effects[-1]
+        else:
+            pool.keep_better(Finalist(tuple(reversed(trials)), model.dropped))
