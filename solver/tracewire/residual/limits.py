@@ -231,9 +231,9 @@ class CriterionLimits:
     """The residual where a run fails, in units of the spread of the samples."""
     many: int = 2000
     """Steps from which on series run in parallel, about 4 ms with sensitivities: below, threads
-    cost more than they save, as what Python does around a run waits for its lock. Traces of five
-    systems of one degree of freedom took 3.2 to 4.5 s with 400 steps and 2.3 to 4.5 s with 2000;
-    one of the double torsion pendulum as long."""
+    cost more than they save, as what Python does around a run waits for its lock. Three traces of
+    one degree of freedom took 2.4, 3.2 and 4.3 s with 400 steps, and 2.3, 2.8 and 4.3 s with 2000;
+    one of the double torsion pendulum 14.2 and 14.7 s (least times of three runs, and of one)."""
     kept: int = 50_000
     """Numbers in the inputs and times of a series up to which the problem of its runs is kept: to
     make it again takes a small part of a longer run, and many criteria live at once."""
