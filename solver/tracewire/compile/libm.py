@@ -11,8 +11,8 @@ from functools import cache
 from tracewire.formula import OPERATIONS
 
 CALLED = [operation for operation in OPERATIONS.values() if operation.library]
-STEPS = {operation.steps for operation in OPERATIONS.values() if operation.steps}
-ONE = (*(operation.library for operation in CALLED if operation.most == 1), *sorted(STEPS))
+BASES = {operation.base for operation in OPERATIONS.values() if operation.base}
+ONE = (*(operation.library for operation in CALLED if operation.most == 1), *sorted(BASES))
 TWO = tuple(operation.library for operation in CALLED if operation.most == 2)
 BOTH = "sincos"
 """Functions of one and of two numbers, and the one of GNU that gives sine and cosine together."""

@@ -51,7 +51,7 @@ COMPUTED = {
     name: operation.value
     for name, operation in OPERATIONS.items()
     if operation.value
-    and (operation.library or operation.intrinsic or operation.instruction or operation.steps)
+    and (operation.library or operation.intrinsic or operation.instruction or operation.base)
 }
 UNARY: dict[str, Callable[[float], float]] = {
     **{name: value for name, value in COMPUTED.items() if OPERATIONS[name].most == 1},

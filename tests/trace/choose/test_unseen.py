@@ -121,6 +121,7 @@ def run_of(left: dict[tuple[str, ...], float]) -> Any:
         windows=lambda sections, length: [length],
         whole_windows=lambda sections: [section.count for section in sections],
         options=TraceOptions(),
+        refit_precisely=lambda trial: trial,
     )
 
 
@@ -190,7 +191,6 @@ def test_effects_that_hardly_help_on_whole_unseen_runs_are_an_approximation(
     there.words, there.short_length = [], WHOLE
     monkeypatch.setattr(safeguards, "is_no_better_on_claim", lambda search, fewer, more: False)
     final: Any = SimpleNamespace(declared=(), best=Names((DRY,)))
-    monkeypatch.setattr(safeguards, "is_loose", lambda problem, trial: False)
     monkeypatch.setattr(safeguards, "undetermined_effects", lambda trial, confidence: [])
     monkeypatch.setattr(safeguards, "residual_map", lambda search, trial: ((), None))
     found = safeguards.safeguard(there, safeguards.Judgement("effect", final))
@@ -240,7 +240,6 @@ def test_effects_that_do_not_help_where_the_claim_is_made_are_an_approximation(
     there = run_of({(): 50.0, (DRY,): 30.0})
     there.words, there.short_length = [], WHOLE
     final: Any = SimpleNamespace(declared=(), best=Names((DRY,)))
-    monkeypatch.setattr(safeguards, "is_loose", lambda problem, trial: False)
     monkeypatch.setattr(safeguards, "undetermined_effects", lambda trial, confidence: [])
     monkeypatch.setattr(safeguards, "is_no_better_on_claim", lambda search, fewer, more: True)
     monkeypatch.setattr(safeguards, "residual_map", lambda search, trial: ((), None))
@@ -260,7 +259,6 @@ def test_an_effect_whose_coefficient_may_be_zero_is_not_named(
     there.words, there.short_length = [], 50
     declared: Any = SimpleNamespace(reduced_chi2=left, effects=())
     final: Any = SimpleNamespace(declared=declared, best=Names((DRY,)))
-    monkeypatch.setattr(safeguards, "is_loose", lambda problem, trial: False)
     monkeypatch.setattr(safeguards, "undetermined_effects", lambda trial, confidence: [DRY])
     monkeypatch.setattr(safeguards, "residual_map", lambda search, trial: ((), None))
     found = safeguards.safeguard(there, safeguards.Judgement("effect", final))
@@ -280,7 +278,6 @@ def test_what_is_left_without_such_an_effect_is_asked_again(
     there.words, there.short_length = [], 50
     declared: Any = SimpleNamespace(reduced_chi2=1.0, effects=())
     final = safeguards.FinalModels(declared, cast(Any, Names((DRY, DELAY))))
-    monkeypatch.setattr(safeguards, "is_loose", lambda problem, trial: False)
     monkeypatch.setattr(safeguards, "undetermined_effects", lambda trial, confidence: [trial[-1]])
     monkeypatch.setattr(safeguards, "_refit_with", lambda search, trial, kept: Names(kept))
     found = safeguards.safeguard(there, safeguards.Judgement("effect", final))

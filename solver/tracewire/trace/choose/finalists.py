@@ -123,7 +123,7 @@ def _along_data(
 
 def _extend_without(pool: ModelPool, smaller: Finalist) -> None:
     """A model without a declared term with what imitates that term: it shows only where the
-    term is not there. What imitates it completely is that term itpool."""
+    term is not there. What imitates it completely is that term itself."""
     options, number = pool.options, len(pool.horizons.each) - 1
     screen = pool.screen(smaller, number)
     new = no_longer_absorbed(screen, pool.first[number], options.imitated)

@@ -39,14 +39,10 @@ def safeguard(search: Search, judgement: Judgement) -> Judgement:
     data, nor an approximation that of whole runs; without the effects where they do. Effects that
     hardly lower the error of whole unseen runs are an approximation."""
     final = judgement.final
-    for _ in range(search.options.check.tightened):
-        if not (final.best.effects and is_loose(search.problem, final.best)):
-            break
-        search.tighten()
-        declared, best = (
-            search.problem.refit(trial, trial.windows.segments, trial.length)
-            for trial in (final.declared, final.best)
-        )
+    best = search.refit_precisely(final.best) if final.best.effects else final.best
+    if best is not final.best:
+        declared = final.declared
+        declared = search.problem.refit(declared, declared.windows.segments, declared.length)
         final = replace(final, declared=declared, best=best)
     judgement = _without_undetermined(search, replace(judgement, final=final))
     if judgement.explained is None:  # at the noise; else other runs have been asked already
