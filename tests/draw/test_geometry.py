@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tracewire.diagram import read_readable, read_text
 from tracewire.draw import draw
-from tracewire.draw.layout import mirrored
+from tracewire.draw.layout import layout_of, mirrored
 
 ROOT = Path(__file__).parents[2]
 SHIPPED = [
@@ -61,6 +62,15 @@ def test_three_hundred_random_diagrams_are_drawn_without_faults(first: int) -> N
 @given(st.integers(0, 10**6))
 def test_random_systems_are_drawn_without_faults(seed: int) -> None:
     assert faults(draw(read_text(systems.text_of(systems.draw(seed))))) == []
+
+
+def test_two_signals_on_one_line_are_moved_apart() -> None:
+    drawing = draw(read_text(text_of(40850)))
+    as_placed = replace(drawing, layout=layout_of(drawing.graph))
+    assert faults(as_placed) == ["wire b10<of lies on wire b15<of.2"]
+    assert faults(drawing) == []
+    ends = [(line[0], line[-1]) for line in as_placed.layout.wires.values()]
+    assert [(line[0], line[-1]) for line in drawing.layout.wires.values()] == ends
 
 
 def test_a_picture_upside_down_has_no_faults_either() -> None:

@@ -13,6 +13,7 @@ from tracewire.draw.layout import Layout, layout_of
 from tracewire.draw.mermaid import mermaid_of
 from tracewire.draw.needed import Needed
 from tracewire.draw.png import png_of
+from tracewire.draw.separate import separate_wires
 from tracewire.draw.svg import svg_of
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.files import write_file, writing
@@ -89,5 +90,5 @@ def draw(
         raise OptionError.one(what, hint="0 draws subsystems as boxes; 1 opens one level of them.")
     options = DrawOptions(depth, names, units, measured, effects, sensors, needed or {})
     graph = graph_of(diagram, options, problems)
-    layout = layout_of(graph, None if like is None else like.layout)
+    layout = separate_wires(graph, layout_of(graph, None if like is None else like.layout))
     return Drawing(graph, layout, svg_of(graph, layout))

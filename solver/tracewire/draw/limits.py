@@ -90,6 +90,21 @@ LAYOUT = LayoutLimits()
 
 
 @dataclass(frozen=True)
+class WireLimits:
+    """Of wires of two signals that lie on each other."""
+
+    together: float = 0.5
+    """Within which two lines look like one, and over which they may do so."""
+    least_gap: float = 3.5
+    """Between a line that is moved and another one."""
+    steps: tuple[float, ...] = (4.0, -4.0, 8.0, -8.0, 12.0, -12.0, 16.0, -16.0)
+    """By which one of them is moved sideways, the first that has room."""
+
+
+WIRES = WireLimits()
+
+
+@dataclass(frozen=True)
 class CurveLimits:
     """Of the curve of a law in its block. The heights are parts of that of the curve."""
 
