@@ -24,7 +24,7 @@ from tracewire.residual import (
 from tracewire.trace.candidates.places import describe_untried, find_places
 from tracewire.trace.check.option_checks import check_options
 from tracewire.trace.check.outliers import drop_outliers
-from tracewire.trace.check.refusals import check_series, remarks
+from tracewire.trace.check.refusals import check_series, remarks, without_still
 from tracewire.trace.choose.prediction import Prediction, predict
 from tracewire.trace.choose.safeguards import fit_declared, refuse_mistaken, safeguard
 from tracewire.trace.choose.verdict import Judgement, judge_at_noise, judge_prediction
@@ -107,6 +107,7 @@ def set_up_search(
         subject = subject.model
     series = tuple(load_measured(subject) if measured is None else measured)
     model = with_measured_signals(subject, series)
+    series, left_out = without_still(series, options.check)
     check_series(model, series, options.check)
     refuse_readers_of_free(model)
     check_options(options, model)
@@ -118,7 +119,7 @@ def set_up_search(
     inputs = InputCovariance(sigma, model, series, shortest)
     problem = TraceProblem(model, series, sigma, rtol, inputs, options)
     places = find_places(model)
-    words = [*remarks(series, options.check), *data_split.words]
+    words = [*left_out, *remarks(series, options.check), *data_split.words]
     words += describe_untried(model.diagram, [place for place in places if place.q])
     workers = Workers(executor)
     return Search(problem, data_split, places, shortest, values, progress, words, workers)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.errors import DataError
 from tracewire.residual import Measured, Sensor
-from tracewire.trace.check.refusals import check_series, rate_ratio, remarks
+from tracewire.trace.check.refusals import check_series, rate_ratio, remarks, without_still
 from tracewire.trace.options import TraceOptions
 
 OPTIONS = TraceOptions()
@@ -81,6 +82,27 @@ def test_noise_alone() -> None:
     assert message in refused(theta(0.3 + 1e-3 * NOISE[0]))
     assert message in refused(theta(np.where(NOISE[0] > 1, 0.3, 0.301)))  # two steps of a reading
     assert message in refused(theta(np.cos(3 * T), sigma={"theta": 1.0}))
+
+
+def test_a_series_in_which_nothing_moves_is_left_out_beside_others() -> None:
+    still = theta(0.3 + 1e-3 * NOISE[0], name="held")
+    constant = theta(0.3 + 0 * T, name="stuck", use="gate")
+    moving = swing()
+    series, words = without_still([still, moving, constant], OPTIONS.check)
+    assert series == (moving,)
+    assert words == (
+        "held is left out: nothing in it moves beyond the noise of theta. "
+        "Say `sigma:` where the noise is smaller.",
+        "stuck is left out: nothing in it moves beyond the noise of theta. "
+        "Say `sigma:` where the noise is smaller.",
+    )
+
+
+def test_series_in_which_nothing_moves_stay_where_no_other_is_for_training() -> None:
+    still, gate = theta(0.3 + 1e-3 * NOISE[0]), swing(use="gate")
+    assert without_still([still, gate], OPTIONS.check) == ((still, gate), ())
+    broken = replace(swing(), t=T[:5], values={"theta": np.zeros(5), "omega": np.zeros(5)})
+    assert without_still([broken, swing()], OPTIONS.check)[1] == ()  # it is refused for its length
 
 
 @pytest.mark.parametrize("seed", range(20))

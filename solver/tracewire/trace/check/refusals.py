@@ -28,8 +28,8 @@ def check_series(model: Model, measured: Sequence[Measured], options: CheckOptio
     """Refuse series that nothing can be traced in.
 
     Raises DataError with all that is wrong: no series to train on, no signals, series that are too
-    short, constant or nothing but noise, inputs that are not known
-    over the whole series, a signal and its measured rate in units that do not belong together.
+    short, constant or nothing but noise, inputs that are not known over the whole series, a signal
+    and its measured rate in units that do not belong together.
     """
     if not any(m.use == "train" for m in measured):
         given = ", ".join(f"{m.name} ({m.use})" for m in measured)
@@ -48,6 +48,23 @@ def check_series(model: Model, measured: Sequence[Measured], options: CheckOptio
     problems += _dead_channels(measured, options) if not problems else []
     if problems:
         raise DataError(problems)
+
+
+def without_still(
+    measured: Sequence[Measured], options: CheckOptions
+) -> tuple[tuple[Measured, ...], tuple[str, ...]]:
+    """The series in which something moves, and a sentence on each other one. All of them, where
+    nothing moves in any series for training."""
+    moving = tuple(m for m in measured if not _is_still(m, options))
+    if not any(m.use == "train" for m in moving):
+        return tuple(measured), ()
+    words = [
+        f"{m.name} is left out: nothing in it moves beyond the noise of {' and '.join(m.values)}. "
+        "Say `sigma:` where the noise is smaller."
+        for m in measured
+        if _is_still(m, options)
+    ]
+    return moving, tuple(words)
 
 
 def remarks(measured: Sequence[Measured], options: CheckOptions) -> tuple[str, ...]:
@@ -71,13 +88,20 @@ def _short(m: Measured, least: int) -> Iterator[Problem]:
         yield Problem(what, hint=f"At least {least} are needed.")
 
 
+def _is_still(m: Measured, options: CheckOptions) -> bool:
+    """Whether no signal of a series shows more than noise."""
+    if not m.values or len(m.t) < options.least_samples:
+        return False  # it is refused for that
+    return all(_is_noise(m, name, options) for name in m.values)
+
+
 def _still(m: Measured, options: CheckOptions) -> Iterator[Problem]:
     """Constant signals, and series in which no signal shows more than noise."""
     constant = [name for name, values in m.values.items() if np.ptp(values) == 0]
     for name in constant:
         what = f"'{name}' of '{m.name}' is constant: {m.values[name][0]:.6g} in every sample"
         yield Problem(what, hint="Is the sensor connected? Leave the signal or the series out.")
-    if not constant and all(_is_noise(m, name, options) for name in m.values):
+    if not constant and _is_still(m, options):
         names = " and ".join(f"'{name}'" for name in m.values)
         what = f"the series '{m.name}' shows nothing above the noise of {names}"
         hint = (
