@@ -64,19 +64,32 @@ def write_record(folder: Path, declared: bool) -> Path:
     return file
 
 
+def without_sigma(file: Path) -> Path:
+    """The diagram with no word of the noise of the force."""
+    whole = file.read_text(encoding="utf-8").replace(", sigma: 0.02", "")
+    file.write_text(whole, encoding="utf-8")
+    return file
+
+
 @pytest.mark.parametrize("declared", [True, False])
-def test_noise_of_a_force_is_no_effect_and_hides_none(tmp_path: Path, declared: bool) -> None:
-    found = trace(compile(read(write_record(tmp_path, declared))))
+@pytest.mark.parametrize("known", [True, False])
+def test_noise_of_a_force_is_no_effect_and_hides_none(
+    tmp_path: Path, declared: bool, known: bool
+) -> None:
+    file = write_record(tmp_path, declared)
+    found = trace(compile(read(file if known else without_sigma(file))))
     assert found.verdict == ("null" if declared else "effect")
     assert [str(effect) for effect in found.effects] == ([] if declared else ["coulomb @ force"])
     assert found.s2_after == pytest.approx(1.0, abs=0.15)
+    told = [word for word in found.words if "noise that the inputs show" in word]
+    assert bool(told) != known
+    for word in told:
+        assert "0.02 N in 'F'" in word and "Say `sigma:` at an input" in word
 
 
 def test_what_the_noise_of_an_input_would_explain_is_told_with_its_size(tmp_path: Path) -> None:
-    file = write_record(tmp_path, True)
-    whole = file.read_text(encoding="utf-8").replace(", sigma: 0.02", "")
-    file.write_text(whole, encoding="utf-8")
-    found = trace(compile(read(file)), options={"effects": 1})
+    file = without_sigma(write_record(tmp_path, True))
+    found = trace(compile(read(file)), options={"effects": 1, "input_shown": 0.0})
     assert found.verdict == "unexplained"
     (noisy,) = found.noisy_inputs
     assert noisy.name == "F" and noisy.left < 1.5
@@ -88,5 +101,5 @@ def test_what_the_noise_of_an_input_would_explain_is_told_with_its_size(tmp_path
         * noisy.sigma
         / float(np.std(np.loadtxt(file.parent / "run.csv", delimiter=",", skiprows=1)[:, 2]))
     )
-    found = trace(compile(read(file)), options={"effects": 1, "input_noise": most})
-    assert found.noisy_inputs == ()
+    options = {"effects": 1, "input_noise": most, "input_shown": 0.0}
+    assert trace(compile(read(file)), options=options).noisy_inputs == ()

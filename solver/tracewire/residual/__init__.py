@@ -22,7 +22,7 @@ from tracewire.residual.measured import (
     with_measured_signals,
 )
 from tracewire.residual.noise import degrees_of, noise_in, noise_of, noises_beside
-from tracewire.residual.noise_estimate import NoiseEstimate, noise_level
+from tracewire.residual.noise_estimate import NoiseEstimate, noise_level, noise_of_signal
 from tracewire.residual.noise_of_channels import channel_noise, estimate_noise
 from tracewire.residual.past import longest_delay, with_past
 from tracewire.residual.segment import (
@@ -94,6 +94,7 @@ __all__ = [
     "noise_in",
     "noise_level",
     "noise_of",
+    "noise_of_signal",
     "noises_beside",
     "of_diagram",
     "own_unknowns",

@@ -133,6 +133,9 @@ class TraceOptions:
     input_noise: float = 0.5
     """The part of the standard deviation of an input that its noise may be: what is larger than the
     input itself is no noise of it."""
+    input_shown: float = 0.1
+    """The same of the noise that the samples of an input show: what varies from sample to sample by
+    more may be meant so."""
     input_left: float = 2.0
     """The reduced chi-square below which the noise of an input explains a residual."""
     input_depends: float = 0.8

@@ -5,7 +5,8 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 from tracewire.blas import one_blas_thread
 from tracewire.compile import Model
@@ -25,6 +26,11 @@ from tracewire.trace.candidates.places import describe_untried, find_places
 from tracewire.trace.check.option_checks import check_options
 from tracewire.trace.check.outliers import drop_outliers
 from tracewire.trace.check.refusals import check_series, remarks, without_still
+from tracewire.trace.choose.noisy_inputs import (
+    InputNoise,
+    describe_input_noise,
+    shown_input_noise,
+)
 from tracewire.trace.choose.prediction import Prediction, predict
 from tracewire.trace.choose.safeguards import fit_declared, refuse_mistaken, safeguard
 from tracewire.trace.choose.verdict import Judgement, judge_at_noise, judge_prediction
@@ -64,10 +70,35 @@ def trace(
     """
     options = options_of(TraceOptions, options, "a trace")
     tell = progress or (lambda text: None)
-    search = set_up_search(
-        subject, measured, rtol, limit_time(options.budget, tell), options, executor
-    )
-    interrupted = False
+    tell_in_time = limit_time(options.budget, tell)
+    search = set_up_search(subject, measured, rtol, tell_in_time, options, executor)
+    ended = _run(search)
+    if ended.input_noise:
+        tell_in_time("searching again with the noise that the inputs show")
+        noise = ended.input_noise
+        try:
+            again = set_up_search(subject, measured, rtol, tell_in_time, options, executor, noise)
+            again.note(describe_input_noise(noise, search.problem.declared.flat.units))
+            search, ended = again, _run(again)
+        except (KeyboardInterrupt, OutOfTime) as stopped:
+            ended = _interrupted(search, stopped)
+    search.tell = tell
+    return result_of(search, ended.judgement, ended.prediction, ended.interrupted)
+
+
+class _Ended(NamedTuple):
+    """How a search ended: the verdict, the comparison that it rests on, if any, and whether it was
+    interrupted; or the noise of inputs with which it is to be done again."""
+
+    judgement: Judgement
+    prediction: Prediction | None = None
+    interrupted: bool = False
+    input_noise: InputNoise | None = None
+
+
+def _run(search: Search) -> _Ended:
+    """Search and judge; what was found so far where that is interrupted. It is to be done again
+    where no model reaches the noise of the sensors, and one does with the noise of the inputs."""
     prediction: Prediction | None = None
     try:
         declared = fit_declared(search)
@@ -75,6 +106,9 @@ def trace(
         first, best = search.declared_and_best
         found = judge_at_noise(search, first, best)
         if found is None:
+            if noise := shown_input_noise(search):
+                judgement = Judgement("unexplained", FinalModels(first, best))
+                return _Ended(judgement, input_noise=noise)
             prediction = predict(search, first)
             found = judge_prediction(search, prediction)
         judgement = safeguard(search, found)
@@ -82,13 +116,17 @@ def trace(
     except (KeyboardInterrupt, OutOfTime) as stopped:
         if search.best is None:
             raise
-        interrupted = True
-        if isinstance(stopped, OutOfTime):
-            search.words.append(f"the search ended after its budget of {options.budget:g} s")
-    search.tell = tell
-    if interrupted:
-        judgement = Judgement("unexplained", FinalModels(*search.declared_and_best))
-    return result_of(search, judgement, prediction, interrupted)
+        return _interrupted(search, stopped)
+    return _Ended(judgement, prediction)
+
+
+def _interrupted(search: Search, stopped: BaseException) -> _Ended:
+    """What a search has found when it is ended early."""
+    if isinstance(stopped, OutOfTime):
+        budget = search.options.budget
+        search.words.append(f"the search ended after its budget of {budget:g} s")
+    judgement = Judgement("unexplained", FinalModels(*search.declared_and_best))
+    return _Ended(judgement, interrupted=True)
 
 
 def set_up_search(
@@ -98,8 +136,10 @@ def set_up_search(
     progress: Callable[[str], None],
     options: TraceOptions,
     executor: Executor | None = None,
+    input_noise: InputNoise | None = None,
 ) -> Search:
-    """The search on a subject, ready to run."""
+    """The search on a subject, ready to run; `input_noise` is that of inputs where none is
+    declared, by series."""
     values: dict[str, float] = {}
     if isinstance(subject, Fit):
         values = dict(subject.values)
@@ -107,6 +147,10 @@ def set_up_search(
         subject = subject.model
     series = tuple(load_measured(subject) if measured is None else measured)
     model = with_measured_signals(subject, series)
+    if input_noise:
+        series = tuple(
+            replace(m, input_sigma={**input_noise.get(m.name, {}), **m.input_sigma}) for m in series
+        )
     series, left_out = without_still(series, options.check)
     check_series(model, series, options.check)
     refuse_readers_of_free(model)

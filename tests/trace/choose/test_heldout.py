@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.oscillator import NOISE, candidates_of, problem_of, record
+from oracles.oscillator import DIAGRAM, NOISE, candidates_of, problem_of, record
 from tracewire.residual.windows import Section
 from tracewire.trace.choose.heldout import Finalist, errors_held_out, errors_in_sample
 from tracewire.trace.choose.horizons import Horizons, horizons_of
@@ -50,6 +50,14 @@ def test_white_noise_is_predicted_as_well_as_it_is() -> None:
     assert errors.shape == (2, 2, at.count, 1)
     assert errors[:, 0].mean() == pytest.approx(1.0, abs=0.15)
     assert errors[:, 1].mean() == pytest.approx(1.0, abs=0.25), "thirds have to extrapolate"
+
+
+def test_a_start_that_is_forgotten_is_not_told_by_later_rows() -> None:
+    text = DIAGRAM.replace("value: 0.3, unit: 1/s, fit: [0, 2]", "value: 3, unit: 1/s, fit: [0, 9]")
+    problem = problem_of(record(end=24.0, damping=4.0), text=text)
+    at = horizons(problem)
+    errors = errors_held_out(problem, fitted(problem, at), at, OPTIONS)
+    assert errors.max() < 3.0
 
 
 def test_unseen_blocks_are_predicted_worse_than_fitted_ones(dry: TraceProblem) -> None:

@@ -103,9 +103,10 @@ def errors_held_out(
 ) -> Array:
     """The mean squared residual E/n in sigma of each block, predicted by fits without it.
 
-    Shape (horizons, families of folds, blocks, channels). In windows that are left out as wholes
-    only the start is fitted. Fits without scattered blocks are one bounded Newton step from the fit
-    to all, those without contiguous parts go on from there. Infinite where the model does not run.
+    Shape (horizons, families of folds, blocks, channels). In windows whose first rows are left out
+    only the start is fitted, to what is left out. Fits without scattered blocks are one bounded
+    Newton step from the fit to all, those without contiguous parts go on from there. Infinite where
+    the model does not run.
     """
     found = []
     for at, (horizon, trial) in enumerate(zip(horizons.each, finalist.trials, strict=True)):
@@ -207,7 +208,12 @@ def _predict_fold(
             )
             fitted, _ = fit_windows(first, max(steps, 1), ftol=ftol, initial_state_steps=1)
             values = fitted.values
-            starts = {n: start for (n, _), start in zip(kept, fitted.starts, strict=True)}
+            first_held = {n: rows[0] for n, rows in held}
+            starts = {
+                n: start
+                for (n, rows), start in zip(kept, fitted.starts, strict=True)
+                if rows[0] < first_held.get(n, -1)  # later rows hardly tell a start that is damped
+            }
         residuals = _fold_residuals(problem, trial, held, starts, values)
     except FitError:
         return failed
@@ -225,7 +231,7 @@ def _fold_residuals(
     segments, known = [], trial.windows.segments
     for n, rows in held:
         segment = restrict(known[n], rows)
-        if n in starts:  # its other rows were fitted, and with them its start
+        if n in starts:  # its first rows were fitted, and with them its start
             segment = replace(segment, start={**segment.start, **starts[n]}, free=())
         segments.append(segment)
     first = evaluate_windows(

@@ -1,16 +1,81 @@
-"""Whether the noise of a measured input alone explains a residual, and how large it would be."""
+"""Whether the noise of measured inputs explains a residual, and how large it would be."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
-from tracewire.errors import SimulationError
-from tracewire.residual import Measured, likely_input_noise, response_in_windows
+from tracewire.errors import FitError, SimulationError
+from tracewire.residual import (
+    InputCovariance,
+    Measured,
+    likely_input_noise,
+    noise_of_signal,
+    response_in_windows,
+)
 from tracewire.trace.found import LikelyInput
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.trial import Trial
+
+InputNoise = Mapping[str, Mapping[str, float]]
+"""The standard deviation of the noise of inputs in SI, by series and input."""
+
+
+def shown_input_noise(search: Search) -> InputNoise:
+    """The noise that the samples of inputs with no declared `sigma` show, where with it the
+    declared model or the best one is at the noise; else nothing.
+
+    The input of a run counts as exact unless its noise is declared. An input that is measured has
+    some, which its spectrum shows as that of a signal does.
+    """
+    problem = search.problem
+    noise = {m.name: _noise_of_samples(m, search.options.input_shown) for m in problem.measured}
+    if not any(noise.values()):
+        return {}
+    series = tuple(
+        replace(m, input_sigma={**noise[m.name], **m.input_sigma}) for m in problem.measured
+    )
+    inputs = InputCovariance(problem.sigma, problem.declared, series, search.shortest)
+    noisy = replace(problem, measured=series, inputs=inputs)
+    for trial in dict.fromkeys(search.declared_and_best):
+        try:
+            there = noisy.refit(trial, trial.windows.segments, trial.length)
+        except FitError:
+            continue
+        if there.reduced_chi2 < search.options.at_noise < trial.reduced_chi2:
+            return noise
+    return {}
+
+
+def describe_input_noise(noise: InputNoise, units: Mapping[str, str]) -> str:
+    """In words, which noise of inputs counts in a search."""
+    largest: dict[str, float] = {}
+    for by_input in noise.values():
+        for name, level in by_input.items():
+            largest[name] = max(level, largest.get(name, 0.0))
+    parts = [
+        f"{level:.2g} {units.get(name, '')}".rstrip() + f" in '{name}'"
+        for name, level in largest.items()
+    ]
+    return (
+        f"noise that the inputs show from sample to sample counts: {' and '.join(parts)}. With"
+        " exact inputs no model reached the noise of the sensors. Say `sigma:` at an input to have"
+        " it so at once"
+    )
+
+
+def _noise_of_samples(measured: Measured, most: float) -> dict[str, float]:
+    """The white noise on the inputs of a series, up to a part of what they vary by."""
+    found = {}
+    for name, (t, values) in measured.inputs.items():
+        if name in measured.input_sigma or len(values) < 2:
+            continue
+        noise = noise_of_signal(values, t)
+        if noise.is_sure and 0 < noise.level < most * float(np.std(values)):
+            found[name] = noise.level
+    return found
 
 
 def noisy_inputs(search: Search, trial: Trial) -> tuple[LikelyInput, ...]:
