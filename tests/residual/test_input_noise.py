@@ -318,3 +318,12 @@ def test_the_likely_noise_of_an_input_is_its_own_and_leaves_nothing() -> None:
     # a residual that no input makes: 30 times the noise, from sample to sample
     white = [(s, 30 * RNG.standard_normal(r.shape), slopes) for s, r, slopes in windows]
     assert likely_input_noise(response, "F", sigma, white).after > 5
+
+
+def test_a_model_without_states_has_the_noise_of_its_input_as_it_is() -> None:
+    model = made("span: [0, 4]\ninputs: [u]\nblocks: {y: {type: gain, of: u, k: 3}}\n", ["y"])
+    measured = series(["y"], (T, np.sin(T)), 0.2)
+    covariance = InputCovariance({"y": SIGMA}, model, [measured], 10)
+    white = covariance.whitening(Segment(measured, 0.0, np.arange(10)))
+    expected = 1 / np.sqrt(1 + (3 * 0.2 / SIGMA) ** 2)
+    np.testing.assert_allclose(white, expected * np.eye(10), atol=1e-9)

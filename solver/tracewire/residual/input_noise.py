@@ -17,6 +17,7 @@ from tracewire.residual.input_response import (
     InputNoise,
     InputResponse,
     input_response,
+    side_by_side,
     states_in_windows,
 )
 from tracewire.residual.limits import INPUT
@@ -177,7 +178,7 @@ def run_noise(
         inputs=measured.inputs,
         sensitivities=asked,
     )
-    states = np.stack([run[name] for name in model.states], axis=1)
+    states = side_by_side([run[name] for name in model.states], len(measured.t))
     slopes = np.zeros((len(measured.t), len(signals), len(asked)))
     for column, name in enumerate(asked):
         slopes[:, :, column] = np.stack([run.sensitivities[name][n] for n in signals], axis=1)

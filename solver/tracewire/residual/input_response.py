@@ -145,8 +145,8 @@ def input_response(
 
     def ends_of(found: SpanRuns) -> tuple[Matrix, Matrix]:
         """Signals at the begins (N, m), states at the ends (N, n)."""
-        shown = np.stack([found[name][::2] for name in signals], axis=1)
-        return shown, np.stack([found[name][1::2] for name in names], axis=1)
+        shown = side_by_side([found[name][::2] for name in signals], len(spans))
+        return shown, side_by_side([found[name][1::2] for name in names], len(spans))
 
     base = runs(measured.inputs, [f"start.{name}" for name in names])
     recorded = base.sensitivities.signals
@@ -190,6 +190,11 @@ def _perturb_input(known: Driving, t: Vector, change: float, parity: int) -> Dri
     return times, np.interp(times, *known) + np.interp(times, knots, push, left=0.0, right=0.0)
 
 
+def side_by_side(columns: Sequence[Vector], count: int) -> Matrix:
+    """Columns (count,) as a matrix, (count, columns); a model may have no states."""
+    return np.stack(columns, axis=1) if columns else np.zeros((count, 0))
+
+
 def states_in_windows(
     model: Model, measured: Measured, values: Mapping[str, float], length: int
 ) -> Matrix:
@@ -210,7 +215,7 @@ def states_in_windows(
         preset=measured.preset,
         inputs=measured.inputs,
     )
-    found = np.stack([runs[name] for name in model.states], axis=1)
+    found = side_by_side([runs[name] for name in model.states], len(measured.t))
     for number in runs.errors:
         rows = slice(int(runs.rows[number]), int(runs.rows[number + 1]))
         found[rows] = [spans[number].start.get(name, 0.0) for name in model.states]

@@ -15,6 +15,7 @@ from tracewire.residual import (
     noise_of_signal,
     response_in_windows,
 )
+from tracewire.solve import Held
 from tracewire.trace.found import LikelyInput
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.trial import Trial
@@ -44,7 +45,8 @@ def shown_input_noise(search: Search) -> InputNoise:
             there = noisy.refit(trial, trial.windows.segments, trial.length)
         except FitError:
             continue
-        if there.reduced_chi2 < search.options.at_noise < trial.reduced_chi2:
+        limit = search.options.at_noise
+        if 1 / limit < there.reduced_chi2 < limit < trial.reduced_chi2:
             return noise
     return {}
 
@@ -67,13 +69,18 @@ def describe_input_noise(noise: InputNoise, units: Mapping[str, str]) -> str:
 
 
 def _noise_of_samples(measured: Measured, most: float) -> dict[str, float]:
-    """The white noise on the inputs of a series, up to a part of what they vary by."""
+    """The white noise on the inputs of a series, up to a part of what they vary by.
+
+    A held input is what a controller has given, and so is one in steps that are larger than what
+    looks like noise: it is exact, however it jitters.
+    """
     found = {}
-    for name, (t, values) in measured.inputs.items():
-        if name in measured.input_sigma or len(values) < 2:
+    for name, known in measured.inputs.items():
+        t, values = known
+        if name in measured.input_sigma or isinstance(known, Held) or len(values) < 2:
             continue
         noise = noise_of_signal(values, t)
-        if noise.is_sure and 0 < noise.level < most * float(np.std(values)):
+        if noise.is_sure and noise.step < noise.level < most * float(np.std(values)):
             found[name] = noise.level
     return found
 
