@@ -187,6 +187,14 @@ class ModelPool:
         self._final.add(model.key)
         return model
 
+    def free_single_effects(self) -> None:
+        """Models of one effect below bounds that are a guess: at the bound the right one may be
+        behind another law, and would not be looked at again."""
+        for key, model in list(self.models.items()):
+            if len(model.names) == 1:
+                freed = loosen_bounds(self.search.problem, model, self.options)
+                self.models[key] = freed or model
+
     def scores(self) -> dict[Key, float]:
         """How well each model fits, the mean of the in-sample log scores."""
         errors = np.stack([errors_in_sample(m, self.horizons) for m in self.models.values()])
