@@ -115,6 +115,12 @@ def test_no_motion_tells_an_offset_from_a_torque_on_a_linear_spring(tmp_path: Pa
     assert "Turn the sensor" in found.words
 
 
+def test_a_memory_goes_on_from_one_window_of_an_experiment_to_the_next(tmp_path: Path) -> None:
+    """An effect is not told from itself, wherever its memory is."""
+    found = between(tmp_path, "hysteresis", {"level": 0.36}, "hysteresis")
+    assert found.separation < 1e-3
+
+
 @pytest.mark.parametrize("frequency", [0.5, 2.0])
 def test_the_main_frequency(frequency: float) -> None:
     t = np.arange(0.0, 10.0, 0.01)

@@ -14,7 +14,13 @@ RANDOM = np.random.default_rng(2)
 N = 400
 
 
-def screen(matrix: np.ndarray, groups: list[tuple[str, tuple[int, ...]]], masked: float) -> Screen:
+def screen(
+    matrix: np.ndarray,
+    groups: list[tuple[str, tuple[int, ...]]],
+    masked: float,
+    sigmas: float = 1.0,
+    fraction: float = 1.0,
+) -> Screen:
     place = Place("torque", "sum", "torque")
     rows = tuple(
         ScreenRow(
@@ -30,7 +36,9 @@ def screen(matrix: np.ndarray, groups: list[tuple[str, tuple[int, ...]]], masked
         for name, indices in groups
     )
     hidden = np.full(matrix.shape[1], masked)
-    columns = CandidateColumns(RANDOM.standard_normal(N), matrix, hidden, 1.0, N)
+    residual = RANDOM.standard_normal(N)
+    residual *= sigmas * np.sqrt(N) / np.linalg.norm(residual)
+    columns = CandidateColumns(residual, matrix, hidden, fraction, N)
     return Screen(columns, rows, np.arange(N))
 
 
@@ -40,6 +48,15 @@ def test_the_smallest_coefficient_is_five_standard_errors() -> None:
     error = np.sqrt(np.linalg.inv(column.T @ column)[0, 0])
     assert power.smallest == pytest.approx(5 * error)
     assert (power.name, power.place, power.coefficient) == ("bias", "torque", "bias.level")
+
+
+def test_what_is_left_above_the_noise_hides_more_and_the_more_the_slower_it_is() -> None:
+    column = 3 * RANDOM.standard_normal((N, 1))
+    limits = [
+        detection_limits(screen(column, [("bias", (0,))], 0.5, sigmas, fraction))[0].smallest
+        for sigmas, fraction in ((0.5, 1.0), (1.0, 1.0), (4.0, 1.0), (4.0, 0.25))
+    ]
+    assert limits == pytest.approx([limits[0] * factor for factor in (1, 1, 4, 8)])
 
 
 def test_the_shape_that_shows_best_counts_and_the_phase_that_shows_least() -> None:

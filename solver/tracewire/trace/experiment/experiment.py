@@ -164,6 +164,7 @@ def _separation(
         problem.sigma,
         weighting="sum",
         limits=limits,
+        chained=True,  # a memory is where the window before has left it
     )
     windows = fit_initial_states(evaluate_windows(criterion))
     if not all(near.ran for near in windows.linearisations):
