@@ -107,19 +107,33 @@ def test_what_was_not_tried_is_told_once_with_what_to_do() -> None:
             f"play @ torque and bias @ torque was not tried: {LONG}",
             f"coupling_q @ left (of right) was not tried: {LONG}",
             f"dahl @ torque and bias @ torque was not tried: {LONG}",
-            "cogging @ torque and bias @ torque was not tried: the run stopped at t = 2 s",
+            "cogging @ torque was not tried: parameter 'pitch' must be above 0",
+            "lugre @ torque was not tried: the run stopped at t = 2 s: nan",
             "another remark",
         ),
     )
     assert remarks_of(skipped) == (
         "another remark",
-        "cogging @ torque and bias @ torque were not tried: the run stopped at t = 2 s",
-        "play @ torque, coupling_q @ left (of right) and dahl @ torque with bias @ torque were not "
-        "tried: with them the model takes more than 6 times as many steps, as it is stiff, "
-        "switches often or runs away; to try one, add it to the diagram and `fit` that, or allow "
-        'more in Python: `tw.trace(model, options={"search": {"slower": 30}})`',
+        "cogging @ torque was not tried: parameter 'pitch' must be above 0",
+        "play @ torque, coupling_q @ left (of right), dahl @ torque with bias @ torque and 1 more "
+        "were not tried: with them a run takes more than 6 times as many steps, or does not end, "
+        "as the model is stiff, switches often or runs away; to try one, add it to the diagram and "
+        "`fit` that, or allow more in Python: "
+        '`tw.trace(model, options={"search": {"slower": 30}})`',
     )
-    assert untried(skipped) == {"coulomb @ torque", "play @ torque", "coupling_q @ left"}
+    assert untried(skipped) == {
+        "coulomb @ torque", "play @ torque", "coupling_q @ left", "cogging @ torque",
+        "lugre @ torque",
+    }  # fmt: skip
+
+
+def test_what_was_refitted_in_a_step_was_tried() -> None:
+    tried = CandidateScore("dahl @ torque + bias @ torque", 3.0, s2=1.5)
+    step = SearchStep(1.0, 2.0, 0.0, (tried,), "")
+    words = (f"dahl @ torque was not tried: {LONG}",)
+    assert remarks_of(replace(FOUND, steps=(step,), words=words)) == ()
+    promised = replace(step, tried=(replace(tried, s2=math.nan),))
+    assert remarks_of(replace(FOUND, steps=(promised,), words=words)) != ()
 
 
 def test_the_options_that_a_remark_names_are_options() -> None:

@@ -50,8 +50,8 @@ def test_the_answer_where_nothing_is_missing() -> None:
     assert answer_lines(NULL) == (
         "VERDICT null: nothing is missing that these data could show",
         "  free runs on unseen data: 1.02 σ (0.00408 rad in theta)",
-        "  smallest coefficients that these data would show: coulomb level = 0.0021 N m, "
-        "sensor_offset offset = 0.0004 rad, bias level = 0.0013 N m",
+        "  smallest coefficients that these data would show: coulomb @ torque level = 0.0021 N m, "
+        "sensor_offset @ sensor.theta offset = 0.0004 rad, bias @ torque level = 0.0013 N m",
     )
 
 

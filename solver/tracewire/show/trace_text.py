@@ -53,7 +53,8 @@ def answer_lines(found: Found) -> tuple[str, ...]:
     lines += [f"  {experiment_words(found, experiment)}" for experiment in found.experiments]
     if found.verdict == "null" and found.power:
         least = ", ".join(
-            f"{p.name} {coefficient_of(p)} = {p.smallest:.2g} {unit_of_power(found, p)}".rstrip()
+            f"{p.name} @ {p.place} {coefficient_of(p)} = {p.smallest:.2g} "
+            f"{unit_of_power(found, p)}".rstrip()
             for p in common_powers(found)[: WORD.most_channels]
         )
         lines.append(f"  smallest coefficients that these data would show: {least}")

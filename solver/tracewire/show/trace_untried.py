@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator
 
@@ -10,7 +11,7 @@ from tracewire.trace import Found, Power
 
 NAME = r"\S+ @ \S+(?: \(of \S+\))?"
 UNTRIED = re.compile(rf"({NAME}(?: and {NAME})*) (?:was|were) not tried: (.+)", re.DOTALL)
-COSTLY = re.compile(r"the model takes more than \d+ steps in all")
+COSTLY = re.compile(r"the model takes more than \d+ steps in all|the run stopped at t = ")
 COMMON = ("coulomb", "viscous", "quad_drag", "stiffness", "cubic_stiffness", "sensor_offset")
 OF = re.compile(r" \(of \S+\)")
 
@@ -34,10 +35,14 @@ def common_powers(found: Found) -> list[Power]:
 def told_of_untried(found: Found) -> list[str]:
     """The remarks of a trace, of which those about what was not tried are told as one each cause.
 
-    An effect that the verdict names was tried elsewhere in the search, and a pair says no more than
-    the effect in it that was not tried alone.
+    An effect that was refitted elsewhere in the search was tried, and a pair says no more than the
+    effect in it that was not tried alone.
     """
-    named = {str(effect) for effect in found.effects}
+    ties = [tie for effect in found.effects for tie in effect.ties]
+    named = {str(effect) for effect in (*found.effects, *ties)}
+    for step in found.steps:
+        for row in step.tried:
+            named.update(row.effects.split(" + ") if math.isfinite(row.s2) else ())
     refused = [one for one in _refused(found) if not {OF.sub("", n) for n in one[1]} <= named]
     alone = {names[0] for _, names, _ in refused if len(names) == 1}
     said = {text for text, *_ in _refused(found)}
@@ -57,8 +62,8 @@ def _costly_words(found: Found, costly: list[str]) -> str:
     many = found.options.search.slower
     were, with_it, it = ("was", "it", "it") if len(costly) == 1 else ("were", "them", "one")
     return (
-        f"{few_of(costly)} {were} not tried: with {with_it} the model takes more than {many:g} "
-        "times as many steps, as it is stiff, switches often or runs away; "
+        f"{few_of(costly)} {were} not tried: with {with_it} a run takes more than {many:g} times "
+        "as many steps, or does not end, as the model is stiff, switches often or runs away; "
         f"to try {it}, add it to the diagram and `fit` that, or allow more in Python: "
         f'`tw.trace(model, options={{"search": {{"slower": {5 * many:g}}}}})`'
     )

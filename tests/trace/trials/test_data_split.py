@@ -29,7 +29,8 @@ def test_of_a_lone_series_no_sample_is_used_twice() -> None:
     assert len(train) == pytest.approx(2 * len(gate), abs=6)
     assert found.words == (
         "the last sixth of 'swing' is held back for the final claim",
-        "every third ninth of the rest of 'swing' is the gate",
+        "every third of 9 equal parts of the rest of 'swing' is not fitted: there an effect must "
+        "help, too (the gate)",
     )
 
 

@@ -104,8 +104,9 @@ def split_data(measured: Sequence[Measured], options: SplitOptions) -> DataSplit
             continue
         enough = end >= options.blocks * options.shortest
         blocks = options.blocks if enough else options.few_blocks
-        part = f"every third {_part(1 / blocks)}" if blocks > 3 else "the last third"
-        words.append(f"{part} of the rest of '{m.name}' is the gate")
+        parts = f"every third of {blocks} equal parts" if blocks > 3 else "the last third"
+        rest = f"the rest of '{m.name}'" if not by_use["validate"] else f"'{m.name}'"
+        words.append(f"{parts} of {rest} is not fitted: there an effect must help, too (the gate)")
         edges = np.linspace(0, end, blocks + 1).astype(int).tolist()
         for n in range(0, blocks, 3):
             train.append(Section(m, edges[n], edges[n + 2]))
