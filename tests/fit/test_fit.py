@@ -11,6 +11,7 @@ import pytest
 from residual.models import LINE, OSCILLATOR, PENDULUM, C, K, T, made, oscillation, series, swing
 from tracewire.errors import DataError, FitError, OptionError
 from tracewire.fit import Fit, Progress, fit, optimset
+from tracewire.fit.methods import METHODS as FIT_METHODS
 from tracewire.fit.remarks import raises_unseen, rises, unfinished
 from tracewire.residual import Measured, Sensor
 
@@ -246,6 +247,16 @@ def test_unknown_names_are_told_with_the_nearest() -> None:
     told = refused(OptionError, free=["x00"])
     assert told == "unknown parameter 'x00'; there are: c, k, x0. Did you mean 'x0'?"
     assert "unknown parameter 'kk'" in refused(OptionError, parameters={"kk": 1.0})
+
+
+@pytest.mark.parametrize("method", FIT_METHODS)
+def test_start_values_alone_are_fitted_too(method: str) -> None:
+    """A finished diagram on a new record: only where that begins is not known."""
+    measured = series(oscillation(T, 1.0, -0.5), start={"x": None, "v": None})
+    found = fitted(OSCILLATOR, measured, method=method, free=[], parameters={"k": K, "c": C})
+    assert found.values == {}
+    assert found.starts["run"] == pytest.approx({"x": 1.0, "v": -0.5}, abs=1e-4)
+    assert found.criterion < 1e-6 * found.criterion_before
 
 
 def test_nothing_free_is_told() -> None:

@@ -182,7 +182,8 @@ def chosen_unknowns(
         if name not in fixed and (free is None or name in free)
     ]
     refuse_readers_of_free(model, [unknown.name for unknown in found])
-    if not found:
+    starts_are_free = any(value is None for m in measured for value in m.start.values())
+    if not found and not starts_are_free:
         hint = "Give a parameter bounds, as in k: {value: 1, fit: [0, 10]}, or name it as free."
         raise OptionError([Problem("no parameter of the diagram is free", hint=hint)])
     return found

@@ -84,9 +84,9 @@ def _result(fit: Fit) -> Section:
     for m in fit.measured:
         series.setdefault(m.use, []).append(m.name)
     used = "; ".join(f"{use}: {', '.join(names)}" for use, names in series.items())
+    fitted = f"{len(fit.values)} values" if fit.values else "Only the start values"
     what = (
-        f"{len(fit.values)} values of the diagram {fit.model.diagram.file} were fitted to measured "
-        f"series ({used})."
+        f"{fitted} of the diagram {fit.model.diagram.file} were fitted to measured series ({used})."
     )
     ended = () if fit.exitflag == 1 else (ENDINGS.get(fit.exitflag, ENDINGS[0]),)
     tables = tuple(t for t in (fit_table(fit), tied_table(fit), starts_table(fit)) if t.rows)
@@ -94,7 +94,7 @@ def _result(fit: Fit) -> Section:
         Figure("parameters.png", "Fitted values and their 95 % intervals",
                partial(plot_parameters, fit)),
     ) if fit.values else ()  # fmt: skip
-    words = (what, fit_text(fit), *ended, ERRORS)
+    words = (what, fit_text(fit), *ended, *([ERRORS] if fit.values else []))
     return Section("Result", words, tables, figures=figures, points=remark_words(fit))
 
 
@@ -114,7 +114,7 @@ def _determined(fit: Fit) -> Section:
             f"{', '.join(open_ones)}. The words below say why, and what can be done."
         )
     else:
-        first = "The data determine every fitted value."
+        first = "The data determine every fitted value." if fit.values else "No value is free."
     colored = [f"{signal} of {series}" for (series, signal), n in found.orders.items() if n > 0]
     words = [first]
     if colored:

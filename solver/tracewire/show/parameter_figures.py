@@ -221,7 +221,8 @@ def plot_convergence(fit: Fit, path: str | Path) -> Path:
     title = shortened("Convergence", len(fit.values), FIT.most_paths, "parameters")
     end = max(float(fit.evaluations), float(count[-1]))
     with styled():
-        figure, (upper, lower) = panels([2.2, 2.8], title)
+        figure, axes = panels([2.2, 2.8] if fit.values else [2.2], title)
+        upper = axes[0]
         upper.step([*count, end], [*best, best[-1]], where="post", color=AFTER)
         upper.plot(count, best, ".", color=AFTER, markersize=4)
         if (best > 0).all():
@@ -230,10 +231,11 @@ def plot_convergence(fit: Fit, path: str | Path) -> Path:
             few = best.max() < 30 * best.min()
             upper.yaxis.set_minor_formatter(lambda x, _: _minor(x) if few else "")
         upper.set_ylabel("best criterion")
-        _draw_values(lower, [entry.values for entry in fit.history], count, end)
-        lower.set_xlabel("evaluations of the criterion")
-        lower.set_xlim(0, end or 1.0)
-        figure.align_ylabels([upper, lower])
+        for panel in axes[1:]:
+            _draw_values(panel, [entry.values for entry in fit.history], count, end)
+        axes[-1].set_xlabel("evaluations of the criterion")
+        axes[-1].set_xlim(0, end or 1.0)
+        figure.align_ylabels(axes)
         return save(figure, path)
 
 
