@@ -34,6 +34,10 @@ WELL_FORMED = re.compile(rf"(?:1(?!\d)|[^\W\d]++{POWER}?|[°%]|[()\s]|\){POWER}|
 """Units and whole powers only: the unit library works out any number, such as 9**9**9, for ever."""
 
 
+HEADERS = ("rev = turn", "pct = percent")
+"""Units as headers of files have them; without this `pct` is the carat with a prefix."""
+
+
 @dataclass(frozen=True)
 class Unit:
     """A unit: the text that is shown for SI values, and the factor from the user's unit to SI.
@@ -52,7 +56,10 @@ class Unit:
 def _registry() -> UnitRegistry[Any]:
     import pint  # half a second: only units that are neither SI nor common pay for it
 
-    return pint.UnitRegistry(autoconvert_offset_to_baseunit=False)
+    registry = pint.UnitRegistry(autoconvert_offset_to_baseunit=False)
+    for definition in HEADERS:
+        registry.define(definition)
+    return registry
 
 
 @lru_cache(maxsize=1024)
