@@ -56,7 +56,7 @@ class Unit:
 def _registry() -> UnitRegistry[Any]:
     import pint  # half a second: only units that are neither SI nor common pay for it
 
-    registry = pint.UnitRegistry(autoconvert_offset_to_baseunit=False)
+    registry: UnitRegistry[Any] = pint.UnitRegistry(autoconvert_offset_to_baseunit=False)
     for definition in HEADERS:
         registry.define(definition)
     return registry
