@@ -103,3 +103,21 @@ def test_what_the_noise_of_an_input_would_explain_is_told_with_its_size(tmp_path
     )
     options = {"effects": 1, "input_noise": most, "input_shown": 0.0}
     assert trace(compile(read(file)), options=options).noisy_inputs == ()
+
+
+def test_a_delay_reads_a_noisy_drive(tmp_path: Path) -> None:
+    """No effect is tried in that drive, and its noise is not followed; the trace does not end."""
+    file = without_sigma(write_record(tmp_path, False))
+    late = file.read_text(encoding="utf-8").replace("of: [F, ", "of: [late, ")
+    late = late.replace("blocks:\n", "blocks:\n  late: {type: delay, of: F, time: 0.2}\n")
+    file.write_text(late, encoding="utf-8")
+    model = compile(read(file))
+    t, _, noisy = np.loadtxt(file.parent / "run.csv", delimiter=",", skiprows=1).T
+    x = simulate(model, parameters={"c": 4.0}, times=t, inputs={"F": (t, noisy)})["x"]
+    x = x + 2e-5 * np.random.default_rng(3).standard_normal(len(t))
+    table = np.stack([t, x, noisy], 1)
+    np.savetxt(file.parent / "run.csv", table, delimiter=",", header="t,x,F", comments="")
+    found = trace(compile(read(file)), options={"effects": 1})
+    assert found.verdict == "null"
+    assert found.declared["c"] == pytest.approx(4.0, rel=1e-3)
+    assert any("nothing is tried in the drive 'F': a delay reads it" in w for w in found.words)

@@ -164,7 +164,7 @@ def set_up_search(
     problem = TraceProblem(model, series, sigma, rtol, inputs, options)
     places = find_places(model)
     words = [*left_out, *remarks(series, options.check), *data_split.words]
-    words += describe_untried(model.diagram, [place for place in places if place.q])
+    words += describe_untried(model, [place for place in places if place.q])
     workers = Workers(executor)
     return Search(problem, data_split, places, shortest, values, progress, words, workers)
 

@@ -62,7 +62,7 @@ def test_a_sum_of_an_included_file_is_a_place_of_each_block(tmp_path: Path) -> N
     body, other, _ = find_places(model)
     assert (body.name, body.definition, body.own) == ("body.force", "cart.force", "body")
     assert (other.name, other.definition, other.own) == ("other.force", "cart.force", "other")
-    assert describe_untried(diagram, [body, other]) == []
+    assert describe_untried(model, [body, other]) == []
     found = find_candidates(model, [body, other], LEVELS, OPTIONS.candidate)
     known = {(c.effect, c.place.name): c for c in found}
     viscous = known["viscous", "body.force"]
@@ -141,7 +141,8 @@ def test_what_cannot_be_extended_is_said(tmp_path: Path) -> None:
           row: {type: train, replicate: 2}
         """,
     )
-    assert describe_untried(diagram, find_places(compile(diagram, backend="quick"))) == [
+    model = compile(diagram, backend="quick")
+    assert describe_untried(model, find_places(model)) == [
         "nothing is tried at sums inside 'train.front': it stands inside a subsystem of cart.yaml",
         "nothing is tried at sums inside 'chosen': its definition stands in cart.yaml, and has "
         "variants",
@@ -153,7 +154,8 @@ def test_a_line_in_a_diagram_that_is_extended_is_said(tmp_path: Path) -> None:
     base = including(tmp_path, INCLUDING)
     (tmp_path / "base.yaml").write_text(base.text, encoding="utf-8")
     diagram = read_text("extends: base.yaml\nparameters: {c: 1}\n", tmp_path / "top.yaml")
-    assert describe_untried(diagram, find_places(compile(diagram, backend="quick"))) == [
+    model = compile(diagram, backend="quick")
+    assert describe_untried(model, find_places(model)) == [
         "nothing is tried at sums inside 'body', 'other': its line stands in base.yaml"
     ]
 
@@ -165,7 +167,8 @@ def test_a_file_that_is_not_included_by_the_diagram_itself_is_said(tmp_path: Pat
     (tmp_path / "cart.yaml").write_text(PARTS, encoding="utf-8")
     text = "include: deep.yaml\nblocks: {body: {type: outer}}\n"
     diagram = read_text(text, tmp_path / "top.yaml")
-    first, *_ = describe_untried(diagram, find_places(compile(diagram, backend="quick")))
+    model = compile(diagram, backend="quick")
+    first, *_ = describe_untried(model, find_places(model))
     assert first == (
         "nothing is tried at sums inside 'body': the diagram does not include the file that "
         "defines 'cart'"

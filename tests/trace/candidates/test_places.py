@@ -326,7 +326,7 @@ def test_a_row_of_sums_is_no_place_and_that_is_said() -> None:
         """
     model = compile(read_text(text), backend="quick")
     assert find_places(model) == []
-    assert describe_untried(model.diagram, []) == [
+    assert describe_untried(model, []) == [
         "nothing is tried at the sums 'f': they are a row of blocks"
     ]
 
@@ -425,7 +425,7 @@ def test_what_cannot_be_tried_at_a_place_is_said() -> None:
             """
         )
     )
-    flow, position = describe_untried(model.diagram, find_places(model))
+    flow, position = describe_untried(model, find_places(model))
     assert "'x' has no rate: " in flow + position
     assert (
         "are not tried there; name it, as in `place: {v: SIGNAL}`, where there is one"
@@ -459,7 +459,7 @@ def test_subsystems_that_get_no_effect_are_said(tmp_path: Path) -> None:
         encoding="utf-8",
     )
     model = compile(read(file))
-    assert describe_untried(model.diagram, find_places(model)) == [
+    assert describe_untried(model, find_places(model)) == [
         "nothing is tried at sums inside 'left', 'right': several blocks are made from 'pair'",
         "nothing is tried at sums inside 'chain': it is a row of blocks",
         "nothing is tried at sums inside 'chosen': a parameter chooses its body",
@@ -474,7 +474,7 @@ def test_a_place_with_both_is_not_talked_about() -> None:
           force: {type: sum, of: [-x]}
         """
     model = compile(read_text(text))
-    assert describe_untried(model.diagram, find_places(model)) == []
+    assert describe_untried(model, find_places(model)) == []
 
 
 def test_a_level_overflows_where_there_is_no_coordinate() -> None:

@@ -77,14 +77,16 @@ def find_places(model: Model) -> list[Place]:
     A sum of a row is no place: a row has one line, and each block of it other signals.
 
     Drives: the named inputs that something reads, and the blocks whose output depends on nothing
-    but the time (sine, square, step, ramp, table, a formula of t) and that something reads.
+    but the time (sine, square, step, ramp, table, a formula of t) and that something reads. Not one
+    that a delay reads: its past is known, and that of what an effect made of it is not.
 
     For a sum at the top a signal inside a subsystem counts where an output of that carries it, and
     for a sum inside one at the top where an input carries it: a block cannot be wired to others.
 
     Sensors: the signals that a series measures in a column of its own; but not an input.
     """
-    drives = tuple(_drives(model))
+    delayed = _delayed(model)
+    drives = tuple(name for name in _drives(model) if name not in delayed)
     inside = extensible_subsystems(model.diagram)
     sums = _sums(model.flat, drives, inside)
     included = {path for path, use in inside.items() if is_included(model.diagram, use)}
@@ -98,9 +100,10 @@ def find_places(model: Model) -> list[Place]:
     ]
 
 
-def describe_untried(diagram: Diagram, places: Sequence[Place]) -> list[str]:
-    """What cannot be tried, in words: at sums inside some subsystems, at rows of sums, and at sums
-    that have no rate, or no coordinate."""
+def describe_untried(model: Model, places: Sequence[Place]) -> list[str]:
+    """What cannot be tried, in words: at sums inside some subsystems, at rows of sums, at sums that
+    have no rate, or no coordinate, and in drives that a delay reads."""
+    diagram = model.diagram
     shut: dict[str, list[str]] = {}
     for path, why in closed_subsystems(diagram).items():
         shut.setdefault(why, []).append(f"'{path}'")
@@ -112,6 +115,12 @@ def describe_untried(diagram: Diagram, places: Sequence[Place]) -> list[str]:
     found += [
         f"nothing is tried at the sums '{path}': they are a row of blocks"
         for path in rows_of_sums(diagram)
+    ]
+    found += [
+        f"nothing is tried in the drive '{name}': a delay reads it, and before a window only "
+        f"'{name}' itself is known"
+        for name in _drives(model)
+        if name in _delayed(model)
     ]
     effects = diagram.library.effects()
     for place in places:
@@ -242,6 +251,11 @@ def _drives(model: Model) -> Iterator[str]:
         needs = set(names_of(formula))
         if "t" in needs and formula != Name("t") and not needs & moving and not effect:
             yield name
+
+
+def _delayed(model: Model) -> set[str]:
+    """The signals that a delay reads."""
+    return {delay.text for delay in model.lowered.delays}
 
 
 def _is_drive(model: Model, place: Place, drives: tuple[str, ...]) -> bool:

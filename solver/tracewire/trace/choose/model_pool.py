@@ -37,6 +37,9 @@ class ModelPool:
     first: list[Screen] = field(default_factory=list)
     """The screens beside the declared model, one for each horizon."""
     _final: set[Key] = field(default_factory=set)
+    """The models that have converged."""
+    _freed: dict[Key, Finalist] = field(default_factory=dict)
+    """The models that were refitted below bounds that are a guess, as they were then."""
 
     def fit_declared(self, declared_fit: Trial) -> Finalist:
         """The declared model at each horizon, from a fit of it."""
@@ -191,9 +194,9 @@ class ModelPool:
         """Models of one effect below bounds that are a guess: at the bound the right one may be
         behind another law, and would not be looked at again."""
         for key, model in list(self.models.items()):
-            if len(model.names) == 1:
+            if len(model.names) == 1 and key not in self._final and self._freed.get(key) != model:
                 freed = loosen_bounds(self.search.problem, model, self.options)
-                self.models[key] = freed or model
+                self.models[key] = self._freed[key] = freed or model
 
     def scores(self) -> dict[Key, float]:
         """How well each model fits, the mean of the in-sample log scores."""

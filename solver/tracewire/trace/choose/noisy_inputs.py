@@ -32,6 +32,8 @@ def shown_input_noise(search: Search) -> InputNoise:
     some, which its spectrum shows as that of a signal does.
     """
     problem = search.problem
+    if problem.declared.lowered.delays:  # what noise does is followed from states alone
+        return {}
     noise = {m.name: _noise_of_samples(m, search.options.input_shown) for m in problem.measured}
     if not any(noise.values()):
         return {}
@@ -39,13 +41,12 @@ def shown_input_noise(search: Search) -> InputNoise:
         replace(m, input_sigma={**noise[m.name], **m.input_sigma}) for m in problem.measured
     )
     inputs = InputCovariance(problem.sigma, problem.declared, series, search.shortest)
-    noisy = replace(problem, measured=series, inputs=inputs)
+    noisy, limit = replace(problem, measured=series, inputs=inputs), search.options.at_noise
     for trial in dict.fromkeys(search.declared_and_best):
         try:
             there = noisy.refit(trial, trial.windows.segments, trial.length)
         except FitError:
             continue
-        limit = search.options.at_noise
         if 1 / limit < there.reduced_chi2 < limit < trial.reduced_chi2:
             return noise
     return {}
@@ -89,6 +90,8 @@ def noisy_inputs(search: Search, trial: Trial) -> tuple[LikelyInput, ...]:
     """The measured inputs with no declared `sigma` whose noise would explain the residual of a
     model on its windows, each with the size of that noise."""
     options, windows = search.options, trial.windows
+    if trial.model.lowered.delays:
+        return ()
     series: dict[str, list[int]] = {}
     for number, segment in enumerate(windows.criterion.segments):
         series.setdefault(segment.measured.name, []).append(number)
