@@ -113,7 +113,14 @@ def errors_table(found: Found) -> Table:
 
 def moved_table(found: Found) -> Table:
     """The declared parameters without and with the effects, in the units of the file; what moved
-    far is marked."""
+    far is marked. Where there are no effects, as they were fitted."""
+    if not found.effects:
+        fitted = tuple(
+            (m.name, shown(m.after / m.factor), _number(m.error / m.factor, ".2g"), m.users_unit)
+            for m in found.moved
+        )
+        as_fitted = ("parameter", "fitted", "standard error", "unit")
+        return Table("declared parameters", as_fitted, fitted, frozenset({1, 2}))
     rows = tuple(
         (m.name, shown(m.before / m.factor), shown(m.after / m.factor),
          _change(m.before, m.after), _number(m.error / m.factor, ".2g"), m.users_unit,

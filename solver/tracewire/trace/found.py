@@ -310,8 +310,9 @@ class Found(Result):
     where the verdict is another. `options` is what the user asked for, with every threshold;
     `interrupted`: the user stopped the trace, and this is what was known by then.
 
-    `diagram` is the edited diagram: the one as it was where the verdict is no `effect`, as partial
-    approximations may do worse on other data, unless the trace was interrupted. `find_diagram` is
+    `diagram` is the edited diagram: with the effects and the fitted values, for `null` with the
+    fitted values. The one as it was for `unexplained`, as partial approximations may do worse on
+    other data, unless the trace was interrupted. `find_diagram` is
     that with some of the effects; a trace that was loaded has none. `units` are the SI units of
     signals and parameters by name, also of those that were added ('coulomb.level',
     'offset.theta'), `users_units` the unit of a signal in the user's files and its factor to SI,

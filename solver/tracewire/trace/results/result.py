@@ -76,7 +76,7 @@ def result_of(
         sigma=sigma,
         s2_before=on_equal_windows(problem, declared, best).reduced_chi2,
         s2_after=best.reduced_chi2,
-        moved=tuple(parameter_changes(problem, declared, best, values)) if best.effects else (),
+        moved=tuple(parameter_changes(problem, declared, best, values)),
         errors=tuple(error for part in parts for error in part.errors(sigma, units)),
         steps=(*steps, *([prediction.as_step()] if prediction else [])),
         power=detection_limits(search.steps[-1].screen) if search.steps else (),
@@ -90,7 +90,7 @@ def result_of(
         original=problem.declared.diagram,
         diagram=(
             _edit_diagram(problem.declared, best, best.effects, values)
-            if judgement.verdict == "effect" or interrupted
+            if judgement.verdict != "unexplained" or (interrupted and best.effects)
             else problem.declared.diagram  # an approximation is told, and written where one asks
         ),
         units=units,
@@ -228,9 +228,7 @@ def _candidate_correlations(search: Search) -> tuple[tuple[str, ...], Matrix]:
 def _edit_diagram(
     model: Model, best: Trial, effects: Sequence[PlacedEffect], values: Mapping[str, float]
 ) -> Diagram:
-    """The original text with effects and with the refitted parameters."""
-    if not effects:
-        return model.diagram
+    """The original text with effects, if any, and with the refitted parameters."""
     chosen = [(effect.candidate, effect.values) for effect in effects]
     added = {effect.candidate.coefficient for effect in effects}
     kept = {
