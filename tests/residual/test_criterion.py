@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from dataclasses import replace
+from subprocess import run
 from typing import Any
 
 import numpy as np
@@ -426,3 +429,21 @@ def test_beyond_its_budget_nothing_is_run_and_nothing_counted() -> None:
     assert criterion.failure is not None
     (problem,) = criterion.failure.problems
     assert problem.what == "the model takes more than 100 steps in all"
+
+
+FORKED = """
+import os
+from tracewire.residual.criterion import _threads
+assert _threads().submit(int, 1).result() == 1
+if os.fork() == 0:
+    os._exit(_threads().submit(int, 2).result(30) - 2)
+_, status = os.wait()
+assert status == 0
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no forks here")
+def test_a_forked_process_has_threads_of_its_own() -> None:
+    """A pool of processes that begins after a trace: its workers waited for threads for ever."""
+    done = run([sys.executable, "-W", "ignore", "-c", FORKED], capture_output=True, timeout=120)
+    assert done.returncode == 0, done.stderr.decode()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -404,6 +405,10 @@ class _Interruptible:
 def _threads() -> ThreadPoolExecutor:
     """Threads that wait for work: to begin them takes as long as hundreds of short runs."""
     return ThreadPoolExecutor(cores(), thread_name_prefix="tracewire")
+
+
+if hasattr(os, "register_at_fork"):  # a forked process has no threads, and would wait for them
+    os.register_at_fork(after_in_child=_threads.cache_clear)
 
 
 def half_square(vector: Vector) -> float:
