@@ -87,16 +87,14 @@ def value_words(found: Found, effect: FoundEffect, name: str) -> str:
 
 def share_words(explained: Explained) -> str:
     """The explained share with its interval: `98 % (95 % interval: 96 to 99 %)`."""
-    share, low, high = (
-        f"{100 * end:.0f}" for end in (explained.share, explained.low, explained.high)
-    )
+    share = percent(explained.share)
+    low, high = (f"{100 * end:.0f}" for end in (explained.low, explained.high))
     if low == high:
-        share, low, high = (
-            f"{100 * end:.2f}" for end in (explained.share, explained.low, explained.high)
-        )
+        share = f"{100 * explained.share:.2f} %"
+        low, high = (f"{100 * end:.2f}" for end in (explained.low, explained.high))
     if low == high:
         return "> 99.99 %" if low == "100.00" else f"{low} %"
-    return f"{share} % (95 % interval: {low} to {high} %)"
+    return f"{share} (95 % interval: {low} to {high} %)"
 
 
 def excess_words(found: Found) -> str:
