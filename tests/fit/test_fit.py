@@ -152,6 +152,12 @@ def test_a_signal_that_is_not_recorded_is_recorded_for_the_fit() -> None:
         fit(model, [Measured("run", "train", T, {"y": 0 * T})])
 
 
+def test_two_series_of_one_name_are_refused() -> None:
+    model, one = made(OSCILLATOR, ("a",)), series(oscillation(T, 0.9))
+    with pytest.raises(DataError, match="several series are called 'run'"):
+        fit(model, [one, one], method="least_squares")
+
+
 @pytest.mark.parametrize("method", METHODS)
 def test_standard_errors_of_a_line_are_the_textbooks(method: str) -> None:
     """y = a t + b + e: the variances are s^2 (X'X)^-1, s^2 = sum of squares/(N - 2)."""

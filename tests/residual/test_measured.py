@@ -106,7 +106,8 @@ def test_a_model_records_what_any_series_measures_once() -> None:
     model = compile(read_text(TOP.partition("measured:")[0]), record=["theta"])
     one = Measured("one", "train", np.arange(2.0), {"theta": np.zeros(2)})
     both = replace(one, values={"theta": np.zeros(2), "omega": np.zeros(2)})
-    assert with_measured_signals(model, [both, both]).recorded == ("theta", "omega")
+    others = [both, replace(both, name="other")]
+    assert with_measured_signals(model, others).recorded == ("theta", "omega")
     assert with_measured_signals(model, [one]) is model
 
 

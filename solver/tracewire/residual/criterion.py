@@ -291,9 +291,9 @@ class Criterion:
 
     def _groups(self, numbers: Sequence[int], halves: bool) -> list[list[int]]:
         """Segments that run together: those of a series, or of half of it."""
-        series: dict[int, list[int]] = {}
+        series: dict[str, list[int]] = {}
         for n in numbers:
-            series.setdefault(id(self.segments[n].measured), []).append(n)
+            series.setdefault(self.segments[n].measured.name, []).append(n)
         if not halves:
             return list(series.values())
         middles = [(group, -(-len(group) // 2)) for group in series.values()]

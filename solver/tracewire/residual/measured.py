@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -467,9 +468,15 @@ def _or(value: float | None, default: float) -> float:
 def with_measured_signals(model: Model, series: Sequence[Measured]) -> Model:
     """The model with every signal of the series among the recorded ones.
 
-    Raises OptionError: a signal that the model does not have, or with a sensor of which a number
-    has the name of a parameter.
+    Raises DataError: two series of one name, by which all else tells series apart; OptionError: a
+    signal that the model does not have, or with a sensor of which a number has the name of a
+    parameter.
     """
+    if twice := [name for name, count in Counter(m.name for m in series).items() if count > 1]:
+        hint = "Give each series a `name` of its own."
+        raise DataError(
+            [Problem(f"several series are called '{name}'", hint=hint) for name in twice]
+        )
     signals = dict.fromkeys(signal for m in series for signal in m.values)
     if problems := find_name_clashes(model.flat, signals):
         raise OptionError(problems)

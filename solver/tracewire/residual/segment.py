@@ -46,7 +46,7 @@ class Segment:
     def continues(self, before: Segment) -> bool:
         """Whether it begins where another one of its series ends, with a free start."""
         near = int(before.rows[-1]) + 1 == int(self.rows[0])
-        return bool(self.free) and before.measured is self.measured and near
+        return bool(self.free) and before.measured.name == self.measured.name and near
 
     def samples(self) -> Vector:
         """The measured values, shape (N, signals) in SI."""

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import os
+import pickle
 import signal
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
 from dataclasses import replace
+from itertools import pairwise
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
 import pytest
-from oracles.oscillator import candidates_of, problem_of, record, search_of
+from oracles.oscillator import candidates_of, problem_of, record, search_of, trial_of
 from oracles.swing import write_pendulum
 from tracewire.compile import compile
 from tracewire.diagram import read
@@ -105,6 +107,17 @@ def test_an_effect_that_cannot_be_run_elsewhere_is_left_out_with_a_reason(
     _, other = refits(None)
     assert failed is None and trial is not None and other is not None
     assert (trial.rss, trial.values, trial.effects) == (other.rss, other.values, other.effects)
+
+
+def test_windows_that_came_back_follow_those_that_were_sent() -> None:
+    """What a worker sends back is a copy. Its windows go on where the one before them ends."""
+    problem = problem_of(record(end=6.0), record(end=6.0, name="second", seed=1))
+    trial = trial_of(problem)
+    sent, back = trial.windows.segments, pickle.loads(pickle.dumps(trial)).windows.segments
+    mixed = [pair[n % 2] for n, pair in enumerate(zip(sent, back, strict=True))]
+    expected = [later.continues(before) for before, later in pairwise(sent)]
+    assert [later.continues(before) for before, later in pairwise(mixed)] == expected
+    assert expected.count(False) == 1
 
 
 class Refusing(Executor):

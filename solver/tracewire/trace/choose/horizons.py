@@ -248,7 +248,7 @@ def _whole(
 ) -> Horizon:
     segments, blocks = [], []
     for section in sections:
-        mine = [(n, p) for n, p in enumerate(pieces) if p.measured is section.measured]
+        mine = [(n, p) for n, p in enumerate(pieces) if p.measured.name == section.measured.name]
         for segment in cut_windows(model, section, section.count, free):
             of = np.full(len(segment.rows), REST)
             of[segment.rows < mine[0][1].first] = mine[0][0]
@@ -262,8 +262,8 @@ def _whole(
 
 def _order(pieces: Sequence[Section], rests: Sequence[Section], section: Section) -> int:
     """The place of a section's series among all."""
-    names = list(dict.fromkeys(id(one.measured) for one in (*pieces, *rests)))
-    return names.index(id(section.measured))
+    names = list(dict.fromkeys(one.measured.name for one in (*pieces, *rests)))
+    return names.index(section.measured.name)
 
 
 def _folds(
@@ -273,10 +273,10 @@ def _folds(
     three series and more, whole series."""
     count = len(pieces)
     scattered = min(options.folds, count)
-    names = list(dict.fromkeys(id(p.measured) for p in pieces))
+    names = list(dict.fromkeys(p.measured.name for p in pieces))
     parts = min(options.thirds, count)
     if len(names) >= parts:
-        of = [names.index(id(p.measured)) * parts // len(names) for p in pieces]
+        of = [names.index(p.measured.name) * parts // len(names) for p in pieces]
     else:
         of = [n * parts // count for n in range(count)]
     return (

@@ -56,7 +56,7 @@ def goes_with_motion(trial: Trial, options: TraceOptions) -> bool:
         for shape in effect.candidate.lines
         if effect.values.get(shape)
     ]
-    series = {id(s.measured): s.measured for s in trial.windows.segments}.values()
+    series = {s.measured.name: s.measured for s in trial.windows.segments}.values()
     for measured in series if periods else ():
         if measured.inputs:
             return False

@@ -388,15 +388,15 @@ class TraceProblem:
         """Windows whose series have what effects need of each series, and nothing of others: the
         sine of its drive, a phase of its own."""
         declared = {measured.name: measured.parameters for measured in self.measured}
-        known: dict[int, Measured] = {}
+        known: dict[str, Measured] = {}
         for segment in segments:
             measured = segment.measured
             own = dict(declared.get(measured.name, {}))
             for effect in effects:
                 own |= effect.series_values(measured.series or measured.name)
             if own != measured.parameters:
-                known.setdefault(id(measured), replace(measured, parameters=own))
-        return [replace(s, measured=known.get(id(s.measured), s.measured)) for s in segments]
+                known.setdefault(measured.name, replace(measured, parameters=own))
+        return [replace(s, measured=known.get(s.measured.name, s.measured)) for s in segments]
 
     def all_values(self, trial: Trial) -> dict[str, float]:
         """The values of all that was fitted or fixed in a trial."""
