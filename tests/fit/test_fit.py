@@ -398,6 +398,17 @@ def test_a_search_that_ends_before_a_minimum_says_so() -> None:
     assert fitted(OSCILLATOR, noisy).remarks == ()
 
 
+def test_a_search_that_ends_before_a_minimum_has_not_converged(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    exact = series(oscillation(T, 0.9))
+    assert fitted(OSCILLATOR, exact).message.startswith("converged")
+    monkeypatch.setattr("tracewire.fit.fit.unfinished", lambda *given: ["the search ended"])
+    found = fitted(OSCILLATOR, exact)
+    assert found.message.startswith("ended before a minimum")
+    assert found.remarks[0] == "the search ended"
+
+
 def test_a_series_that_begins_elsewhere_is_told() -> None:
     train, other = series(oscillation(T, 0.9)), series(oscillation(T, 0.4), "other", use="validate")
     (remark,) = fitted(OSCILLATOR, train, other).remarks
@@ -435,7 +446,7 @@ def test_a_search_whose_last_slope_promises_much_says_so_though_errors_are_large
     settled = np.tile([1.0, -1.0], 25)
     assert unfinished(told, criterion, slope, settled, "fminsearch") == []  # type: ignore[arg-type]
     (again,) = unfinished(told, criterion, slope, vector, "least_squares")  # type: ignore[arg-type]
-    assert "least_squares gains nothing more from here: begin elsewhere" in again
+    assert "least_squares gains nothing more from here: try --method growing_windows" in again
 
 
 def test_a_search_that_ends_above_where_it_began_says_so() -> None:

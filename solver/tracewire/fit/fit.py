@@ -26,6 +26,7 @@ from tracewire.fit.refusals import (
     refuse_unusable,
 )
 from tracewire.fit.remarks import (
+    ENDED,
     collect_remarks,
     raises_unseen,
     rises,
@@ -187,7 +188,7 @@ def fit(
         evaluations=evaluations,
         iterations=result.iterations,
         exitflag=result.exitflag,
-        message=result.message,
+        message=result.message.replace("converged", ENDED, 1) if short else result.message,
         seconds=time.perf_counter() - began,
         comparisons=shown,
         uncertainty=uncertainty,

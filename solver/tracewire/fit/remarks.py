@@ -17,10 +17,12 @@ Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 
 
+ENDED = "ended before a minimum"
 GO_ON = "go on with --method least_squares"
 BEGIN_ELSEWHERE = (
-    "least_squares gains nothing more from here: begin elsewhere, or fix a parameter that these "
-    "data do not determine"
+    "least_squares gains nothing more from here: try --method growing_windows, which begins with "
+    "short parts of the series; begin elsewhere; or fix a parameter that these data do not "
+    "determine"
 )
 
 
@@ -44,14 +46,14 @@ def unfinished(
     promised = np.linalg.norm(vector + matrix @ step) / max(float(np.linalg.norm(vector)), 1e-300)
     if not far and promised < DIAGNOSIS.promised:
         return [
-            "the search ended before a minimum: the slope there promises to lower the residual to "
+            f"the search {ENDED}: the slope there promises to lower the residual to "
             f"{promised:.2g} of it; {go_on}"
         ]
     if not far:
         return []
     most = max(far, key=lambda name: far[name])
     return [
-        f"the search ended before a minimum: the slope there leads {most} {far[most]:.2g} standard "
+        f"the search {ENDED}: the slope there leads {most} {far[most]:.2g} standard "
         f"errors further, so errors and intervals say nothing yet; {go_on}"
     ]
 
