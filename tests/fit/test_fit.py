@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -403,7 +404,8 @@ def test_a_search_that_ends_before_a_minimum_has_not_converged(
 ) -> None:
     exact = series(oscillation(T, 0.9))
     assert fitted(OSCILLATOR, exact).message.startswith("converged")
-    monkeypatch.setattr("tracewire.fit.fit.unfinished", lambda *given: ["the search ended"])
+    module = sys.modules[fit.__module__]
+    monkeypatch.setattr(module, "unfinished", lambda *given: ["the search ended"])
     found = fitted(OSCILLATOR, exact)
     assert found.message.startswith("ended before a minimum")
     assert found.remarks[0] == "the search ended"

@@ -115,6 +115,7 @@ def _new_flow(model: Model, numbers: int) -> Flow:
         weights=np.zeros(len(plan_of(model).term_state)),
         bound=np.full(count, FREE, dtype=np.int64),
         push=np.zeros((count, sizes.states)),
+        grip=np.zeros(count),
         counts=np.zeros(4, dtype=np.int64),
     )
 
@@ -186,6 +187,7 @@ def new_arrays(model: Model, kind: Kind) -> Arrays:
         start=np.zeros(most),
         found=np.full(most, np.inf),
         hit=ints(most),
+        grip=np.zeros(modes),
     )
     crossings = Crossings(
         how=np.full(modes, -1),

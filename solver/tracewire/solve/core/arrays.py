@@ -27,7 +27,8 @@ class Flow(NamedTuple):
     `address`: of the model's functions, in the order of FUNCTIONS. `m`: the modes (M,) and behind
     them, per mode, 1 while its guard is held at zero. `c`, `k`: constants and tables. `weights`: of
     the states in straight guards, term by term. `bound`: FREE, SLIDING or
-    RESTING per mode. `push` (M, n): how the force of a contact acts on the rates.
+    RESTING per mode. `push` (M, n): how the force of a contact acts on the rates. `grip`, per mode
+    that slides: how the rate of its guard changes with the mode, where `held` was asked last.
     `counts`: evaluations, and how many guards slide and rest.
     """
 
@@ -38,6 +39,7 @@ class Flow(NamedTuple):
     weights: Vector
     bound: Ints
     push: Matrix
+    grip: Vector
     counts: Ints
 
 
@@ -135,7 +137,7 @@ class Watch(NamedTuple):
     Of a fraction on a slide the margin is the distance to 0 or 1, of a contact its force. `to` is
     the mode beyond. A margin is `armed` once it has been positive: only then may it cross. `rows`
     (samples, margins) holds the margins over a step, `start` those where it begins, `found` where
-    in the step they cross, `hit` which of them do.
+    in the step they cross, `hit` which of them do. `grip`, per mode: that of a slide as it began.
     """
 
     mode: Ints
@@ -148,6 +150,7 @@ class Watch(NamedTuple):
     start: Vector
     found: Vector
     hit: Ints
+    grip: Vector
 
 
 class Crossings(NamedTuple):

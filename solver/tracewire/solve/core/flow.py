@@ -122,6 +122,7 @@ def _held_alone(core: int, t: float, x: Vector) -> Vector:
     for i in range(modes):
         if flow.bound[i] == SLIDING:
             change = moves[1, i]
+            flow.grip[i] = change
             if change == 0.0 and moves[0, i] == 0.0:
                 row, right = np.zeros(1), 0.0
                 right = _limit(core, t, x, i, row)
@@ -160,6 +161,7 @@ def slide_equations(core: int, t: float, x: Vector, matrix: Matrix, right: Vecto
     moves, parts = patterns(core, GUARD_RATES, t, x, len(flow.bound)), np.empty(some)
     for row in range(some):
         right[row], still = -moves[0, slides[row]], moves[0, slides[row]] == 0.0
+        flow.grip[slides[row]] = moves[1 + row, slides[row]]
         for column in range(some):
             parts[column] = moves[1 + column, slides[row]]
             still = still and parts[column] == 0.0

@@ -105,7 +105,11 @@ def watch(core: int) -> None:
         if flow.bound[i] == RESTING:
             count = _add(core, count, i, FORCE, flow.m[i], 0.0, 1.0)
     watched.armed[:] = 0
+    watched.grip[:] = 0.0
     progress.ints[WATCHED] = count
+    if flow.counts[SLIDING]:
+        held(core, progress.now[T], progress.x)
+        copy(flow.grip, watched.grip)
     margins(core, progress.now[T], progress.x, watched.start)
 
 
@@ -184,11 +188,27 @@ def margins(core: int, t: float, x: Vector, out: Vector) -> None:
     if count < total:
         both = held(core, t, x)
         for slide in range(flow.counts[SLIDING]):
-            out[count + 2 * slide] = both[slide]
-            out[count + 2 * slide + 1] = 1.0 - both[slide]
+            row = count + 2 * slide
+            out[row], out[row + 1] = both[slide], 1.0 - both[slide]
+            _mind_grip(core, row, out)
         for rest in range(flow.counts[RESTING]):
             row = count + 2 * flow.counts[SLIDING] + rest
             out[row] = both[flow.counts[SLIDING] + rest]
+
+
+@helper
+def _mind_grip(core: int, row: int, out: Vector) -> None:
+    """Let the margins of a fraction be negative where its mode moves the guard the other way.
+
+    A friction whose normal force falls through zero has a fraction that grows to infinity and comes
+    back from below. Beyond, it lies between 0 and 1 again, and nothing is held.
+    """
+    mode = watch_of(core).mode[row]
+    grip = flow_of(core).grip[mode]
+    if grip == 0.0 and np.isnan(out[row]):
+        out[row], out[row + 1] = -1.0, -1.0
+    elif grip * watch_of(core).grip[mode] < 0.0:
+        out[row], out[row + 1] = -out[row], -out[row + 1]
 
 
 @unit
