@@ -80,6 +80,16 @@ def test_a_lag_and_a_delay_of_a_drive_are_in_seconds(effect: str) -> None:
     assert unit_of_effect(found, effect, "drive.F", "tau") == "s"
 
 
+@pytest.mark.parametrize(("load", "unit"), [("N", ""), ("Pa", "N/Pa")])
+def test_a_friction_that_grows_with_a_drive_has_a_share_in_the_unit_of_both(
+    load: str, unit: str
+) -> None:
+    push = "  push: {type: gain, of: p, k: 0.01}\n"
+    driven = f"inputs: {{p: {{unit: {load}}}}}\n{CART.replace('[spring]', '[spring, push]')}{push}"
+    found = replace(FOUND, original=read_text(driven), units=CART_UNITS | {"p": load})
+    assert unit_of_effect(found, "load_friction", "force", "share") == unit
+
+
 @pytest.mark.parametrize(
     ("term", "unit"), [("offset", "rad"), ("drift", "rad/s"), ("delay", "s"), ("gain", "")]
 )

@@ -20,10 +20,10 @@ from tracewire.library import SENSOR_TERMS
 from tracewire.trace.candidates.places import Place, find_places
 from tracewire.trace.found import Found, FoundEffect, Power
 
-BASES = "FQVT"
-"""Of exponents: what is summed at the place, its coordinate, its rate, and time."""
+BASES = "FQVTU"
+"""Of exponents: what is summed at the place, its coordinate, its rate, time, and the drive."""
 SYMBOL_UNITS: dict[str, Term] = {
-    "q": {"\0Q": 1.0}, "v": {"\0V": 1.0}, "a": {"\0V": 1.0, "\0T": -1.0}, "u": {"\0F": 1.0},
+    "q": {"\0Q": 1.0}, "v": {"\0V": 1.0}, "a": {"\0V": 1.0, "\0T": -1.0}, "u": {"\0U": 1.0},
     "other_q": {"\0Q": 1.0}, "other_v": {"\0V": 1.0},
 }  # fmt: skip
 RATE_OF_COORDINATE: Term = {"\0V": 1.0, "\0Q": -1.0, "\0T": 1.0}
@@ -84,23 +84,26 @@ def _places(found: Found) -> Mapping[str, Place]:
     return {place.name: place for place in find_places(model)}
 
 
-def _units_of(found: Found, place: Place) -> tuple[str, str, str, str]:
-    """The units of the sum (or drive), of the coordinate, of the rate, and of time."""
+def _units_of(found: Found, place: Place) -> tuple[str, str, str, str, str]:
+    """The units of the sum (or drive), of the coordinate, of the rate, of time, and of the drive;
+    the last is not known where the drives of a sum have several."""
     units = found.units
     if place.kind != "sum":
-        return units.get(place.definition, ""), "", "", "s"
+        own = units.get(place.definition, "")
+        return own, "", "", "s", own
+    drives = {units.get(drive, "") for drive in place.drive}
     rate = units.get(place.v, "")
     coordinate = units.get(place.q, "") or (_product([(rate, 1.0), ("s", 1.0)]) if rate else "")
     own = units.get(place.name, "")
     if not own and place.a == place.name and coordinate:
         own = _product([(coordinate, 1.0), ("s", -2.0)])
     rate = rate or (_product([(coordinate, 1.0), ("s", -1.0)]) if coordinate else "")
-    return own, coordinate, rate, "s"
+    return own, coordinate, rate, "s", drives.pop() if len(drives) == 1 else ""
 
 
-def _is_of_coordinate(units: tuple[str, str, str, str]) -> bool:
+def _is_of_coordinate(units: tuple[str, ...]) -> bool:
     """Whether the rate of a place is in the unit of its coordinate over time."""
-    _, coordinate, rate, _ = map(dimension_of, units)
+    coordinate, rate = map(dimension_of, units[1:3])
     return coordinate is None or rate is None or times(rate, SECOND) == coordinate
 
 
