@@ -75,6 +75,18 @@ def test_when_a_brake_lets_go_is_no_matter_of_the_span(method: str, end: float) 
     assert first == pytest.approx(math.acos(0.125) / 2, abs=1e-9)
 
 
+@pytest.mark.parametrize(("A", "w", "G"), [(16.1734, 2.7778, 3.0), (14.6145, 2.3654, 1.0)])
+def test_a_brake_that_begins_to_hold_at_nothing_lets_go_as_any(
+    A: float, w: float, G: float
+) -> None:
+    """Where the run begins, the normal force and the pull are both zero."""
+    text = BRAKE.replace("cos(", "sin(").replace("brake + F", "brake + F*sin(3*t)")
+    run = simulate(compile(read_text(text)), parameters={"A": A, "w": w, "F": G}, rtol=1e-9)
+    first = next(event.time for event in run.events if event.kind == "slip")
+    exact = brentq(lambda t: 0.4 * A * math.sin(w * t) - abs(G * math.sin(3 * t)), 1, 3 / w)
+    assert first == pytest.approx(exact, abs=1e-9)
+
+
 @settings(max_examples=25, deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_two_brakes_of_coupled_bodies_let_go_as_with_short_steps(seed: int) -> None:

@@ -105,11 +105,11 @@ def watch(core: int) -> None:
         if flow.bound[i] == RESTING:
             count = _add(core, count, i, FORCE, flow.m[i], 0.0, 1.0)
     watched.armed[:] = 0
-    watched.grip[:] = 0.0
     progress.ints[WATCHED] = count
     if flow.counts[SLIDING]:
         held(core, progress.now[T], progress.x)
-        copy(flow.grip, watched.grip)
+        for i in range(len(flow.grip)):  # where it begins at nothing it is to hold, as all do
+            watched.grip[i] = flow.grip[i] if flow.grip[i] != 0.0 else -1.0
     margins(core, progress.now[T], progress.x, watched.start)
 
 
