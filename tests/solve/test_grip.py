@@ -83,7 +83,7 @@ def test_a_brake_that_begins_to_hold_at_nothing_lets_go_as_any(
     text = BRAKE.replace("cos(", "sin(").replace("brake + F", "brake + F*sin(3*t)")
     run = simulate(compile(read_text(text)), parameters={"A": A, "w": w, "F": G}, rtol=1e-9)
     first = next(event.time for event in run.events if event.kind == "slip")
-    exact = brentq(lambda t: 0.4 * A * math.sin(w * t) - abs(G * math.sin(3 * t)), 1, 3 / w)
+    exact = brentq(lambda t: 0.4 * A * math.sin(w * t) - abs(G * math.sin(3 * t)), 1, math.pi / w)
     assert first == pytest.approx(exact, abs=1e-9)
 
 
