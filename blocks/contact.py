@@ -12,7 +12,7 @@ RESTITUTION = Parameter(
     "restitution", doc="1: elastic, 0: the body stays", default=0.0, low=0.0, high=1.0
 )
 FORCE = Input("force", doc="on the body, but for that of the contact: N, or N m", default="0")
-MASS = Parameter("mass", doc="kg, or kg m^2", default=1.0, low=0.0)
+MASS = Parameter("mass", doc="kg, or kg m^2", default=1.0, above=0.0)
 START = Parameter("start", doc="the position at the start: m, or rad", default=0.0)
 START_RATE = Parameter("start_rate", doc="the rate at the start: m/s, or rad/s", default=0.0)
 BODY = (

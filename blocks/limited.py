@@ -8,7 +8,7 @@ START = Parameter("start", doc="the value at the start of the run", default=0.0)
 limited_integrator = Block(
     name="limited_integrator",
     doc="The integral of a signal, which stops at its limits and leaves them with the signal.",
-    require=("low <= high",),
+    require=("low <= start", "start <= high"),
     inputs=(OF,),
     parameters=(
         Parameter("low", doc="the lower limit"),

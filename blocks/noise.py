@@ -6,13 +6,14 @@ PERIOD = Parameter("period", "s", "the time that a value is kept", above=0.0)
 SEED = Parameter(
     "seed", doc="a whole number: another one gives other values; a list gives a vector", low=0.0
 )
+WHOLE = "floor(seed) >= seed"
 K = "floor(t/period)"
 SOURCE = "Random numbers: permutations of the number of the period, tracewire/compile/draws.py."
 
 random_steps = Block(
     name="random_steps",
     doc="Steps to random levels, all equally likely between two limits, at each period.",
-    require=("low <= high",),
+    require=("low <= high", WHOLE),
     parameters=(
         PERIOD,
         SEED,
@@ -26,6 +27,7 @@ random_steps = Block(
 noise = Block(
     name="noise",
     doc="White noise up to 1/(2*period): a normally distributed value at each period.",
+    require=(WHOLE,),
     parameters=(
         PERIOD,
         SEED,

@@ -236,6 +236,18 @@ def test_sweep(call: Any, forced: Path, tmp_path: Path) -> None:
     assert figure.exists()
 
 
+@pytest.mark.parametrize(
+    ("over", "given"),
+    [("omega=1:2:3", ("--set", "omega=1")), ("start.x=0:1:2", ("--start", "x=0"))],
+)
+def test_what_is_swept_cannot_be_set(
+    call: Any, forced: Path, over: str, given: tuple[str, str]
+) -> None:
+    told = call("sweep", forced, "--over", over, "--keep", "end(x)", *given)
+    assert told.code == 2
+    assert "is set to one value, and has values in --over. Leave one of the two out." in told.err
+
+
 def test_values_that_fail_are_counted(call: Any, tmp_path: Path) -> None:
     file = tmp_path / "root.yaml"
     file.write_text(

@@ -101,6 +101,15 @@ def test_a_unit_that_is_not_that_of_the_quantity_is_refused(
     assert "swing.yaml:8:17: 'max(v)' is in m/s, and its unit is 'm'" in told.err
 
 
+def test_units_that_contradict_each_other_are_refused_as_without_statements(
+    call: Any, tmp_path: Path
+) -> None:
+    wrong = "  odd: {type: sum, of: [x, v]}\nexpect: [{that: max(v), is: 2, within: 1}]\n"
+    told = [call("check", *way, diagram(tmp_path, wrong)) for way in (["--expect"], [])]
+    assert [one.code for one in told] == [2, 2]
+    assert "'x' (line" in told[0].err and told[0].err == told[1].err
+
+
 def test_a_diagram_from_stdin_is_measured(call: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     content = (SWING + RIGHT).encode()
     monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(content)))

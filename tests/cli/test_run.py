@@ -64,6 +64,16 @@ def test_the_exact_swing_without_friction(call: Any, swing: Path) -> None:
     assert data["final"]["theta"] == pytest.approx(end, abs=1e-7)
 
 
+def test_the_step_of_rk4_is_an_option(call: Any, swing: Path) -> None:
+    ends = [
+        call("run", swing, "--preset", "free", "--json", *way).data["final"]["theta"]
+        for way in (["--method", "rk4", "--step", "0.01"], ["--rtol", "1e-9"])
+    ]
+    assert ends[0] == pytest.approx(ends[1], abs=1e-7)
+    told = call("run", swing, "--method", "rk4")
+    assert told.code == 2 and "step" in told.err
+
+
 @pytest.mark.parametrize(
     ("text", "name", "value"),
     [

@@ -40,6 +40,7 @@ def shell(command: str, folder: Path) -> tuple[int, str, str]:
         ("tw blocks >/dev/full", 1, "stdout cannot be written: No space left on device.\n"),
         ("tw blocks --json >/dev/full", 1, "stdout cannot be written: No space left on device.\n"),
         ("tw blocks --json >/dev/full 2>/dev/full", 1, ""),
+        ("tw run swing.yaml >/dev/full", 1, "stdout cannot be written: No space left on device.\n"),
         ("tw check no.yaml 2>/dev/full", 2, ""),
         ("tw check no.yaml >&- 2>&-", 2, ""),
         ("tw check no.yaml --json >/dev/full 2>/dev/full", 2, ""),
@@ -48,6 +49,8 @@ def shell(command: str, folder: Path) -> tuple[int, str, str]:
 def test_a_stream_that_takes_nothing_ends_quietly(
     tmp_path: Path, command: str, code: int, said: str
 ) -> None:
+    swing = "span: [0, 1]\nblocks:\n  x: {type: integrator, of: x, start: 1}\n"
+    (tmp_path / "swing.yaml").write_text(swing, encoding="utf-8")
     assert shell(command, tmp_path)[::2] == (code, said)
 
 

@@ -158,6 +158,21 @@ blocks:
     assert "; so it is in 4 other blocks of this line. " in only
 
 
+def test_plain_numbers_are_no_units() -> None:
+    text = """
+parameters: {rate: {value: 1}}
+blocks:
+  u: {type: step, height: 1}
+  x: {type: integrator, of: dx}
+  dx: {type: sum, of: [u, -x]}
+  y: {type: integrator, of: dy}
+  dy: {type: expression, formula: -y - rate*y**2}
+"""
+    assert told(text) == []
+    assert told(text.replace("{value: 1}", "{value: 1, unit: 1/s}"))
+    assert told(text.replace("of: dx}", "of: dx, unit: m}"))
+
+
 def test_what_is_left_open_is_told_by_its_name() -> None:
     more = """
   nothing: {type: constant, value: 0}

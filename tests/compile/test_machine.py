@@ -53,6 +53,8 @@ def test_paper_a_is_the_same_in_both_back_ends() -> None:
 GIVEN = {
     "denominator": "[2, 0.3, 1]",
     "register": "[1, 0, 0]",
+    "seed": "3",
+    "limited_integrator.low": "-0.3",
     "off_at": "0.2",
     "times": "[0, 1, 1]",
     "rows": "[0, 1]",

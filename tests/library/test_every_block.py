@@ -56,7 +56,7 @@ BAD = {
     ),
     "prbs": ("period: 1, register: [1, 2]", "parameter 'register' must be at most 1, not 2."),
     "random_steps": ("period: 1, seed: 1, low: 3", "must meet low <= high, and low = 3, high = 1."),
-    "noise": ("period: 1, seed: 1, sigma: -1", "'sigma' must be at least 0, not -1."),
+    "noise": ("period: 1, seed: 1.5, sigma: 1", "must meet floor(seed) >= seed, and seed = 1.5."),
     "unit_delay": ("of: u, period: 0", NOT_ABOVE.format("period", " s", 0)),
     "discrete_integrator": ("of: u, period: 1, weight: 2", "'weight' must be at most 1, not 2."),
     "discrete_transfer_function": (

@@ -13,7 +13,7 @@ from scipy.signal import chirp, sawtooth, square
 from tracewire.compile import compile
 from tracewire.diagram import read
 from tracewire.residual import Measured, load_measured
-from tracewire.residual.inputs import line_error, looks_held, spline_if_smooth
+from tracewire.residual.inputs import fit_spline, line_error, looks_held, spline_if_smooth
 from tracewire.solve import Held, simulate, values_at, with_points
 
 Vector = NDArray[np.float64]
@@ -68,6 +68,15 @@ def test_a_smooth_input_is_followed_between_its_samples(name: str, irregular: fl
     # what is left goes up and down within an interval: its integral is much smaller
     summed = np.cumsum(off) * (fine[1] - fine[0])
     assert np.max(np.abs(summed)) < 2e-5
+
+
+def test_a_declared_spline_goes_through_few_samples() -> None:
+    t, u = np.arange(5.0), np.array([1.0, -1.0, 3.0, 0.0, 0.0])
+    times, points = fit_spline(t, u)
+    assert np.interp(t, times, points) == pytest.approx(u, abs=1e-3 * np.ptp(u))
+    between = np.linspace(0, 4, 201)
+    exact = CubicSpline(t, u)(between)
+    assert np.interp(between, times, points) == pytest.approx(exact, abs=2e-3 * np.ptp(u))
 
 
 def test_a_sine_with_little_noise_is_smooth() -> None:

@@ -205,6 +205,16 @@ def test_the_step_of_readings_is_found_where_some_are_missing() -> None:
     assert rounding_step(np.arange(4.0)) == 0.0
 
 
+def test_a_steady_motion_is_not_rounded_to_what_it_moves_by() -> None:
+    """A rotor at a constant rate: its angle at even times was read as that of a coarse encoder."""
+    t = np.linspace(0, 6, 121)
+    noisy = 2 * t + white(1e-3, len(t))
+    assert rounding_step(noisy) == 0.0
+    assert noise_of_signal(noisy, t).level == pytest.approx(1e-3, rel=0.5)
+    counted = 1e-3 * np.round(0.37 * t / 0.05)
+    assert rounding_step(counted) == pytest.approx(1e-3)
+
+
 def test_a_declared_sigma_wins_and_says_so() -> None:
     values = sine(200) + white(1e-3)
     declared = Measured("run", "train", N * 0.01, {"x": values}, {"x": 0.25})

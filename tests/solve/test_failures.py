@@ -98,6 +98,53 @@ def test_a_run_whose_parameters_do_not_meet_what_is_required_is_refused() -> Non
     assert "see its section 'require'" in told
 
 
+BOUNDED = """\
+span: [0, 1]
+parameters: {e: 0.5}
+blocks:
+  weight: {type: constant, value: -9.81}
+  ball: {type: bouncing_body, force: weight, restitution: 2*e - 0.5, start: 1}
+  outer: {type: damped, drag: e}
+subsystems:
+  damped:
+    parameters: {drag: 1}
+    outputs: {v: v}
+    blocks:
+      v: {type: integrator, of: friction, start: 1}
+      friction: {type: viscous, rate: v, c: drag - 0.1}
+"""
+
+
+@pytest.mark.parametrize(
+    ("e", "told"),
+    [
+        (0.2, "block 'ball': the parameters do not meet '2*e - 0.5 >= 0': e = 0.2"),
+        (0.8, "block 'ball': the parameters do not meet '2*e - 0.5 <= 1': e = 0.8"),
+        (0.05, "block 'outer.friction': the parameters do not meet 'outer.drag - 0.1 >= 0'"),
+    ],
+)
+def test_the_bounds_of_a_block_hold_for_formulas_and_inside_subsystems(e: float, told: str) -> None:
+    model = compile(read_text(BOUNDED))
+    assert simulate(model).final
+    with pytest.raises(SimulationError) as caught:
+        simulate(model, parameters={"e": e})
+    assert told in str(caught.value)
+    assert "Its block '" in str(caught.value)
+
+
+def test_the_bounds_of_a_block_hold_for_each_element_of_a_list() -> None:
+    text = """\
+span: [0, 1]
+parameters: {a: 1, b: 1}
+blocks:
+  v: {type: integrator, of: friction, start: [1, 1]}
+  friction: {type: viscous, rate: v, c: [a, b]}
+"""
+    model = compile(read_text(text))
+    with pytest.raises(SimulationError, match="do not meet 'b >= 0': b = -1"):
+        simulate(model, parameters={"b": -1})
+
+
 def test_of_many_rows_only_those_fail_that_do_not_meet_what_is_required() -> None:
     runs = simulate_many(compile(read_text(REQUIRED)), {"m": [1.0, 3.0, -1.0, 2.0]})
     assert sorted(runs.errors) == [1, 2]

@@ -184,3 +184,28 @@ def test_a_body_that_is_struck_as_it_leaves_a_wall_meets_the_wall_again(method: 
         method=method,
     )
     assert found.final == pytest.approx({"x": 0.25, "v": 0.25, "impacts": 2, "blows": 1}, abs=1e-9)
+
+
+@pytest.mark.parametrize("start", [0.9, -0.9])
+@pytest.mark.parametrize("method", METHODS)
+def test_the_floor_of_a_rate_that_friction_holds_is_that_of_zero(start: float, method: str) -> None:
+    """Its guard is zero but for rounding. It stayed at -1 until another event."""
+    found = run(
+        f"""
+        span: [0, 4]
+        record: [whole, v]
+        blocks:
+          x: {{type: integrator, of: v}}
+          v: {{type: integrator, of: a, start: {start}}}
+          friction: {{type: coulomb, rate: v, level: 1}}
+          a: {{type: expression, formula: friction + 0.5*sin(3*t)}}
+          whole: {{type: expression, formula: floor(2*sin(v))}}
+          other: {{type: sign, of: later}}
+          later: {{type: expression, formula: t - 2.5}}
+          y: {{type: integrator, of: other}}
+        """,
+        method=method,
+    )
+    held = next(event.time for event in found.events if event.kind == "stick")
+    assert not np.any(found["v"][found.t > held])
+    assert not np.any(found["whole"][found.t > held])

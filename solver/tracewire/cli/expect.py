@@ -7,7 +7,7 @@ from pathlib import Path
 
 import typer
 
-from tracewire.cli.options import read_diagram
+from tracewire.cli.options import note_units, read_diagram
 from tracewire.cli.output import print_json, print_table, print_text, working
 from tracewire.cli.progress import stages
 from tracewire.errors import DiagramError, OptionError, Problem, TracewireError
@@ -23,7 +23,7 @@ def check_expected(
     table, and end with the exit code 1 where one fails. Raises OptionError, DiagramError.
     """
     from tracewire.analyse import Judge, counts_of
-    from tracewire.compile import statement_problems
+    from tracewire.compile import statement_problems, unit_problems
     from tracewire.diagram import Diagram
     from tracewire.paper import with_identification
     from tracewire.show import statement_data, statements_table
@@ -38,7 +38,13 @@ def check_expected(
             try:
                 diagram = read_diagram(file, libraries)
                 chosen = (lesson or diagram).expect
-                if wrong := statement_problems(judge.model(diagram), chosen):
+                model = judge.model(diagram)
+                wrong = statement_problems(model, chosen)
+                if lesson is None:
+                    wrong = [*unit_problems(model.flat), *wrong]
+                else:  # a solution is marked as it stands
+                    note_units(model)
+                if wrong:
                     raise DiagramError(wrong)
                 diagrams.append(diagram)
             except TracewireError as error:

@@ -60,17 +60,24 @@ def load_model(
     Raises DiagramError, BlockError, OptionError.
     """
     with working(f"compiling {path}"):
-        from tracewire.compile import compile, unit_problems
+        from tracewire.compile import compile
         from tracewire.diagram import read
 
         model = compile(read(path, libraries or ()), record or ())
-        contradictions = unit_problems(model.flat)
+    note_units(model)
+    return model
+
+
+def note_units(model: Model) -> None:
+    """Tell units that contradict each other on stderr."""
+    from tracewire.compile import unit_problems
+
+    contradictions = unit_problems(model.flat)
     for problem in contradictions[: LIMITS.contradictions]:
         note(f"units: {problem}")
     more = len(contradictions) - LIMITS.contradictions
     if more > 0:
         note(f"units: {more} more; `tracewire check` tells them all.")
-    return model
 
 
 def read_series(model: Model, name: str) -> tuple[Options, Measured | None]:

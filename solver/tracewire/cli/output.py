@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -71,7 +72,9 @@ def print_table(table: Table) -> None:
     from rich.text import Text
 
     terminal = sys.stdout.isatty()
-    console = Console(width=None if terminal else LIMITS.pipe_width, highlight=False)
+    lines = StringIO()  # rich itself would fail at a full disk
+    width = None if terminal else LIMITS.pipe_width
+    console = Console(file=lines, force_terminal=terminal, width=width, highlight=False)
     shown = RichTable(
         title=Text(visible(table.title), style="bold") if table.title else None,
         title_justify="left",
@@ -88,9 +91,8 @@ def print_table(table: Table) -> None:
         )
     for row in table.rows:
         shown.add_row(*(Text(visible(cell)) for cell in row))  # Text: `[rad]` is no markup
-    with console.capture() as captured:
-        console.print(shown)
-    _echo(captured.get(), nl=False)
+    console.print(shown)
+    _echo(lines.getvalue(), nl=False)
 
 
 def print_parts(parts: Iterable[str | Table]) -> None:

@@ -81,13 +81,19 @@ class Accuracy:
     atol: Annotated[
         float | None, typer.Option(help="The absolute tolerance; rtol/1000 unless given.")
     ] = None
+    step: Annotated[
+        float | None, typer.Option(help="The step of rk4 in s.", show_default=False)
+    ] = None
 
     @property
     def options(self) -> Options:
         """These, as `simulate` takes them."""
         from tracewire.solve import Options
 
-        return Options(method=self.method, rtol=self.rtol, atol=self.atol)
+        options = Options(method=self.method, rtol=self.rtol, atol=self.atol)
+        if self.step is not None:
+            options["step"] = self.step
+        return options
 
 
 @dataclass(frozen=True)

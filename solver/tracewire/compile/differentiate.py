@@ -82,12 +82,12 @@ def _rate(tape: Tape, index: int, inner: list[int]) -> int:
         return push("+", da, push("*", past_rate(tape, index), inner[1]))
     if entry.op == "recorded":  # operands: record, s
         return push("*", past_rate(tape, index), inner[1])
+    if entry.op == "neg":
+        return push("neg", da)
+    if entry.op == "sqrt":
+        return _root_rate(tape, a, da)
     if len(entry.operands) == 1:
-        return (
-            push("*", slope_of(tape, entry.op, a, index), da)
-            if entry.op != "neg"
-            else (push("neg", da))
-        )
+        return push("*", slope_of(tape, entry.op, a, index), da)
     b, db = entry.operands[1], inner[1]
     match entry.op:
         case "+" | "-":
@@ -102,6 +102,20 @@ def _rate(tape: Tape, index: int, inner: list[int]) -> int:
             square = push("+", push("*", a, a), push("*", b, b))
             return push("/", push("-", push("*", da, b), push("*", a, db)), square)
     raise AssertionError(f"no derivative of {entry.op}")
+
+
+def _root_rate(tape: Tape, a: int, da: int) -> int:
+    """The derivative of the square root of an entry, which has the derivative `da`.
+
+    That of sqrt(max(h, 0)) is 0 where the 0 is chosen, and not 0/0.
+    """
+    if da == tape.constant(0.0):
+        return da
+    chosen, rates = tape.entries[a], tape.entries[da]
+    if chosen.op == rates.op == "select" and chosen.operands[0] == rates.operands[0]:
+        sides = zip(chosen.operands[1:], rates.operands[1:], strict=True)
+        return tape.push("select", chosen.operands[0], *(_root_rate(tape, *one) for one in sides))
+    return tape.push("*", slope_of(tape, "sqrt", a, tape.push("sqrt", a)), da)
 
 
 def past_rate(tape: Tape, index: int) -> int:

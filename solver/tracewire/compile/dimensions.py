@@ -31,8 +31,12 @@ HINT = "Correct a unit, or give the number between them a unit. What has no unit
 
 
 def unit_problems(flat: Flat) -> list[Problem]:
-    """Where the units of a model contradict each other, each with its place and both units."""
-    return _Units(flat).problems()
+    """Where the units of a model contradict each other, each with its place and both units.
+
+    None where a diagram has no unit at all, as `x' = -x` of a textbook, which is in plain numbers.
+    """
+    own = (parameter.unit for name, parameter in flat.parameters.items() if "." not in name)
+    return _Units(flat).problems() if any((*own, *flat.units.values())) else []
 
 
 def unit_of(flat: Flat, formula: Expression) -> tuple[Term | None, list[Problem]]:

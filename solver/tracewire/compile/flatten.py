@@ -65,6 +65,14 @@ def flatten(diagram: Diagram) -> Flat:
     return replace(flat, signals=signals, loops=loops)
 
 
+def _bounds(parameter: Parameter, value: Expression) -> list[Expression]:
+    """What the bounds of a parameter ask of its value, or of each element of a list."""
+    if isinstance(value, Call) and value.function == "stack":
+        return [bound for element in value.arguments for bound in _bounds(parameter, element)]
+    limits = ((">", parameter.above), (">=", parameter.low), ("<=", parameter.high))
+    return [Call(name, (value, Number(limit))) for name, limit in limits if limit is not None]
+
+
 def _scaled(formula: Expression, factor: float) -> Expression:
     if factor == 1.0:
         return formula
@@ -291,13 +299,11 @@ class _Flattener:
             curve_tables(full, self.tables)
             return without_zero_products(full)
 
-        bounds = [
-            Call(">", (Name(parameter.name), Number(parameter.above)))
-            for parameter in block.parameters
-            if parameter.above is not None
-        ]
-        for condition in (*block.conditions, *bounds):
-            given = written(condition)
+        conditions = [written(condition) for condition in block.conditions]
+        for parameter in block.parameters:
+            if not isinstance(use.settings.get(parameter.name), Points):
+                conditions += _bounds(parameter, written(Name(parameter.name)))
+        for given in conditions:
             if names_of(given) and not has_vectors(given):
                 self.require.append(Condition(given, place, f"Its block '{block.name}' needs it."))
         one = len(block.outputs) == 1

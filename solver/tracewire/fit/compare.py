@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.fit.result import Comparison
+from tracewire.fit.weighing import noise_instead_of_units
 from tracewire.residual import (
     Criterion,
     Measured,
@@ -39,7 +40,8 @@ def outputs_by_series(
         fixed = {**criterion.parameters, **named}
         free = [u for u in own_unknowns([segment.measured]) if u.name not in fixed]
         if segment.free or free:
-            alone = Criterion(criterion.model, [segment], free, fixed, criterion.rtol)
+            sigma = noise_instead_of_units(criterion.model, [segment.measured])
+            alone = Criterion(criterion.model, [segment], free, fixed, criterion.rtol, sigma)
             numbers, (own,) = alone.unpack(solve_least_squares(alone, alone.initial_unknowns()).z)
             fixed |= numbers
         _fill(found, criterion, segment, fixed, own)

@@ -43,7 +43,7 @@ class Diagnosis:
     `independence` holds by measured input, by signal of time alone that drives the model, and by
     the simulated signal itself, the probability that something independent of it follows it as
     closely. `outliers` is the share of samples beyond 4 robust standard deviations. `words` says it
-    in a sentence.
+    in a sentence, `is_missing` whether it says that something is missing.
     """
 
     series: str
@@ -66,6 +66,7 @@ class Diagnosis:
     words: str
     driven: InputNoise | None = None
     estimate: NoiseEstimate | None = None
+    is_missing: bool = False
 
     @property
     def is_white(self) -> bool:
@@ -307,4 +308,4 @@ def _with_words(found: Diagnosis, measured: Measured) -> Diagnosis:
     if found.outliers > 0.005 and not lacks:  # what a model lacks is large where it acts
         share = f"{100 * found.outliers:.2g} %"
         words += f"; {share} are outliers, beyond {DIAGNOSIS.far:g} standard deviations"
-    return replace(found, words=words)
+    return replace(found, words=words, is_missing=lacks)

@@ -36,6 +36,7 @@ from tracewire.fit.remarks import (
 from tracewire.fit.result import Comparison, Fit, Improvement
 from tracewire.fit.search import MethodResult, Progress, Search, Stopped
 from tracewire.fit.uncertainty import uncertainty_of
+from tracewire.fit.weighing import noise_instead_of_units, weighing_words
 from tracewire.options import options_of
 from tracewire.residual import (
     Criterion,
@@ -124,7 +125,8 @@ def fit(
         train = [with_past(model, m, "each segment of multiple_shooting", moving) for m in train]
     segments = [whole_segment(model, m) for m in train]
     others = [whole_segment(model, m) for m in series if m.use != "train"]
-    criterion = Criterion(model, segments, unknowns, parameters or {}, rtol, loss=loss)
+    sigma = noise_instead_of_units(model, train)
+    criterion = Criterion(model, segments, unknowns, parameters or {}, rtol, sigma, loss=loss)
     refuse_few_samples(criterion)
 
     first = criterion.initial_unknowns()
@@ -204,6 +206,7 @@ def fit(
             *rises(criterion_before, value, method),
             *starts_elsewhere(model, series, shown),
             *raises_unseen(shown, method),
+            *weighing_words(model, sigma),
             *collect_remarks(series, failures, last),
         ),
     )

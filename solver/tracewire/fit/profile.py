@@ -14,6 +14,7 @@ from tracewire.errors import FitError, OptionError, Problem, unknown
 from tracewire.fit.limits import PROFILE
 from tracewire.fit.result import Fit
 from tracewire.fit.uncertainty import criterion_unit
+from tracewire.fit.weighing import noise_instead_of_units
 from tracewire.residual import Criterion, Unknown, solve_least_squares, whole_segment
 from tracewire.result import Result
 
@@ -106,8 +107,9 @@ class _Held:
         unknowns = [
             Unknown(n, value, *fit.bounds[n], _size(fit, n)) for n, value in fit.values.items()
         ]
+        self.sigma = noise_instead_of_units(fit.model, train)
         free = Criterion(
-            fit.model, self.segments, unknowns, fit.parameters, fit.rtol, loss=fit.loss
+            fit.model, self.segments, unknowns, fit.parameters, fit.rtol, self.sigma, loss=fit.loss
         )
         starts = [
             fit.starts.get(segment.measured.name, {})[state]
@@ -142,6 +144,7 @@ class _Held:
             self.unknowns,
             {**self.fit.parameters, self.name: value},
             self.fit.rtol,
+            self.sigma,
             loss=self.fit.loss,
         )
         if len(z):

@@ -78,10 +78,11 @@ class Fit(Result):
     `values` are the free parameters by name in SI (those of a sensor are `offset.SIGNAL`,
     `gain.SIGNAL`, `delay.SIGNAL`), `began` what they were before. `starts` holds the fitted start
     values by series and state. `criterion` is the sum over series and signals of
-    mean(residual^2)/2 of the train series, in SI, or in sigma where these are declared; with
-    weights and another loss where these are given. `evaluations` counts evaluations of the
-    criterion; one with sensitivities counts as one plus the number of free parameters. `history`
-    holds each new best of the search. `parameters` were given for the fit, `rtol` is that of its
+    mean(residual^2)/2 of the train series, in SI, or in sigma where these are declared, or where
+    the signals have different units (`fit.weighing`); with weights and another loss where these are
+    given. `evaluations` counts evaluations of the criterion; one with sensitivities counts as one
+    plus the number of free parameters. `history` holds each new best of the search. `parameters`
+    were given for the fit, `rtol` is that of its
     runs. `exitflag` is 1 where the search converged, 0 where a limit ended it, -1 where an output
     function or Ctrl-C did (`interrupted`). `uncertainty` is what the data say of the values,
     `remarks` what a reader must know: runs that failed, series whose data are odd.

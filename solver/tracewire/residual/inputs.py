@@ -73,7 +73,8 @@ def spline_if_smooth(t: Vector, u: Vector) -> tuple[Vector, Vector] | None:
     The points are those whose straight lines come closest to the spline in the mean square (the L2
     projection on linear splines). What is left changes its sign twice from point to point, so that
     a mechanism integrates it away; it is at most about a thousandth of the input's range, for which
-    there are up to 8 points for each sample: a run takes as much longer as there are more.
+    there are up to 8 points for each sample, or 1000 in all: a run takes as much longer as there
+    are more.
     """
     if len(t) < INPUT.fewest_samples or not np.all(np.diff(t) > 0):
         return None
@@ -85,15 +86,21 @@ def spline_if_smooth(t: Vector, u: Vector) -> tuple[Vector, Vector] | None:
 
 def fit_spline(t: Vector, u: Vector) -> tuple[Vector, Vector]:
     """The points whose straight lines come closest to the cubic spline through an input."""
-    lines, _ = _errors(t, u)
-    # lines err by the square of the interval: a quarter of `lines` on all samples
-    size = float(np.ptp(u)) or 1.0
-    factor = int(np.clip(np.ceil(np.sqrt(lines / (4 * INPUT.fine * size))), 1, INPUT.finest))
-    count = (len(t) - 1) * factor + 1
-    times = np.interp(np.arange(count) / factor, np.arange(len(t)), t)
     from scipy.interpolate import CubicSpline
 
-    return times, project_on_lines(CubicSpline(t, u), times)
+    spline, size = CubicSpline(t, u), float(np.ptp(u)) or 1.0
+    finest = max(INPUT.finest, INPUT.few_points // len(t))
+    lines, _ = _errors(t, u)
+    # lines err by the square of the interval: a quarter of `lines` on all samples
+    factor = int(np.clip(np.ceil(np.sqrt(lines / (4 * INPUT.fine * size))), 1, finest))
+    while True:
+        count = (len(t) - 1) * factor + 1
+        times = np.interp(np.arange(count) / factor, np.arange(len(t)), t)
+        points = project_on_lines(spline, times)
+        # few samples say too little of the curve between them: what is left at them shows it
+        if 2 * factor > finest or np.max(np.abs(points[::factor] - u)) <= INPUT.fine * size:
+            return times, points
+        factor *= 2
 
 
 def _errors(t: Vector, u: Vector) -> tuple[float, float]:

@@ -87,6 +87,10 @@ class ReadingLimits:
     """Steps of the least gap, at most."""
     coarse: float = 1e3
     """Steps of the median gap, at most."""
+    even: float = 0.1
+    """By this part at most do changes from sample to sample differ where a motion is steady,"""
+    mostly: float = 0.95
+    """in so many of them at least: no rounding is seen there."""
     timed: float = 0.2
     """What local quartics leave of samples that were taken where a counter stepped, in units of
     what rounding would leave, at most."""
@@ -117,7 +121,9 @@ class InputLimits:
     fine: float = 1e-3
     """The same for what may be left between the points."""
     finest: int = 8
-    """Points for one sample, at most."""
+    """Points for one sample, at most, of an input of more than `few_points` points."""
+    few_points: int = 1000
+    """Points of an input that cost a run little, however few its samples are."""
     lost: float = 5e-3
     """The part of an input's amplitude that straight lines lose, from which on it is told."""
     draws: int = 64

@@ -64,6 +64,8 @@ def _common_step(values: Vector) -> float:
     steps = steps[steps > 1e-9 * size]
     if len(steps) < READING.fewest_steps:
         return 0.0
+    if _is_even(values):
+        return 0.0
     least = float(np.median(steps[steps < 1.2 * np.min(steps)]))
     for parts in range(1, READING.most_parts + 1):  # the least gap may be several steps
         multiples = steps * parts / least
@@ -71,6 +73,14 @@ def _common_step(values: Vector) -> float:
         if np.median(multiples) < READING.coarse and np.mean(near) > 0.95:
             return least / parts
     return 0.0
+
+
+def _is_even(values: Vector) -> bool:
+    """Whether readings rise, or fall, by the same from sample to sample: a steady motion does so,
+    while one that is rounded also does steps of one more or less."""
+    changes = np.diff(values)
+    usual = float(np.median(changes))
+    return bool(np.mean(np.abs(changes - usual) < READING.even * abs(usual)) > READING.mostly)
 
 
 def interpolation(values: Vector) -> tuple[int, int]:

@@ -178,7 +178,7 @@ def plot_fitted(fit: Fit, path: Path) -> Path:
 
 def _left(fit: Fit) -> Section:
     found = diagnose(fit)
-    words = residual_words(found)
+    words = residual_words(fit, found)
     if not words:
         few = "No signal has enough samples that count to tell whether its residual is noise."
         return Section("What is left", (few,))

@@ -11,6 +11,8 @@ from tracewire.show.parameter_figures import unknown_width
 from tracewire.show.table import Table, shown
 
 UNKNOWN = "not determined"
+LOCAL = ("least_squares", "fminsearch")
+"""Methods that go to the nearest minimum."""
 
 
 def fit_tables(fit: Fit) -> tuple[Table, ...]:
@@ -173,7 +175,7 @@ def fit_words(fit: Fit) -> tuple[str, ...]:
     """What a reader of the tables must know, a paragraph each: what the data do not determine, what
     is left in the residual, and what was odd.
     """
-    return (*identifiability_words(fit), *residual_words(diagnose(fit)), *remark_words(fit))
+    return (*identifiability_words(fit), *residual_words(fit, diagnose(fit)), *remark_words(fit))
 
 
 def identifiability_words(fit: Fit) -> tuple[str, ...]:
@@ -181,9 +183,15 @@ def identifiability_words(fit: Fit) -> tuple[str, ...]:
     return tuple(map(sentence, fit.uncertainty.words))
 
 
-def residual_words(found: Sequence[Diagnosis]) -> tuple[str, ...]:
+def residual_words(fit: Fit, found: Sequence[Diagnosis]) -> tuple[str, ...]:
     """What the residual after the fit is like, by series and signal."""
-    return tuple(sentence(f"{d.series} ({d.use}), {d.signal}: {d.words}") for d in found)
+    words = [sentence(f"{d.series} ({d.use}), {d.signal}: {d.words}") for d in found]
+    if fit.method in LOCAL and fit.model.states and any(d.is_missing for d in found):
+        words.append(
+            f"Nothing may be missing where {fit.method} has ended in a minimum that is not the "
+            "lowest one: it takes the nearest. Fit with --method growing_windows before a trace."
+        )
+    return tuple(words)
 
 
 def remark_words(fit: Fit) -> tuple[str, ...]:

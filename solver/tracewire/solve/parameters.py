@@ -6,8 +6,9 @@ import math
 from collections.abc import Iterator, Mapping
 
 from tracewire.compile import Model
+from tracewire.diagram import Condition
 from tracewire.errors import OptionError, Problem, SimulationError, unknown
-from tracewire.formula import evaluate, names_of, to_text
+from tracewire.formula import Call, Name, Number, evaluate, names_of, to_text
 from tracewire.solve.limits import MEMORY
 from tracewire.solve.once_per_model import once_per_model
 
@@ -20,6 +21,28 @@ def _known_values(model: Model) -> dict[Given, tuple[dict[str, float], list[str]
     """The values that follow from nothing that is given, the others as they were once, and the
     names of those that follow from it."""
     return {}
+
+
+@once_per_model
+def _conditions(model: Model) -> tuple[dict[str, tuple[float, float]], list[Condition]]:
+    """What the diagram requires: the bounds of single parameters, and the conditions that are left.
+
+    A bound is what most conditions are, and is looked at in every run.
+    """
+    bounds: dict[str, tuple[float, float]] = {}
+    others = []
+    for known in model.flat.require:
+        match known.formula:
+            case Call(">" | ">=" | "<=" as relation, (Name(name), Number(limit))):
+                low, high = bounds.get(name, (-math.inf, math.inf))
+                if relation == "<=":
+                    bounds[name] = low, min(high, limit)
+                else:
+                    least = limit if relation == ">=" else math.nextafter(limit, math.inf)
+                    bounds[name] = max(low, least), high
+            case _:
+                others.append(known)
+    return bounds, others
 
 
 @once_per_model
@@ -82,8 +105,11 @@ def _refused(model: Model, given: Mapping[str, float]) -> Iterator[Problem]:
 
 def refuse_unmet(model: Model, values: Mapping[str, float]) -> None:
     """Raises SimulationError: the values of the parameters do not meet a condition of `require`."""
+    bounds, conditions = _conditions(model)
+    if not all(low <= values[name] <= high for name, (low, high) in bounds.items()):
+        conditions = list(model.flat.require)
     problems = []
-    for known in model.flat.require:
+    for known in conditions:
         if not evaluate(known.formula, values, known.place):
             read = [name for name in names_of(known.formula) if name in values]
             shown = ", ".join(f"{name} = {values[name]:.6g}" for name in read)

@@ -139,6 +139,7 @@ def _new_progress(model: Model, count: int, columns: int) -> Progress:
         which=np.zeros(modes + 8, dtype=np.int64),
         overlooked=np.zeros(len(model.lowered.resets), dtype=np.int64),
         undetermined=np.full(modes, np.inf),
+        beyond=np.zeros(n),
         given=np.empty(n),
         largest=np.zeros(n),
         least=np.zeros(n),

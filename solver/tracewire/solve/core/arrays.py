@@ -84,7 +84,8 @@ class Progress(NamedTuple):
     of each state. `sizes` (2n,) is work space, and behind it of what size each state has been of
     late, at least `least`: one that passes through zero has the rounding errors of its size.
     `undetermined` (M,): since when the guard of a mode has rested at zero where nothing decides
-    the mode although the rates differ with it; inf: never.
+    the mode although the rates differ with it; inf: never. `beyond` (n,) is what leads to the far
+    side of a guard that is to cross, where the rates are not defined beyond it; 0 elsewhere.
     """
 
     now: Vector
@@ -105,6 +106,7 @@ class Progress(NamedTuple):
     least: Vector
     sizes: Vector
     undetermined: Vector
+    beyond: Vector
 
 
 class Trial(NamedTuple):

@@ -343,11 +343,22 @@ def _attempt(core: int, rate: Vector, limit: float) -> int:
 
 @unit
 def _undefined(core: int) -> int:
-    """Where the rates end to be defined: at a guard it is an event, elsewhere an error."""
-    progress, hit = progress_of(core), watch_of(core).hit
+    """Where the rates end to be defined: at a guard it is an event, elsewhere an error.
+
+    The run goes on beyond the guard, where the formula of the mode to come is defined, as that of
+    the root of `-h` is below h = 0: no step leads there.
+    """
+    progress, watched, x = progress_of(core), watch_of(core), progress_of(core).x
     reach = NEAR * locate.smallest_step(core)
-    if locate.reached(core, progress.now[T], progress.x, reach, hit) == 0:
+    if locate.reached(core, progress.now[T], x, reach, watched.hit) == 0:
         return UNDEFINED
+    along, far = trial_of(core).guards, 0.0  # the rates of the guards, of which some are reached
+    for row in range(locate.watched_count(core)):
+        falls = -watched.sign[row] * along[watched.mode[row]]
+        if watched.hit[row] and falls > 0.0:
+            far = max(far, min(2.0 * watched.start[row] / falls, reach))
+    for j in range(len(x)):
+        progress.beyond[j] = far * trial_of(core).rate[j]
     progress.now[H] = 0.0
     return _cross(core, GUARD)
 

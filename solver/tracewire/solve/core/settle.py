@@ -135,11 +135,11 @@ def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
             if plan.is_timed[i] and _is_carried(core, i, guards[i], level[i]):
                 wrong[i] = 1
         if not np.any(wrong):
+            if flow.counts[SLIDING]:
+                pin(core, t, x)  # what is held stands still, also behind a gear
             if rounds < MOST_EDGES and _floor_edges(core, t, x, marks):
                 rounds += 1
                 continue
-            if flow.counts[SLIDING]:
-                pin(core, t, x)  # what is held stands still, also behind a gear
             marked_guards(core, t, x, marks, marked)
             status = fire_transitions(core, t, x, wrong)
             if status != FINISHED or not np.any(wrong):
@@ -208,15 +208,20 @@ def _floor_edges(core: int, t: float, x: Vector, marks: Ints) -> bool:
     guard_rates(core, t, x, along)
     levels(core, t, x, level)
     rate_levels(core, t, x, small)
+    is_held = flow.counts[SLIDING] + flow.counts[RESTING] > 0
     for i in range(modes):
         whole = np.rint(guards[i])
-        near = abs(guards[i] - whole) <= level[i] and marks[i] != LEFT
+        near = abs(guards[i] - whole) <= level[i] and (marks[i] != LEFT or is_held)
         if plan.kind[i] != FLOOR or plan.is_timed[i] or not near:
             continue
         rate = along[i]
         if abs(rate) <= small[i]:
             rate = first_higher(core, t, x, i)
-        value = flow.m[i] if rate == 0.0 else (whole if rate > 0.0 else whole - 1.0)
+        value = whole if rate > 0.0 else whole - 1.0
+        if rate == 0.0:  # what a slide or a contact holds there is that number, but for rounding
+            value = whole if is_held else flow.m[i]
+        elif marks[i] == LEFT:
+            continue
         changed = changed or value != flow.m[i]
         flow.m[i] = value
     return changed

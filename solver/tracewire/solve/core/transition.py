@@ -85,6 +85,9 @@ def happen(core: int, t: float, x: Vector) -> int:
     crossings = crossings_of(core)
     modes = len(plan.kind)
     enter(core, t, x)
+    for j in range(len(x)):
+        x[j] += progress.beyond[j]
+    progress.beyond[:] = 0.0
     begin_stage(core, x)
     before, old, bound = x.copy(), flow.m.copy(), flow.bound.copy()
     flags, numbers = np.zeros((3, modes), dtype=np.int64), np.zeros((2, modes))
