@@ -170,6 +170,8 @@ def test_figure(call: Any, swing: Path, tmp_path: Path, ending: str, magic: byte
         (["--set", "phi=3 parsnips"], "'parsnips' is not a unit."),
         (["--method", "rosenbrok"], "Did you mean 'rosenbrock'?"),
         (["--span", "3", "1"], "the span from 3 to 1 s is empty"),
+        (["--over", "k=1:2:2.5"], "the COUNT of --over 'k=1:2:2.5' is no whole number."),
+        (["--over", "k=1:2:1e6"], "the COUNT of --over 'k=1:2:1e6' is no whole number."),
         (["--every", "0"], "an output every 0 s from 0 to 4 s cannot be kept"),
         (["--rtol", "0"], "rtol = 0 and atol = 0 cannot be met"),
         (["--output", "a.xls"], "unknown file ending '.xls'. End the name of the output in .csv"),

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from diagram.small_library import refused
-from tracewire.diagram import read
+from tracewire.diagram import read, read_text
 from tracewire.diagram.limits import LIMITS
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.strict import Entries, Items, Scalar, compose
@@ -152,3 +152,17 @@ def test_a_list_that_no_run_could_take_is_refused_at_its_start(text: str) -> Non
 def test_a_long_list_of_mappings_is_read() -> None:
     text = "events:\n" + "  - {a: 1, b: 2, c: 3}\n" * 5000
     assert compose(text, Path("a.yaml"), Problems())
+
+
+def test_what_follows_from_a_number_that_is_not_finite_is_not_told() -> None:
+    text = """
+parameters: {k: {value: .nan, fit: [30, 120]}, j: {value: 3, fit: [30, .inf]}}
+blocks: {x: {type: constant, value: k}}
+"""
+    with pytest.raises(DiagramError) as caught:
+        read_text(text)
+    told = [problem.what for problem in caught.value.problems]
+    assert told == [
+        "'value' is .nan, and a value is a finite number",
+        "an entry of this list is .inf, and a value is a finite number",
+    ]

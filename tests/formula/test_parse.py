@@ -91,6 +91,7 @@ def test_a_formula_is_read_with_the_usual_precedence(text: str, formula: object)
         ("x' + x", "a prime is not part of the formula language. The rate of a state is what it"),
         ("2x", "it does not parse. A product needs a sign: 2*x."),
         ("3(x + 1)", "only named functions can be called"),
+        ("-k*x + 2pi", "a product needs a sign. Write 2*pi."),
         ("0.5 N/m", "a number in a formula has no unit. Write it as a value: {value: 0.5, unit"),
         ("x @ y", "an operator is not part of the formula language. A formula knows"),
         ("~x", "the sign '~' is not part of the formula language"),

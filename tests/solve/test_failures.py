@@ -12,7 +12,7 @@ import pytest
 from solve.models import LIMITS, one
 from tracewire.compile import compile
 from tracewire.diagram import read_text
-from tracewire.errors import SimulationError
+from tracewire.errors import OptionError, SimulationError
 from tracewire.solve import simulate, simulate_many
 
 
@@ -149,3 +149,15 @@ def test_of_many_rows_only_those_fail_that_do_not_meet_what_is_required() -> Non
     runs = simulate_many(compile(read_text(REQUIRED)), {"m": [1.0, 3.0, -1.0, 2.0]})
     assert sorted(runs.errors) == [1, 2]
     assert "'m > 0': m = -1" in runs.errors[2]
+
+
+def test_a_start_that_is_not_finite_is_told_with_its_line() -> None:
+    text = """\
+parameters: {k: 1}
+blocks:
+  x: {type: integrator, of: v, start: 1/(k - 1)}
+  v: {type: constant, value: 1}
+"""
+    wanted = "<text>:3:3: block 'x': the start of 'x' is inf. A start is a finite number"
+    with pytest.raises(OptionError, match=wanted):
+        simulate(compile(read_text(text)))

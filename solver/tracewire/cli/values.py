@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 ASSIGNMENT = re.compile(rf"\s*([^=\s]+)\s*=\s*({NUMBER})(?:\s*([^\s\d.].*?|1\s*/.*?))?\s*")
 VALUES = re.compile(rf"\s*([^=\s]+)\s*=\s*({NUMBER})\s*:\s*({NUMBER})\s*:\s*(\d+)\s*(.*)")
+COUNT_GOES_ON = re.compile(r"[.\d]|[eE][+-]?\d")
+EVEN = re.compile(rf"\s*[^=\s]+\s*=\s*{NUMBER}\s*:\s*{NUMBER}\s*:.*")
 LISTED = re.compile(rf"\s*([^=\s]+)\s*=\s*({NUMBER}(?:\s*,\s*{NUMBER})*)\s*([^\d:,;]?[^:,;]*)")
 HINT = "Write it like {option} k=2.5 or {option} 'phi=13.6 deg'."
 
@@ -73,12 +75,19 @@ def values_of(model: Model, texts: Sequence[str], option: str = "--over") -> dic
     problems: list[Problem] = []
     for text in texts:
         even, listed = VALUES.fullmatch(text), LISTED.fullmatch(text)
+        if even is not None and COUNT_GOES_ON.match(even[5]):
+            even = None
         if even is not None:
             name, first, last, count, unit = even.groups()
             given = [first, last]
         elif listed is not None:
             name, numbers, unit = listed.groups()
             given, count = numbers.split(","), "1"
+        elif EVEN.fullmatch(text):
+            what = f"the COUNT of {option} '{text}' is no whole number"
+            hint = f"Write it like {option} f=0.3:0.9:800."
+            problems.append(Problem(what, hint=hint))
+            continue
         else:
             what = f"{option} '{text}' is not a name, '=' and FROM:TO:COUNT or values"
             hint = f"Write it like {option} f=0.3:0.9:800 or {option} f=0.3,0.5,1."

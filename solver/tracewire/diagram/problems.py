@@ -32,6 +32,10 @@ class Problems:
         """Note one problem."""
         self._note(Problem(what, place, tuple(exists), hint))
 
+    def is_told(self, place: Location) -> bool:
+        """Whether something is noted of a place already: what follows from it is not told."""
+        return any(problem.place == place for problem in self.found)
+
     def unknown(
         self, kind: str, name: str, existing: Iterable[str], place: Location, hint: str = ""
     ) -> None:

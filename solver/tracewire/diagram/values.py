@@ -94,7 +94,8 @@ def read_value(
         bounds = read_bounds(node.values["fit"], body, block)
     if formula is None:
         return None
-    if bounds and isinstance(formula, Number) and not bounds[0] <= formula.value <= bounds[1]:
+    outside = bounds and isinstance(formula, Number) and not bounds[0] <= formula.value <= bounds[1]
+    if outside and given is not None and not body.problems.is_told(given.place):
         what = (
             f"the value {formula.value:g} is outside of its bounds {bounds[0]:g} to {bounds[1]:g}"
         )
@@ -141,8 +142,9 @@ def read_bounds(node: Node, body: Body, block: str = "") -> tuple[float, float] 
             ends.append(end)
     low, high = ends
     if not low < high:
-        what = f"the lower bound {low:g} is not below the upper bound {high:g}"
-        body.problems.add(what, body.place(node, block), (), hint)
+        if not any(body.problems.is_told(item.place) for item in node.items):
+            what = f"the lower bound {low:g} is not below the upper bound {high:g}"
+            body.problems.add(what, body.place(node, block), (), hint)
         return None
     return low, high
 

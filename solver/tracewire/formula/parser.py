@@ -169,6 +169,9 @@ def _what_was_meant(text: str) -> _Refused | None:
         with contextlib.suppress(FormulaError):
             read_unit(unit)
             hint = f"Numbers are in SI: make a parameter of it, {{value: {number}, unit: {unit}}}."
+            if unit in CONSTANTS:
+                hint = f"Write {number}*{unit}."
+                return _Refused("a product needs a sign", found.start(), hint)
             return _Refused("a number in a formula has no unit", found.start(), hint)
     zeros = ZEROS.search(text)
     if zeros is not None:

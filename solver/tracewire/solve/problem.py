@@ -181,7 +181,14 @@ def start_of(model: Model, constants: Vector, tables: Vector, given: Mapping[str
         if name in given:
             x[n] = given[name]
     bad = [] if np.isfinite(x).all() else np.flatnonzero(~np.isfinite(x)).tolist()
-    problems += [Problem(f"the start of '{names[n]}' is {x[n]}") for n in bad]
+    problems += [
+        Problem(
+            f"the start of '{names[n]}' is {x[n]}",
+            model.flat.states[n].place,
+            hint="A start is a finite number: look for a division by zero, or for a root.",
+        )
+        for n in bad
+    ]
     if problems:
         raise OptionError(problems)
     return x
