@@ -94,11 +94,10 @@ def read_value(
         bounds = read_bounds(node.values["fit"], body, block)
     if formula is None:
         return None
-    outside = bounds and isinstance(formula, Number) and not bounds[0] <= formula.value <= bounds[1]
-    if outside and given is not None and not body.problems.is_told(given.place):
-        what = (
-            f"the value {formula.value:g} is outside of its bounds {bounds[0]:g} to {bounds[1]:g}"
-        )
+    told = given is not None and body.problems.is_told(given.place)
+    number = formula.value if isinstance(formula, Number) and not told else None
+    if bounds and number is not None and not bounds[0] <= number <= bounds[1]:
+        what = f"the value {number:g} is outside of its bounds {bounds[0]:g} to {bounds[1]:g}"
         body.problems.add(what, body.place(node, block), (), "Widen 'fit', or change the value.")
     scaled = (bounds[0] * unit.factor, bounds[1] * unit.factor) if bounds else None
     return Value(
