@@ -17,7 +17,8 @@ voigt_barrier = Block(
     parameters=(
         Parameter("high", doc="the upper limit: rad, or m"),
         Parameter("low", doc="the lower limit", default="-high"),
-        Parameter("k", doc="stiffness: N m/rad, or N/m", low=0.0),
+        # below 0 it drives the body away: the sign of Eq 19 as it is printed
+        Parameter("k", doc="stiffness: N m/rad, or N/m"),
         Parameter("c_l", doc="damping above the upper limit: N m s/rad, or N s/m", low=0.0),
         Parameter("c_r", doc="damping below the lower limit", default="c_l", low=0.0),
         Parameter(

@@ -18,10 +18,7 @@ relay = Block(
         Parameter("off_value", doc="the output while it is off", default=0.0),
         Parameter("start", doc="1: it starts on, where the signal is between", default=0.0),
     ),
-    modes=(
-        Mode("released"),
-        Mode("operated", start="of >= on_at or (start >= 0.5 and of > off_at)"),
-    ),
+    modes=(Mode("released"), Mode("operated", start="start >= 0.5")),
     transitions=(
         Transition("released", "operated", when="of >= on_at"),
         Transition("operated", "released", when="of <= off_at"),

@@ -10,6 +10,9 @@ LIBRARY = load_library()
 TYPES = sorted(LIBRARY)
 COMMON = ("integrator", "gain", "sum", "sum", "product", "sin", "viscous", "expression")
 
+GIVEN = {("", "seed"): 3, ("limited_integrator", "low"): -0.5}
+"""Numbers of parameters that cannot be 0.5, by block, or for all blocks, and name."""
+
 
 def text_of(seed: int) -> str:
     """The text of a diagram of 1 to 30 blocks, wired at random; it can always be read."""
@@ -75,5 +78,6 @@ def _fields(rng: random.Random, block: Block, signals: list[str]) -> list[str]:
             read = rng.sample(signals, min(len(signals), rng.randint(0, 5)))
             fields.append(f"{parameter.name}: {' + '.join(['1', *read])}")
         elif parameter.default is None:
-            fields.append(f"{parameter.name}: 0.5")
+            given = GIVEN.get((block.name, parameter.name)) or GIVEN.get(("", parameter.name))
+            fields.append(f"{parameter.name}: {given or 0.5}")
     return fields

@@ -158,20 +158,3 @@ record: [y, late, once]
     assert result["once"][~near].tolist() == once[~near].tolist()
     settled = [e.time for e in result.events if e.block == "y" and "settled" in e.guard + e.kind]
     assert settled in ([], pytest.approx([1.55], abs=1e-9))
-
-
-@pytest.mark.parametrize(("level", "on"), [(5.0, 1.0), (0.0, 0.0), (-5.0, 0.0)])
-def test_a_relay_that_begins_beyond_its_level_does_not_rise_there(level: float, on: float) -> None:
-    found = run(
-        f"""
-        span: [0, 1]
-        record: [r, count]
-        blocks:
-          x: {{type: constant, value: {level}}}
-          r: {{type: relay, of: x, on_at: 1, off_at: -1}}
-          count: {{type: counter, of: r}}
-        """
-    )
-    assert set(found["r"]) == {on}
-    assert not np.any(found["count"])
-    assert found.events == ()
