@@ -481,3 +481,20 @@ def test_a_fit_that_raises_the_error_of_what_it_has_not_seen_says_so() -> None:
     assert "--method" not in again
     same = series(oscillation(T, 0.9), "other", use="validate")
     assert fitted(OSCILLATOR, train, same).remarks == ()
+
+
+def test_a_block_bounds_what_a_fit_may_change() -> None:
+    """Viscous friction is not below 0, though the diagram lets its fit go there."""
+    text = OSCILLATOR.replace(
+        "a: {type: expression, formula: -k*x - c*v}",
+        "a: {type: sum, of: [s, f]}\n  s: {type: stiffness, of: x, k: k}\n"
+        "  f: {type: viscous, rate: v, c: c}",
+    )
+    assert text != OSCILLATOR
+    text = text.replace("fit: [0, 2]", "fit: [-2, 2]")
+    grows = np.exp(0.02 * T) * np.cos(2 * T)
+    for method in METHODS:
+        found = fitted(text, series(grows, sigma={"x": 0.01}), method=method)
+        assert found.values["c"] == pytest.approx(0, abs=1e-6)
+        assert found.bounds["c"] == (0, 2)
+        assert not any("failed" in text for text in found.remarks)

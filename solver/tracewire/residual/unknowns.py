@@ -13,13 +13,14 @@ from tracewire.library import SENSOR_TERMS
 from tracewire.residual.limits import CRITERION
 from tracewire.residual.measured import Measured
 from tracewire.residual.segment import Unknown, own_name
+from tracewire.solve import parameter_bounds
 
 
 def free_unknowns(
     model: Model, free: Sequence[str] | None, values: Mapping[str, float]
 ) -> list[Unknown]:
     """The parameters that a fit may change, begun at `values`: those with `fit:` bounds, or those
-    that `free` names.
+    that `free` names. Their blocks may bound them, too.
 
     Raises OptionError: a name does not exist, a start outside the bounds.
     """
@@ -33,7 +34,9 @@ def free_unknowns(
         parameter, value = flat.parameters[name], values[name]
         low, high = parameter.fit or (-np.inf, np.inf)
         problems += _outside(name, value, low, high, parameter.place)
-        unknowns.append(Unknown(name, value, low, high, _size(value, high - low)))
+        least, most = parameter_bounds(model, name)
+        size = _size(value, high - low)
+        unknowns.append(Unknown(name, value, max(low, least), min(high, most), size))
     if problems:
         raise OptionError(problems)
     return unknowns

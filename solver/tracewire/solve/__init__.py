@@ -134,7 +134,7 @@ from tracewire.solve.many import simulate_many
 from tracewire.solve.observers import Section, guard_crossings
 from tracewire.solve.options import START, Options, refuse_unknown_options, with_options, with_row
 from tracewire.solve.parallel import WorkerEnded, carry_out, cores
-from tracewire.solve.parameters import parameter_values
+from tracewire.solve.parameters import parameter_bounds, parameter_values
 from tracewire.solve.passage import Passage
 from tracewire.solve.problem import InitialValueProblem, initial_value_problem
 from tracewire.solve.progress import PartProgress, ProgressCallback
@@ -175,6 +175,7 @@ __all__ = [
     "even_times",
     "guard_crossings",
     "initial_value_problem",
+    "parameter_bounds",
     "parameter_values",
     "refuse_delays",
     "refuse_unknown_options",

@@ -51,6 +51,11 @@ def _preset_values(model: Model) -> dict[str, dict[str, float]]:
     return {}
 
 
+def parameter_bounds(model: Model, name: str) -> tuple[float, float]:
+    """Between which the blocks that read a parameter let it be."""
+    return _conditions(model)[0].get(name, (-math.inf, math.inf))
+
+
 def parameter_values(
     model: Model, given: Mapping[str, float], preset: str = ""
 ) -> dict[str, float]:
