@@ -57,6 +57,7 @@ GROWTH = r"\1\n  level: {value: 1, unit: N, fit: [0, 50]}"
 GROWTH += r"\n  slope: {value: 1, unit: N/bar, fit: [0, 20]}"
 SOFT_COUPLING = "soft: {type: hysteresis, rate: slip, level: {value: 200, fit: [0, 20000]}"
 SOFT_COUPLING += ", deflection: {value: 0.01, fit: [0.0001, 1]}}"
+VOLTAGE: Edit = ("q: {column: qm, unit: m}", "q: {column: qm, unit: m, weight: 1e-6}")
 LATE: Edit = ("unit: um}}", "unit: um, delay: {fit: [0, 0.2]}}}")
 
 
@@ -103,17 +104,17 @@ CASES: dict[str, Case] = {
     ),
     "whiffle ball, drag": Case("falling_balls/whiffle_ball.yaml", beside("weight", AIR), 0.133),
     "bowling ball, drag": Case("falling_balls/bowling_ball.yaml", beside("weight", AIR), 0.135),
-    "axis": Case("emps/axis.yaml", (), 0.2674, "voltage", (0.2806,)),
+    "axis": Case("emps/axis.yaml", (VOLTAGE,), 0.2674, "voltage", (0.2806,)),
     "axis, coulomb": Case(
         "emps/axis.yaml",
-        beside("constant", RUBBING),
+        (VOLTAGE, *beside("constant", RUBBING)),
         0.0706,
         "voltage",
         (0.0964,),
     ),
     "axis, direction": Case(
         "emps/axis.yaml",
-        instead("constant", RUBBING, DIRECTION),
+        (VOLTAGE, *instead("constant", RUBBING, DIRECTION)),
         0.0577,
         "voltage",
         (0.0863,),
