@@ -209,3 +209,23 @@ def test_the_floor_of_a_rate_that_friction_holds_is_that_of_zero(start: float, m
     held = next(event.time for event in found.events if event.kind == "stick")
     assert not np.any(found["v"][found.t > held])
     assert not np.any(found["whole"][found.t > held])
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_the_floor_of_what_nothing_holds_does_not_follow_a_friction(method: str) -> None:
+    """0.57*100 is below 57 by rounding, and stays so where an unrelated body sticks."""
+    found = run(
+        """
+        span: [0, 4]
+        record: [whole]
+        blocks:
+          v: {type: integrator, of: friction, start: 1}
+          friction: {type: coulomb, rate: v, level: 1}
+          z: {type: integrator, of: none, start: 0.57}
+          none: {type: constant, value: 0}
+          whole: {type: expression, formula: floor(z*100)}
+        """,
+        method=method,
+    )
+    assert [event.kind for event in found.events] == ["stick"]
+    assert set(found["whole"]) == {56.0}

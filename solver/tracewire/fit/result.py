@@ -82,10 +82,10 @@ class Fit(Result):
     the signals have different units (`fit.weighing`); with weights and another loss where these are
     given. `evaluations` counts evaluations of the criterion; one with sensitivities counts as one
     plus the number of free parameters. `history` holds each new best of the search. `parameters`
-    were given for the fit, `rtol` is that of its
-    runs. `exitflag` is 1 where the search converged, 0 where a limit ended it, -1 where an output
-    function or Ctrl-C did (`interrupted`). `uncertainty` is what the data say of the values,
-    `remarks` what a reader must know: runs that failed, series whose data are odd.
+    were given for the fit, `rtol` is that of its runs. `exitflag` is 1 where the search ended by
+    its own tolerance, which may be before a minimum (`message`), 0 where a limit ended it, -1 where
+    an output function or Ctrl-C did (`interrupted`). `uncertainty` is what the data say of the
+    values, `remarks` what a reader must know: runs that failed, series whose data are odd.
     """
 
     model: Model

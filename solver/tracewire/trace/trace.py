@@ -62,9 +62,8 @@ def trace(
     chosen by what they predict on blocks of time that their fits did not see. The errors reported
     come from a third part. `options`, a record or a dictionary, says what is tried, and
     from when on an effect is believed. With an `executor` of `concurrent.futures` its workers do
-    the refits that do not need each other, with the same result (values within 2e-9 of themselves
-    where it was looked at); what is left when one of them ends is done here. Ctrl-C ends it with
-    what was found so far.
+    the refits that do not need each other, with the same result to the last bit; what is left when
+    one of them ends is done here. Ctrl-C ends it with what was found so far.
 
     Raises DataError where the series cannot be used, FitError where the model does not run, or
     where `rtol` is too loose for such small noise.

@@ -37,10 +37,12 @@ from tracewire.solve.core.decide import (
 )
 from tracewire.solve.core.flow import (
     FREE,
+    GUARD_RATES,
     RESTING,
     SLIDING,
     bind,
     held,
+    patterns,
 )
 from tracewire.solve.core.modes import (
     JUMP,
@@ -208,9 +210,10 @@ def _floor_edges(core: int, t: float, x: Vector, marks: Ints) -> bool:
     guard_rates(core, t, x, along)
     levels(core, t, x, level)
     rate_levels(core, t, x, small)
-    is_held = flow.counts[SLIDING] + flow.counts[RESTING] > 0
+    moves = patterns(core, GUARD_RATES, t, x, modes)
     for i in range(modes):
         whole = np.rint(guards[i])
+        is_held = bool(np.any(moves[1:, i] != 0.0))  # by a slide, which moves its rate
         near = abs(guards[i] - whole) <= level[i] and (marks[i] != LEFT or is_held)
         if plan.kind[i] != FLOOR or plan.is_timed[i] or not near:
             continue
@@ -218,7 +221,7 @@ def _floor_edges(core: int, t: float, x: Vector, marks: Ints) -> bool:
         if abs(rate) <= small[i]:
             rate = first_higher(core, t, x, i)
         value = whole if rate > 0.0 else whole - 1.0
-        if rate == 0.0:  # what a slide or a contact holds there is that number, but for rounding
+        if rate == 0.0:  # what a slide holds there is that number, but for rounding
             value = whole if is_held else flow.m[i]
         elif marks[i] == LEFT:
             continue
