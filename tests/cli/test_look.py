@@ -140,6 +140,21 @@ def test_check_tells_parameters_that_are_not_what_is_required(call: Any, tmp_pat
     assert "decay.yaml:3:11: the parameters do not meet 'm > 0': m = -2." in told.err
 
 
+def test_check_tells_a_start_that_is_not_finite_in_a_preset(call: Any, tmp_path: Path) -> None:
+    file = tmp_path / "decay.yaml"
+    file.write_text(
+        "inputs: {u: {unit: 1/s}}\nparameters: {m: {value: 1, unit: 1}}\n"
+        "blocks: {x: {type: integrator, of: r, start: 1/m}, r: {type: gain, of: u, k: 1}}\n"
+        "presets: {massless: {m: 0}}\n",
+        encoding="utf-8",
+    )
+    told = call("check", file)
+    assert (told.code, told.out) == (2, "")
+    assert "decay.yaml:3:10: block 'x': the start of 'x' is inf. A start is a finite number" in (
+        told.err
+    )
+
+
 def test_check_names_a_measured_file_that_is_missing(call: Any, swing: Path) -> None:
     swing.with_name("run_1.csv").unlink()
     told = call("check", swing)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from solve.models import BALL, OSCILLATOR, made, run
 from tracewire.errors import OptionError
-from tracewire.solve import simulate
+from tracewire.solve import Held, simulate
 
 DRIVEN = "span: [0, 1]\ninputs: [u]\nblocks: {x: {type: integrator, of: u}}"
 
@@ -124,3 +124,20 @@ def test_arguments_are_left_as_they_were() -> None:
     run(OSCILLATOR, times=times, start=start)
     assert times.tolist() == [0.5, 1.0]
     assert start == {"x": 0.5}
+
+
+@pytest.mark.parametrize(
+    ("span", "known"),
+    [((0, 3), True), ((-1, 2), True), ((-2, 2), False), ((0, 3.5), False)],
+)
+def test_a_run_tells_where_its_input_is_not_known(span: tuple[float, float], known: bool) -> None:
+    drive = ([0.0, 1.0, 2.0], [0.0, 1.0, 2.0])
+    for given in (drive, Held(*map(np.array, drive))):
+        told = run(DRIVEN, inputs={"u": given}, span=span).warnings
+        assert bool(told) is not known
+        for text in told:
+            assert text.startswith("the input 'u' is known from 0 to 2 s, and the run goes from ")
+
+
+def test_a_constant_input_is_known_at_all_times() -> None:
+    assert run(DRIVEN, inputs={"u": ([0.0], [1.0])}, span=(0, 99)).warnings == ()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -12,6 +12,9 @@ from tracewire.cli.expect import check_expected
 from tracewire.cli.options import AsJson, Debug, Libraries, read_diagram
 from tracewire.cli.output import print_json, print_text, working
 from tracewire.errors import DiagramError, OptionError, Problem, TracewireError
+
+if TYPE_CHECKING:
+    from tracewire.compile import Model
 
 ENDINGS = (".yaml", ".yml")
 
@@ -80,7 +83,7 @@ def _contents(file: str, library: Sequence[str] | None, quiet: bool) -> dict[str
     """What is in a diagram, printed unless `quiet`. Raises TracewireError."""
     from tracewire.diagram import absent_series
     from tracewire.show.summary import contents, contents_text, series_contents
-    from tracewire.solve import parameter_values
+    from tracewire.solve import initial_value_problem, parameter_values
 
     with working(f"compiling {'stdin' if file == '-' else file}"):
         from tracewire.compile import compile, remarks_of, statement_problems, unit_problems
@@ -88,8 +91,8 @@ def _contents(file: str, library: Sequence[str] | None, quiet: bool) -> dict[str
         model = compile(read_diagram(file, library))
     if problems := [*unit_problems(model.flat), *statement_problems(model, model.diagram.expect)]:
         raise DiagramError(problems)
-    for preset in ("", *model.flat.presets):  # they must be what the diagram requires
-        parameter_values(model, {}, preset)
+    for preset in ("", *model.flat.presets):  # what `run` refuses before its first step
+        initial_value_problem(model, preset=preset, inputs=_at_rest(model))
     measured: list[dict[str, object]] = []
     absent = absent_series(model.diagram)
     remarks = [*remarks_of(model, parameter_values(model, {})), *map(str, absent.values())]
@@ -106,6 +109,12 @@ def _contents(file: str, library: Sequence[str] | None, quiet: bool) -> dict[str
     if not quiet:
         print_text(contents_text(found, measured))
     return {**found, "measured": measured, "absent": list(absent)}
+
+
+def _at_rest(model: Model) -> dict[str, tuple[list[float], list[float]]]:
+    """Zero for each input without a default: no start reads an input."""
+    without = [name for name, default in model.flat.inputs.items() if default is None]
+    return {name: ([0.0], [0.0]) for name in without}
 
 
 def _absent_words(count: int) -> str:

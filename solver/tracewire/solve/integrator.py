@@ -40,6 +40,7 @@ from tracewire.solve.progress import ProgressCallback
 from tracewire.solve.run import EventLog, Run, Statistics
 from tracewire.solve.sensitivities import recorded, undefined
 from tracewire.solve.setup import Records
+from tracewire.solve.tables import unknown_parts
 from tracewire.solve.workspace import Workspace, acquire, give_back
 
 Vector = NDArray[np.float64]
@@ -247,6 +248,7 @@ class Integrator:
         """The run with these sample times (N,) and samples (N, signals)."""
         problem, model, names = self.problem, self.model, self.model.states
         answers, log = self.arrays.sensitivity.samples[: len(t)], self.log.copy()
+        inputs = problem.given.get("inputs") or {}
         return Run(
             title=model.flat.title,
             t=t,
@@ -257,7 +259,7 @@ class Integrator:
             start=dict(zip(names, problem.start.tolist(), strict=True)),
             final=dict(zip(names, self.arrays.progress.x.tolist(), strict=True)),
             statistics=self.statistics,
-            warnings=self.warnings,
+            warnings=(*self.warnings, *unknown_parts(inputs, *problem.span)),
             shown=model.flat.shown,
             model=model,
             sensitivities=recorded(model, answers, problem.sensitivities),

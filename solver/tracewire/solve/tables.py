@@ -70,6 +70,27 @@ def _table(name: str, x: ArrayLike, y: ArrayLike, known: dict[int, Vector]) -> T
     return xs, ys
 
 
+def unknown_parts(inputs: Inputs, begin: float, end: float) -> list[str]:
+    """Where a run from `begin` to `end` in s goes beyond what is known of its inputs, in words.
+
+    A value holds for one more interval between samples, as a record of 100 samples a second ends
+    0.01 s before its full second.
+    """
+    said = []
+    for name, (t, _) in inputs.items():
+        times = np.asarray(t, dtype=float).ravel()
+        if len(times) < 2:
+            continue  # a constant
+        before, after = times[0] - begin, end - times[-1]
+        if max(before - (times[1] - times[0]), after - (times[-1] - times[-2])) > 0:
+            known = f"{times[0]:.6g} to {times[-1]:.6g} s"
+            said.append(
+                f"the input '{name}' is known from {known}, and the run goes from {begin:.6g} to "
+                f"{end:.6g} s: outside, the nearest value of the input is held"
+            )
+    return said
+
+
 def tables_follow(model: Model, inputs: Inputs) -> bool:
     """Whether the tables follow parameters: an input has a formula of them, and no values."""
     return any(name not in inputs for name in _following_inputs(model))
