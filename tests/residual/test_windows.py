@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from oracles.oscillator import DIAGRAM, NOISE, exact, model_of, problem_of, record, trial_of
@@ -40,6 +43,28 @@ def test_windows_tile_a_section_and_begin_at_the_last_sample_before() -> None:
     assert [window.begin for window in windows] == [m.t[w.rows[0] - 1] for w in windows]
     assert {len(window.rows) for window in windows} == {50}
     assert all(window.free == ("x", "v") for window in windows)
+
+
+def test_no_window_goes_over_a_gap_that_is_longer_than_a_window() -> None:
+    whole = record()
+    kept = np.r_[0:110, 300:315, 317:400]  # 5.7 s are lost, and 0.06 s
+    m = replace(whole, t=whole.t[kept], values={"x": whole.values["x"][kept]})
+    windows = cut_windows(model_of(), Section(m, 0, len(kept)), 40, ("x", "v"))
+    np.testing.assert_array_equal(np.concatenate([w.rows for w in windows]), np.arange(len(kept)))
+    assert max(w.t[-1] - w.begin for w in windows) < 2 * 40 * 0.03
+    (behind,) = (w for w in windows if w.rows[0] == 110)
+    assert behind.begin == m.t[110] and behind.free == ("x", "v")
+    follow = [later.continues(before) for before, later in pairwise(windows)]
+    assert follow == [later is not behind for later in windows[1:]]
+
+
+def test_a_section_that_is_one_window_goes_over_its_gaps() -> None:
+    whole = record()
+    kept = np.r_[0:110, 300:400]
+    m = replace(whole, t=whole.t[kept], values={"x": whole.values["x"][kept]})
+    (window,) = cut_windows(model_of(), Section(m, 0, 210), 210, ("x", "v"))
+    assert len(window.rows) == 210
+    assert window.time_in_samples == 399
 
 
 def test_the_first_window_begins_as_the_series_says() -> None:

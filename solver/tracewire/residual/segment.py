@@ -39,14 +39,26 @@ class Segment:
         return self.measured.t[self.rows]
 
     @property
+    def time_in_samples(self) -> int:
+        """The samples from the begin of the run on, or as many as there would be without gaps."""
+        t = self.measured.t
+        inside = t[np.searchsorted(t, self.begin) : self.rows[-1] + 1]
+        if len(inside) < 2:
+            return len(inside)
+        return max(len(inside), int((inside[-1] - inside[0]) / np.median(np.diff(t))))
+
+    @property
     def signals(self) -> tuple[str, ...]:
         """The measured signals."""
         return tuple(self.measured.values)
 
     def continues(self, before: Segment) -> bool:
-        """Whether it begins where another one of its series ends, with a free start."""
+        """Whether it begins where another one of its series ends, with a free start: not behind a
+        gap that is longer than the other one."""
+        if not self.free or before.measured.name != self.measured.name:
+            return False
         near = int(before.rows[-1]) + 1 == int(self.rows[0])
-        return bool(self.free) and before.measured.name == self.measured.name and near
+        return near and self.begin - before.t[-1] <= before.t[-1] - before.begin
 
     def samples(self) -> Vector:
         """The measured values, shape (N, signals) in SI."""

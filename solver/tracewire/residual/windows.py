@@ -47,7 +47,9 @@ def cut_windows(model: Model, section: Section, length: int, free: Sequence[str]
     A window that begins where the series does begins as the series says; where that start is
     declared, it is not free. Where no state is free at all, as with a prescribed motion, there is
     one window, whose run begins where the series does: what has a memory keeps it. The first window
-    is at least as long as the longest delay, so that the others find their past in the record.
+    is at least as long as the longest delay, so that the others find their past in the record. No
+    window goes over a gap in the samples that is longer than the window: the next one begins behind
+    it.
     """
     measured = section.measured
     whole = whole_segment(model, measured)
@@ -58,6 +60,8 @@ def cut_windows(model: Model, section: Section, length: int, free: Sequence[str]
     edges = np.linspace(first, section.end, count + 1).astype(int).tolist()
     known = float(measured.t[0]) + longest_delay(model, measured)
     edges = [a for a in edges if a in (first, section.end) or measured.t[a - 1] >= known]
+    behind = _behind_gaps(measured.t, edges)
+    edges = sorted({first, section.end, *behind, *(a for a in edges if _far(a, behind, length))})
     windows = []
     for a, b in pairwise(edges):
         if a == int(whole.rows[0]):
@@ -65,13 +69,30 @@ def cut_windows(model: Model, section: Section, length: int, free: Sequence[str]
             start |= {name: whole.start.get(name, 0.0) for name in whole.free}
             windows.append(Segment(measured, whole.begin, np.arange(a, b), start, whole.free))
             continue
-        states = start_from_data(model, measured, a - 1)
+        row = a if a in behind else a - 1
+        states = start_from_data(model, measured, row)
         start = {**whole.start, **{name: states[name] for name in free if name in states}}
         for name in free:
             start.setdefault(name, 0.0)
-        begin = float(measured.t[a - 1])
+        begin = float(measured.t[row])
         windows.append(Segment(measured, begin, np.arange(a, b), start, tuple(free)))
     return windows
+
+
+def _behind_gaps(t: Vector, edges: Sequence[int]) -> list[int]:
+    """The rows behind gaps of the times t (N,) in s that are longer than a window, where more than
+    half a window is on either side."""
+    if len(edges) < 3:
+        return []
+    steps = np.diff(t[edges[0] : edges[-1]])
+    rows = float(np.median(np.diff(edges)))
+    behind = edges[0] + 1 + np.flatnonzero(steps > rows * np.median(steps))
+    return [row for row in behind.tolist() if _far(row, (edges[0], edges[-1]), rows)]
+
+
+def _far(edge: int, others: Sequence[int], length: float) -> bool:
+    """Whether an edge is half a window or more from others."""
+    return all(abs(edge - other) >= length / 2 for other in others)
 
 
 def with_lead_in(model: Model, segment: Segment, delays: Mapping[str, float]) -> Segment:

@@ -156,6 +156,8 @@ def test_a_rival_that_is_worse_in_windows_is_not_told() -> None:
         (50.0, 50.5, ""),  # by chance
         (50.0, 60.0, "multiplies the error of whole unseen runs by 1.2"),
         (600.0, 900.0, ""),  # both have lost track of the sine
+        (0.7, 0.9, ""),  # both are at the noise
+        (1.3, 1.5, "multiplies the error of whole unseen runs by 1.15"),
     ],
 )
 def test_whole_unseen_runs_refuse_an_approximation(before: float, after: float, words: str) -> None:

@@ -11,6 +11,7 @@ from oracles.oscillator import (
     DIAGRAM,
     NOISE,
     candidates_of,
+    exact,
     later,
     problem_of,
     record,
@@ -138,6 +139,20 @@ def test_a_model_that_takes_too_many_events_is_given_up() -> None:
     )
     with pytest.raises(FitError, match="more than 305 events"):
         trial_of(problem_of(record(end=3.0), text=text))
+
+
+def test_a_record_in_pieces_far_apart_is_fitted_over_its_gaps() -> None:
+    """Between the pieces, each of 1 s, the run takes more steps than four short pieces would."""
+    t = (np.arange(0.0, 240.0, 60.0)[:, None] + np.arange(0.0, 1.0, 0.03)).ravel()
+    fine = np.arange(0.0, 181.02, 0.03)
+    x = np.interp(t, fine, exact(fine, 25.0, 0.01, (1.0, 0.0)))
+    pieces = replace(record(end=3.0), t=t, values={"x": x})
+    problem = problem_of(pieces, sigma=0.01)
+    whole = problem.windows_on(
+        trial_of(problem, length=len(t)),
+        cut_windows(problem.declared, Section(pieces, 0, len(t)), len(t), problem.states),
+    )
+    assert whole.segments[0].time_in_samples > 40 * len(t)
 
 
 def test_a_delay_is_found_on_short_windows_too() -> None:

@@ -415,7 +415,7 @@ class TraceProblem:
         lasting = tuple(state for effect in effects for state in effect.candidate.lasting)
         ahead = [with_lead_in(model, segment, values) for segment in segments]
         segments = with_memory(model, ahead, lasting)
-        longest = max(int(np.sum(s.measured.t[: s.rows[-1] + 1] >= s.begin)) for s in segments)
+        longest = max(segment.time_in_samples for segment in segments)
         options = self.options.trial
         return Criterion(
             model,
