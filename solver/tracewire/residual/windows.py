@@ -56,12 +56,9 @@ def cut_windows(model: Model, section: Section, length: int, free: Sequence[str]
     first = max(section.first, int(whole.rows[0]))
     if not free and not whole.free:
         return [replace(whole, rows=np.arange(first, section.end))]
-    count = max(round((section.end - first) / length), 1)
-    edges = np.linspace(first, section.end, count + 1).astype(int).tolist()
     known = float(measured.t[0]) + longest_delay(model, measured)
+    edges = edges_within(Section(measured, first, section.end), length)
     edges = [a for a in edges if a in (first, section.end) or measured.t[a - 1] >= known]
-    behind = _behind_gaps(measured.t, edges)
-    edges = sorted({first, section.end, *behind, *(a for a in edges if _far(a, behind, length))})
     windows = []
     for a, b in pairwise(edges):
         if a == int(whole.rows[0]):
@@ -69,30 +66,36 @@ def cut_windows(model: Model, section: Section, length: int, free: Sequence[str]
             start |= {name: whole.start.get(name, 0.0) for name in whole.free}
             windows.append(Segment(measured, whole.begin, np.arange(a, b), start, whole.free))
             continue
-        row = a if a in behind else a - 1
+        t = measured.t
+        row = a if t[a] - t[a - 1] > t[b - 1] - t[a] and b - a > 1 else a - 1
         states = start_from_data(model, measured, row)
         start = {**whole.start, **{name: states[name] for name in free if name in states}}
         for name in free:
             start.setdefault(name, 0.0)
-        begin = float(measured.t[row])
-        windows.append(Segment(measured, begin, np.arange(a, b), start, tuple(free)))
+        windows.append(Segment(measured, float(t[row]), np.arange(a, b), start, tuple(free)))
     return windows
 
 
-def _behind_gaps(t: Vector, edges: Sequence[int]) -> list[int]:
-    """The rows behind gaps of the times t (N,) in s that are longer than a window, where more than
-    half a window is on either side."""
-    if len(edges) < 3:
-        return []
-    steps = np.diff(t[edges[0] : edges[-1]])
-    rows = float(np.median(np.diff(edges)))
-    behind = edges[0] + 1 + np.flatnonzero(steps > rows * np.median(steps))
-    return [row for row in behind.tolist() if _far(row, (edges[0], edges[-1]), rows)]
+def edges_within(section: Section, length: int) -> list[int]:
+    """Where a section is cut into parts of about `length` samples: into equal parts, and behind
+    each gap in time that is longer than a part, where half a part or more is on either side."""
+    count = max(round(section.count / length), 1)
+    edges: list[int] = np.linspace(section.first, section.end, count + 1).astype(int).tolist()
+    if count == 1:
+        return edges
+    steps, half = (
+        np.diff(section.measured.t[section.first : section.end]),
+        section.count / count / 2,
+    )
+    gaps = np.flatnonzero(steps > 2 * half * np.median(steps)) + section.first + 1
+    behind = [row for row in gaps.tolist() if _is_far(row, (section.first, section.end), half)]
+    others = [edge for edge in edges[1:-1] if _is_far(edge, behind, half)]
+    return sorted({section.first, section.end, *behind, *others})
 
 
-def _far(edge: int, others: Sequence[int], length: float) -> bool:
-    """Whether an edge is half a window or more from others."""
-    return all(abs(edge - other) >= length / 2 for other in others)
+def _is_far(row: int, others: Sequence[int], least: float) -> bool:
+    """Whether a row is at least so many rows from others."""
+    return all(abs(row - other) >= least for other in others)
 
 
 def with_lead_in(model: Model, segment: Segment, delays: Mapping[str, float]) -> Segment:

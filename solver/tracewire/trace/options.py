@@ -125,6 +125,9 @@ class TraceOptions:
     tracked: float = 0.5
     """The error of a whole run, as a part of the standard deviation of the signals, below which the
     run has not lost track of the data, so that another one can be compared with it."""
+    out_of_step: float = 0.15
+    """The error of long runs, as a part of the standard deviation of the signals, from which on
+    their fit may stand in the next minimum, and is done again over longer and longer parts."""
     at_noise: float = 1.3
     """The reduced chi-square below which a residual is at the sensor's noise: there the noise is
     white, likelihood is right, and BIC chooses."""
@@ -150,7 +153,7 @@ class TraceOptions:
     record, from which on a model that is at the noise on shorter ones is not right."""
     slow_noise: float = 30.0
     """The reduced chi-square below which a rest is taken for slow noise of a sensor, where no body
-    comes back to where it was."""
+    comes back to where it was and the noise is estimated, not declared."""
     uncommon: tuple[str, ...] = (
         "harmonic", "parametric", "cogging", "position_friction", "sensor_quad", "sensor_gain",
         "stiffness_drift", "viscous_drift", "friction_drift", "sensor_drift", "drive_2nd_harm",

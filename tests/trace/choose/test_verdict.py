@@ -12,7 +12,7 @@ import tracewire as tw
 from tracewire.trace.choose import verdict
 from tracewire.trace.choose.finalists import _extend_without, _takes_all
 from tracewire.trace.choose.remainder import error_left
-from tracewire.trace.choose.verdict import _only_uncommon, judge_at_noise
+from tracewire.trace.choose.verdict import _only_uncommon, is_slow_noise, judge_at_noise
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.trials.bounds import AtBound
 
@@ -132,6 +132,28 @@ def test_at_the_noise_few_effects_take_most_of_what_was_above_it(
     monkeypatch.setattr(verdict, "refine", lambda search, first, best: final)
     found = judge_at_noise(search, declared, best)  # type: ignore[arg-type]
     assert (found.verdict if found else None) == judged
+
+
+@pytest.mark.parametrize(
+    ("declared", "again", "reduced_chi2", "slow"),
+    [
+        (None, False, 20.0, True),
+        (None, False, 40.0, False),
+        (None, True, 20.0, False),  # it comes back to where it was
+        (0.01, False, 20.0, False),  # the user has said how large the noise is
+    ],
+)
+def test_what_is_left_of_a_single_way_may_be_slow_noise_of_a_sensor(
+    declared: float | None, again: bool, reduced_chi2: float, slow: bool
+) -> None:
+    series = SimpleNamespace(values={"h": np.zeros(3)}, sigma={"h": declared})
+    search: Any = SimpleNamespace(
+        options=TraceOptions(),
+        has_revisits=again,
+        problem=SimpleNamespace(measured=[series]),
+    )
+    trial: Any = SimpleNamespace(effects=(), reduced_chi2=reduced_chi2)
+    assert is_slow_noise(search, trial) is slow
 
 
 @pytest.mark.parametrize(

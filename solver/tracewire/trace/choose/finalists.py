@@ -92,7 +92,9 @@ def _fit_horizons(pool: ModelPool, trial: Trial) -> Finalist | None:
     for horizon in pool.horizons.each:
         try:
             target = pool.target(horizon.length, len(trial.effects))
-            trial = pool.search.problem.refit(trial, horizon.segments, horizon.length, target)
+            before = trial
+            trial = pool.search.problem.refit(before, horizon.segments, horizon.length, target)
+            trial = pool.in_step(before, trial, horizon)
         except FitError:
             return None
         pool.spent += trial.windows.criterion.steps

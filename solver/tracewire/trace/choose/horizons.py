@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
-from tracewire.residual import Section, Segment, cut_windows
+from tracewire.residual import Section, Segment, cut_windows, edges_within
 from tracewire.trace.options import TraceOptions
 
 Vector = NDArray[np.float64]
@@ -205,9 +205,8 @@ def _median_period(values: Vector) -> float:
 
 
 def _pieces(section: Section, block: int) -> list[Section]:
-    """A section as blocks of equal length."""
-    count = max(round(section.count / block), 1)
-    edges = np.linspace(section.first, section.end, count + 1).astype(int).tolist()
+    """A section as blocks of equal length, cut at gaps that are longer."""
+    edges = edges_within(section, block)
     return [Section(section.measured, a, b) for a, b in pairwise(edges) if b > a]
 
 

@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 from tracewire.residual import Segment
 from tracewire.trace.choose.choice import log_scores
 from tracewire.trace.choose.heldout import Finalist, errors_by_block, errors_in_sample
-from tracewire.trace.choose.horizons import Horizons
+from tracewire.trace.choose.horizons import Horizon, Horizons
 from tracewire.trace.choose.loosen import loosen_bounds
 from tracewire.trace.choose.promising import select_promising
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal, Screen
 from tracewire.trace.search.search import Search
+from tracewire.trace.trials.growing import follow_further, is_out_of_step
 from tracewire.trace.trials.trial import PlacedEffect, Trial, with_starts_of
 
 Array = NDArray[np.float64]
@@ -45,9 +46,18 @@ class ModelPool:
         """The declared model at each horizon, from a fit of it."""
         problem, trials, trial = self.search.problem, [], declared_fit
         for horizon in self.horizons.each:
-            trial = problem.fit((), list(horizon.segments), horizon.length, trial.values)
+            before = trial
+            trial = problem.fit((), list(horizon.segments), horizon.length, before.values)
+            trial = self.in_step(before, trial, horizon)
             trials.append(trial)
         return self._keep(Finalist(tuple(trials)))
+
+    def in_step(self, before: Trial, trial: Trial, horizon: Horizon) -> Trial:
+        """A trial at a horizon, which follows the data from the shorter windows of the trial before
+        it on where it is out of step."""
+        if not is_out_of_step(trial, self.options.out_of_step):
+            return trial
+        return follow_further(self.search.problem, before, trial, horizon.segments)
 
     def worthwhile_count(self, count: int) -> int:
         """How many refits are worth their time where a long record is worth `count` of them."""

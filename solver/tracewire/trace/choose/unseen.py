@@ -23,11 +23,11 @@ def raises_unseen(search: Search, fewer: Trial, more: Trial, lengths: Sequence[i
     empty where it does not.
 
     Windows of each length, in samples, of which only the starts are fitted. Of several windows the
-    rise is more than chance where it is two standard errors; of few, where it is a tenth.
+    rise is more than chance where it is two standard errors; of few, where it is a tenth. An error
+    within the noise of the sensors is no harm.
     """
-    options = search.options
+    options, unseen = search.options, search.data_split.unseen
     for length in lengths:
-        unseen = search.data_split.unseen
         before, after = (squares_on(search, unseen, trial, length) for trial in (fewer, more))
         if not np.isfinite(before.sum()):
             continue
@@ -36,7 +36,7 @@ def raises_unseen(search: Search, fewer: Trial, more: Trial, lengths: Sequence[i
         rise, count = after - before, len(before)
         many = count >= options.few_windows
         part = options.harm if many else options.harm_few
-        if after.sum() <= (1 + part) ** 2 * before.sum():
+        if after.sum() <= max(_count(unseen), (1 + part) ** 2 * before.sum()):
             continue
         error = float(np.std(rise, ddof=1)) * count**0.5 if many else 0.0
         if rise.sum() > options.harm_errors * error:

@@ -87,9 +87,16 @@ def is_at_noise(search: Search, trial: Trial) -> bool:
 
 def is_slow_noise(search: Search, trial: Trial) -> bool:
     """Whether what is left without effects may be slow noise of a sensor: where no body comes back
-    to where it was, that is not to be told from a force."""
+    to where it was, that is not to be told from a force. An estimate of the noise does not see what
+    is slow; a noise that the user declares has all of it."""
+    estimated = any(
+        sigma is None
+        for series in search.problem.measured
+        for sigma in (series.sigma.get(signal) for signal in series.values)
+    )
     return (
-        not trial.effects
+        estimated
+        and not trial.effects
         and not search.has_revisits
         and trial.reduced_chi2 < search.options.slow_noise
     )

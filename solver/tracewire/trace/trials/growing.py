@@ -1,0 +1,48 @@
+"""Fits of long runs that follow the data from the begin on, further each time.
+
+A long run of a model whose values are a little wrong is out of step with the data, and a fit of it
+ends in the next minimum. Over the first part it is in step, and the fit there leads on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from tracewire.errors import FitError
+from tracewire.residual import Segment
+from tracewire.trace.trials.trial import TraceProblem, Trial, with_fitted_starts
+
+
+def is_out_of_step(trial: Trial, part: float) -> bool:
+    """Whether the error of a trial's runs is more than a part of the standard deviation of the
+    measured signals."""
+    criterion, power = trial.windows.criterion, 0.0
+    for segment in trial.windows.segments:
+        sigma = criterion.sigma[segment.measured.name]
+        power += float(np.sum(np.var(segment.samples(), axis=0) / sigma**2)) * len(segment.rows)
+    return trial.rss > part**2 * power
+
+
+def follow_further(
+    problem: TraceProblem, short: Trial, trial: Trial, segments: Sequence[Segment]
+) -> Trial:
+    """A trial that has lost track of long windows, fitted to their first parts, each twice as long
+    as the one before, from the values of a fit to `short` windows; the trial itself where that is
+    no better."""
+    rows, longest = 2 * short.length, max(len(segment.rows) for segment in segments)
+    now = short
+    fixed = dict(trial.windows.criterion.parameters)
+    try:
+        while True:
+            parts = [replace(segment, rows=segment.rows[:rows]) for segment in segments]
+            parts = with_fitted_starts(parts, now)
+            now = problem.fit(now.effects, parts, min(rows, longest), now.values, fixed=fixed)
+            if rows >= longest:
+                break
+            rows *= 2
+    except FitError:
+        return trial
+    return replace(now, length=trial.length) if now.rss < trial.rss else trial
