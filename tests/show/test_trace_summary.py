@@ -345,6 +345,7 @@ def test_a_share_that_is_not_all_is_not_called_100_percent() -> None:
     )
     assert share_words(Explained(0.997, 0.98, 1.0)) == "> 99.5 % (95 % interval: 98 to 100 %)"
     assert share_words(Explained(1.0, 0.99999, 1.00001)) == "> 99.99 %"
+    assert share_words(Explained(-0.86, -3.1, 1.0)) == "0 % (95 % interval: 0 to 100 %)"
     assert share_words(Explained(0.62, 0.62, 0.62)) == "62.00 %"
 
 

@@ -86,12 +86,14 @@ def value_words(found: Found, effect: FoundEffect, name: str) -> str:
 
 
 def share_words(explained: Explained) -> str:
-    """The explained share with its interval: `98 % (95 % interval: 96 to 99 %)`."""
-    share = percent(explained.share)
-    low, high = (f"{100 * end:.0f}" for end in (explained.low, explained.high))
+    """The explained share with its interval: `98 % (95 % interval: 96 to 99 %)`. What raises the
+    error explains nothing of it: 0 %."""
+    part, *ends = (max(one, 0.0) for one in (explained.share, explained.low, explained.high))
+    share = percent(part)
+    low, high = (f"{100 * end:.0f}" for end in ends)
     if low == high:
-        share = f"{100 * explained.share:.2f} %"
-        low, high = (f"{100 * end:.2f}" for end in (explained.low, explained.high))
+        share = f"{100 * part:.2f} %"
+        low, high = (f"{100 * end:.2f}" for end in ends)
     if low == high:
         return "> 99.99 %" if low == "100.00" else f"{low} %"
     return f"{share} (95 % interval: {low} to {high} %)"

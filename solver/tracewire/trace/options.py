@@ -85,6 +85,8 @@ class TraceOptions:
     effect to be looked for."""
     looser: float = 0.1
     """The part of its lower bound to which a deflection on it is freed in the best models."""
+    rhythms: int = 3
+    """Waves of an effect in a period of a free motion, at most, that keep its rhythm."""
     many_effects: int = 3
     """Effects that must predict held-out blocks, although together they come to the noise. On a
     generated record with a floor alone, three small ones did."""

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from tracewire.errors import FitError
 from tracewire.trace.check.mistakes import refuse_mistakes
+from tracewire.trace.choose.own_rhythm import describe_own_rhythm
 from tracewire.trace.choose.unseen import (
     is_no_better_on_claim,
     join_names,
@@ -137,7 +138,8 @@ def _confirm(search: Search, judgement: Judgement) -> Judgement:
     """The judgement, or `unexplained` where unseen data do not confirm the effects.
 
     They hardly lower the error of whole unseen runs: what follows a rest of no block's form on
-    windows does not carry over to them. Or they do not lower it at all where the claim is made.
+    windows does not carry over to them. Or they do not lower it at all where the claim is made. Or
+    they are waves that keep the rhythm of the motion.
     """
     declared, best = judgement.final.declared, judgement.final.best
     share = share_of_whole_runs(search, declared, best)
@@ -148,6 +150,8 @@ def _confirm(search: Search, judgement: Judgement) -> Judgement:
         what = "lowers the error neither of windows nor of free runs in the part of the data that"
         what += " played no part"
     else:
+        what = describe_own_rhythm(search, best)
+    if not what:
         return judgement
     reason = f"{model_with(map(str, best.effects))} {what}"
     dependences, missing = residual_map(search, declared)
