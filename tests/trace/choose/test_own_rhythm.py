@@ -25,8 +25,8 @@ def effect(
     return SimpleNamespace(candidate=candidate)
 
 
-def told(period: float, *effects: Any, text: str = DIAGRAM) -> str:
-    swing = record(end=12.0)
+def told(period: float, *effects: Any, text: str = DIAGRAM, end: float = 12.0) -> str:
+    swing = record(end=end)
     search: Any = SimpleNamespace(
         options=TraceOptions(),
         problem=SimpleNamespace(declared=model_of(text)),
@@ -57,3 +57,7 @@ def test_no_wave_keeps_the_rhythm_of_what_is_driven() -> None:
 def test_what_has_another_effect_beside_the_wave_is_not_asked() -> None:
     assert told(PERIOD, effect("wave"), effect("rub", (), ())) == ""
     assert told(PERIOD, effect("load", ("period",), ())) == "", "a mass on a spring is no wave"
+
+
+def test_a_record_of_less_than_three_swings_has_no_rhythm() -> None:
+    assert told(PERIOD, end=1.5 * PERIOD) == ""

@@ -8,7 +8,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 from tracewire.residual import Section
-from tracewire.trace.choose import safeguards, unseen
+from tracewire.trace.choose import safeguards, unseen, verdict
 from tracewire.trace.choose.choice import Entrant, choose, log_scores
 from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.choose.unseen import (
@@ -35,7 +35,7 @@ def prediction(held_out: dict[tuple[str, ...], float] = HELD_OUT) -> Prediction:
     errors = ripple * np.reshape(list(held_out.values()), (-1, 1, 1, 1, 1))
     entrants = tuple(Entrant(frozenset(names), 2 + len(names)) for names in held_out)
     models: Any = tuple(
-        SimpleNamespace(names=frozenset(names), trials=[names], numbers=2 + len(names))
+        SimpleNamespace(names=frozenset(names), trials=[names], numbers=2 + len(names), dropped=())
         for names in held_out
     )
     groups = (tuple((block,) for block in range(BLOCKS)),)
@@ -195,6 +195,7 @@ def test_effects_that_hardly_help_on_whole_unseen_runs_are_an_approximation(
     final: Any = SimpleNamespace(declared=(), best=Names((DRY,)))
     monkeypatch.setattr(safeguards, "undetermined_effects", lambda trial, confidence: [])
     monkeypatch.setattr(safeguards, "residual_map", lambda search, trial: ((), None))
+    monkeypatch.setattr(safeguards, "describe_own_rhythm", lambda search, trial: "")
     found = safeguards.safeguard(there, safeguards.Judgement("effect", final))
     assert found.verdict == verdict
     assert found.final is final
@@ -321,3 +322,16 @@ def test_an_unseen_error_is_lower_by_more_than_chance(after: float, lowers: bool
     fewer: Any = ()
     more: Any = (DRY,)
     assert lowers_unseen(run_of({(): 10.0, (DRY,): after}), fewer, more, 50) == lowers
+
+
+@pytest.mark.parametrize("runs", [(), ("cold",)])
+def test_where_only_the_end_of_the_run_refuses_another_run_is_asked_for(
+    runs: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(verdict, "raises_unseen", lambda *given: "multiplies the error by 9")
+    there = search({}, runs)
+    there.options = TraceOptions()
+    _, reason = verdict._harmless(there, prediction())
+    assert reason.endswith("multiplies the error by 9")
+    asked = [words for words in there.words if "with `use: validate`" in words]
+    assert len(asked) == (not runs)

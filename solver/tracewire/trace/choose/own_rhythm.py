@@ -22,21 +22,18 @@ def describe_own_rhythm(search: Search, trial: Trial) -> str:
     A bent scale of a sensor, or a force that is not in proportion, makes such waves of a free
     motion. What shakes the rig from outside has a period of its own.
     """
-    options = search.options
-    if not trial.effects or _is_driven(search.problem.declared):
+    options, candidates = search.options, [effect.candidate for effect in trial.effects]
+    waves = [one for one in candidates if one.lines and one.each]
+    if not waves or len(waves) < len(candidates) or _is_driven(search.problem.declared):
         return ""
-    motion = _period(search.data_split.train)
-    errors = trial.standard_errors
-    for effect in trial.effects:
-        candidate = effect.candidate
-        if not candidate.lines or not candidate.each:
+    motion, errors = _period(search.data_split.train), trial.standard_errors
+    for wave in waves:
+        unknown = f"{wave.block}.{wave.lines[0]}"
+        if unknown not in errors or not np.isfinite(motion):
             return ""
-        unknown = f"{candidate.block}.{candidate.lines[0]}"
-        period = trial.values[unknown]
-        order = motion / period
-        part = options.sure * errors[unknown] / period
-        whole = round(order)
-        if not 1 <= whole <= options.rhythms or abs(order / whole - 1) > part:
+        order = motion / trial.values[unknown]
+        part = options.sure * errors[unknown] / trial.values[unknown]
+        if not 1 <= round(order) <= options.rhythms or abs(order / round(order) - 1) > part:
             return ""
     return "stands for a law of another form: its wave keeps the rhythm of the motion itself"
 

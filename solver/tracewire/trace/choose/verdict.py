@@ -260,6 +260,11 @@ def _harmless(search: Search, prediction: Prediction) -> tuple[Prediction, str]:
         prediction = prediction.choose_again(refused)
     if refused and len(refused) == search.options.refused:
         prediction = replace(prediction, choice=replace(prediction.choice, sure=False))
+    if reason and not search.data_split.other_runs:
+        search.words.append(
+            "the part that was held back may show what the rest does not: name another run under"
+            " `measured:`, with `use: validate`, so that this one is fitted whole"
+        )
     return prediction, reason
 
 
