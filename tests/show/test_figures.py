@@ -22,7 +22,7 @@ from tracewire.show import plot_run
 from tracewire.show.event_rows import draw_events, event_rows, is_tick, jump_times
 from tracewire.show.figures import group_signals
 from tracewire.show.sticking import held_intervals, join_intervals, stick_intervals
-from tracewire.show.style import panels, styled
+from tracewire.show.style import panels, styled, with_gaps
 from tracewire.show.summary import run_table
 from tracewire.solve import Event, Run, Statistics, simulate
 
@@ -277,6 +277,16 @@ def test_a_long_curve_has_no_hole() -> None:
     seen = np.flatnonzero((image < 150).any(axis=1))
     assert len(seen) > 100
     assert (np.diff(seen) == 1).all()
+
+
+def test_no_line_goes_over_a_gap_in_the_samples() -> None:
+    t = np.r_[0.0:1.0:0.1, 60.0:61.0:0.1]
+    x, y = with_gaps(t, np.sin(t))
+    (hole,) = np.flatnonzero(np.isnan(y))
+    assert (x[hole - 1], x[hole + 1]) == (t[9], t[10])
+    np.testing.assert_array_equal(y[~np.isnan(y)], np.sin(t))
+    for steady in (t[:10], np.cumsum([0.1, 1.9, 0.2, 0.1, 0.3])):
+        np.testing.assert_array_equal(with_gaps(steady, steady), (steady, steady))
 
 
 def test_a_curve_too_long_for_the_renderer_is_drawn_in_pieces(

@@ -29,6 +29,7 @@ from tracewire.show.style import (
     save,
     shortened,
     styled,
+    with_gaps,
     with_unit,
 )
 
@@ -86,9 +87,9 @@ def draw_comparison(upper: Axes, lower: Axes, compared: Comparison, now: str = "
         upper.plot(t[~counts], compared.measured[~counts], **points | {"alpha": 0.2})
     # the dashes above the line: both are seen where they agree
     many = len(t) > FIGURE.many_points
-    upper.plot(t, _unjoined(before, compared.period), "--", color=BEFORE, linewidth=1.1, zorder=3,
-               label="before", rasterized=many)  # fmt: skip
-    upper.plot(t, _unjoined(after, compared.period), color=AFTER, label=now, rasterized=many)
+    old, new = (with_gaps(t, _unjoined(y, compared.period)) for y in (before, after))
+    upper.plot(*old, "--", color=BEFORE, linewidth=1.1, zorder=3, label="before", rasterized=many)
+    upper.plot(*new, color=AFTER, label=now, rasterized=many)
     limit(upper, (compared.measured, after), before)
     upper.set_ylabel(with_unit(cut(compared.signal), compared.unit))
     upper.tick_params(labelbottom=False)
@@ -138,8 +139,9 @@ def _draw_strip(
     panel: Axes, compared: Comparison, before: Vector, after: Vector, many: bool
 ) -> None:
     _draw_noise(panel, compared.sigma)
-    panel.plot(compared.t, before, color=BEFORE, linewidth=0.7, rasterized=many)
-    panel.plot(compared.t, after, color=AFTER, linewidth=0.8, rasterized=many)
+    for residual, color, width in ((before, BEFORE, 0.7), (after, AFTER, 0.8)):
+        curve = with_gaps(compared.t, residual)
+        panel.plot(*curve, color=color, linewidth=width, rasterized=many)
     shown = [_counted(after, compared), _edges(compared.sigma)]
     if differ_much(compared):
         shown.append(_counted(before, compared))
@@ -152,7 +154,7 @@ def _draw_enlarged(panel: Axes, compared: Comparison) -> None:
     after = compared.residual_after
     _draw_noise(panel, compared.sigma)
     many = len(after) > FIGURE.many_points
-    panel.plot(compared.t, after, color=AFTER, linewidth=0.8, rasterized=many)
+    panel.plot(*with_gaps(compared.t, after), color=AFTER, linewidth=0.8, rasterized=many)
     limit(panel, (_counted(after, compared), _edges(compared.sigma)), np.array([]))
     panel.set_ylabel(with_unit("after", compared.unit).replace(" ", "\n", 1))
     panel.set_title(ENLARGED, fontsize=8.5, color="#555555", loc="left", pad=3)

@@ -20,6 +20,8 @@ class FigureLimits:
     """Points of a curve: a piece of one that is too long to be drawn as a whole."""
     many_points: int = 5000
     """A vector picture holds more points than this as pixels: its file would be slow to open."""
+    gap: float = 20.0
+    """Usual steps of the time between two samples that no line joins."""
     most_lines: int = 4
     """Signals in a panel."""
     most_panels: int = 16

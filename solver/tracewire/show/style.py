@@ -144,6 +144,17 @@ def fit_time(panel: Axes, t: NDArray[np.float64]) -> None:
         panel.set_xlim(float(t[0]), float(t[-1]))
 
 
+def with_gaps(
+    t: NDArray[np.float64], y: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """A curve y(t), (N,), that is not joined over gaps in its times: nobody knows it there."""
+    if len(t) < 2:
+        return t, y
+    steps = np.diff(t)
+    behind = np.flatnonzero(steps > FIGURE.gap * np.median(steps)) + 1
+    return np.insert(t, behind, t[behind - 1]), np.insert(y, behind, np.nan)
+
+
 def dots(count: int) -> dict[str, Any]:
     """Dots that are seen where there are few, and do not hide the lines where there are many."""
     return {

@@ -27,6 +27,7 @@ from tracewire.show.style import (
     save,
     shortened,
     styled,
+    with_gaps,
 )
 from tracewire.show.trace_steps import compares
 from tracewire.trace import CandidateScore, Curve, Found, users_unit
@@ -129,10 +130,10 @@ def _draw_residual(panel: Axes, curve: Curve, changed: bool, alone: bool) -> Non
     panel.axhspan(-2, 2, color="white", alpha=0.75, linewidth=0, zorder=0.3)
     if changed:
         if not alone:
-            panel.plot(curve.t, before, color=BEFORE, linewidth=0.9, label="before")
-        panel.plot(curve.t, after, color=AFTER, linewidth=0.8, label="after")
+            panel.plot(*with_gaps(curve.t, before), color=BEFORE, linewidth=0.9, label="before")
+        panel.plot(*with_gaps(curve.t, after), color=AFTER, linewidth=0.8, label="after")
     else:
-        panel.plot(curve.t, after, color=AFTER, linewidth=0.8, label="declared model")
+        panel.plot(*with_gaps(curve.t, after), color=AFTER, linewidth=0.8, label="declared model")
     panel.axhline(0.0, color=QUIET, linewidth=0.7)
     for level in (-2, 2):
         label = "±2 σ" if level > 0 else None
