@@ -83,10 +83,8 @@ def edges_within(section: Section, length: int) -> list[int]:
     edges: list[int] = np.linspace(section.first, section.end, count + 1).astype(int).tolist()
     if count == 1:
         return edges
-    steps, half = (
-        np.diff(section.measured.t[section.first : section.end]),
-        section.count / count / 2,
-    )
+    steps = np.diff(section.measured.t[section.first : section.end])
+    half = section.count / count / 2
     gaps = np.flatnonzero(steps > 2 * half * np.median(steps)) + section.first + 1
     behind = [row for row in gaps.tolist() if _is_far(row, (section.first, section.end), half)]
     others = [edge for edge in edges[1:-1] if _is_far(edge, behind, half)]

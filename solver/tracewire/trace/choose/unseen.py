@@ -47,17 +47,14 @@ def raises_unseen(search: Search, fewer: Trial, more: Trial, lengths: Sequence[i
 
 def raises_whole_runs(search: Search, fewer: Trial, more: Trial) -> str:
     """By how much a model raises the error of one with fewer effects in whole unseen runs, in
-    words; empty where it does not, or where these runs tell nothing, as with both at the noise.
+    words; empty where it does not, or where these runs tell nothing, as at the noise.
 
     An effect that is right may raise that of one run, where long runs depend on everything: this is
     asked of what only approximates.
     """
     options = search.options
     before, after, count = _whole_runs(search, fewer, more)
-    if (
-        max(before, after) <= options.informative * count
-        or after <= (1 + options.harm) ** 2 * before
-    ):
+    if after <= max(options.informative * count, (1 + options.harm) ** 2 * before):
         return ""
     return f"multiplies the error of whole unseen runs by {(after / before) ** 0.5:.3g}"
 
