@@ -135,22 +135,27 @@ def test_at_the_noise_few_effects_take_most_of_what_was_above_it(
 
 
 @pytest.mark.parametrize(
-    ("declared", "again", "reduced_chi2", "slow"),
+    ("declared", "again", "reduced_chi2", "whole", "slow"),
     [
-        (None, False, 20.0, True),
-        (None, False, 40.0, False),
-        (None, True, 20.0, False),  # it comes back to where it was
-        (0.01, False, 20.0, False),  # the user has said how large the noise is
+        (None, False, 20.0, 5.0, True),
+        (None, False, 40.0, 5.0, False),
+        (None, False, 20.0, 9.0, False),  # a whole run is 9 sigma off: that is no noise
+        (None, True, 20.0, 5.0, False),  # it comes back to where it was
+        (0.01, False, 20.0, 5.0, False),  # the user has said how large the noise is
     ],
 )
 def test_what_is_left_of_a_single_way_may_be_slow_noise_of_a_sensor(
-    declared: float | None, again: bool, reduced_chi2: float, slow: bool
+    declared: float | None, again: bool, reduced_chi2: float, whole: float, slow: bool
 ) -> None:
     series = SimpleNamespace(values={"h": np.zeros(3)}, sigma={"h": declared})
     search: Any = SimpleNamespace(
         options=TraceOptions(),
         has_revisits=again,
-        problem=SimpleNamespace(measured=[series]),
+        problem=SimpleNamespace(
+            measured=[series], residuals_on=lambda trial, windows: [np.full(3, whole)]
+        ),
+        data_split=SimpleNamespace(whole=list),
+        whole_windows=list,
     )
     trial: Any = SimpleNamespace(effects=(), reduced_chi2=reduced_chi2)
     assert is_slow_noise(search, trial) is slow

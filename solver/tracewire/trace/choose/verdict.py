@@ -86,20 +86,19 @@ def is_at_noise(search: Search, trial: Trial) -> bool:
 
 
 def is_slow_noise(search: Search, trial: Trial) -> bool:
-    """Whether what is left without effects may be slow noise of a sensor: where no body comes back
-    to where it was, that is not to be told from a force. An estimate of the noise does not see what
-    is slow; a noise that the user declares has all of it."""
+    """Whether what is left without effects may be slow noise of a sensor, in windows and in whole
+    runs: where no body comes back to where it was, that is not to be told from a force. An
+    estimate of the noise does not see what is slow; one that the user declares has all of it."""
     estimated = any(
         sigma is None
         for series in search.problem.measured
         for sigma in (series.sigma.get(signal) for signal in series.values)
     )
-    return (
-        estimated
-        and not trial.effects
-        and not search.has_revisits
-        and trial.reduced_chi2 < search.options.slow_noise
-    )
+    if trial.effects or search.has_revisits or not estimated:
+        return False
+    residuals = search.problem.residuals_on(trial, search.whole_windows(search.data_split.whole()))
+    whole = float(np.mean(np.concatenate(residuals) ** 2))
+    return max(trial.reduced_chi2, whole) < search.options.slow_noise
 
 
 def judge_at_noise(search: Search, first: Trial, best: Trial) -> Judgement | None:
