@@ -41,7 +41,7 @@ class TraceOptions:
     short_horizon: float = 0.3
     """The shorter horizon in dominant periods of the measured motion."""
     long_horizon: float = 5.0
-    """The longer horizon in dominant periods; it is shortened where the record has fewer blocks."""
+    """The longer horizon in dominant periods; where blocks are shorter, a run goes over some."""
     shortest_window: int = 8
     """Samples of a window of the shorter horizon, at least."""
     least_blocks: int = 7

@@ -36,6 +36,19 @@ def test_the_horizons_are_a_third_of_a_period_and_five_periods() -> None:
     assert len(long.segments) == 20
 
 
+def test_in_a_record_of_few_periods_long_runs_go_over_several_blocks() -> None:
+    found = of(sine(count=400), sine(count=200, name="other"))
+    short, long = found.each
+    assert (short.length, long.length) == (12, 200)
+    assert found.count == OPTIONS.least_blocks
+    assert [len(segment.rows) for segment in long.segments] == [200, 200, 200]
+    for segment, blocks in zip(long.segments, long.blocks, strict=True):
+        assert len(set(blocks.tolist())) >= 2 and REST not in blocks
+        assert (np.diff(segment.rows) == 1).all()
+    judging = of(sine(count=400), gate=(sine(count=400, name="judge"),)).gate[1]
+    assert {len(segment.rows) for segment in judging.segments} == {200}
+
+
 @given(st.floats(1e-6, 1e6), st.floats(1e-6, 1e6))
 def test_they_do_not_depend_on_units(in_time: float, in_size: float) -> None:
     m = sine(count=600)

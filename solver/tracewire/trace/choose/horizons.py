@@ -151,27 +151,29 @@ def horizons_of(
     pieces = [piece for section in sections for piece in _pieces(section, block)]
     judging = [piece for section in gate for piece in _pieces(section, block)]
     if not free or block < 2 * short or not periodic:
-        each: tuple[Horizon, ...] = (_whole(model, whole, pieces, free),)
-        unseen: tuple[Horizon, ...] = (_whole(model, gate, judging, free),) if judging else ()
+        each: tuple[Horizon, ...] = (_cut_runs(model, whole, pieces, None, free),)
+        unseen: tuple[Horizon, ...] = (_cut_runs(model, gate, judging, None, free),)
     else:
         rests = [
             Section(one.measured, moving.end, one.end)
             for one, moving in zip(whole, sections, strict=True)
             if moving.end < one.end
         ]
+        # in a record of few periods the blocks are shorter than the runs of the longer horizon
+        span = max(block, int(min(long, max(section.count for section in sections))))
+        over, judged = (sections, gate) if span > block else (pieces, judging)
         each = (
-            _cut(model, pieces, rests, short, free).thin(options.most_short),
-            _cut(model, pieces, rests, block, free),
+            _cut_runs(model, [*pieces, *rests], pieces, short, free).thin(options.most_short),
+            _cut_runs(model, [*over, *rests], pieces, span, free),
         )
         unseen = (
-            tuple(_cut(model, judging, [], length, free) for length in (short, block))
-            if judging
-            else ()
+            _cut_runs(model, judging, judging, short, free),
+            _cut_runs(model, judged, judging, span, free),
         )
     both = [*pieces, *judging]
     return Horizons(
         each,
-        unseen,
+        unseen if judging else (),
         tuple(p.measured.series or p.measured.name for p in both),
         np.array([p.measured.t[p.first] for p in both]),
         _folds(pieces, options),
@@ -225,44 +227,27 @@ def moving_part(section: Section, sigma: Mapping[str, float], options: TraceOpti
     return Section(section.measured, section.first, max(last, few))
 
 
-def _cut(
+def _cut_runs(
     model: Model,
+    parts: Sequence[Section],
     pieces: Sequence[Section],
-    rests: Sequence[Section],
-    length: int,
+    length: int | None,
     free: Sequence[str],
 ) -> Horizon:
+    """Runs of about `length` samples within each part, or over all of it where that is None. A row
+    belongs to the block of the piece that it is in."""
+    names = list(dict.fromkeys(part.measured.name for part in (*pieces, *parts)))
     segments, blocks = [], []
-    numbered = [*enumerate(pieces), *((REST, rest) for rest in rests)]
-    numbered.sort(key=lambda one: (_order(pieces, rests, one[1]), one[1].first))
-    for number, piece in numbered:
-        for segment in cut_windows(model, piece, length, free):
-            segments.append(segment)
-            blocks.append(np.full(len(segment.rows), number))
-    return Horizon(length, tuple(segments), tuple(blocks))
-
-
-def _whole(
-    model: Model, sections: Sequence[Section], pieces: Sequence[Section], free: Sequence[str]
-) -> Horizon:
-    segments, blocks = [], []
-    for section in sections:
-        mine = [(n, p) for n, p in enumerate(pieces) if p.measured.name == section.measured.name]
-        for segment in cut_windows(model, section, section.count, free):
+    for part in sorted(parts, key=lambda one: (names.index(one.measured.name), one.first)):
+        mine = [(n, p) for n, p in enumerate(pieces) if p.measured.name == part.measured.name]
+        for segment in cut_windows(model, part, length or part.count, free):
             of = np.full(len(segment.rows), REST)
-            of[segment.rows < mine[0][1].first] = mine[0][0]
             for number, piece in mine:
                 of[(segment.rows >= piece.first) & (segment.rows < piece.end)] = number
             segments.append(segment)
             blocks.append(of)
-    longest = max(section.count for section in sections)
+    longest = length or max((part.count for part in parts), default=0)
     return Horizon(longest, tuple(segments), tuple(blocks))
-
-
-def _order(pieces: Sequence[Section], rests: Sequence[Section], section: Section) -> int:
-    """The place of a section's series among all."""
-    names = list(dict.fromkeys(one.measured.name for one in (*pieces, *rests)))
-    return names.index(section.measured.name)
 
 
 def _folds(
