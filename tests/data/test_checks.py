@@ -32,6 +32,12 @@ def test_unequal_steps_are_told() -> None:
     ]
 
 
+def test_steps_that_nearly_all_differ_may_be_those_of_events() -> None:
+    """As where a wheel that runs down sends a pulse for each turn."""
+    (told,) = time_remarks(np.arange(100.0) ** 1.1)
+    assert told.endswith("are more than 1% off: no fault where an event makes each sample")
+
+
 def test_gaps_are_told_with_their_places() -> None:
     assert time_remarks(np.delete(T, np.s_[500:600])) == [
         "a gap in the time, where the step is 0.01 s: 1.01 s after t = 4.99 s"

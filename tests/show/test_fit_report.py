@@ -209,6 +209,8 @@ def test_untouched_data_and_a_series_for_validation_are_told() -> None:
 def test_what_is_left_is_told_by_series_and_signal() -> None:
     said = fit_words(FIT)
     assert any(text.startswith("run (train), x: ") and "correlated" in text for text in said)
+    window = fit_words(made_fit(comparisons=(compared("run (train)"),)))
+    assert any(text.startswith("run (train), x: ") for text in window), "it has its use in its name"
     assert "(residual.png)" in report(FIT).markdown()
     short = made_fit(comparisons=(compared(count=5),))
     assert "No signal has enough samples" in report(short).markdown()

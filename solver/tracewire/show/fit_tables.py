@@ -183,9 +183,14 @@ def identifiability_words(fit: Fit) -> tuple[str, ...]:
     return tuple(map(sentence, fit.uncertainty.words))
 
 
+def _with_use(series: str, use: str) -> str:
+    """A series with its use; the name of a window has it already."""
+    return series if series.endswith(f"({use})") else f"{series} ({use})"
+
+
 def residual_words(fit: Fit, found: Sequence[Diagnosis]) -> tuple[str, ...]:
     """What the residual after the fit is like, by series and signal."""
-    words = [sentence(f"{d.series} ({d.use}), {d.signal}: {d.words}") for d in found]
+    words = [sentence(f"{_with_use(d.series, d.use)}, {d.signal}: {d.words}") for d in found]
     if fit.method in LOCAL and fit.model.states and any(d.is_missing for d in found):
         words.append(
             f"Nothing may be missing where {fit.method} has ended in a minimum that is not the "
