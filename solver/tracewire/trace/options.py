@@ -41,7 +41,8 @@ class TraceOptions:
     short_horizon: float = 0.3
     """The shorter horizon in dominant periods of the measured motion."""
     long_horizon: float = 5.0
-    """The longer horizon in dominant periods; where blocks are shorter, a run goes over some."""
+    """The longer horizon in dominant periods. Where blocks are shorter, a run goes over several, or
+    in a record of more than `most_samples` it is as short as they are."""
     shortest_window: int = 8
     """Samples of a window of the shorter horizon, at least."""
     least_blocks: int = 7

@@ -45,6 +45,10 @@ def test_in_a_record_of_few_periods_long_runs_go_over_several_blocks() -> None:
     for segment, blocks in zip(long.segments, long.blocks, strict=True):
         assert len(set(blocks.tolist())) >= 2 and REST not in blocks
         assert (np.diff(segment.rows) == 1).all()
+    many = of(
+        sine(count=400), sine(count=200, name="other"), options=replace(OPTIONS, most_samples=500)
+    )
+    assert {len(segment.rows) for segment in many.each[1].segments} <= {80, 100, 66, 67}
     judging = of(sine(count=400), gate=(sine(count=400, name="judge"),)).gate[1]
     assert {len(segment.rows) for segment in judging.segments} == {200}
 

@@ -159,8 +159,10 @@ def horizons_of(
             for one, moving in zip(whole, sections, strict=True)
             if moving.end < one.end
         ]
-        # in a record of few periods the blocks are shorter than the runs of the longer horizon
-        span = max(block, int(min(long, max(section.count for section in sections))))
+        # in a record of few periods the blocks are shorter than the runs of the longer horizon; of
+        # a long one, runs over several blocks could not be screened at some of them
+        longest = max(section.count for section in sections)
+        span = max(block, int(min(long, longest))) if total <= options.most_samples else block
         over, judged = (sections, gate) if span > block else (pieces, judging)
         each = (
             _cut_runs(model, [*pieces, *rests], pieces, short, free).thin(options.most_short),
