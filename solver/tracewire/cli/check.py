@@ -88,7 +88,7 @@ def _contents(file: str, library: Sequence[str] | None, quiet: bool) -> dict[str
     with working(f"compiling {'stdin' if file == '-' else file}"):
         from tracewire.compile import compile, remarks_of, statement_problems, unit_problems
 
-        model = compile(read_diagram(file, library))
+        model = compile(read_diagram(file, library), backend="python")  # it evaluates little
     if problems := [*unit_problems(model.flat), *statement_problems(model, model.diagram.expect)]:
         raise DiagramError(problems)
     for preset in ("", *model.flat.presets):  # what `run` refuses before its first step
