@@ -127,32 +127,33 @@ def test_check_tells_the_windows_of_a_series(call: Any, swing: Path) -> None:
     assert "run_1 (gate): 2 samples from 1.7 to 2 s of theta" in told
 
 
-def test_check_tells_parameters_that_are_not_what_is_required(call: Any, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("text", "code", "told"),
+    [
+        (
+            "span: [0, 1]\nparameters: {m: 1}\nrequire: [m > 0]\n"
+            "blocks: {x: {type: integrator, of: r}, r: {type: constant, value: 1/m}}\n"
+            "presets: {upside_down: {m: -2}}\n",
+            1,
+            "decay.yaml:3:11: the parameters do not meet 'm > 0': m = -2.",
+        ),
+        (
+            "inputs: {u: {unit: 1/s}}\nparameters: {m: {value: 1, unit: 1}}\n"
+            "blocks: {x: {type: integrator, of: r, start: 1/m}, r: {type: gain, of: u, k: 1}}\n"
+            "presets: {massless: {m: 0}}\n",
+            2,
+            "decay.yaml:3:10: block 'x': the start of 'x' is inf. A start is a finite number",
+        ),
+    ],
+)
+def test_check_tells_what_a_run_of_a_preset_would_refuse(
+    text: str, code: int, told: str, call: Any, tmp_path: Path
+) -> None:
     file = tmp_path / "decay.yaml"
-    file.write_text(
-        "span: [0, 1]\nparameters: {m: 1}\nrequire: [m > 0]\n"
-        "blocks: {x: {type: integrator, of: r}, r: {type: constant, value: 1/m}}\n"
-        "presets: {upside_down: {m: -2}}\n",
-        encoding="utf-8",
-    )
-    told = call("check", file)
-    assert (told.code, told.out) == (1, "")
-    assert "decay.yaml:3:11: the parameters do not meet 'm > 0': m = -2." in told.err
-
-
-def test_check_tells_a_start_that_is_not_finite_in_a_preset(call: Any, tmp_path: Path) -> None:
-    file = tmp_path / "decay.yaml"
-    file.write_text(
-        "inputs: {u: {unit: 1/s}}\nparameters: {m: {value: 1, unit: 1}}\n"
-        "blocks: {x: {type: integrator, of: r, start: 1/m}, r: {type: gain, of: u, k: 1}}\n"
-        "presets: {massless: {m: 0}}\n",
-        encoding="utf-8",
-    )
-    told = call("check", file)
-    assert (told.code, told.out) == (2, "")
-    assert "decay.yaml:3:10: block 'x': the start of 'x' is inf. A start is a finite number" in (
-        told.err
-    )
+    file.write_text(text, encoding="utf-8")
+    found = call("check", file)
+    assert (found.code, found.out) == (code, "")
+    assert told in found.err
 
 
 def test_check_names_a_measured_file_that_is_missing(call: Any, swing: Path) -> None:
