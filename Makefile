@@ -8,7 +8,7 @@ BIN := .venv/bin
 # variable `no` means --no-compile, and it reaches the installations of the build, too.
 INSTALL := PIP_NO_COMPILE=no $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: help demo test check benchmark fuzz format clean
+.PHONY: help demo test check benchmark fuzz format clean package dependencies
 .DEFAULT_GOAL := help
 # a .venv that could not be finished is made anew the next time
 .DELETE_ON_ERROR:
@@ -44,8 +44,15 @@ clean:            ## remove .venv, caches and build products
 # A stamp is as old as the last installation; a newer pyproject.toml installs again.
 .venv/installed: pyproject.toml | $(BIN)/python
 	@echo "Installing tracewire into .venv, once ..."
-	@$(INSTALL) -e .
+	@$(MAKE) --silent --jobs=2 package dependencies
 	@touch $@
+
+# The package makes the machine code of its core, which takes longest; its dependencies come meanwhile.
+package:
+	@$(INSTALL) --no-deps -e .
+
+dependencies:
+	@$(BIN)/python -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["dependencies"], sep="\n")' | $(INSTALL) -r /dev/stdin
 
 .venv/installed-test: pyproject.toml | $(BIN)/python
 	@echo "Installing tracewire and its checks into .venv, once ..."

@@ -1,4 +1,4 @@
-"""What hatchling calls when the package is built or installed: it adds the core's object file."""
+"""What hatchling calls when the package is built or installed: it adds the core's machine code."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ PLATFORMS = {
     "darwin": "macosx_11_0_{0}",
     "win32": "win_{0}",
 }
-"""The tags of a wheel. The object file names functions of C's library and no version of these."""
+"""The tags of a wheel. The machine code names functions of C's library and no version of these."""
 
 
 class CoreHook(BuildHookInterface):  # type: ignore[type-arg]
-    """Puts the object file beside the sources, and from there into a wheel."""
+    """Puts the file of the machine code beside the sources, and from there into a wheel."""
 
     def dependencies(self) -> list[str]:
-        """Numba, unless there is an object file for these sources."""
+        """Numba, unless there is machine code of these sources."""
         core_file = _core_file()
         return [] if core_file.is_there() else NUMBA
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Get or make the object file; an editable installation finds it beside the sources."""
+        """Get or make the file; an editable installation finds it beside the sources."""
         core_file = _core_file()
         file = core_file.put_beside_sources()
         if version != "editable":

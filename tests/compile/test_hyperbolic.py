@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 from tracewire.compile.hyperbolic import hyperbolic
 from tracewire.compile.limits import CODE
 
-MADE = hyperbolic(math.expm1)
-EACH = pytest.mark.parametrize("name", ["sinh", "cosh", "tanh"])
+MADE = hyperbolic(math.expm1, math.exp)
+EVEN = ("cosh", "sech")
+EACH = pytest.mark.parametrize("name", ["sinh", "cosh", "tanh", "sech"])
 
 
 def digits_lost(name: str, u: float) -> Decimal:
@@ -23,7 +24,7 @@ def digits_lost(name: str, u: float) -> Decimal:
         context.prec = 700  # of exp(u) - exp(-u) with u = 1e-300 some must be left
         e = Decimal(u).exp()
         odd, even = (e - 1 / e) / 2, (e + 1 / e) / 2
-        true = {"sinh": odd, "cosh": even, "tanh": odd / even}[name]
+        true = {"sinh": odd, "cosh": even, "tanh": odd / even, "sech": 1 / even}[name]
         off = abs(Decimal(MADE[name](u)) - true)
         return off / Decimal(float(np.spacing(abs(float(true)))))
 
@@ -42,11 +43,13 @@ def test_values_join_where_the_far_formula_takes_over(name: str, side: float) ->
 
 
 @pytest.mark.parametrize(
-    ("name", "at_infinity"), [("sinh", math.inf), ("cosh", math.inf), ("tanh", 1.0)]
+    ("name", "at_infinity"), [("sinh", math.inf), ("cosh", math.inf), ("tanh", 1.0), ("sech", 0.0)]
 )
 def test_limits(name: str, at_infinity: float) -> None:
-    made: Callable[[float], float] = hyperbolic(lambda u: float(np.expm1(u)))[name]
+    made: Callable[[float], float] = hyperbolic(
+        lambda u: float(np.expm1(u)), lambda u: float(np.exp(u))
+    )[name]
     assert made(math.inf) == at_infinity
-    assert made(-math.inf) == (at_infinity if name == "cosh" else -at_infinity)
+    assert made(-math.inf) == (at_infinity if name in EVEN else -at_infinity)
     assert math.isnan(made(math.nan))
-    assert math.copysign(1.0, made(-0.0)) == (1.0 if name == "cosh" else -1.0)
+    assert math.copysign(1.0, made(-0.0)) == (1.0 if name in EVEN else -1.0)

@@ -75,6 +75,7 @@ def test_neutral_operations_vanish() -> None:
     assert tape.push("-", zero, x) == tape.push("*", minus, x) == tape.push("neg", x)
     assert tape.push("**", x, tape.constant(3.0)) == tape.push("*", tape.push("*", x, x), x)
     assert tape.push("**", x, tape.constant(0.5)) == tape.push("sqrt", x)
+    assert tape.push("/", y, tape.push("cosh", x)) == tape.push("*", y, tape.push("sech", x))
 
 
 def test_what_nothing_reads_is_not_needed() -> None:

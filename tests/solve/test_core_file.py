@@ -10,8 +10,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from tracewire.errors import InstallationError
 from tracewire.solve import core_file
+from tracewire.solve.core_build.objects import join, split
 
 
 @pytest.fixture
@@ -81,6 +84,11 @@ def test_a_damaged_file_of_the_package_is_not_used(
     monkeypatch.setattr(core_file, "make", lambda: b"made anew")
     monkeypatch.setenv("TRACEWIRE_CACHE_DIR", str(changed / "another cache"))
     assert core_file.object_code() == b"made anew"
+
+
+@given(st.lists(st.binary(max_size=40)))
+def test_the_object_files_of_a_content_are_those_that_were_joined(objects: list[bytes]) -> None:
+    assert split(join(objects)) == objects
 
 
 @pytest.mark.slow

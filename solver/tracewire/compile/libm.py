@@ -10,6 +10,8 @@ from functools import cache
 
 from tracewire.formula import OPERATIONS
 
+PREFIX = "tracewire."
+"""Of their names in machine code, so that LLVM knows nothing about them."""
 CALLED = [operation for operation in OPERATIONS.values() if operation.library]
 BASES = {operation.base for operation in OPERATIONS.values() if operation.base}
 ONE = (*(operation.library for operation in CALLED if operation.most == 1), *sorted(BASES))

@@ -17,7 +17,8 @@ from collections.abc import Mapping, Sequence
 
 from tracewire.compile import libm
 from tracewire.compile.constants import Constants
-from tracewire.compile.hyperbolic import COPY_SIGN, exponential, from_exponential
+from tracewire.compile.hyperbolic import COPY_SIGN, GROWTH, exponential, from_exponential
+from tracewire.compile.libm import PREFIX
 from tracewire.compile.limits import CODE
 from tracewire.compile.past import PAST
 from tracewire.compile.search import SearchText
@@ -29,7 +30,6 @@ ARITHMETIC |= {"and": "fmul"}  # of 0 and 1
 LIBRARY = {name: o.library for name, o in OPERATIONS.items() if o.library}
 INTRINSIC = {name: o.intrinsic for name, o in OPERATIONS.items() if o.intrinsic}
 HYPERBOLIC = {name for name, o in OPERATIONS.items() if o.base}
-PREFIX = "tracewire."
 ARGUMENTS = "double %t, " + ", ".join(f"ptr noalias readonly %{a}" for a in "xmck")
 PURE = "nounwind willreturn readnone"
 
@@ -96,7 +96,7 @@ next:
 done:
   ret void
 }"""
-HELPERS = {"segment": SEGMENT, "slope": SLOPE, "fill": FILL, "past": PAST}
+HELPERS = {"segment": SEGMENT, "slope": SLOPE, "fill": FILL, "past": PAST, "growth": GROWTH}
 
 
 def _module(functions: Sequence[str]) -> str:
@@ -291,7 +291,7 @@ class _Body:
         """The name of the exponential of an entry, which is computed here if it is not known."""
         if index not in self.exponentials:
             self.exponentials[index] = f"e{index}"
-            self.lines += exponential(u, f"e{index}", PREFIX)
+            self.lines += exponential(u, f"e{index}")
         return self.exponentials[index]
 
     def search(self, index: int, operands: Sequence[str]) -> None:

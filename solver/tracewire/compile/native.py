@@ -11,8 +11,8 @@ from threading import RLock
 from typing import Any
 
 from tracewire.compile import libm
+from tracewire.compile.libm import PREFIX
 from tracewire.compile.limits import CODE
-from tracewire.compile.machine import PREFIX
 
 _lock = RLock()
 _kept: OrderedDict[bytes, Native] = OrderedDict()
@@ -44,13 +44,15 @@ def assemble(text: str, names: Iterable[str], *, quickly: bool = False) -> Nativ
         return found
 
 
-def load_object(code: bytes) -> Any:
-    """An engine with the functions of an object file; they are in memory as long as it is."""
+def load_objects(codes: Iterable[bytes]) -> Any:
+    """An engine with the functions of object files, which know each other; they are in memory as
+    long as it is."""
     import llvmlite.binding as llvm
 
     _initialize()
     engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _target(quickly=True))
-    engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+    for code in codes:
+        engine.add_object_file(llvm.ObjectFileRef.from_data(code))
     engine.finalize_object()
     return engine
 
@@ -61,7 +63,7 @@ def _engine(text: str, quickly: bool) -> Any:
     _initialize()
     # The tape is folded and shared already; passes over the IR only cost time, and they would join
     # the parts of long functions again. An engine that compiles itself keeps fifteen times as much.
-    return load_object(_compiler(quickly).emit_object(llvm.parse_assembly(text)))
+    return load_objects([_compiler(quickly).emit_object(llvm.parse_assembly(text))])
 
 
 @cache

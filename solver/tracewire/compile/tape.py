@@ -190,6 +190,8 @@ class Tape:
                 return self.push("neg", a)
             case "/" if x == 0:
                 return self.constant(0.0)
+            case "/" if self.entries[b].op == "cosh":  # which shares its division with tanh
+                return self.push("*", a, self.push("sech", self.entries[b].operands[0]))
             case "**" if y == 2:
                 return self.push("*", a, a)
             case "**" if y == 3:

@@ -26,6 +26,7 @@ ALONG = {name: _of_numpy(one.numpy) for name, one in OPERATIONS.items() if one.n
 ALONG |= {
     "if": np.where,
     "dry": lambda u, slip, stick: slip * np.sign(u),
+    "sech": lambda u: 1.0 / np.cosh(u),
     "mod": lambda a, b: a - b * np.floor(a / b),  # np.mod differs where a/b is rounded to a whole
 }
 """What numpy has for operators and functions, and what it does not have."""

@@ -97,8 +97,13 @@ OPERATORS = {
 }
 # fmt: on
 
+
 # What formulas call by name.
 # fmt: off
+def _sech(u: float) -> float:
+    return 1.0 / math.cosh(u)
+
+
 FUNCTIONS = {
     "sin": Function(1, 1, "sine of an angle in rad", math.sin, numpy="sin", slope="cos(u)",
         pace="turns", library="sin"),
@@ -120,6 +125,8 @@ FUNCTIONS = {
         pace="fades", base="expm1"),
     "tanh": Function(1, 1, "hyperbolic tangent", math.tanh, numpy="tanh", slope="1 - f*f",
         pace="fades", base="expm1"),
+    "sech": Function(1, 1, "hyperbolic secant, 1/cosh", _sech, slope="-(f*tanh(u))", pace="fades",
+        base="expm1"),
     "exp": Function(1, 1, "exponential", math.exp, numpy="exp", slope="f", pace="fades",
         library="exp"),
     "log": Function(1, 1, "natural logarithm", math.log, numpy="log", slope="1/u", library="log"),

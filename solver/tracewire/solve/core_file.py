@@ -1,4 +1,4 @@
-"""The object file of the core: where it lies, and how it is made where there is none.
+"""The machine code of the core on disk: where it lies, and how it is made where it is missing.
 
 It belongs to a text: its name has a digest of the sources of the core and of what makes the library
 of them. A package has it beside its sources, put there when the package was built. A checkout whose
@@ -46,7 +46,7 @@ def machine() -> str:
 
 
 def file_name() -> str:
-    """The name of the object file for the sources as they are, and for this kind of machine."""
+    """The name of the file for the sources as they are, and for this kind of machine."""
     digest = hashlib.sha256()
     files = [file for folder in SOURCES for file in folder.rglob("*")]
     for file in sorted(file for file in files if file.suffix in (".py", ".ll")):
@@ -57,7 +57,7 @@ def file_name() -> str:
 
 
 def object_code() -> bytes:
-    """The content of the object file; made where it is nowhere.
+    """The content of the file; made where it is nowhere.
 
     Raises InstallationError where that cannot be.
     """
@@ -72,7 +72,7 @@ def is_there() -> bool:
 
 
 def put_beside_sources() -> Path:
-    """Where the object file then lies in the package; those of other sources are removed."""
+    """Where the file then lies in the package; those of other sources are removed."""
     name, content = file_name(), object_code()
     PACKAGED.mkdir(exist_ok=True)
     for file in PACKAGED.glob("*.o"):
@@ -81,7 +81,7 @@ def put_beside_sources() -> Path:
 
 
 def _packaged(name: str) -> bytes | None:
-    """The object file beside the sources; None where there is none, or it is damaged."""
+    """The content beside the sources; None where there is none, or it is damaged."""
     try:
         return unseal(name, (PACKAGED / name).read_bytes())
     except OSError:
@@ -89,7 +89,7 @@ def _packaged(name: str) -> bytes | None:
 
 
 def kept_or_made(name: str, files: CodeStore, make: Callable[[], bytes]) -> bytes:
-    """The object file of the user's folder, or a new one, which is then kept there."""
+    """The content in the user's folder, or a new one, which is then kept there."""
     found = files.read(name)
     if found is not None:
         return found
@@ -103,7 +103,7 @@ def kept_or_made(name: str, files: CodeStore, make: Callable[[], bytes]) -> byte
 
 
 def make() -> bytes:
-    """Make the object file, in processes of their own. Raises InstallationError."""
+    """Make the content, in processes of their own. Raises InstallationError."""
     if importlib.util.find_spec("numba") is None:
         raise InstallationError.one(WITHOUT_NUMBA)
     tell(BEGIN)

@@ -8,8 +8,9 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
 
-from tracewire.compile.native import load_object
+from tracewire.compile.native import load_objects
 from tracewire.errors import Problem, SimulationError
+from tracewire.solve.core_build.objects import split
 from tracewire.solve.core_file import object_code
 from tracewire.solve.interrupt import until_interrupted
 
@@ -50,9 +51,9 @@ def library() -> Library:
 
     Ctrl-C is heard when it is loaded: an exception inside of LLVM would end the process.
     """
-    code = object_code()
+    codes = split(object_code())
     with until_interrupted() as stop_flag:
-        engine = load_object(code)
+        engine = load_objects(codes)
     if stop_flag.asked:
         raise KeyboardInterrupt
 

@@ -11,16 +11,18 @@ import os
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterable
 from pathlib import Path
 from threading import Thread
 from types import ModuleType
+from typing import Any
 
 HERE = Path(__file__).resolve().parent
 MOST_PROCESSES = 4  # more of them make the same helpers more often
 
 
 def main(file: str, processor: str) -> None:
-    """Write the object file for a kind of processor, as LLVM names it."""
+    """Write the object files for a kind of processor, as LLVM names it, one of each process."""
     count = min(os.cpu_count() or 1, MOST_PROCESSES)
     with tempfile.TemporaryDirectory() as folder:
         parts = [Path(folder, str(number)) for number in range(count)]
@@ -37,24 +39,36 @@ def main(file: str, processor: str) -> None:
         if any(codes):
             sys.exit(1)
         from tracewire.files import write_file
-        from tracewire.solve.core_build.link import linked, target_of
+        from tracewire.solve.core_build.objects import join
 
-        write_file(file, linked([part.read_bytes() for part in parts], target_of(processor)))
+        write_file(file, join(part.read_bytes() for part in parts))
 
 
 def make_part(processor: str, count: str, number: str, file: str) -> None:
-    """Write the bitcode of every `count`th unit."""
+    """Write the object file of a share of the units, one of `count` that take about as long."""
     Thread(target=_end_with_parent, daemon=True).start()
     from tracewire.files import write_file
     from tracewire.solve.core_build import lower, without_python
-    from tracewire.solve.core_build.link import optimised, target_of
+    from tracewire.solve.core_build.link import object_of, target_of
 
     gc.disable()  # it would look through all that is needed to the end, which takes a third longer
     without_python.apply()
     units = lower.read_core()
-    for symbol in list(units)[int(number) :: int(count)]:
-        units[symbol].lower()
-    write_file(file, optimised(without_python.TEXTS, units, target_of(processor)))
+    for unit in dealt(units.values(), int(count))[int(number)]:
+        unit.lower()
+    write_file(file, object_of(without_python.TEXTS, units, target_of(processor)))
+
+
+def dealt(units: Iterable[Any], count: int) -> list[list[Any]]:
+    """The units in `count` shares of about the same length of code: the long ones are dealt first,
+    forth and back."""
+    by_length = sorted(units, key=lambda unit: len(unit.function.__code__.co_code), reverse=True)
+    rows = [by_length[i : i + count] for i in range(0, len(by_length), count)]
+    shares: list[list[Any]] = [[] for _ in range(count)]
+    for turn, row in enumerate(rows):
+        for share, unit in zip(shares[:: -1 if turn % 2 else 1], row, strict=False):
+            share.append(unit)
+    return shares
 
 
 def _end_with_parent() -> None:

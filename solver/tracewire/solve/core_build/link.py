@@ -1,4 +1,4 @@
-"""From the texts of the functions to one object file, in which they know each other."""
+"""From the texts of functions to an object file, whose units others may call by their symbols."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ SUPPORT = Path(__file__).with_name("support.ll")
 SPEED = 3  # of LLVM's levels of optimisation
 
 
-def optimised(texts: Iterable[str], names: Iterable[str], target: Any) -> bytes:
-    """The bitcode of a module with these functions, of which only those with names are seen."""
+def object_of(texts: Iterable[str], names: Iterable[str], target: Any) -> bytes:
+    """The object file with these functions, of which only those with names are seen."""
     module = binding.parse_assembly(SUPPORT.read_text(encoding="ascii"))
     for text in texts:
         module.link_in(binding.parse_assembly(text))
@@ -30,16 +30,8 @@ def optimised(texts: Iterable[str], names: Iterable[str], target: Any) -> bytes:
     tuning.loop_vectorization, tuning.slp_vectorization = False, True  # vectors of a few numbers
     builder = binding.create_pass_builder(target, tuning)
     builder.getModulePassManager().run(module, builder)
-    return bytes(module.as_bitcode())
-
-
-def linked(parts: Iterable[bytes], target: Any) -> bytes:
-    """The object file of several modules."""
-    whole, *others = (binding.parse_bitcode(part) for part in parts)
-    for other in others:
-        whole.link_in(other)
-    whole.verify()
-    return bytes(target.emit_object(whole))
+    module.verify()
+    return bytes(target.emit_object(module))
 
 
 def target_of(processor: str) -> Any:
