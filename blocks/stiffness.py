@@ -185,6 +185,30 @@ elastic_load = Block(
     source="The equation of a dynamic absorber; at a period of 0 it is inertia.",
 )
 
+relaxing_spring = Block(
+    name="relaxing_spring",
+    doc="A spring in series with a damper, as rubber has: its force fades where the body rests.",
+    inputs=(Input("rate", doc="of the body: rad/s, or m/s"),),
+    parameters=(
+        Parameter("k", doc="the stiffness of a fast motion: N m/rad, or N/m", low=0.0),
+        Parameter("lag", "s", "in which the force falls to 1/e where the body rests", above=0.0),
+        Parameter("start", doc="the deflection of the spring at the start", default=0.0),
+    ),
+    states=(State("s", "rate - s/lag", "start"),),  # the deflection of the spring alone
+    outputs=(Output("force", "-k*s", doc="acts on the body"),),
+    effect=Effect(
+        "k",
+        {"rate": "v"},
+        sign=1,
+        shapes={"lag": Shape((4.0, 16.0, 64.0, 256.0), of="dt", least=2.0)},
+        alias=("viscous", "stiffness"),
+        lasting=("s",),
+    ),
+    source="Maxwell's element; beside a spring it is the standard linear solid: J. D. Ferry,"
+    " Viscoelastic Properties of Polymers, 1980. With a short lag it is a damper, with a long one"
+    " a spring.",
+)
+
 asymmetric_stiffness = Block(
     name="asymmetric_stiffness",
     doc="A linear spring with a stiffness for each side.",

@@ -147,6 +147,9 @@ NAMES: dict[str, dict[Tool, str]] = {
     "play_operator": {"": "gear play, hysteresis play"},
     "exp": {"Xcos": "EXPBLK_m"},
     "log": {"Xcos": "LOGBLK_f"},
+    "relaxing_spring": {
+        "": "maxwell model, zener, standard linear solid, viscoelastic, creep, rubber"
+    },
     "sin": {"Xcos": "SINBLK_f"},
     "cos": {"Xcos": "COSBLK_f"},
     "tan": {"Xcos": "TANBLK_f"},
