@@ -319,6 +319,24 @@ def test_an_elastic_load_is_a_second_mass() -> None:
     np.testing.assert_allclose(found.signals["q"], exact.y[0], atol=1e-7)
 
 
+def test_a_relaxing_spring_comes_to_the_force_of_its_damper_and_lets_go() -> None:
+    k, lag, rate = 5.0, 0.4, 0.3
+    found = run(
+        f"""
+        span: [0, 3]
+        every: 0.01
+        record: [pull]
+        blocks:
+          rate: {{type: step, offset: {rate}, height: -{rate}, at: 1}}
+          pull: {{type: relaxing_spring, rate: rate, k: {k}, lag: {lag}}}
+        """
+    )
+    moving = k * lag * rate * (1 - np.exp(-found.t / lag))
+    last = k * lag * rate * (1 - math.exp(-1 / lag))
+    exact = np.where(found.t <= 1, moving, last * np.exp(-(found.t - 1) / lag))
+    np.testing.assert_allclose(found.signals["pull"], -exact, atol=1e-8)
+
+
 def test_play_and_stop_of_a_coordinate_alone_are_those_of_its_way() -> None:
     gap = 0.2
     text = f"""
