@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from residual.made_noise import autoregression
-from residual.models import LINE, T, made, series
+from residual.models import LINE, OSCILLATOR, T, made, oscillation, series
 from tracewire.fit import Fit, fit
 from tracewire.fit.diagnostics import (
     Diagnosis,
@@ -18,6 +18,7 @@ from tracewire.fit.diagnostics import (
     ljung_box,
     sign_change_probability,
 )
+from tracewire.show.fit_tables import fit_words
 
 Vector = NDArray[np.float64]
 LONG = np.linspace(0.0, 6.0, 601)
@@ -195,3 +196,22 @@ def test_what_follows_a_signal_depends_on_it_and_what_leads_it_by_far_does_not()
     )
     assert independence(noise, np.zeros(600), 20) == 1.0
     assert independence(noise, np.ones(600), 20) == 1.0
+
+
+@pytest.mark.parametrize(
+    ("record", "method", "told"),
+    [
+        (np.cos(6 * T), "least_squares", True),
+        (np.cos(6 * T), "growing_windows", False),
+        (oscillation(T) + 0.05 * np.cos(7 * T), "least_squares", False),
+    ],
+    ids=["out of step", "after growing windows", "in step"],
+)
+def test_before_a_trace_other_minima_are_to_be_looked_for(
+    record: Vector, method: str, told: bool
+) -> None:
+    """The nearest minimum leaves most of a wave of twice the frequency."""
+    found = fit(made(OSCILLATOR), [series(record, sigma={"x": 0.01})], method=method)
+    words = fit_words(found)
+    assert any("is missing" in text for text in words)
+    assert any("Fit with --method growing_windows before" in text for text in words) == told

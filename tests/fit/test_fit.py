@@ -15,7 +15,6 @@ from tracewire.fit import Fit, Progress, fit, optimset
 from tracewire.fit.methods import METHODS as FIT_METHODS
 from tracewire.fit.remarks import raises_unseen, rises, unfinished
 from tracewire.residual import Measured, Sensor
-from tracewire.show.fit_tables import fit_words
 
 METHODS = ("fminsearch", "least_squares")
 FINE = optimset(TolX=1e-7, TolFun=1e-16, Display="off")
@@ -390,14 +389,6 @@ def test_presets_that_disagree_on_a_free_parameter_are_told() -> None:
         "'k' is free and the same for all series, and their presets say 2 (soft), 3 (no preset). "
         "Fix it, or take it out of the presets."
     )
-
-
-def test_before_a_trace_other_minima_are_to_be_looked_for() -> None:
-    """A wave of twice the frequency: the nearest minimum leaves most of it."""
-    far = series(np.cos(6 * T), sigma={"x": 0.01})
-    for method, told in (("least_squares", True), ("growing_windows", False)):
-        words = fit_words(fitted(OSCILLATOR, far, method=method))
-        assert any("Fit with --method growing_windows before" in text for text in words) == told
 
 
 def test_a_search_that_ends_before_a_minimum_says_so() -> None:

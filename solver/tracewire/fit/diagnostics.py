@@ -34,7 +34,8 @@ class Diagnosis:
     """What is left of one measured signal of one series after a fit.
 
     `residual` (N,) is measured - simulated of the samples that count, in SI, `size` its root mean
-    square. `noise` is that of the sensor: `declared`, or from the data, as `estimate` says.
+    square; `variation` is the standard deviation of these samples. `noise` is that of the sensor:
+    `declared`, or from the data, as `estimate` says.
     `driven` is what the declared noise of measured inputs makes of it, None where none is declared.
     `step` is the median time between samples in s. `correlation` (L,) is the autocorrelation at
     `lags` (L,) in samples, white noise stays within +-`band` 95 % of the time, `memory` is the time
@@ -52,6 +53,7 @@ class Diagnosis:
     unit: str
     residual: Vector
     size: float
+    variation: float
     noise: float
     declared: bool
     step: float
@@ -67,6 +69,11 @@ class Diagnosis:
     driven: InputNoise | None = None
     estimate: NoiseEstimate | None = None
     is_missing: bool = False
+
+    @property
+    def is_out_of_step(self) -> bool:
+        """Whether so much is left that the fit may stand in another minimum than the lowest."""
+        return self.size > DIAGNOSIS.out_of_step * self.variation
 
     @property
     def is_white(self) -> bool:
@@ -226,6 +233,7 @@ def _diagnosis(
         unit=comparison.unit,
         residual=residual,
         size=float(np.sqrt(np.mean(residual**2))),
+        variation=float(np.std(comparison.measured[rows])),
         noise=estimate.level,
         declared=measured.sigma.get(comparison.signal) is not None,
         step=step,

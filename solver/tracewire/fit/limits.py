@@ -201,6 +201,9 @@ class DiagnosisLimits:
     promised: float = 0.9
     """The part of the residual that a Gauss-Newton step promises to leave, below which a search has
     ended before a minimum."""
+    out_of_step: float = 0.15
+    """The root mean square of a residual, as a part of the standard deviation of what was measured,
+    from which on a fit may stand in another minimum than the lowest: its runs are out of step."""
 
 
 DIAGNOSIS = DiagnosisLimits()

@@ -191,7 +191,11 @@ def _with_use(series: str, use: str) -> str:
 def residual_words(fit: Fit, found: Sequence[Diagnosis]) -> tuple[str, ...]:
     """What the residual after the fit is like, by series and signal."""
     words = [sentence(f"{_with_use(d.series, d.use)}, {d.signal}: {d.words}") for d in found]
-    if fit.method in LOCAL and fit.model.states and any(d.is_missing for d in found):
+    if (
+        fit.method in LOCAL
+        and fit.model.states
+        and any(d.is_missing and d.is_out_of_step for d in found)
+    ):
         words.append(
             f"Nothing may be missing where {fit.method} has ended in a minimum that is not the "
             "lowest one: it takes the nearest. Fit with --method growing_windows before a trace."
