@@ -196,6 +196,23 @@ def test_a_null_far_from_the_noise_says_what_that_may_be() -> None:
     assert "more than the noise" not in paragraph_of(NULL)
 
 
+def test_a_sensor_that_explains_hardly_more_than_a_sum_does_not_lead() -> None:
+    """Nobody believes that an encoder bends: a sensor imitates what a sum does."""
+    assert UNEXPLAINED.missing is not None
+    of_sensor = replace(UNEXPLAINED.missing, place="sensor.theta", variables=("y",), share=0.70)
+    shares = {"sensor.theta": ("y", 0.70), "torque": ("q", 0.62), "drive.u": ("u", 0.35)}
+    near = tuple(Dependence(place, (name,), share) for place, (name, share) in shares.items())
+    found = replace(UNEXPLAINED, missing=of_sensor, dependences=near)
+    told = (
+        "at the sum 'torque' or in the sensor of 'theta', which this record cannot tell apart; at "
+        "the sum 'torque' it depends on the coordinate theta (62 % of the excess"
+    )
+    assert paragraph_of(found).startswith(f"Something is missing {told} error); no effect")
+    assert answer_lines(found)[0].startswith(f"VERDICT unexplained: something is missing {told}; ")
+    far = replace(found, missing=replace(of_sensor, share=0.95))
+    assert "missing in the sensor of 'theta' that depends on the signal theta" in paragraph_of(far)
+
+
 def test_what_nothing_explains_is_told_with_place_and_variables() -> None:
     text = paragraph_of(UNEXPLAINED)
     assert text.startswith(

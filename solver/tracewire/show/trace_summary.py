@@ -15,6 +15,8 @@ from tracewire.show.trace_words import (
     excess_words,
     few_of,
     in_sigma,
+    missing_dependence,
+    missing_place_words,
     missing_words,
     moved_words,
     percent,
@@ -154,17 +156,16 @@ def _nothing(found: Found) -> str:
 
 
 def _open(found: Found) -> str:
-    missing = found.missing
+    missing = missing_dependence(found)
     none = explained_words(found)
     if noisy_words(found):
         return f"No effect of the library explains the residual; {noisy_words(found)}."
     if missing is None:
         where = "Something is missing, and its place is not known"
         return f"{where}; {none}{_wrong_by(found)}."
-    where, share = place_words(missing.place), percent(missing.share)
+    where, share = missing_place_words(found, " that depends on"), percent(missing.share)
     return (
-        f"Something is missing {where} that depends on {missing_words(found)} ({share} of the "
-        "excess error); "
+        f"Something is missing {where} {missing_words(found)} ({share} of the excess error); "
         f"{none}{_wrong_by(found)}."
     )
 

@@ -17,10 +17,11 @@ from tracewire.show.trace_words import (
     error_words,
     excess_words,
     in_sigma,
+    missing_dependence,
+    missing_place_words,
     missing_words,
     moved_words,
     percent,
-    place_words,
     remainder_numbers,
     runs_words,
     stood_in,
@@ -93,11 +94,12 @@ def _verdict(found: Found) -> str:
     none = explained_words(found)
     if noisy_words(found):
         return f"{noisy_words(found)}, and {none}"
-    if found.missing is None:
+    missing = missing_dependence(found)
+    if missing is None:
         return f"something is missing, and {none}"
+    told = missing.place, missing.variables
     others = sorted(
-        (d for d in found.dependences if (d.place, d.variables) != _key(found)),
-        key=lambda d: -d.share,
+        (d for d in found.dependences if (d.place, d.variables) != told), key=lambda d: -d.share
     )
     beside = [
         f"{', '.join(signal_of(found, d.place, name) for name in d.variables)} @ {d.place} "
@@ -105,16 +107,11 @@ def _verdict(found: Found) -> str:
         for d in others[:2]
         if d.share > 0
     ]
-    missing = found.missing
     text = (
-        f"something is missing {place_words(missing.place)}; it depends on {missing_words(found)} "
-        f"({percent(missing.share)} of the excess"
+        f"something is missing {missing_place_words(found, '; it depends on')} "
+        f"{missing_words(found)} ({percent(missing.share)} of the excess"
     )
     return text + (f"; {'; '.join(beside)})" if beside else ")") + f", and {none}"
-
-
-def _key(found: Found) -> tuple[str, tuple[str, ...]] | None:
-    return None if found.missing is None else (found.missing.place, found.missing.variables)
 
 
 def _is(count: int) -> str:

@@ -10,6 +10,7 @@ from tracewire.library import SENSOR_TERMS
 from tracewire.show.limits import WORD
 from tracewire.trace import (
     ChannelError,
+    Dependence,
     Explained,
     Found,
     FoundEffect,
@@ -250,6 +251,39 @@ def place_words(place: str) -> str:
     return words.get(kind, "") if signal and kind in words else f"at the sum '{place}'"
 
 
+def missing_places(found: Found) -> list[str]:
+    """The places at which a smooth function explains about as much of the excess as where something
+    is missing, sums first: a sensor or a drive can imitate what happens there."""
+    if found.missing is None:
+        return []
+    share = found.missing.share
+    least = max(share - WORD.alike_places, 1 - WORD.left_elsewhere * (1 - share))
+    near = {d.place for d in found.dependences if d.share >= least} | {found.missing.place}
+    elsewhere = ("sensor", "drive")
+    return sorted(near, key=lambda place: (place.partition(".")[0] in elsewhere, place))
+
+
+def missing_dependence(found: Found) -> Dependence | None:
+    """On what the missing force depends at the first of its places, and the share of the excess."""
+    places, missing = missing_places(found), found.missing
+    if missing is None:
+        return None
+    if places[0] == missing.place:
+        return Dependence(missing.place, missing.variables, missing.share)
+    return max((d for d in found.dependences if d.place == places[0]), key=lambda d: d.share)
+
+
+def missing_place_words(found: Found, depends: str) -> str:
+    """Where something is missing, and `depends`, which leads over to the variables; where it may be
+    at several places, these, and of which of them the variables are told."""
+    places = [place_words(place) for place in missing_places(found)]
+    if len(places) == 1:
+        return f"{places[0]}{depends}"
+    return (
+        f"{both_of(places, 'or')}, which this record cannot tell apart; {places[0]} it depends on"
+    )
+
+
 def variables_words(found: Found, place: str, variables: Sequence[str]) -> str:
     """Variables at a place as a person would call them: `the rate omega`."""
     return both_of([_variable_words(found, place, name) for name in variables])
@@ -263,7 +297,7 @@ def _variable_words(found: Found, place: str, variable: str) -> str:
 def missing_words(found: Found) -> str:
     """On what the missing force depends; with all variables of which each alone explains as much,
     as they do where the record goes one way."""
-    missing = found.missing
+    missing = missing_dependence(found)
     if missing is None:
         return ""
     alike = [

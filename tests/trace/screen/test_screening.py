@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -59,6 +60,15 @@ def test_what_a_declared_parameter_imitates_is_masked() -> None:
 def test_an_effect_with_the_wrong_sign_is_not_possible() -> None:
     screen = screen_of(lambda x, v: 0.1 * np.tanh(v / 1e-3))
     assert "coulomb @ force" not in best(screen)
+
+
+def test_a_refit_of_the_wrong_sign_begins_within_the_bounds_of_the_block() -> None:
+    """The share of a drive that goes in steps is at most 1, whatever a screen asks for."""
+    row = screen_of().best()[0]
+    name, limits = row.candidate.parameter, row.candidate.limits
+    bounded = replace(row.candidate, limits={**limits, name: (0.0, 1.0)})
+    asked = replace(row, candidate=bounded, values={**row.values, name: -1e5})
+    assert asked.placed_effect.coefficient == 1.0
 
 
 def test_each_candidate_is_told_once_by_its_best_variant() -> None:

@@ -73,7 +73,8 @@ class ScreenRow:
                 values[name] = min(max(values[name], low), high)
         name, neutral = self.candidate.parameter, self.candidate.neutral
         if values[name] == neutral != self.values[name]:
-            values[name] = neutral + self.options.wrong_sign * abs(self.values[name] - neutral)
+            small = self.options.wrong_sign * abs(self.values[name] - neutral)
+            values[name] = min(neutral + small, self.candidate.limits[name][1])
         return PlacedEffect(self.candidate, values)
 
 
