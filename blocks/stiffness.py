@@ -196,13 +196,6 @@ relaxing_spring = Block(
     ),
     states=(State("s", "rate - s/lag", "start"),),  # the deflection of the spring alone
     outputs=(Output("force", "-k*s", doc="acts on the body"),),
-    effect=Effect(
-        "k",
-        {"rate": "v"},
-        sign=1,
-        shapes={"lag": Shape((4.0, 16.0, 64.0, 256.0), of="dt", least=2.0)},
-        alias=("viscous", "stiffness"),
-    ),
     source="Maxwell's element; beside a spring it is the standard linear solid: J. D. Ferry,"
     " Viscoelastic Properties of Polymers, 1980. With a short lag it is a damper, with a long one"
     " a spring.",

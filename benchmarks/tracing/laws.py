@@ -77,7 +77,6 @@ EFFECTS: dict[str, Effect] = {
     "barrier": Effect(lambda a, s: -(a.q - _clip(a.q, s["s"]))),
     "barrier_hi": Effect(lambda a, s: -max(0.0, a.q - s["s"])),
     "barrier_lo": Effect(lambda a, s: -min(0.0, a.q + s["s"])),
-    "relaxing_spring": Effect(lambda a, s: -a.z, memory=lambda a, s: a.v - a.z / s["lag"]),
     "hysteresis": Effect(lambda a, s: -a.z, memory=lambda a, s: (a.v - abs(a.v) * a.z) / s["s"]),
     "harmonic": Effect(lambda a, s: math.sin(2 * math.pi * s["frequency"] * a.t + s["phase"])),
     "parametric": Effect(

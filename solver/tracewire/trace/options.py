@@ -160,10 +160,9 @@ class TraceOptions:
     uncommon: tuple[str, ...] = (
         "harmonic", "parametric", "cogging", "position_friction", "sensor_quad", "sensor_gain",
         "stiffness_drift", "viscous_drift", "friction_drift", "sensor_drift", "drive_2nd_harm",
-        "drive_3rd_harm", "relaxing_spring",
+        "drive_3rd_harm",
     )  # fmt: skip
-    """Effects that come after common ones where both predict as well: waves, drifts, gains, and a
-    memory that fades, which follows what is slow."""
+    """Effects that come after common ones where both predict as well: waves, drifts, gains."""
     with_motion: float = 0.5
     """The part by which common effects may take less of the squared error than a wave in time that
     is within one line of a free motion: on a swing with dry friction they took 10 % less."""
