@@ -86,7 +86,6 @@ class Criterion:
             [u.scale for u in self.unknowns]
             + [s.start_scale(name) for s in self.segments for name in s.free]
         )
-        self._samples = [segment.samples() for segment in self.segments]
         self._weights: dict[int, Vector] = {}
         self._batches: dict[int, tuple[Numbers, tuple[bool, ...], SegmentBatch]] = {}
         self._following = (
@@ -202,12 +201,12 @@ class Criterion:
         return self._weights[n]
 
     def _weights_of(self, n: int) -> Vector:
-        measured, samples = self.segments[n].measured, self._samples[n]
+        segment, measured = self.segments[n], self.segments[n].measured
         counts = [measured.weights.get(name, 1.0) for name in measured.values]
         shares = measured.weight * np.array(counts)
         if self.weighting == "mean":
-            shares = shares / len(samples)
-        return np.broadcast_to(np.sqrt(shares), samples.shape)
+            shares = shares / len(segment.rows)
+        return np.broadcast_to(np.sqrt(shares), (len(segment.rows), len(shares)))
 
     # --- residuals ------------------------------------------------------------------------------
 
@@ -352,8 +351,9 @@ class Criterion:
         self.failure = error
         self.failures[self.segments[n].measured.name] += 1
         sigma = self.sigma[self.segments[n].measured.name]
-        spread = CRITERION.penalty * np.maximum(np.std(self._samples[n], axis=0), sigma)
-        residual = np.asarray(np.broadcast_to(spread / sigma, self._samples[n].shape))
+        samples = self.segments[n].samples()
+        spread = CRITERION.penalty * np.maximum(np.std(samples, axis=0), sigma)
+        residual = np.asarray(np.broadcast_to(spread / sigma, samples.shape))
         scales = self.segments[n].start_scales(start)
         none, ends = np.zeros((residual.size, 0)), np.zeros((len(self.model.states), 0))
         return Linearisation(residual, none, scales, {}, ends, ran=False)

@@ -149,7 +149,7 @@ def refine_initial_states(windows: Windows, rows: Sequence[int], steps: int) -> 
                 if gain < max(WINDOW.negligible_gain, WINDOW.converged * near.square):
                     del share[n]
                     continue
-                answers[n] = -view.pseudoinverse @ near.residual.ravel()
+                answers[n] = -view.start_of(near.residual.ravel())
             start = np.array(list(windows.starts[n].values())) + share[n] * answers[n]
             moved[n] = dict(zip(windows.starts[n], start.tolist(), strict=True))
             if is_far_off(windows, n, moved[n]):

@@ -136,7 +136,7 @@ def _step_windows(windows: Windows, views: Sequence[Projection], step: Vector) -
     promised = []
     for n, (view, old) in enumerate(zip(views, windows.linearisations, strict=True)):
         expected = old.residual.ravel() + old.slopes[:, :count] @ step
-        moved = np.array(list(windows.starts[n].values())) - view.pseudoinverse @ expected
+        moved = np.array(list(windows.starts[n].values())) - view.start_of(expected)
         start: Mapping[str, float] = dict(zip(windows.starts[n], moved.tolist(), strict=True))
         starts[n] = windows.starts[n] if is_far_off(windows, n, start) else start
         promised.append(float(np.sum(view.project_out(expected) ** 2)))

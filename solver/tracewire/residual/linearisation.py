@@ -32,11 +32,15 @@ Names = list[tuple[str, ...]]
 
 @dataclass(frozen=True, eq=False)
 class Projection:
-    """A segment without what its start can explain: an orthonormal basis of that, (N*signals, r),
-    and the start's answer to a residual, (states, N*signals)."""
+    """A segment without what its start can explain: an orthonormal `basis` of that, (N*signals, r),
+    and by which start it is explained, `starts` (states, r)."""
 
     basis: Matrix
-    pseudoinverse: Matrix
+    starts: Matrix
+
+    def start_of(self, column: Vector) -> Vector:
+        """The start that explains most of a column (N*signals,), by least squares: (states,)."""
+        return np.asarray(self.starts @ (self.basis.T @ column))
 
     def project_out(self, columns: Matrix) -> Matrix:
         """Columns without what the start can explain."""
@@ -68,11 +72,10 @@ class Linearisation:
         scales = self.scales
         moved = self.slopes[:, self.slopes.shape[1] - len(scales) :] * scales
         if not moved.size:
-            return Projection(np.zeros((len(moved), 0)), np.zeros((0, len(moved))))
+            return Projection(np.zeros((len(moved), 0)), np.zeros((0, 0)))
         left, singular, right = np.linalg.svd(moved, full_matrices=False)
         kept = singular > WINDOW.unseen * max(float(singular[0]), 1e-300)
-        answer = (scales[:, None] * right[kept].T / singular[kept]) @ left[:, kept].T
-        return Projection(left[:, kept], answer)
+        return Projection(left[:, kept], scales[:, None] * right[kept].T / singular[kept])
 
 
 @dataclass(frozen=True, eq=False)
