@@ -23,6 +23,7 @@ from tracewire.show.trace_words import (
     chance_words,
     excess_words,
     in_sigma,
+    missing_places,
     percent,
     place_words,
     share_words,
@@ -211,6 +212,15 @@ def test_a_sensor_that_explains_hardly_more_than_a_sum_does_not_lead() -> None:
     assert answer_lines(found)[0].startswith(f"VERDICT unexplained: something is missing {told}; ")
     far = replace(found, missing=replace(of_sensor, share=0.95))
     assert "missing in the sensor of 'theta' that depends on the signal theta" in paragraph_of(far)
+
+
+def test_of_several_sums_the_best_leads() -> None:
+    assert UNEXPLAINED.missing is not None
+    shares = {"sensor.theta": 0.71, "arm": 0.66, "torque": 0.70, "far": 0.59}
+    near = tuple(Dependence(place, ("q",), share) for place, share in shares.items())
+    best = replace(UNEXPLAINED.missing, share=0.70)
+    found = replace(UNEXPLAINED, missing=best, dependences=near)
+    assert missing_places(found) == ["torque", "arm", "sensor.theta"]
 
 
 def test_what_nothing_explains_is_told_with_place_and_variables() -> None:

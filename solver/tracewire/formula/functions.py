@@ -98,12 +98,12 @@ OPERATORS = {
 # fmt: on
 
 
-# What formulas call by name.
-# fmt: off
 def _sech(u: float) -> float:
     return 1.0 / math.cosh(u)
 
 
+# What formulas call by name.
+# fmt: off
 FUNCTIONS = {
     "sin": Function(1, 1, "sine of an angle in rad", math.sin, numpy="sin", slope="cos(u)",
         pace="turns", library="sin"),

@@ -253,14 +253,16 @@ def place_words(place: str) -> str:
 
 def missing_places(found: Found) -> list[str]:
     """The places at which a smooth function explains about as much of the excess as where something
-    is missing, sums first: a sensor or a drive can imitate what happens there."""
-    if found.missing is None:
+    is missing, the best first; but sums before drives and sensors, which can imitate them."""
+    missing = found.missing
+    if missing is None:
         return []
-    share = found.missing.share
-    least = max(share - WORD.alike_places, 1 - WORD.left_elsewhere * (1 - share))
-    near = {d.place for d in found.dependences if d.share >= least} | {found.missing.place}
-    elsewhere = ("sensor", "drive")
-    return sorted(near, key=lambda place: (place.partition(".")[0] in elsewhere, place))
+    least = max(missing.share - WORD.alike_places, 1 - WORD.left_elsewhere * (1 - missing.share))
+    best = sorted(found.dependences, key=lambda d: -d.share)
+    near = [missing.place, *(d.place for d in best if d.share >= least)]
+    return sorted(
+        dict.fromkeys(near), key=lambda place: place.partition(".")[0] in ("sensor", "drive")
+    )
 
 
 def missing_dependence(found: Found) -> Dependence | None:
