@@ -75,5 +75,5 @@ def measure(options: Options) -> Iterator[Result]:
     """
     for c1, preset, lsoda in ((120.0, "consistent", 40.0), (1.2, "teaching", 75.0)):
         promised = {**COMMON, "scipy LSODA": (lsoda, False)}
-        promised |= {"C, same algorithm": (1.5, True), "C, leaner": (2.9, True)}
+        promised |= {"C, same algorithm": (1.25, True), "C, leaner": (2.1, True)}
         yield compare(problem(c1, preset), reference(c1), options, promised)
