@@ -134,6 +134,9 @@ class TraceOptions:
     at_noise: float = 1.3
     """The reduced chi-square below which a residual is at the sensor's noise: there the noise is
     white, likelihood is right, and BIC chooses."""
+    settles: float = 9.0
+    """How many times as large as in the rest, which is at the noise, the mean squared residual at
+    the begin or the end of a record is at least, for the note that this part may be left out."""
     input_windows: int = 40
     """Windows of a series on which the likely noise of an input is found."""
     input_noise: float = 0.5

@@ -18,6 +18,7 @@ from tracewire.trace.choose.remainder import (
     held_out_errors,
     remainders,
 )
+from tracewire.trace.choose.settling import describe_settling
 from tracewire.trace.choose.unseen import (
     better_unseen,
     join_names,
@@ -166,6 +167,8 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
         missed = bool(reason) or gain >= max(np.log1p(options.near), options.map_gain)
         verdict: Verdict = "unexplained" if missed else "null"
         dependences, missing = maps[0]
+        if missed:
+            search.words.extend(describe_settling(declared[0], options))
         if above and not missed:
             search.words.append(
                 f"the residual is {declared[-1].reduced_chi2 ** 0.5:.2g} σ, and no effect"
