@@ -38,18 +38,17 @@ def told(residual: Any) -> list[str]:
 
 def test_a_begin_that_is_far_off_may_be_left_out() -> None:
     (words,) = told(disturbed(0, 60))
-    begin = float(words.partition("`from: ")[2].rstrip("`"))
+    begin = float(words.partition("noise from ")[2].partition(" s on")[0])
     assert 4.5 < begin <= 6.0
     assert words.startswith("'run' is at the noise from ")
-    assert " σ off before. If something settles there, leave it out: " in words
+    assert " σ off before. If something settles there, leave it out by `from:` of the " in words
 
 
 def test_an_end_that_is_far_off_may_be_left_out() -> None:
     (words,) = told(disturbed(340, 400))
-    end = float(words.partition("`to: ")[2].rstrip("`"))
+    end = float(words.partition("noise until ")[2].partition(" s, and")[0])
     assert 33.9 <= end < 35.5
-    assert "is at the noise until " in words
-    assert " σ off after that. If something disturbs it there, leave it out: " in words
+    assert "off after that. If something disturbs it there, leave it out by `to:` of the " in words
 
 
 @pytest.mark.parametrize(

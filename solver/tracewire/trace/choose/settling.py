@@ -11,6 +11,7 @@ from tracewire.trace.options import TraceOptions
 from tracewire.trace.trials.trial import Trial
 
 Vector = NDArray[np.float64]
+IN_THE_FILE = " of the series, in the time of its file (where `zero:` is t = 0)"
 
 
 def describe_settling(trial: Trial, options: TraceOptions) -> Iterator[str]:
@@ -25,7 +26,7 @@ def describe_settling(trial: Trial, options: TraceOptions) -> Iterator[str]:
             off = float(np.mean(squares[:begin])) ** 0.5
             yield (
                 f"'{name}' is at the noise from {t[begin]:.4g} s on, and {off:.2g} σ off before. "
-                f"If something settles there, leave it out: `from: {t[begin]:.4g}`"
+                f"If something settles there, leave it out by `from:`{IN_THE_FILE}"
             )
             continue
         end = len(t) - quiet_from(squares[::-1], options)
@@ -33,7 +34,7 @@ def describe_settling(trial: Trial, options: TraceOptions) -> Iterator[str]:
             off = float(np.mean(squares[end:])) ** 0.5
             yield (
                 f"'{name}' is at the noise until {t[end - 1]:.4g} s, and {off:.2g} σ off after "
-                f"that. If something disturbs it there, leave it out: `to: {t[end - 1]:.4g}`"
+                f"that. If something disturbs it there, leave it out by `to:`{IN_THE_FILE}"
             )
 
 
