@@ -203,8 +203,11 @@ def writes_past(file: str, source: str) -> list[str]:
 
 
 def sources() -> dict[str, str]:
+    """{path inside the package: text}; a face that is lazy is read from the stub beside it."""
     return {
-        file.relative_to(PACKAGE).as_posix(): file.read_text(encoding="utf-8")
+        file.relative_to(PACKAGE).as_posix(): (
+            stub if (stub := file.with_suffix(".pyi")).is_file() else file
+        ).read_text(encoding="utf-8")
         for file in python_files(PACKAGE)
     }
 

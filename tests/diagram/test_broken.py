@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from diagram.small_library import made, refused
 from tracewire.compile import compile
-from tracewire.diagram.files import load
+from tracewire.diagram.files import load_text
 from tracewire.errors import DiagramError
 
 FOLDER = Path(__file__).parent / "broken"
@@ -44,7 +44,7 @@ MESSAGES = {
 
 def told_of(name: str) -> str:
     """The message with which a file is refused: where it is read, or where it is compiled."""
-    text = load(FOLDER / name)
+    text = load_text(FOLDER / name)
     told = refused(text, Path(name))
     if not told:
         with pytest.raises(DiagramError) as caught:

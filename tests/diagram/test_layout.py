@@ -11,7 +11,7 @@ from diagram.whole import WHOLE
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tracewire.diagram import lay_out
-from tracewire.diagram.files import load
+from tracewire.diagram.files import load_text
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.strict import Entries, Items, Node, Scalar, compose
 from tracewire.errors import DiagramError
@@ -129,7 +129,7 @@ def test_comments_stay() -> None:
 
 
 def test_every_shipped_diagram_is_laid_out() -> None:
-    assert [file for file in SHIPPED if lay_out(load(file)) != load(file)] == []
+    assert [file for file in SHIPPED if lay_out(load_text(file)) != load_text(file)] == []
 
 
 def test_line_ends_and_byte_order_mark_stay() -> None:

@@ -169,9 +169,9 @@ def test_files_with_a_mark_or_windows_line_ends_keep_their_text(tmp_path: Path) 
     text = "\ufeff" + PENDULUM.replace("\n", "\r\n")
     file = tmp_path / "diagram.yaml"
     file.write_bytes(text.encode())
-    from tracewire.diagram.files import load
+    from tracewire.diagram.files import load_text
 
-    diagram = made(load(file), file)
+    diagram = made(load_text(file), file)
     assert diagram.text == text
     assert diagram.blocks["theta"].place.line == 11
 

@@ -19,7 +19,7 @@ from tracewire.diagram import (
     with_modeline,
     write,
 )
-from tracewire.diagram.files import load
+from tracewire.diagram.files import load_text
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.strict import Items, Node, Scalar, compose
 from tracewire.errors import OptionError, TracewireError
@@ -62,20 +62,20 @@ def test_it_is_a_schema_of_draft_7() -> None:
 
 def test_it_accepts_every_shipped_diagram() -> None:
     assert len(SHIPPED) > 70
-    refused = [file for file in SHIPPED if not VALIDATOR.is_valid(content_of(load(file)))]
+    refused = [file for file in SHIPPED if not VALIDATOR.is_valid(content_of(load_text(file)))]
     assert refused == []
 
 
 def test_every_shipped_diagram_names_the_schema_that_is_shipped() -> None:
     schema = shipped("diagrams") / "schema.json"
     for file in [*SHIPPED, *shipped("blocks").glob("*.yaml")]:
-        first = load(file).split("\n", 1)[0]
+        first = load_text(file).split("\n", 1)[0]
         assert is_modeline(first), file
         assert (file.parent / first.partition("$schema=")[2]).samefile(schema), file
 
 
 def test_the_shipped_schema_is_that_of_the_library() -> None:
-    text = load(shipped("diagrams") / "schema.json")
+    text = load_text(shipped("diagrams") / "schema.json")
     assert text == schema_text(SCHEMA), "write it: tracewire schema --output diagrams/schema.json"
     assert json.loads(text) == SCHEMA
 
@@ -97,7 +97,7 @@ def test_it_accepts_every_section() -> None:
     ],
 )
 def test_it_refuses_what_a_schema_can_see(file: str, words: str) -> None:
-    errors = VALIDATOR.iter_errors(content_of(load(BROKEN / file)))
+    errors = VALIDATOR.iter_errors(content_of(load_text(BROKEN / file)))
     assert words in str(jsonschema.exceptions.best_match(errors).message)
 
 
@@ -229,8 +229,8 @@ def test_a_diagram_that_is_written_elsewhere_names_the_same_schema(tmp_path: Pat
         line = "# yaml-language-server: $schema={}\n"
         old.write_text(text.format(line.format(there)), encoding="utf-8")
         write(read(old), new, overwrite=True)
-        assert load(new) == text.format(line.format(moved))
+        assert load_text(new) == text.format(line.format(moved))
         write(read(old), tmp_path / "beside.yaml", overwrite=True)
-        assert load(tmp_path / "beside.yaml") == load(old)
+        assert load_text(tmp_path / "beside.yaml") == load_text(old)
     write(read_text(text.format(""), old), new, overwrite=True)
-    assert load(new) == text.format("")
+    assert load_text(new) == text.format("")

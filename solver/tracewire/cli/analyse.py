@@ -10,11 +10,13 @@ from tracewire.cli.analyse_planes import polar, portrait
 from tracewire.cli.analyse_sections import bifurcation, lyapunov, section
 from tracewire.cli.analyse_signals import growth, invariants, scalogram, spectrum
 from tracewire.cli.records import with_fields
+from tracewire.cli.verb_group import VerbGroup
 
 analyse = typer.Typer(
     help="Analyse a diagram: steady states, orbits and their stability, exponents, spectra.",
+    cls=VerbGroup,
     no_args_is_help=True,
-    rich_markup_mode="rich",
+    rich_markup_mode=None,
 )
 
 # One line registers a kind. A kind imports what is slow to import inside its function.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import re
 import sys
 import traceback
@@ -13,10 +14,12 @@ from typing import Annotated
 import typer
 from typer.main import get_command
 
+from tracewire.cli.limits import LIMITS
 from tracewire.cli.multi_value import MultiValueCommand
 from tracewire.cli.output import INTERRUPTED, Cut, print_problems
 from tracewire.cli.records import with_fields
 from tracewire.cli.streams import close_streams, open_streams
+from tracewire.cli.verb_group import VerbGroup
 from tracewire.errors import Problem, TracewireError
 
 STOPPED = Problem("interrupted; nothing was finished")
@@ -62,9 +65,10 @@ def tracewire_(
 def _app(verbs: Sequence[str]) -> typer.Typer:
     """The command line with these verbs."""
     app = typer.Typer(
+        cls=VerbGroup,
         add_completion=False,
         pretty_exceptions_enable=False,
-        rich_markup_mode="rich",
+        rich_markup_mode=None,
         context_settings={"help_option_names": ["-h", "--help"]},
     )
     app.callback(invoke_without_command=True)(tracewire_)
@@ -86,6 +90,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     given = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
     as_json, debug = "--json" in given, "--debug" in given
+    if arguments is None:  # the process is this command's own
+        gc.set_threshold(LIMITS.new_objects)
     open_streams()
     return close_streams(_ended(given, as_json, debug))
 

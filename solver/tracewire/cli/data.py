@@ -9,11 +9,13 @@ import typer
 
 from tracewire.cli.options import AsJson, Debug
 from tracewire.cli.output import note, print_json, print_table, print_text
+from tracewire.cli.verb_group import VerbGroup
 
 data = typer.Typer(
     help="Bring sets of real measurements, with the diagrams that are traced on them.",
+    cls=VerbGroup,
     no_args_is_help=True,
-    rich_markup_mode="rich",
+    rich_markup_mode=None,
 )
 
 

@@ -29,6 +29,8 @@ class CommandLimits:
     """Of a run that becomes a film, at least ..."""
     film_finer: int = 4
     """... and for each of its pictures."""
+    new_objects: int = 20_000
+    """Between two looks for unused circles of objects; with Python's 700, a tenth of a start."""
 
 
 LIMITS = CommandLimits()

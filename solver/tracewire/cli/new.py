@@ -13,6 +13,7 @@ import typer
 from tracewire.cli.options import AsJson, Debug
 from tracewire.cli.output import print_json, print_text
 from tracewire.cli.schema import USUAL, write_schema
+from tracewire.cli.verb_group import VerbGroup
 from tracewire.errors import OptionError, Problem
 from tracewire.files import write_file, writing
 from tracewire.formula import is_name, name_hint
@@ -20,8 +21,9 @@ from tracewire.library import OWN, load_library
 
 new = typer.Typer(
     help="Write a start for a block, a diagram or a library, with comments and a test that passes.",
+    cls=VerbGroup,
     no_args_is_help=True,
-    rich_markup_mode="rich",
+    rich_markup_mode=None,
 )
 
 TEMPLATES = Path(__file__).parent / "templates"

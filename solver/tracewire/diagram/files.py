@@ -57,7 +57,7 @@ def absent_series(diagram: Diagram) -> dict[str, Problem]:
     return found
 
 
-def load(path: Path, place: Location = Location()) -> str:
+def load_text(path: Path, place: Location = Location()) -> str:
     """The text of a diagram file, byte for byte (line ends and a byte order mark are kept).
 
     Raises DiagramError: no such file, a folder, larger than 1 MB, not UTF-8.
@@ -74,7 +74,7 @@ def load(path: Path, place: Location = Location()) -> str:
 
 
 def load_stdin() -> str:
-    """The text of a diagram from stdin. Raises DiagramError, as `load` does."""
+    """The text of a diagram from stdin. Raises DiagramError, as `load_text` does."""
     content = b"" if sys.stdin is None else sys.stdin.buffer.read(LIMITS.most_bytes + 1)
     return _decoded(content, STDIN, Location())
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from shlex import quote
 
 from tracewire.diagram.body import Body
-from tracewire.diagram.files import load
+from tracewire.diagram.files import load_text
 from tracewire.diagram.problems import Problems, clip
 from tracewire.diagram.strict import Entries, Items, Node, Scalar, compose
 from tracewire.errors import BlockError, DiagramError, Location
@@ -175,7 +175,7 @@ def package_subsystems(package: Package) -> dict[str, tuple[str, ...]]:
 def _names_in(file: Path, changed: int) -> tuple[str, ...]:
     """The subsystems of a file that can be included; `changed` is its time, to read it once."""
     try:
-        root = compose(load(file), file, Problems())
+        root = compose(load_text(file), file, Problems())
     except DiagramError:
         return ()
     if not isinstance(root, Entries) or "blocks" in root.values:  # a diagram is not included

@@ -17,7 +17,7 @@ from tracewire.diagram.definitions import (
     Scope,
 )
 from tracewire.diagram.diagram import Diagram, Value
-from tracewire.diagram.files import load
+from tracewire.diagram.files import load_text
 from tracewire.diagram.limits import LIMITS
 from tracewire.diagram.loops import check_parameters
 from tracewire.diagram.measured import read_measured
@@ -61,7 +61,7 @@ def read(path: str | Path, libraries: Iterable[str | Path] = ()) -> Diagram:
     """
     library = load_library(libraries)
     file = Path(path)
-    return read_text(load(file), file, library=library)
+    return read_text(load_text(file), file, library=library)
 
 
 def read_text(
@@ -93,7 +93,7 @@ def read_readable(
     """
     library = load_library(libraries)
     file = Path(path)
-    return read_readable_text(load(file), file, library)
+    return read_readable_text(load_text(file), file, library)
 
 
 def read_readable_text(

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from tracewire.diagram.choose import side_by_side
 from tracewire.diagram.diagram import BlockUse, Diagram, Value
 from tracewire.diagram.extend import with_variant
-from tracewire.diagram.files import load
+from tracewire.diagram.files import load_text
 from tracewire.diagram.names import split_index
 from tracewire.diagram.packages import Packages
 from tracewire.diagram.problems import Problems
@@ -51,7 +51,7 @@ class SourceMap:
         extends = own.values.get("extends")
         self.base: Entries | None = None
         if isinstance(extends, Scalar):
-            self.base = sources.tree(load(extends.path), extends.path)
+            self.base = sources.tree(load_text(extends.path), extends.path)
         self.definitions: dict[str, tuple[Diagram, Entries]] = {"": (diagram, root)}
         self.bodies: dict[str, list[tuple[Diagram, Entries]]] = {"": [(diagram, root)]}
         self.removed: dict[tuple[Location, str], Node] = {}

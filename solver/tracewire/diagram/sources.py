@@ -9,7 +9,7 @@ from pathlib import Path
 from tracewire.diagram.body import Body
 from tracewire.diagram.derived import with_bases
 from tracewire.diagram.extend import merge, without
-from tracewire.diagram.files import load
+from tracewire.diagram.files import load_text
 from tracewire.diagram.grammar import INCLUDED, TOP
 from tracewire.diagram.limits import LIMITS
 from tracewire.diagram.packages import Packages
@@ -110,7 +110,7 @@ class Sources:
             what = f"diagrams extend each other more than {LIMITS.most_levels} levels deep"
             raise DiagramError.one(what, place)
         self.extended.append(target)
-        found = self.tree(load(target, place), target)
+        found = self.tree(load_text(target, place), target)
         self.extending.pop()
         return found
 
@@ -186,7 +186,7 @@ class Sources:
         return self.files[known]
 
     def _read_included(self, file: Path, place: Location) -> Included | None:
-        text = load(file, place)
+        text = load_text(file, place)
         body = Body(self.problems)
         root = compose(text, file, self.problems)
         entries = body.entries(root, "an included file", "'subsystems: {bearing: {...}}'")

@@ -1,19 +1,5 @@
 """Quantities: what is told of a run, or of a motion, in a number, by its formula."""
 
-from tracewire.analyse.quantities.conditions import Conditions, conditions_of
-from tracewire.analyse.quantities.evaluate import NOTHING_FURTHER, Further, is_of_run
-from tracewire.analyse.quantities.measurement import ask, measure
-from tracewire.analyse.quantities.subject import Recorder, Subject, silent
+import lazy_loader
 
-__all__ = [
-    "NOTHING_FURTHER",
-    "Conditions",
-    "Further",
-    "Recorder",
-    "Subject",
-    "ask",
-    "conditions_of",
-    "is_of_run",
-    "measure",
-    "silent",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,141 @@
+from .builder import DiagramBuilder, Signal, SubsystemBuilder
+from .changes import AddBlock, AddOwn, AddSensorTerm, Change, PointsFile, SetValues, apply, patch
+from .completion import Proposal, complete, word_before
+from .diagram import (
+    Array,
+    BlockUse,
+    Channel,
+    Cleaning,
+    Clock,
+    Condition,
+    Crosses,
+    Diagram,
+    Event,
+    Format,
+    Hold,
+    InputPort,
+    Points,
+    ScenePart,
+    Series,
+    Setting,
+    Shown,
+    Statement,
+    Use,
+    Value,
+    Wire,
+)
+from .edit import difference, with_addend
+from .edit_series import path_text, replace_series, series_parts, with_series_of
+from .edit_values import written_units
+from .effects import EffectType, effects_of
+from .files import STDIN, absent_series, load_stdin, load_text
+from .layout import lay_out
+from .limits import LIMITS
+from .loops import cycle_text, cycles
+from .modeline import is_modeline, with_modeline
+from .names import (
+    element_name,
+    find_parameter,
+    find_recorded,
+    find_signal,
+    find_state,
+    is_count,
+    row_ends,
+    signals,
+    split_index,
+    state_names,
+    states,
+)
+from .packages import package_subsystems, who_has
+from .quantity_names import EVENT_KINDS, is_quantity, quantity_problems
+from .reader import read, read_readable, read_readable_text, read_text
+from .rename import renamed
+from .rewire import rewired
+from .schema import schema_of, schema_text
+from .writer import write, write_out
+from .yaml_text import mapping_text, quote
+
+__all__ = [
+    "EVENT_KINDS",
+    "LIMITS",
+    "STDIN",
+    "AddBlock",
+    "AddOwn",
+    "AddSensorTerm",
+    "Array",
+    "BlockUse",
+    "Change",
+    "Channel",
+    "Cleaning",
+    "Clock",
+    "Condition",
+    "Crosses",
+    "Diagram",
+    "DiagramBuilder",
+    "EffectType",
+    "Event",
+    "Format",
+    "Hold",
+    "InputPort",
+    "Points",
+    "PointsFile",
+    "Proposal",
+    "ScenePart",
+    "Series",
+    "SetValues",
+    "Setting",
+    "Shown",
+    "Signal",
+    "Statement",
+    "SubsystemBuilder",
+    "Use",
+    "Value",
+    "Wire",
+    "absent_series",
+    "apply",
+    "complete",
+    "cycle_text",
+    "cycles",
+    "difference",
+    "effects_of",
+    "element_name",
+    "find_parameter",
+    "find_recorded",
+    "find_signal",
+    "find_state",
+    "is_count",
+    "is_modeline",
+    "is_quantity",
+    "lay_out",
+    "load_stdin",
+    "load_text",
+    "mapping_text",
+    "package_subsystems",
+    "patch",
+    "path_text",
+    "quantity_problems",
+    "quote",
+    "read",
+    "read_readable",
+    "read_readable_text",
+    "read_text",
+    "renamed",
+    "replace_series",
+    "rewired",
+    "row_ends",
+    "schema_of",
+    "schema_text",
+    "series_parts",
+    "signals",
+    "split_index",
+    "state_names",
+    "states",
+    "who_has",
+    "with_addend",
+    "with_modeline",
+    "with_series_of",
+    "word_before",
+    "write",
+    "write_out",
+    "written_units",
+]
