@@ -11,6 +11,7 @@ SECTIONS = [
     ("titel: x\nblocks: {}", "1:1: unknown section 'titel'; there are: blocks, events, every"),
     ("titel: x\nblocks: {}", "Did you mean 'title'?"),
     ("outputs: [a]\nblocks: {}", "It belongs to a subsystem"),
+    ("start: {x: 1}\nblocks: {}", "A start value stands at its block: x: {type: integrator"),
     ("title: x", "a diagram needs 'blocks'. Write blocks: ..."),
     ("title: [x]\nblocks: {}", "1:8: 'title' must be a text"),
     ("blocks: [a]", "1:9: 'blocks' must be a mapping. Write it like {column: {type: gain"),

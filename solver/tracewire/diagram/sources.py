@@ -67,6 +67,8 @@ class Sources:
             hint = "It belongs to a subsystem; 'record' names what is kept of a run."
         elif "effect" in entries.keys:
             hint = "It belongs to a subsystem, which a trace may then add to the diagram."
+        elif not {"start", "initial"}.isdisjoint(entries.keys):
+            hint = "A start value stands at its block: x: {type: integrator, of: v, start: 1}."
         body.check_keys(entries, TOP, "section", hint=hint)
         if "libraries" in entries.values:
             self.packages.read(entries.values["libraries"], body)
