@@ -120,3 +120,18 @@ def test_a_name_that_cannot_be_is_told_once(name: str) -> None:
 def test_a_number_that_is_no_unit_s_is_no_unit() -> None:
     (line,) = refused(BALL.replace("k: -1", "k: 2 limit"))
     assert "it does not parse" in line
+
+
+def test_formulas_that_commas_have_cut_are_all_told_with_what_else_is_wrong() -> None:
+    text = """\
+blocks:
+  x: {type: integrator, of: y, start: 1}
+  y: {type: expression, formula: max(x, 0)}
+  z: {type: expression, formula: min(x, max(1, q)), unit: m}
+  s: {type: sum, of: [y, nobody]}
+require: [max(1, 2) > 1]
+"""
+    lines = refused(text)
+    assert [line.split(": ", 1)[0].split(":")[-2] for line in lines] == ["3", "4", "4", "5", "6"]
+    assert "unknown signal or parameter 'q'" in lines[2], "the whole formula is read"
+    assert "unknown signal 'nobody'" in lines[3]

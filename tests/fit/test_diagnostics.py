@@ -50,7 +50,7 @@ def test_an_effect_that_the_model_lacks_is_told_with_its_size_and_memory() -> No
     found = one(0.1 * np.sin(2 * np.pi * LONG) + white)
     assert not found.is_white
     assert found.memory == pytest.approx(0.19, abs=0.02)
-    assert "something is missing; `tracewire trace` looks for it" in found.words
+    assert "Something is missing. `tracewire trace` looks for it" in found.words
     assert f"{found.size / found.noise:.2g} times the noise" in found.words
     assert found.sign_changes < 1e-6
 
@@ -60,7 +60,7 @@ def test_a_series_that_is_too_short_for_a_trace_is_not_sent_there() -> None:
     record = 2 * t + 1 + 0.5 * np.sin(2 * np.pi * t / 1.3)
     found = fit(made(LINE), [series(record, t=t, sigma={"x": 0.01})], method="least_squares")
     (told,) = diagnose(found)
-    assert "a series is too short for `tracewire trace` below 40 samples" in told.words
+    assert "`tracewire trace` takes no series below 40 samples" in told.words
 
 
 def test_noise_larger_than_declared_is_no_missing_effect() -> None:
@@ -87,8 +87,8 @@ def test_a_noise_that_cannot_be_told_from_the_signal_is_no_missing_effect() -> N
     (found,) = diagnose(fit(made(LINE), [measured], method="least_squares"))
     assert found.estimate is not None and not found.estimate.is_sure
     assert found.size > 1.5 * found.noise
-    assert "the noise, which may be as large as that: it is between" in found.words
-    assert "something is missing" not in found.words
+    assert "It may be noise alone: the noise is estimated to lie between" in found.words
+    assert "Something is missing" not in found.words
 
 
 def test_outliers_are_counted_and_told() -> None:
@@ -103,7 +103,7 @@ def test_what_a_model_lacks_now_and_then_is_no_outlier() -> None:
     white = 0.02 * np.random.default_rng(7).standard_normal(601)
     found = one(white + np.where(np.arange(601) % 100 < 8, 1.0, 0.0))
     assert found.outliers > 0.05
-    assert "something is missing" in found.words
+    assert "Something is missing" in found.words
     assert "are outliers" not in found.words
 
 
@@ -124,7 +124,7 @@ def test_dependence_on_a_measured_input_is_told() -> None:
     run = series(2 * LONG + 1 + noise, t=LONG, inputs={"u": (LONG, drive)})
     (found,) = diagnose(fit(model, [run], method="least_squares"))
     assert found.independence["u"] < 1e-6
-    assert "it depends on u, which drives the model" in found.words
+    assert "The residual depends on u, which drives the model" in found.words
 
 
 def test_dependence_on_a_drive_of_the_diagram_is_told() -> None:
@@ -138,7 +138,7 @@ def test_dependence_on_a_drive_of_the_diagram_is_told() -> None:
     run = series(2 * LONG + 1 + noise, t=LONG)
     (found,) = diagnose(fit(made(text), [run], method="least_squares"))
     assert found.independence["hum"] < 0.01
-    assert "it depends on hum, which drives the model" in found.words
+    assert "The residual depends on hum, which drives the model" in found.words
 
 
 def test_every_series_and_those_to_validate_are_judged() -> None:
@@ -214,4 +214,4 @@ def test_before_a_trace_other_minima_are_to_be_looked_for(
     found = fit(made(OSCILLATOR), [series(record, sigma={"x": 0.01})], method=method)
     words = fit_words(found)
     assert any("is missing" in text for text in words)
-    assert any("Fit with --method growing_windows before" in text for text in words) == told
+    assert any("Fit once more with --method growing_windows" in text for text in words) == told

@@ -279,11 +279,11 @@ def test_a_fit_of_the_true_diagram_is_at_the_noise_of_the_input(seed: int) -> No
     found = fit(made(CART, ("x",)), [measured], method="least_squares")
     (one,) = diagnose(found)
     assert one.driven is not None and one.driven.size > 5 * SENSOR_NOISE
-    assert one.words.startswith("at the noise of the measured input 'F', which explains it;")
-    assert "something is missing" not in one.words and "depends on" not in one.words
+    assert one.words.startswith("at the noise of the measured input 'F', which explains it. ")
+    assert "Something is missing" not in one.words and "depends on" not in one.words
     # the same record, and nothing said of the force
     unsaid = replace(found, measured=(replace(measured, input_sigma={}),))
-    assert "something is missing" in diagnose(unsaid)[0].words
+    assert "Something is missing" in diagnose(unsaid)[0].words
 
 
 def test_a_fit_that_lacks_friction_is_not_explained_by_the_noise_of_the_input() -> None:
@@ -293,7 +293,7 @@ def test_a_fit_that_lacks_friction_is_not_explained_by_the_noise_of_the_input() 
     )
     (one,) = diagnose(found)
     assert "the declared noise of sensor and inputs" in one.words
-    assert "something is missing" in one.words
+    assert "Something is missing" in one.words
 
 
 def test_the_likely_noise_of_an_input_is_its_own_and_leaves_nothing() -> None:

@@ -441,6 +441,16 @@ def test_milliseconds_that_were_taken_for_seconds_are_remarked(file: Path) -> No
     )
 
 
+def test_a_record_beside_a_diagram_that_says_no_span_is_remarked(file: Path) -> None:
+    t = wave(file, step=4.1)
+    file.write_text((TOP + PLAIN).replace("span: [0, 6]\n", ""), encoding="utf-8")
+    (run,) = load_measured(compile(read(file)))
+    assert run.remarks == (
+        "the diagram says no span, so that a run takes 0 to 1 s, and the record is from 0 to "
+        f"{t[-1]:g} s: write span: [0, {t[-1]:g}]",
+    )
+
+
 def test_a_first_sample_far_from_the_begin_is_remarked(file: Path) -> None:
     written(file, "t,angle\n" + "".join(f"{1700000000 + i / 8},{math.sin(i)}\n" for i in range(99)))
     (remark,) = one(file, "time: t").remarks

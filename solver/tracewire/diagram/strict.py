@@ -225,10 +225,10 @@ class _Composer:
             for node in items:
                 if _is_empty(node):
                     self.problems.add("an entry of this list is empty", node.place)
-            kept = tuple(self.finite(node) for node in items if not _is_empty(node))
+            kept = [self.finite(node) for node in items if not _is_empty(node)]
             if flow:
-                self.refuse_comma_in_list(kept)
-            self.put(Items(kept, place, start, end, flow), frame.values)
+                kept = self.join_entries(kept)
+            self.put(Items(tuple(kept), place, start, end, flow), frame.values)
 
     def put(self, node: Node | None, values: int = 1) -> None:
         if not self.open:
@@ -246,9 +246,14 @@ class _Composer:
         keys: dict[str, Scalar] = {}
         values: dict[str, Node] = {}
         pairs = list(zip(nodes[::2], nodes[1::2], strict=True))
+        joined = 0
         for n, (key, value) in enumerate(pairs):
+            if n < joined:
+                continue
             if isinstance(key, Scalar) and value is not None and _is_empty(value):
-                self.refuse_comma(pairs[n:], keys, values)
+                joined = n + self.join_value(pairs[n:], keys, values)
+                if n < joined:
+                    continue
             if key is None or not self.is_key(key, keys) or not isinstance(key, Scalar):
                 continue
             if value is None:
@@ -273,39 +278,46 @@ class _Composer:
         self.problems.add(f"{what}, and a value is a finite number", node.place, (), hint)
         return replace(node, text="1")  # so that nothing more is told of it
 
-    def refuse_comma(
+    def join_value(
         self,
         rest: Sequence[tuple[Node | None, Node | None]],
         keys: dict[str, Scalar],
         values: dict[str, Node],
-    ) -> None:
-        """Raise where entries without a value are the rest of a formula, cut at its commas."""
+    ) -> int:
+        """How many entries without a value are the rest of the value before them, cut at commas:
+        they are noted and joined to it."""
         name = next(reversed(keys), "")
         before, key = values.get(name), rest[0][0]
         if not isinstance(before, Scalar) or before.style:
-            return
+            return 0
         if not isinstance(key, Scalar) or key.style:
-            return
+            return 0
         more = (k for k, value in rest if value is not None and _is_empty(value))
-        whole = _joined(before, more)
-        if whole:
-            hint = f'Write {name}: "{whole}".'
-        elif before.number is not None and key.number is not None:
-            hint = f"Write {name}: {before.text}.{key.text}: a point stands before the decimals."
-        else:
-            return
-        what = f"between braces a comma ends the value of '{name}'"
-        self.problems.add(what, before.place, (), hint)
-        raise DiagramError(self.problems.found)
+        whole, parts = _joined(before, more)
+        hint = f'Write {name}: "{whole}".'
+        if not parts and before.number is not None and key.number is not None:
+            whole, parts = f"{before.text}.{key.text}", 1
+            hint = f"Write {name}: {whole}: a point stands before the decimals."
+        if parts:
+            what = f"between braces a comma ends the value of '{name}'"
+            self.problems.add(what, before.place, (), hint)
+            values[name] = replace(before, text=whole)
+        return parts
 
-    def refuse_comma_in_list(self, items: Sequence[Node]) -> None:
-        """Raise where an entry of a list in brackets is a formula, cut at its commas."""
+    def join_entries(self, items: Sequence[Node]) -> list[Node]:
+        """The entries of a list in brackets; formulas that commas have cut are noted and joined."""
+        found: list[Node] = []
+        joined = 0
         for n, item in enumerate(items):
-            whole = _joined(item, items[n + 1 :])
-            if whole:
+            if n < joined:
+                continue
+            whole, parts = _joined(item, items[n + 1 :])
+            if parts and isinstance(item, Scalar):
                 what, hint = "between brackets a comma ends an entry", f'Write "{whole}".'
                 self.problems.add(what, item.place, (), hint)
-                raise DiagramError(self.problems.found)
+                item, joined = replace(item, text=whole), n + 1 + parts
+            found.append(item)
+        return found
 
     def is_key(self, key: Node, keys: dict[str, Scalar]) -> bool:
         what, hint = "", ""
@@ -329,18 +341,19 @@ class _Composer:
         return not what
 
 
-def _joined(first: Node, others: Iterable[Node | None]) -> str:
-    """A formula whose commas have cut it, up to its last bracket; empty where it is none."""
+def _joined(first: Node, others: Iterable[Node | None]) -> tuple[str, int]:
+    """A formula whose commas have cut it, up to its last bracket, and how many of the others are
+    parts of it; ("", 0) where it is none."""
     whole = first.text if isinstance(first, Scalar) and not first.style else ""
     if whole.count("(") <= whole.count(")"):
-        return ""
-    for node in others:
+        return "", 0
+    for parts, node in enumerate(others, start=1):
         if not isinstance(node, Scalar) or node.style:
             break
         whole = f"{whole}, {node.text}"
         if whole.count("(") == whole.count(")"):
-            return whole
-    return ""
+            return whole, parts
+    return "", 0
 
 
 def _is_empty(node: Node) -> bool:

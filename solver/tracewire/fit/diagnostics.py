@@ -44,7 +44,7 @@ class Diagnosis:
     `independence` holds by measured input, by signal of time alone that drives the model, and by
     the simulated signal itself, the probability that something independent of it follows it as
     closely. `outliers` is the share of samples beyond 4 robust standard deviations. `words` says it
-    in a sentence, `is_missing` whether it says that something is missing.
+    in sentences, `is_missing` whether it says that something is missing.
     """
 
     series: str
@@ -283,37 +283,44 @@ def _with_words(found: Diagnosis, measured: Measured) -> Diagnosis:
     over = f"correlated over {found.memory:.2g} s"
     if of_inputs:
         names = " and ".join(f"'{name}'" for name in measured.input_sigma)
-        words = f"at the noise of the measured input {names}, which explains it; "
-        words += f"without that, the residual is {found.size / found.noise:.2g} times the noise"
+        words = [
+            f"at the noise of the measured input {names}, which explains it",
+            f"Without that, the residual is {found.size / found.noise:.2g} times the noise",
+        ]
     elif estimate and doubtful and limit < found.size <= DIAGNOSIS.at_noise * estimate.high:
-        words = (
-            f"the residual is {times:.2g} times the noise, which may be as large as that: it is "
-        )
-        words += f"between {estimate.low:.2g} and {estimate.high:.2g} (SI), {estimate.method}; "
-        words += f"say its `sigma:` where it is known; {over}"
+        between = f"{estimate.low:.2g} and {estimate.high:.2g} {found.unit}".rstrip()
+        words = [
+            f"the residual is {times:.2g} times the noise and {over}",
+            "It may be noise alone: the noise is estimated to lie between "
+            f"{between} ({estimate.method}). Write its `sigma:` where it is known",
+        ]
     elif lacks := found.size > limit and not (found.is_white and not depends):
-        words = f"the residual is {times:.2g} times the {source}"
-        words += "" if found.is_white else f" and {over}"
-        words += ": something is missing"
+        correlated = "" if found.is_white else f" and {over}"
+        words = [f"the residual is {times:.2g} times the {source}{correlated}"]
+        missing = "Something is missing"
         if estimate and not found.declared and times < DIAGNOSIS.coloured:
-            words += ", or the noise itself is correlated: its estimate counts the white part alone"
-        words += "; "
+            missing += (
+                ", or the noise itself is correlated: its estimate counts the white part alone"
+            )
+        words.append(missing)
         if len(measured.t) < WINDOW.traced:
-            words += f"a series is too short for `tracewire trace` below {WINDOW.traced} samples"
+            words.append(f"`tracewire trace` takes no series below {WINDOW.traced} samples")
         else:
-            words += "`tracewire trace` looks for it"
+            words.append("`tracewire trace` looks for it")
     elif found.size > limit:
-        words = f"the residual is {times:.2g} times the {source}, yet white: the noise is larger"
-        words += " than declared" if found.declared else " than its differences tell"
+        larger = "than declared" if found.declared else "than its differences tell"
+        words = [f"the residual is {times:.2g} times the {source}, yet white: the noise is larger"]
+        words[0] += f" {larger}"
     elif not found.is_white:
-        words = f"at the {source}, yet {over}: something small may be missing; errors allow for it"
+        words = [f"at the {source}, yet {over}"]
+        words.append("Something small may be missing; the errors allow for it")
     elif times < 0.7 and found.declared:
-        words = f"white, and {times:.2g} times the declared noise: sigma is declared too large"
+        words = [f"white, and {times:.2g} times the declared noise: sigma is declared too large"]
     else:
-        words = f"white, at the {source}"
+        words = [f"white, at the {source}"]
     if depends:
-        words += f"; it depends on {' and '.join(depends)}, which drives the model"
+        words.append(f"The residual depends on {' and '.join(depends)}, which drives the model")
     if found.outliers > 0.005 and not lacks:  # what a model lacks is large where it acts
         share = f"{100 * found.outliers:.2g} %"
-        words += f"; {share} are outliers, beyond {DIAGNOSIS.far:g} standard deviations"
-    return replace(found, words=words, is_missing=lacks)
+        words.append(f"{share} are outliers, beyond {DIAGNOSIS.far:g} standard deviations")
+    return replace(found, words=". ".join(words), is_missing=lacks)

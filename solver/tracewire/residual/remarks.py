@@ -188,7 +188,12 @@ def _on_span(
     begin, end = (float(evaluate(side, values)) for side in model.flat.span)
     first, last = (float(t) - zero for t in (read.t[0], read.t[-1]))
     found = []
-    if last - first > REMARK.much_longer * (end - begin) and series.time.every is None:
+    if model.diagram.span is None and not begin <= first <= last <= end:
+        found.append(
+            f"the diagram says no span, so that a run takes {begin:g} to {end:g} s, and the record "
+            f"is from {first:g} to {last:g} s: write span: [{first:g}, {last:g}]"
+        )
+    elif last - first > REMARK.much_longer * (end - begin) and series.time.every is None:
         found.append(
             f"the record is {last - first:g} s long, and the diagram's span {end - begin:g} s: "
             "is the time in ms? Then say time: {column: ..., unit: ms}"

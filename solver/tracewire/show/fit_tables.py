@@ -197,8 +197,8 @@ def residual_words(fit: Fit, found: Sequence[Diagnosis]) -> tuple[str, ...]:
         and any(d.is_missing and d.is_out_of_step for d in found)
     ):
         words.append(
-            f"Nothing may be missing where {fit.method} has ended in a minimum that is not the "
-            "lowest one: it takes the nearest. Fit with --method growing_windows before a trace."
+            f"Or {fit.method} has ended in a minimum that is not the lowest: it takes the nearest. "
+            "Fit once more with --method growing_windows; where that leaves as much, trace."
         )
     return tuple(words)
 
