@@ -19,8 +19,8 @@ from tracewire.show.trace_tables import (
     where_table,
 )
 from tracewire.show.trace_text import answer_lines, step_lines
-from tracewire.trace import Found
-from tracewire.trace.found import Dependence
+from tracewire.trace import Found, TraceOptions
+from tracewire.trace.found import Dependence, Remainder
 
 
 def test_the_answer_to_an_effect() -> None:
@@ -28,6 +28,7 @@ def test_the_answer_to_an_effect() -> None:
         "VERDICT effect: coulomb @ torque is missing",
         "  coulomb @ torque: level = 0.2500 N m (95 %: 0.2430 to 0.2570), width = 0.0110 rad/s "
         "(95 %: 0.0040 to 0.0180)",
+        "    dry friction of one level, which holds the body at rest up to that level",
         "    these data cannot tell it from 'bias' at the sum 'torque' (1 fitted number fewer), "
         "'sensor_offset' in the sensor of 'theta' (1 fitted number fewer)",
         "  free runs on unseen data: 46 σ -> 1.02 σ (theta from 0.184 to 0.00408 rad)",
@@ -81,6 +82,25 @@ def test_the_answer_where_nothing_explains_it() -> None:
 def test_a_partial_approximation_is_called_so() -> None:
     line = answer_lines(replace(UNEXPLAINED, effects=FOUND.effects))[1]
     assert line.startswith("  best approximation, not enough: coulomb @ torque: level = 0.2500 N m")
+
+
+def test_what_an_unexplained_residual_may_be_and_limits_of_the_search_are_told() -> None:
+    nowhere = answer_lines(replace(UNEXPLAINED, missing=None))
+    assert nowhere[-1].startswith("  The residual depends on nothing that was tried: it may be a ")
+    limited = replace(NULL, options=TraceOptions(without=("bias",)))
+    assert answer_lines(limited)[-1] == "  Limits of this search: 'bias' was not tried."
+    far = answer_lines(replace(NULL, s2_before=25.0))
+    assert far[-1].startswith("  It is more than the noise that was assumed")
+
+
+def test_on_what_the_rest_depends_stands_below_its_size() -> None:
+    rest = (Dependence("torque", ("theta",), 0.4),)
+    left = (Remainder("theta", "rad", 0.1, 6.0, 0.58, 0.1),)
+    lines = answer_lines(replace(FOUND, remainder=left, remainder_depends=rest))
+    at = next(n for n, line in enumerate(lines) if line.startswith("  left on held-out blocks"))
+    assert lines[at + 1] == (
+        "    a smooth function of theta at the sum 'torque' explains 40 % of that"
+    )
 
 
 def test_errors_of_data_that_chose_the_effects_are_not_called_unseen() -> None:

@@ -18,9 +18,8 @@ from tracewire.trace import Found, data_of
 
 def _parts(found: Found) -> list[Part]:
     return [
-        "\n".join(answer_lines(found)),
-        f"\n{paragraph_of(found)}\n",
-        "\n".join(step_lines(found)),
+        "\n".join(answer_lines(found)) + "\n",
+        "\n".join(step_lines(found)) + "\n",
         *trace_tables(found),
         *(f"note: {text}" for text in remarks_of(found)),
     ]

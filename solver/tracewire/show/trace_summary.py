@@ -215,13 +215,7 @@ def _declared(found: Found) -> str:
 def _null(found: Found) -> list[str]:
     parts = []
     if not found.interrupted:
-        parts.append("No effect of the library reduces it on unseen data.")
-        if found.s2_before**0.5 > WORD.far:
-            parts.append(
-                "It is more than the noise that was assumed, and follows nothing that was tried: "
-                f"it may be {both_of([*PERHAPS, 'a noise that is larger than assumed'], 'or')}. "
-                f"{REPEAT}"
-            )
+        parts += ["No effect of the library reduces it on unseen data.", far_words(found)]
     if found.power:
         few = [
             f"{p.name} {place_words(p.place)} from {coefficient_of(p)} = "
@@ -232,8 +226,19 @@ def _null(found: Found) -> list[str]:
     return parts
 
 
+def far_words(found: Found) -> str:
+    """What a residual may be that no effect reduces and that is more than the noise; '' where it is
+    not."""
+    if found.s2_before**0.5 <= WORD.far:
+        return ""
+    return (
+        "It is more than the noise that was assumed, and follows nothing that was tried: "
+        f"it may be {both_of([*PERHAPS, 'a noise that is larger than assumed'], 'or')}. {REPEAT}"
+    )
+
+
 def _effect(found: Found) -> list[str]:
-    parts = [_meaning(found, effect) for effect in found.effects]
+    parts = [meaning_words(found, effect) for effect in found.effects]
     parts.append(_left(found))
     if found.explained is not None and "excess" in excess_words(found):
         parts.append(
@@ -245,7 +250,8 @@ def _effect(found: Found) -> list[str]:
     return [*parts, *_remains(found), *_ties(found), _moved(found)]
 
 
-def _meaning(found: Found, effect: FoundEffect) -> str:
+def meaning_words(found: Found, effect: FoundEffect) -> str:
+    """What an effect is, as its block says; '' for one of a sensor, whose name says it."""
     if effect.name not in found.diagram.library or effect.name in SENSORS:
         return ""
     doc = found.diagram.library[effect.name].doc.rstrip(".")
@@ -271,25 +277,22 @@ def _remains(found: Found) -> list[str]:
         "On held-out blocks of time, each predicted by a model that was fitted without it, these "
         f"residuals remain: {both_of(parts)}."
     )
+    rest = rest_words(found)
+    return [f"{text} {rest}." if rest else text]
+
+
+def rest_words(found: Found) -> str:
+    """On what the rest depends that the named effects leave on held-out blocks; '': on nothing."""
     most = max(found.remainder_depends, key=lambda d: d.share, default=None)
-    if most is not None and most.share > 0:
-        variables = variables_words(found, most.place, most.variables)
-        text += (
-            f" A smooth function of {variables} {place_words(most.place)} explains "
-            f"{percent(most.share)} of that."
-        )
-    return [text]
+    if most is None or most.share <= 0:
+        return ""
+    variables = variables_words(found, most.place, most.variables)
+    share = percent(most.share)
+    return f"A smooth function of {variables} {place_words(most.place)} explains {share} of that"
 
 
 def _unexplained(found: Found) -> list[str]:
-    parts = []
-    if noisy_words(found):
-        names = both_of([f"'{one.name}'" for one in found.noisy_inputs])
-        parts.append(f"If {names} is measured with such noise, say its `sigma:` and trace again.")
-    elif found.missing is None:
-        parts.append(f"The residual depends on nothing that was tried: {_perhaps()}")
-    elif found.missing.share < WORD.little:
-        parts.append(f"The rest depends on no variable that was tried: {_perhaps()}")
+    parts = [open_words(found)]
     if found.effects:
         names = both_of([_named(found, effect) for effect in found.effects])
         parts.append(f"The best approximation is {names}. {_left(found)} That is not enough.")
@@ -302,6 +305,18 @@ def _unexplained(found: Found) -> list[str]:
             parts.append(f"On unseen data the error of {runs} {goes} {both_of(errors)}.")
         parts += _remains(found)
     return [*parts, _moved(found)]
+
+
+def open_words(found: Found) -> str:
+    """What an unexplained residual may be where no variable tells; '' where one does."""
+    if noisy_words(found):
+        names = both_of([f"'{one.name}'" for one in found.noisy_inputs])
+        return f"If {names} is measured with such noise, say its `sigma:` and trace again."
+    if found.missing is None:
+        return f"The residual depends on nothing that was tried: {_perhaps()}"
+    if found.missing.share < WORD.little:
+        return f"The rest depends on no variable that was tried: {_perhaps()}"
+    return ""
 
 
 def _perhaps() -> str:

@@ -31,20 +31,14 @@ from tracewire.trace import (
 def trace_tables(found: Found) -> tuple[Table, ...]:
     """The tables of a trace that a terminal shows, without those that are empty.
 
-    A report has what is left out: effects that were only screened, and how small an effect would
-    have been seen where one was found.
+    A report has what is left out: what the lines before them say, effects that were only screened,
+    and how small an effect would have been seen where one was found.
     """
     tables = (
-        effects_table(found),
         ties_table(found),
-        remainder_table(found),
         errors_table(found),
         moved_table(found),
         where_table(found, WORD.most_where),
-        remainder_where_table(found, WORD.most_where),
-        experiments_table(found),
-        tried_table(found, screened=False),
-        compared_table(found),
         *([power_table(found, WORD.most_powers)] if found.verdict == "null" else []),
     )
     return tuple(table for table in tables if table.rows)

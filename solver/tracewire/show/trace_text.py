@@ -7,7 +7,16 @@ import math
 from tracewire.show.limits import WORD
 from tracewire.show.trace_experiments import experiment_words
 from tracewire.show.trace_steps import decided_words
-from tracewire.show.trace_summary import explained_words, noisy_words, ties_words
+from tracewire.show.trace_summary import (
+    explained_words,
+    far_words,
+    limits_words,
+    meaning_words,
+    noisy_words,
+    open_words,
+    rest_words,
+    ties_words,
+)
 from tracewire.show.trace_untried import common_powers, told_of_untried
 from tracewire.show.trace_words import (
     astray_words,
@@ -33,14 +42,15 @@ from tracewire.trace import Found, FoundEffect, SearchStep, coefficient_of, sign
 
 
 def answer_lines(found: Found) -> tuple[str, ...]:
-    """The short answer: verdict, effects with coefficients, ties, error on unseen data."""
+    """The short answer: verdict, effects with coefficients, ties, error on unseen data, advice."""
     cut = " (interrupted: what was known by then)" if found.interrupted else ""
     lines = [f"VERDICT {found.verdict}{cut}: {_verdict(found)}"]
     partial = "best approximation, not enough: " if found.verdict == "unexplained" else ""
     for effect in found.effects:
         values = ", ".join(value_words(found, effect, name) for name in effect.params)
         lines.append(f"  {partial}{effect}: {values}")
-        lines += _tie_lines(effect)
+        meaning = meaning_words(found, effect).partition(": ")[2].rstrip(".")
+        lines += [f"    {text}" for text in (meaning, _ties(effect)) if text]
     lines += [f"  the fit sets {name} to zero" for name in found.dropped]
     if explained := excess_words(found):
         lines.append(f"  explained: {explained}")
@@ -59,6 +69,7 @@ def answer_lines(found: Found) -> tuple[str, ...]:
             for p in common_powers(found)[: WORD.most_channels]
         )
         lines.append(f"  smallest coefficients that these data would show: {least}")
+    lines += [f"  {text}" for text in (_advice(found), limits_words(found.options)) if text]
     return tuple(lines)
 
 
@@ -118,10 +129,15 @@ def _is(count: int) -> str:
     return "is" if count == 1 else "are"
 
 
-def _tie_lines(effect: FoundEffect) -> list[str]:
-    if not effect.ties:
-        return []
-    return [f"    these data cannot tell it from {', '.join(ties_words(effect))}"]
+def _ties(effect: FoundEffect) -> str:
+    return f"these data cannot tell it from {', '.join(ties_words(effect))}" if effect.ties else ""
+
+
+def _advice(found: Found) -> str:
+    """What the residual may be where nothing that was tried explains it."""
+    if found.verdict == "null" and not found.interrupted:
+        return far_words(found)
+    return open_words(found) if found.verdict == "unexplained" else ""
 
 
 def _error_lines(found: Found) -> list[str]:
@@ -155,6 +171,8 @@ def _remainder_lines(found: Found) -> list[str]:
             + f" of {left.signal} ({left.in_sigma:.3g} σ, {percent(left.share)} of the rms "
             f"error before{least})"
         )
+    if lines and (rest := rest_words(found)):
+        lines.append(f"    {rest[:1].lower()}{rest[1:]}")
     return lines
 
 

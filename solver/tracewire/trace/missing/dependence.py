@@ -27,7 +27,7 @@ from tracewire.trace.trials.trial import Trial
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-TOGETHER, COLUMNS = 2000, 200
+TOGETHER, COLUMNS = 2000, 100
 """Residuals and columns that are worked on at once: fewer take longer, more take memory."""
 
 
