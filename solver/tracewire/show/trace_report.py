@@ -149,7 +149,11 @@ def _answer(found: Found) -> Section:
         missing is not None and len(missing.grid) in (1, 2), found, plot_missing, "missing.png",
         "What is missing, as a smooth function of what it depends on",
     )  # fmt: skip
-    return Section("What was found", (headline_of(found), answer_lines(found)[0]), figures=figures)
+    # an unexplained residual is told by the headline, in the same words
+    verdict = (
+        f"VERDICT {found.verdict}" if found.verdict == "unexplained" else answer_lines(found)[0]
+    )
+    return Section("What was found", (headline_of(found), verdict), figures=figures)
 
 
 def _shares(found: Found) -> Section | None:
