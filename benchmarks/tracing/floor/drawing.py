@@ -8,6 +8,7 @@ or for the floor.
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -64,15 +65,16 @@ class Shares:
 
 def draw_rig(case: Case) -> tuple[Rig, Shares]:
     """The first draw of a case that is one."""
-    why = []
+    why = Counter[str]()
     for attempt in range(MOST):
         try:
             rig, shares = _attempt(case, attempt)
         except (Unfit, RuntimeError, OverflowError, np.linalg.LinAlgError) as error:
-            why.append(str(error))
+            why[str(error)] += 1
         else:
             return rig, replace(shares, attempt=attempt)
-    raise RuntimeError(f"{case.name}: no draw of {MOST} is a case: {'; '.join(why)}")
+    told = "; ".join(f"{count} of them: {what}" for what, count in why.most_common(3))
+    raise RuntimeError(f"{case.name}: no draw of {MOST} is a case: {told}")
 
 
 def _attempt(case: Case, attempt: int) -> tuple[Rig, Shares]:
