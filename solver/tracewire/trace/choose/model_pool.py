@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.residual import Segment
+from tracewire.solve import parameter_values
 from tracewire.trace.choose.choice import log_scores
 from tracewire.trace.choose.heldout import Finalist, errors_by_block, errors_in_sample
 from tracewire.trace.choose.horizons import Horizon, Horizons
@@ -109,6 +110,7 @@ class ModelPool:
         left = options.effects - len(parent.names)
         now = self.on_sparse_windows(parent, number)
         first_fits: list[Trial] = []
+        moved = {} if parent.names else self._moved_values(now)
         for proposal in proposals:
             names = parent.names.union(proposal.names)
             known = (names, parent.dropped) in self.models or parent.names & {*proposal.names}
@@ -118,6 +120,9 @@ class ModelPool:
             target = options.hopeful * min((trial.rss for trial in first_fits), default=np.inf)
             first = [row.placed_effect for row in proposal.rows]
             trial = self._refit(now, first, (), options.first_steps, target, proposal.values)
+            if moved and (trial is None or trial.rss > target):
+                again = self._refit(now, first, (), options.first_steps, target, moved)
+                trial = min((t for t in (trial, again) if t), key=lambda t: t.rss, default=None)
             if trial is not None:
                 first_fits.append(trial)
         for trial in self._select_first_fits(now, first_fits, number):
@@ -125,6 +130,13 @@ class ModelPool:
             fitted = self.fit(parent, new, first_fit=(number, trial))
             if fitted is not None:
                 self._keep(fitted)
+
+    def _moved_values(self, now: Trial) -> dict[str, float]:
+        """The declared values of the fitted parameters, where a fit has moved one of them far."""
+        known = parameter_values(self.search.problem.declared, {})
+        own = {name: known[name] for name in now.values if name in known}
+        far = any(abs(now.values[n] - v) > self.options.moved * abs(v) > 0 for n, v in own.items())
+        return own if far else {}
 
     def _select_first_fits(
         self, now: Trial, first_fits: Sequence[Trial], number: int

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from tracewire.errors import FitError
 from tracewire.trace.check.mistakes import refuse_mistakes
 from tracewire.trace.choose.own_rhythm import describe_own_rhythm
@@ -67,14 +69,37 @@ def safeguard(search: Search, judgement: Judgement) -> Judgement:
 
 
 def undetermined_effects(trial: Trial, confidence: float) -> list[str]:
-    """The effects of a trial, by name, whose coefficient may as well be zero."""
+    """The effects of a trial, by name, whose coefficient may as well be zero.
+
+    It may not where its ratio to a declared parameter is known: a motor whose time constant is
+    shorter than a sample tells a friction, a gain and a damping up to a common factor.
+    """
     ends = trial.intervals(confidence)
     found = []
     for effect in trial.effects:
-        low, high = ends.get(effect.candidate.coefficient, (1.0, 1.0))
-        if low <= 0 <= high:
+        name = effect.candidate.coefficient
+        low, high = ends.get(name, (1.0, 1.0))
+        if low <= 0 <= high and not _has_known_ratio(trial, name, (high - low) / 2):
             found.append(str(effect))
     return found
+
+
+def _has_known_ratio(trial: Trial, name: str, half: float) -> bool:
+    """Whether the ratio of a fitted value to that of a declared parameter is surely not zero;
+    `half` is half the interval of the value."""
+    names, covariance = list(trial.values), trial.covariance
+    error = trial.standard_errors[name]
+    if not 0 < error < np.inf or not trial.values[name]:
+        return False
+    quantile = half / error
+    declared = trial.model.flat.parameters
+    own = [n for n in names if n != name and "." not in n and n in declared and trial.values[n]]
+    n, values = names.index(name), np.array([trial.values[one] for one in names])
+    relative = covariance / np.outer(values, values)
+    return any(
+        quantile**2 * (relative[n, n] + relative[m, m] - 2 * relative[n, m]) < 1
+        for m in map(names.index, own)
+    )
 
 
 def _without_undetermined(search: Search, judgement: Judgement) -> Judgement:
