@@ -33,8 +33,20 @@ def test_help_opens_with_examples_and_names_every_verb(call: Any) -> None:
     assert all(f" {verb} " in told.out for verb in VERBS)
 
 
-def test_without_a_verb_it_helps(call: Any) -> None:
-    assert call().out == call("--help").out
+def test_help_gives_the_whole_first_sentence_of_each_verb(call: Any) -> None:
+    told = " ".join(call("--help").out.split())
+    assert (
+        "Check diagrams, their formulas and their measured files, and say what is in them." in told
+    )
+    assert "..." not in told.partition("Commands:")[2]
+
+
+@pytest.mark.parametrize("group", [[], ["analyse"], ["data"], ["new"]])
+def test_without_a_verb_it_helps(call: Any, group: list[str]) -> None:
+    told = call(*group)
+    assert (told.code, told.err) == (0, "")
+    assert told.out == call(*group, "--help").out
+    assert "\nCommands:\n" in told.out
 
 
 @pytest.mark.parametrize("verb", VERBS)
@@ -190,6 +202,8 @@ VIEWED = ["numpy", "http.server", "tracewire.view", "quickjs"]  # before a page 
     ("arguments", "imported"),
     [
         (["--version"], []),
+        (["--help"], []),
+        (["trace", "--help"], []),
         (["blocks", "gain"], []),
         (["check", "LESSON"], ["numpy"]),
         (["draw", "LESSON", "--output", "PICTURE"], ["numpy", "quickjs"]),

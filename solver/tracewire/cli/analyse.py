@@ -15,7 +15,6 @@ from tracewire.cli.verb_group import VerbGroup
 analyse = typer.Typer(
     help="Analyse a diagram: steady states, orbits and their stability, exponents, spectra.",
     cls=VerbGroup,
-    no_args_is_help=True,
     rich_markup_mode=None,
 )
 

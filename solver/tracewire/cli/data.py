@@ -14,7 +14,6 @@ from tracewire.cli.verb_group import VerbGroup
 data = typer.Typer(
     help="Bring sets of real measurements, with the diagrams that are traced on them.",
     cls=VerbGroup,
-    no_args_is_help=True,
     rich_markup_mode=None,
 )
 

@@ -22,7 +22,6 @@ from tracewire.library import OWN, load_library
 new = typer.Typer(
     help="Write a start for a block, a diagram or a library, with comments and a test that passes.",
     cls=VerbGroup,
-    no_args_is_help=True,
     rich_markup_mode=None,
 )
 

@@ -8,10 +8,15 @@ from typer.core import TyperGroup
 
 
 class VerbGroup(TyperGroup):
-    """A group of verbs whose help gives the whole first paragraph of each, where typer cuts it.
+    """A group of verbs whose help gives the whole first paragraph of each, where typer cuts it; a
+    group without a verb shows its help.
 
     Typer's other help, with frames, would do that too, but takes 0.1 s to import.
     """
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """The arguments parsed, those of `--help` where there are none."""
+        return super().parse_args(ctx, args or ["--help"])
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """Write the verbs in their order."""

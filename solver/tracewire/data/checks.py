@@ -26,10 +26,10 @@ def time_remarks(t: Vector) -> list[str]:
     remarks = []
     if count := int(np.sum(np.abs(regular - median) > CHECK.jitter * median + rounding)):
         low, high = float(regular.min()), float(regular.max())
-        fine = ": no fault where an event makes each sample" if 2 * count > len(steps) else ""
         remarks.append(
             f"the time step is not regular: {low:.4g} to {high:.4g} s, median {median:.4g} s; "
-            f"{count} of {len(steps)} are more than {CHECK.jitter:.0%} off{fine}"
+            f"{count} of {len(steps)} are more than {CHECK.jitter:.0%} off; each sample counts at "
+            "its own time"
         )
     if gaps.size:
         told = ", ".join(f"{steps[i]:.4g} s after {_time(t, i)}" for i in gaps[: FILE.most_told])
