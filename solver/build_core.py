@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib
 import sys
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
@@ -41,9 +40,6 @@ class CoreHook(BuildHookInterface):  # type: ignore[type-arg]
 
 
 def _core_file() -> Any:
-    """`tracewire.solve.core_file`, without what `tracewire.solve` imports."""
+    """`tracewire.solve.core_file`; of the rest it needs no more than it imports itself."""
     sys.path.insert(0, str(HERE))
-    package = ModuleType("tracewire.solve")
-    package.__path__ = [str(HERE / "tracewire" / "solve")]
-    sys.modules["tracewire.solve"] = package
     return importlib.import_module("tracewire.solve.core_file")
