@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import tracewire as tw
 from tracewire.diagram import read_text
+from tracewire.trace.choose import safeguards
 from tracewire.trace.choose.safeguards import undetermined_effects
 
 VALUES = {"k": 90.0, "c": 7.5, "rub.level": 13000.0}
@@ -38,12 +39,10 @@ class Effect:
 def trial_with(common: float, own: float) -> Any:
     """A trial whose values err together by a part `common` of each, and each alone by `own`."""
     values = np.array(list(VALUES.values()))
-    covariance = (common**2 + own**2 * np.eye(3)) * np.outer(values, values)
-    errors = np.sqrt(np.diag(covariance))
+    errors = (common**2 + own**2) ** 0.5 * values
     ends = np.stack((values - 2 * errors, values + 2 * errors), axis=1).tolist()
     return SimpleNamespace(
         values=VALUES,
-        covariance=covariance,
         standard_errors=dict(zip(VALUES, errors.tolist(), strict=True)),
         intervals=lambda confidence: dict(zip(VALUES, map(tuple, ends), strict=True)),
         effects=[Effect()],
@@ -56,8 +55,11 @@ def trial_with(common: float, own: float) -> Any:
     [(0.0, 0.1, False), (0.0, 0.6, True), (0.6, 0.1, False), (0.6, 0.6, True)],
 )
 def test_a_common_factor_that_is_not_known_is_no_doubt(
-    common: float, own: float, undetermined: bool
+    common: float, own: float, undetermined: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    alike = common**2 / (common**2 + own**2)
+    known = dict.fromkeys(VALUES, alike) | {"rub.level": 1.0}
+    monkeypatch.setattr(safeguards, "_correlations", lambda trial, name: known)
     found = undetermined_effects(trial_with(common, own), 0.95)
     assert found == (["coulomb @ acceleration"] if undetermined else [])
 

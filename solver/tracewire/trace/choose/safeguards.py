@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from tracewire.errors import FitError
+from tracewire.residual import project_out_initial_states
 from tracewire.trace.check.mistakes import refuse_mistakes
 from tracewire.trace.choose.own_rhythm import describe_own_rhythm
 from tracewire.trace.choose.unseen import (
@@ -87,19 +88,35 @@ def undetermined_effects(trial: Trial, confidence: float) -> list[str]:
 def _has_known_ratio(trial: Trial, name: str, half: float) -> bool:
     """Whether the ratio of a fitted value to that of a declared parameter is surely not zero;
     `half` is half the interval of the value."""
-    names, covariance = list(trial.values), trial.covariance
-    error = trial.standard_errors[name]
-    if not 0 < error < np.inf or not trial.values[name]:
+    errors, values = trial.standard_errors, trial.values
+    declared, correlations = trial.model.flat.parameters, _correlations(trial, name)
+    if not values[name] or not 0 < errors[name] < np.inf:
         return False
-    quantile = half / error
-    declared = trial.model.flat.parameters
-    own = [n for n in names if n != name and "." not in n and n in declared and trial.values[n]]
-    n, values = names.index(name), np.array([trial.values[one] for one in names])
-    relative = covariance / np.outer(values, values)
-    return any(
-        quantile**2 * (relative[n, n] + relative[m, m] - 2 * relative[n, m]) < 1
-        for m in map(names.index, own)
-    )
+    own = errors[name] / abs(values[name])
+    for other in values:
+        if other == name or "." in other or other not in declared or not values[other]:
+            continue
+        its = errors[other] / abs(values[other])
+        if not np.isfinite(its):
+            continue
+        together = correlations[other] * np.sign(values[name]) * np.sign(values[other])
+        square = max(own**2 + its**2 - 2 * together * own * its, 0.0)
+        if half / errors[name] * square**0.5 < 1:
+            return True
+    return False
+
+
+def _correlations(trial: Trial, name: str) -> dict[str, float]:
+    """The correlation of the error of a fitted value with those of all; 0 where one has none."""
+    reduced, _ = project_out_initial_states(trial.windows)
+    sizes = np.linalg.norm(reduced, axis=0)
+    scaled = reduced / np.where(sizes > 0, sizes, 1.0)
+    covariance = np.linalg.pinv(scaled.T @ scaled, rcond=1e-12)
+    spread = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    row = covariance[list(trial.values).index(name)]
+    size = spread * spread[list(trial.values).index(name)]
+    found = np.divide(row, size, out=np.zeros(len(row)), where=size > 0)
+    return dict(zip(trial.values, found.tolist(), strict=True))
 
 
 def _without_undetermined(search: Search, judgement: Judgement) -> Judgement:

@@ -42,7 +42,6 @@ from tracewire.trace.trials.phase_fit import fit_phase
 from tracewire.trace.trials.statistics import bic, effective_fraction
 
 Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -155,21 +154,16 @@ class Trial:
         return effective_fraction(self.windows.residuals)
 
     @cached_property
-    def covariance(self) -> Matrix:
-        """The covariance of the fitted values, with the residual's autocorrelation counted."""
-        reduced, _ = project_out_initial_states(self.windows)
+    def standard_errors(self) -> dict[str, float]:
+        """The standard error of each fitted value, with the residual's autocorrelation counted."""
+        windows = self.windows
+        reduced, _ = project_out_initial_states(windows)
         sizes = np.linalg.norm(reduced, axis=0)
         scaled = reduced / np.where(sizes > 0, sizes, 1.0)
-        found = np.linalg.pinv(scaled.T @ scaled, rcond=1e-12) * max(self.reduced_chi2, 1e-300)
-        found /= self.effective_fraction * np.outer(*[np.where(sizes > 0, sizes, 1.0)] * 2)
-        found[np.diag(sizes <= 0)] = np.inf
-        return np.asarray(found)
-
-    @cached_property
-    def standard_errors(self) -> dict[str, float]:
-        """The standard error of each fitted value."""
-        errors = np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
-        return dict(zip(self.windows.values, errors.tolist(), strict=True))
+        covariance = np.linalg.pinv(scaled.T @ scaled, rcond=1e-12) * max(self.reduced_chi2, 1e-300)
+        spread = np.sqrt(np.maximum(np.diag(covariance) / self.effective_fraction, 0.0))
+        spread = np.divide(spread, sizes, out=np.full(len(sizes), np.inf), where=sizes > 0)
+        return dict(zip(windows.values, spread.tolist(), strict=True))
 
     def intervals(self, confidence: float) -> dict[str, tuple[float, float]]:
         """The interval of each fitted value, which holds the truth with this confidence."""
