@@ -22,9 +22,7 @@ blocks:
 
 
 def trial(rss: float, **values: float) -> Any:
-    return SimpleNamespace(
-        rss=rss, values=values, effects=(), windows=SimpleNamespace(values=values)
-    )
+    return SimpleNamespace(rss=rss, values=values)
 
 
 class Pool(ModelPool):
@@ -42,8 +40,16 @@ class Pool(ModelPool):
     def on_sparse_windows(self, parent: Any, number: int) -> Any:
         return self.now
 
-    def _refit(self, now: Any, *given: Any) -> Any:  # type: ignore[override]
-        *_, values = given
+    def _refit(
+        self,
+        now: Any,
+        added: Any,
+        dropped: Any,
+        steps: Any,
+        target: Any,
+        values: Any = None,
+        segments: Any = None,
+    ) -> Any:
         self.begun.append({**now.values, **values}["c"])
         return trial(next(self.left))
 

@@ -24,6 +24,7 @@ from tracewire.trace.choose.verdict import Judgement, residual_map
 from tracewire.trace.search.refinement import FinalModels
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.precision import is_loose
+from tracewire.trace.trials.statistics import inverse_information
 from tracewire.trace.trials.trial import PlacedEffect, Trial
 
 
@@ -108,14 +109,11 @@ def _has_known_ratio(trial: Trial, name: str, half: float) -> bool:
 
 def _correlations(trial: Trial, name: str) -> dict[str, float]:
     """The correlation of the error of a fitted value with those of all; 0 where one has none."""
-    reduced, _ = project_out_initial_states(trial.windows)
-    sizes = np.linalg.norm(reduced, axis=0)
-    scaled = reduced / np.where(sizes > 0, sizes, 1.0)
-    covariance = np.linalg.pinv(scaled.T @ scaled, rcond=1e-12)
-    spread = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-    row = covariance[list(trial.values).index(name)]
-    size = spread * spread[list(trial.values).index(name)]
-    found = np.divide(row, size, out=np.zeros(len(row)), where=size > 0)
+    inverse, _ = inverse_information(project_out_initial_states(trial.windows)[0])
+    spread = np.sqrt(np.maximum(np.diag(inverse), 0.0))
+    n = list(trial.values).index(name)
+    size = spread * spread[n]
+    found = np.divide(inverse[n], size, out=np.zeros(len(size)), where=size > 0)
     return dict(zip(trial.values, found.tolist(), strict=True))
 
 

@@ -33,6 +33,14 @@ def effective_fraction(residuals: Sequence[Vector]) -> float:
     return max(2 * float(np.arccos(rho)) / np.pi, 1e-4)
 
 
+def inverse_information(slopes: Matrix) -> tuple[Matrix, Vector]:
+    """The covariance of values times their sizes, of residuals of variance 1 with slopes (M, n),
+    and the sizes (n,): the norms of the slopes."""
+    sizes = np.linalg.norm(slopes, axis=0)
+    scaled = slopes / np.where(sizes > 0, sizes, 1.0)
+    return np.asarray(np.linalg.pinv(scaled.T @ scaled, rcond=1e-12)), sizes
+
+
 def errors_behind(residuals: Sequence[Vector], others: Sequence[Vector], blocks: int) -> float:
     """By how many standard errors over blocks of time the squared residuals of another model are
     larger than those of one, on the same windows; of white noise half the root of how much larger.

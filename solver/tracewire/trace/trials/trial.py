@@ -39,7 +39,7 @@ from tracewire.trace.candidates.drive_sines import Sine, drive_sines_of
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.thresholds import TrialOptions
 from tracewire.trace.trials.phase_fit import fit_phase
-from tracewire.trace.trials.statistics import bic, effective_fraction
+from tracewire.trace.trials.statistics import bic, effective_fraction, inverse_information
 
 Vector = NDArray[np.float64]
 
@@ -156,14 +156,11 @@ class Trial:
     @cached_property
     def standard_errors(self) -> dict[str, float]:
         """The standard error of each fitted value, with the residual's autocorrelation counted."""
-        windows = self.windows
-        reduced, _ = project_out_initial_states(windows)
-        sizes = np.linalg.norm(reduced, axis=0)
-        scaled = reduced / np.where(sizes > 0, sizes, 1.0)
-        covariance = np.linalg.pinv(scaled.T @ scaled, rcond=1e-12) * max(self.reduced_chi2, 1e-300)
+        inverse, sizes = inverse_information(project_out_initial_states(self.windows)[0])
+        covariance = inverse * max(self.reduced_chi2, 1e-300)
         spread = np.sqrt(np.maximum(np.diag(covariance) / self.effective_fraction, 0.0))
         spread = np.divide(spread, sizes, out=np.full(len(sizes), np.inf), where=sizes > 0)
-        return dict(zip(windows.values, spread.tolist(), strict=True))
+        return dict(zip(self.windows.values, spread.tolist(), strict=True))
 
     def intervals(self, confidence: float) -> dict[str, tuple[float, float]]:
         """The interval of each fitted value, which holds the truth with this confidence."""
