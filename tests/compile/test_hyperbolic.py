@@ -1,4 +1,4 @@
-"""sinh, cosh and tanh by one exponential: true values, limits, one call for all of an argument."""
+"""sinh, cosh, tanh and sech by one exponential: true values, limits, one call for all of an argument."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from tracewire.compile.hyperbolic import hyperbolic
 from tracewire.compile.limits import CODE
 
-MADE = hyperbolic(math.expm1, math.exp)
+MADE = hyperbolic(math.exp)
 EVEN = ("cosh", "sech")
 EACH = pytest.mark.parametrize("name", ["sinh", "cosh", "tanh", "sech"])
 
@@ -30,7 +30,7 @@ def digits_lost(name: str, u: float) -> Decimal:
 
 
 @EACH
-@given(u=st.one_of(st.floats(-709.0, 709.0), st.floats(-3.0, 3.0)))
+@given(u=st.one_of(st.floats(-709.0, 709.0), st.floats(-3.0, 3.0), st.floats(-0.8, 0.8)))
 def test_values_are_within_three_units_in_the_last_place(name: str, u: float) -> None:
     assert digits_lost(name, u) <= 3
 
@@ -46,9 +46,7 @@ def test_values_join_where_the_far_formula_takes_over(name: str, side: float) ->
     ("name", "at_infinity"), [("sinh", math.inf), ("cosh", math.inf), ("tanh", 1.0), ("sech", 0.0)]
 )
 def test_limits(name: str, at_infinity: float) -> None:
-    made: Callable[[float], float] = hyperbolic(
-        lambda u: float(np.expm1(u)), lambda u: float(np.exp(u))
-    )[name]
+    made: Callable[[float], float] = hyperbolic(lambda u: float(np.exp(u)))[name]
     assert made(math.inf) == at_infinity
     assert made(-math.inf) == (at_infinity if name in EVEN else -at_infinity)
     assert math.isnan(made(math.nan))

@@ -13,8 +13,7 @@ from tracewire.formula import OPERATIONS
 PREFIX = "tracewire."
 """Of their names in machine code, so that LLVM knows nothing about them."""
 CALLED = [operation for operation in OPERATIONS.values() if operation.library]
-BASES = {operation.base for operation in OPERATIONS.values() if operation.base}
-ONE = (*(operation.library for operation in CALLED if operation.most == 1), *sorted(BASES))
+ONE = tuple(operation.library for operation in CALLED if operation.most == 1)
 TWO = tuple(operation.library for operation in CALLED if operation.most == 2)
 BOTH = "sincos"
 """Functions of one and of two numbers, and the one of GNU that gives sine and cosine together."""

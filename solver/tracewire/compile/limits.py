@@ -55,8 +55,11 @@ class CodeLimits:
     """Lines of IR in a part of a function."""
     longest_inline: int = 60
     """Characters of an expression that stands where it is used, once."""
+    near: float = 0.7
+    """The size of an argument of sinh, cosh, tanh and sech below which exp(u) - 1 loses digits: at
+    log(2) it is right to a unit in its last place."""
     far: float = 22.0
-    """The size of an argument of sinh, cosh and tanh from which on exp(-2u) is less than half a
+    """The size of an argument of sinh, cosh, tanh and sech from which on exp(-2u) is less than half a
     digit of 1."""
     longest_fold: int = 100
     """Terms in a row; more are added by halves, as a formula may not nest as deep as that."""

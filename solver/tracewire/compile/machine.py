@@ -17,7 +17,7 @@ from collections.abc import Mapping, Sequence
 
 from tracewire.compile import libm
 from tracewire.compile.constants import Constants
-from tracewire.compile.hyperbolic import COPY_SIGN, GROWTH, exponential, from_exponential
+from tracewire.compile.hyperbolic import COPY_SIGN, HYPERBOLIC, from_parts, parts_of
 from tracewire.compile.libm import PREFIX
 from tracewire.compile.limits import CODE
 from tracewire.compile.past import PAST
@@ -29,7 +29,7 @@ ARITHMETIC = {name: o.instruction for name, o in OPERATIONS.items() if o.instruc
 ARITHMETIC |= {"and": "fmul"}  # of 0 and 1
 LIBRARY = {name: o.library for name, o in OPERATIONS.items() if o.library}
 INTRINSIC = {name: o.intrinsic for name, o in OPERATIONS.items() if o.intrinsic}
-HYPERBOLIC = {name for name, o in OPERATIONS.items() if o.base}
+FROM_PARTS = {name for name, o in OPERATIONS.items() if o.base}
 ARGUMENTS = "double %t, " + ", ".join(f"ptr noalias readonly %{a}" for a in "xmck")
 PURE = "nounwind willreturn readnone"
 
@@ -96,7 +96,7 @@ next:
 done:
   ret void
 }"""
-HELPERS = {"segment": SEGMENT, "slope": SLOPE, "fill": FILL, "past": PAST, "growth": GROWTH}
+HELPERS = {"segment": SEGMENT, "slope": SLOPE, "fill": FILL, "past": PAST, "hyperbolic": HYPERBOLIC}
 
 
 def _module(functions: Sequence[str]) -> str:
@@ -154,7 +154,7 @@ class _Body:
         self.entries = writer.tape.entries
         self.lines: list[str] = []
         self.names: dict[int, str] = {}  # of the entries that have been computed
-        self.exponentials: dict[int, str] = {}  # of entries of which a sinh, cosh or tanh is known
+        self.shared: dict[int, str] = {}  # of entries of which a sinh, cosh, tanh or sech is known
         self.pairs = self.sines_with_cosines(order) if writer.has_sincos else {}
         self.leaves: dict[int, str] = {}  # those that were loaded in this part of the function
         self.parts = 0
@@ -280,19 +280,18 @@ class _Body:
         name = self.names[index] = f"%v{index}"
         if entry.op == "newton":
             self.search(index, operands)
-        elif entry.op in HYPERBOLIC:
-            self.lines += from_exponential(
-                entry.op, operands[0], self.exponential(entry.operands[0], operands[0]), name
-            )
+        elif entry.op in FROM_PARTS:
+            parts = self.parts_of(entry.operands[0], operands[0])
+            self.lines += from_parts(entry.op, operands[0], parts, name)
         else:
             self.lines += self.operation(entry, name, operands)
 
-    def exponential(self, index: int, u: str) -> str:
-        """The name of the exponential of an entry, which is computed here if it is not known."""
-        if index not in self.exponentials:
-            self.exponentials[index] = f"e{index}"
-            self.lines += exponential(u, f"e{index}")
-        return self.exponentials[index]
+    def parts_of(self, index: int, u: str) -> str:
+        """The name of what the hyperbolic functions of an entry share, computed once."""
+        if index not in self.shared:
+            self.shared[index] = f"h{index}"
+            self.lines += parts_of(u, f"h{index}")
+        return self.shared[index]
 
     def search(self, index: int, operands: Sequence[str]) -> None:
         """The search of a nonlinear system, with its equations in the middle of it."""

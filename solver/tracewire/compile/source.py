@@ -15,7 +15,7 @@ from typing import Any
 
 from tracewire.compile import libm
 from tracewire.compile.constants import OF_THE_PAST, Constants
-from tracewire.compile.hyperbolic import LARGE, SMALL, hyperbolic
+from tracewire.compile.hyperbolic import hyperbolic
 from tracewire.compile.limits import CODE, SEARCH
 from tracewire.compile.past import past
 from tracewire.compile.tape import Tape
@@ -92,13 +92,13 @@ SHARED: dict[str, Any] = {
     "newton": _newton,
 }
 FAST: dict[str, Any] = {name: getattr(math, name) for name in (*libm.ONE, *libm.TWO, "sqrt")}
-FAST |= {**SHARED, "floor": _floor, **hyperbolic(math.expm1, math.exp)}
+FAST |= {**SHARED, "floor": _floor, **hyperbolic(math.exp)}
 
 
 def _careful() -> dict[str, Any]:
     names = (*libm.ONE, *libm.TWO, "sqrt", "floor")
     called = {name: libm.function(name) for name in names}
-    return {**SHARED, "divide": _divide, **called, **hyperbolic(called[SMALL], called[LARGE])}
+    return {**SHARED, "divide": _divide, **called, **hyperbolic(called["exp"])}
 
 
 class Writer:

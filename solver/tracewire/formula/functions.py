@@ -49,7 +49,7 @@ class Function:
     `turns` again and again as u grows, as a sine does, or `fades` where u is large.
 
     library, intrinsic, instruction: the name of the function of the C library, of the function of
-    LLVM, or of the instruction that computes it. base: the function of the C library of which
+    LLVM, or of the instruction that computes it. base: the function of this table of which
     `compile.hyperbolic` makes it. None of them: it is made of others.
 
     reads: the last argument is no value, but the name of a port with several `wires` or of a table
@@ -120,13 +120,13 @@ FUNCTIONS = {
     "atan2": Function(2, 2, "angle of the point (x, y) given as atan2(y, x), in rad", math.atan2,
         numpy="arctan2", library="atan2"),
     "sinh": Function(1, 1, "hyperbolic sine", math.sinh, numpy="sinh", slope="cosh(u)",
-        pace="fades", base="expm1"),
+        pace="fades", base="exp"),
     "cosh": Function(1, 1, "hyperbolic cosine", math.cosh, numpy="cosh", slope="sinh(u)",
-        pace="fades", base="expm1"),
+        pace="fades", base="exp"),
     "tanh": Function(1, 1, "hyperbolic tangent", math.tanh, numpy="tanh", slope="1 - f*f",
-        pace="fades", base="expm1"),
+        pace="fades", base="exp"),
     "sech": Function(1, 1, "hyperbolic secant, 1/cosh", _sech, slope="-(f*tanh(u))", pace="fades",
-        base="expm1"),
+        base="exp"),
     "exp": Function(1, 1, "exponential", math.exp, numpy="exp", slope="f", pace="fades",
         library="exp"),
     "log": Function(1, 1, "natural logarithm", math.log, numpy="log", slope="1/u", library="log"),
