@@ -189,21 +189,21 @@ def _over_size(core: int, error: Matrix) -> float:
     sensitivity, counts = sensitivity_of(core), flow_of(core).counts
     s, peak, change = sensitivity.s, sensitivity.peak, sensitivity.change
     n, q = s.shape
-    worst = 0.0
+    worst, total = 0.0, 0.0
     some_held = counts[SLIDING] + counts[RESTING] > 0
     for j in range(q):
-        largest = 0.0
+        before, moved = 0.0, 0.0
         for i in range(n):
-            largest = max(largest, peak[i, j], abs(change[i, j]))
+            before, moved = max(before, peak[i, j]), max(moved, abs(change[i, j]))
+        largest = max(before, moved)
         if some_held and largest < STILL:
             continue
-        for i in range(n):
+        for i in range(n):  # no branches: which of the errors is the largest cannot be foreseen
             size = max(peak[i, j], abs(s[i, j] + change[i, j])) + NOTHING * largest
-            if abs(error[i, j]) > worst * size:
-                worst = abs(error[i, j]) / size
-            elif not abs(error[i, j]) < np.inf:
-                return np.nan
-    return worst
+            part = abs(error[i, j]) / size if error[i, j] != 0.0 else 0.0
+            worst = max(worst, part)
+            total += part
+    return worst if total < np.inf else np.nan
 
 
 @unit

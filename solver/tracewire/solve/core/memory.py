@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 Vector = NDArray[np.float64]
 MODEL_FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_double, *[ctypes.c_void_p] * 5)
+ADDRESSED = ctypes.c_char * 0  # of an array: by far the fastest way to its address
 
 
 def floats_at(address: int, shape: Sequence[int]) -> Any:
@@ -34,5 +35,5 @@ def _array_at(kind: Any, address: int, shape: Sequence[int]) -> Any:
 
 def invoke(address: int, t: float, x: Vector, m: Vector, c: Vector, k: Vector, out: Vector) -> None:
     """Call the function of a model at an address: f(t, x, m, c, k, out), arrays without gaps."""
-    data = [array.__array_interface__["data"][0] for array in (x, m, c, k, out)]
+    data = [ADDRESSED.from_buffer(array.data) for array in (x, m, c, k, out)]
     MODEL_FUNCTION(int(address))(t, *data)
