@@ -7,9 +7,8 @@ import math
 import time
 import zipfile
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +16,7 @@ from numpy.typing import NDArray
 from tracewire.files import replacing, write_file, writing
 
 
-@dataclass(frozen=True)
-class ResumeLimits:
+class ResumeLimits(NamedTuple):
     """How often a file is written from which work goes on."""
 
     every: float = 2.0

@@ -1,4 +1,4 @@
-"""sinh, cosh, tanh and sech by one exponential: true values, limits, one call for all of an argument."""
+"""sinh, cosh, tanh and sech by shared parts: true values, limits, one call for an argument."""
 
 from __future__ import annotations
 

@@ -5,11 +5,10 @@ Where no source stands, a number is a judgement, checked on exact solutions by t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True)
-class EquilibriumLimits:
+class EquilibriumLimits(NamedTuple):
     """Of Newton's method inside the active mode, and of the linear system that is found there."""
 
     closed: float = 1e-9
@@ -41,8 +40,7 @@ class EquilibriumLimits:
 EQUILIBRIUM = EquilibriumLimits()
 
 
-@dataclass(frozen=True)
-class RootLimits:
+class RootLimits(NamedTuple):
     """Of the characteristic roots of a system with delays: collocation, then Newton's method."""
 
     fewest_points: int = 24
@@ -66,8 +64,7 @@ class RootLimits:
 ROOT = RootLimits()
 
 
-@dataclass(frozen=True)
-class OrbitLimits:
+class OrbitLimits(NamedTuple):
     """Of periodic motions, their multipliers, and Lyapunov exponents."""
 
     points: int = 400
@@ -95,8 +92,7 @@ class OrbitLimits:
 ORBIT = OrbitLimits()
 
 
-@dataclass(frozen=True)
-class SectionLimits:
+class SectionLimits(NamedTuple):
     """Of Poincaré sections: how crossings are looked for, and which points are one."""
 
     first_chunk: float = 0.02
@@ -122,8 +118,7 @@ class SectionLimits:
 SECTION = SectionLimits()
 
 
-@dataclass(frozen=True)
-class SignalLimits:
+class SignalLimits(NamedTuple):
     """Of spectra, scalograms and the growth of a signal."""
 
     fewest_samples: int = 16
@@ -145,8 +140,7 @@ class SignalLimits:
 SIGNAL = SignalLimits()
 
 
-@dataclass(frozen=True)
-class SweepLimits:
+class SweepLimits(NamedTuple):
     """Of sweeps over a grid."""
 
     most_points: int = 1_000_000
@@ -156,8 +150,7 @@ class SweepLimits:
 SWEEP = SweepLimits()
 
 
-@dataclass(frozen=True)
-class QuantityLimits:
+class QuantityLimits(NamedTuple):
     """Of the quantities that statements about a system are measured by."""
 
     rtol: float = 1e-9

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True)
-class CommandLimits:
+class CommandLimits(NamedTuple):
     """The numbers are judgements: what a person reads, and waits for."""
 
     soon: float = 1.0

@@ -5,11 +5,10 @@ Where no source stands, a number was found by timing, or is a judgement.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True)
-class ModelLimits:
+class ModelLimits(NamedTuple):
     """Of what is solved in each evaluation."""
 
     most_unknowns: int = 60
@@ -25,8 +24,7 @@ class ModelLimits:
 MODEL = ModelLimits()
 
 
-@dataclass(frozen=True)
-class SearchLimits:
+class SearchLimits(NamedTuple):
     """Of Newton's method on a loop that is solved by search; see `tape`."""
 
     most_steps: int = 100
@@ -40,8 +38,7 @@ class SearchLimits:
 SEARCH = SearchLimits()
 
 
-@dataclass(frozen=True)
-class CodeLimits:
+class CodeLimits(NamedTuple):
     """Of the texts that are compiled."""
 
     large: int = 1_000_000
@@ -59,8 +56,7 @@ class CodeLimits:
     """The size of an argument of sinh, cosh, tanh and sech below which exp(u) - 1 loses digits: at
     log(2) it is right to a unit in its last place."""
     far: float = 22.0
-    """The size of an argument of sinh, cosh, tanh and sech from which on exp(-2u) is less than half a
-    digit of 1."""
+    """The size of an argument of these from which on exp(-2u) is less than half a digit of 1."""
     longest_fold: int = 100
     """Terms in a row; more are added by halves, as a formula may not nest as deep as that."""
 
@@ -68,8 +64,7 @@ class CodeLimits:
 CODE = CodeLimits()
 
 
-@dataclass(frozen=True)
-class RemarkLimits:
+class RemarkLimits(NamedTuple):
     """From when on a number or a sign of a model is remarked upon."""
 
     large: float = 360.0

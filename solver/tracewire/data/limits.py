@@ -5,11 +5,10 @@ Where no source stands, a number is a judgement, checked on made and measured re
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True)
-class FileLimits:
+class FileLimits(NamedTuple):
     """Of what is read of a file, so that a damaged or hostile one fills no memory."""
 
     most_bytes: int = 200_000_000
@@ -35,8 +34,7 @@ class FileLimits:
 FILE = FileLimits()
 
 
-@dataclass(frozen=True)
-class StepLimits:
+class StepLimits(NamedTuple):
     """Of the steps that clean a record."""
 
     most_samples: int = 20_000_000
@@ -57,8 +55,7 @@ class StepLimits:
 STEP = StepLimits()
 
 
-@dataclass(frozen=True)
-class CheckLimits:
+class CheckLimits(NamedTuple):
     """From when on samples are remarked upon."""
 
     jitter: float = 0.01

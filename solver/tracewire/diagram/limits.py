@@ -5,11 +5,10 @@ The numbers are judgements: far above what people write, and what a run can stil
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True)
-class DiagramLimits:
+class DiagramLimits(NamedTuple):
     """Limits of files, of texts, and of what stands in them; and what a message shows of it."""
 
     most_bytes: int = 1_000_000
@@ -52,8 +51,7 @@ class DiagramLimits:
 LIMITS = DiagramLimits()
 
 
-@dataclass(frozen=True)
-class LayoutSizes:
+class LayoutSizes(NamedTuple):
     """Of a diagram as it is written, in characters."""
 
     indent: int = 2

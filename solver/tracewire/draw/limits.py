@@ -5,11 +5,10 @@ All lengths are in px. The numbers are judgements: what can be read, and looks a
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True)
-class LetterSizes:
+class LetterSizes(NamedTuple):
     """Of letters and lines of text."""
 
     size: float = 11.0
@@ -39,8 +38,7 @@ class LetterSizes:
 LETTER = LetterSizes()
 
 
-@dataclass(frozen=True)
-class ShapeSizes:
+class ShapeSizes(NamedTuple):
     """Of blocks, arrows and the page."""
 
     pitch: float = 18.0
@@ -74,8 +72,7 @@ class ShapeSizes:
 SHAPE = ShapeSizes()
 
 
-@dataclass(frozen=True)
-class LayoutLimits:
+class LayoutLimits(NamedTuple):
     """From when on one layout is taken rather than another one."""
 
     most_compact: int = 70
@@ -89,8 +86,7 @@ class LayoutLimits:
 LAYOUT = LayoutLimits()
 
 
-@dataclass(frozen=True)
-class WireLimits:
+class WireLimits(NamedTuple):
     """Of wires of two signals that lie on each other."""
 
     together: float = 0.5
@@ -104,8 +100,7 @@ class WireLimits:
 WIRES = WireLimits()
 
 
-@dataclass(frozen=True)
-class CurveLimits:
+class CurveLimits(NamedTuple):
     """Of the curve of a law in its block. The heights are parts of that of the curve."""
 
     samples: int = 32

@@ -5,11 +5,10 @@ Where no source stands, a number is a judgement, checked on made and measured re
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True)
-class SearchLimits:
+class SearchLimits(NamedTuple):
     """Of every search: how often it reports, and when least squares ends."""
 
     report_every: float = 0.1
@@ -25,8 +24,7 @@ class SearchLimits:
 SEARCH = SearchLimits()
 
 
-@dataclass(frozen=True)
-class TrackingLimits:
+class TrackingLimits(NamedTuple):
     """Of how far a model follows a measured series."""
 
     tracked: float = 0.2
@@ -40,8 +38,7 @@ class TrackingLimits:
 TRACKING = TrackingLimits()
 
 
-@dataclass(frozen=True)
-class GrowingWindowLimits:
+class GrowingWindowLimits(NamedTuple):
     """Of least squares on the first samples, then on more and more of them."""
 
     fewest_samples: int = 8
@@ -69,8 +66,7 @@ class GrowingWindowLimits:
 GROWING = GrowingWindowLimits()
 
 
-@dataclass(frozen=True)
-class MultipleShootingLimits:
+class MultipleShootingLimits(NamedTuple):
     """Of segments with initial states of their own, whose gaps are closed stage by stage."""
 
     fewest_samples: int = 10
@@ -104,8 +100,7 @@ class MultipleShootingLimits:
 SEGMENTS = MultipleShootingLimits()
 
 
-@dataclass(frozen=True)
-class MultistartLimits:
+class MultistartLimits(NamedTuple):
     """Of the search from many points."""
 
     points: int = 32
@@ -130,8 +125,7 @@ class MultistartLimits:
 MULTISTART = MultistartLimits()
 
 
-@dataclass(frozen=True)
-class ShootingLimits:
+class ShootingLimits(NamedTuple):
     """Of rounds of random shots and of the simplex."""
 
     first_radius: float = 0.05
@@ -172,8 +166,7 @@ class ShootingLimits:
 SHOOTING = ShootingLimits()
 
 
-@dataclass(frozen=True)
-class DiagnosisLimits:
+class DiagnosisLimits(NamedTuple):
     """Of what is left after a fit: from when on it is no noise."""
 
     at_noise: float = 1.3**0.5
@@ -209,8 +202,7 @@ class DiagnosisLimits:
 DIAGNOSIS = DiagnosisLimits()
 
 
-@dataclass(frozen=True)
-class UncertaintyLimits:
+class UncertaintyLimits(NamedTuple):
     """Of standard errors, and of parameters that the data do not determine."""
 
     at_bound: float = 1e-6
@@ -235,8 +227,7 @@ class UncertaintyLimits:
 UNCERTAINTY = UncertaintyLimits()
 
 
-@dataclass(frozen=True)
-class ProfileLimits:
+class ProfileLimits(NamedTuple):
     """Of the profile of a likelihood, followed to both sides of a value."""
 
     first: float = 0.6

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True)
-class FormulaLimits:
+class FormulaLimits(NamedTuple):
     """Of formulas and units. The numbers are judgements, far above what people write."""
 
     most_characters: int = 4000

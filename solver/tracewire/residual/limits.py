@@ -5,11 +5,10 @@ Where no source stands, a number is a judgement, checked on made and measured re
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True)
-class NoiseLimits:
+class NoiseLimits(NamedTuple):
     """Of the noise that is read from a record."""
 
     orders: tuple[int, ...] = (4, 6, 8, 10, 12)
@@ -45,8 +44,7 @@ class NoiseLimits:
 NOISE = NoiseLimits()
 
 
-@dataclass(frozen=True)
-class SpectrumLimits:
+class SpectrumLimits(NamedTuple):
     """Of the spectrum in bands from which noise is read (P. D. Welch, IEEE Transactions on Audio
     and Electroacoustics 15, 1967, 70)."""
 
@@ -69,8 +67,7 @@ class SpectrumLimits:
 SPECTRUM = SpectrumLimits()
 
 
-@dataclass(frozen=True)
-class ReadingLimits:
+class ReadingLimits(NamedTuple):
     """Of how the readings of a sensor stand."""
 
     largest_factor: int = 64
@@ -101,8 +98,7 @@ class ReadingLimits:
 READING = ReadingLimits()
 
 
-@dataclass(frozen=True)
-class InputLimits:
+class InputLimits(NamedTuple):
     """Of inputs: how they go on between samples, and what their noise does."""
 
     fewest_samples: int = 9
@@ -146,8 +142,7 @@ class InputLimits:
 INPUT = InputLimits()
 
 
-@dataclass(frozen=True)
-class WindowLimits:
+class WindowLimits(NamedTuple):
     """Of windows and their fitted initial states."""
 
     traced: int = 40
@@ -193,8 +188,7 @@ class WindowLimits:
 WINDOW = WindowLimits()
 
 
-@dataclass(frozen=True)
-class DescentLimits:
+class DescentLimits(NamedTuple):
     """Of the two least-squares loops: Levenberg-Marquardt on windows, scipy's trust region."""
 
     rescue_steps: int = 2
@@ -227,8 +221,7 @@ class DescentLimits:
 DESCENT = DescentLimits()
 
 
-@dataclass(frozen=True)
-class CriterionLimits:
+class CriterionLimits(NamedTuple):
     """Of the criterion, its derivatives and what it does where a run fails."""
 
     step: float = 1e-4
@@ -257,8 +250,7 @@ class CriterionLimits:
 CRITERION = CriterionLimits()
 
 
-@dataclass(frozen=True)
-class RemarkLimits:
+class RemarkLimits(NamedTuple):
     """From when on a record is remarked upon, as of another unit or another time."""
 
     largest_angle: float = 20.0

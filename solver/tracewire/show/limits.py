@@ -5,11 +5,10 @@ The numbers are judgements: what can be read on a page, and what a file may weig
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True)
-class FigureLimits:
+class FigureLimits(NamedTuple):
     """Of all figures, and of those of runs. Sizes are in inches."""
 
     width: float = 9.0
@@ -58,8 +57,7 @@ class FigureLimits:
 FIGURE = FigureLimits()
 
 
-@dataclass(frozen=True)
-class FitFigureLimits:
+class FitFigureLimits(NamedTuple):
     """Of the figures of a fit."""
 
     most_comparisons: int = 12
@@ -94,8 +92,7 @@ class FitFigureLimits:
 FIT = FitFigureLimits()
 
 
-@dataclass(frozen=True)
-class LiveLimits:
+class LiveLimits(NamedTuple):
     """Of the picture of a search that goes on. Times are wall time in s."""
 
     share: float = 0.1
@@ -115,8 +112,7 @@ class LiveLimits:
 LIVE = LiveLimits()
 
 
-@dataclass(frozen=True)
-class SceneLimits:
+class SceneLimits(NamedTuple):
     """Of scenes and their films."""
 
     most_frames: int = 5000
@@ -150,8 +146,7 @@ class SceneLimits:
 SCENE = SceneLimits()
 
 
-@dataclass(frozen=True)
-class TraceFigureLimits:
+class TraceFigureLimits(NamedTuple):
     """Of the figures of a trace."""
 
     most_curves: int = 8
@@ -196,8 +191,7 @@ class TraceFigureLimits:
 TRACE = TraceFigureLimits()
 
 
-@dataclass(frozen=True)
-class MapLimits:
+class MapLimits(NamedTuple):
     """Of the maps of a trace: what stands in for what, and what an experiment would tell."""
 
     dark: float = 0.6
@@ -226,8 +220,7 @@ class MapLimits:
 MAP = MapLimits()
 
 
-@dataclass(frozen=True)
-class WordLimits:
+class WordLimits(NamedTuple):
     """Of sentences and tables: how much they tell, and what is worth a word."""
 
     nothing: float = 1e-6

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from tracewire.errors import Problem, SimulationError
 
@@ -20,8 +21,7 @@ class Limits:
     max_step: float = math.inf
 
 
-@dataclass(frozen=True)
-class SampleLimits:
+class SampleLimits(NamedTuple):
     """Of the instants that a run records."""
 
     most: int = 10_000_000
@@ -33,8 +33,7 @@ class SampleLimits:
 SAMPLE = SampleLimits()
 
 
-@dataclass(frozen=True)
-class StepLimits:
+class StepLimits(NamedTuple):
     """Of steps, and of the differences that are taken where no derivative is at hand."""
 
     known_past: float = 0.98
@@ -49,8 +48,7 @@ class StepLimits:
 STEP = StepLimits()
 
 
-@dataclass(frozen=True)
-class PauseLimits:
+class PauseLimits(NamedTuple):
     """Of the work between two pauses, in which Ctrl-C is heard and progress is told."""
 
     seconds: float = 0.1
@@ -68,8 +66,7 @@ class PauseLimits:
 PAUSE = PauseLimits()
 
 
-@dataclass(frozen=True)
-class ParallelLimits:
+class ParallelLimits(NamedTuple):
     """Of runs in several processes or on several computers."""
 
     chunk: float = 0.5
@@ -85,8 +82,7 @@ class ParallelLimits:
 PARALLEL = ParallelLimits()
 
 
-@dataclass(frozen=True)
-class MemoryLimits:
+class MemoryLimits(NamedTuple):
     """Of arrays that a run works in, and of what is kept for the next one. In numbers of 8 bytes
     where nothing else is said."""
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True)
-class ViewLimits:
+class ViewLimits(NamedTuple):
     """The numbers are judgements: what a page can draw, and a person wait for."""
 
     samples: int = 1501
