@@ -8,7 +8,7 @@ import time
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from tracewire.files import replacing, write_file, writing
 
 
-class ResumeLimits(NamedTuple):
+class ResumeLimits:
     """How often a file is written from which work goes on."""
 
-    every: float = 2.0
+    every: Final[float] = 2.0
     """Wall time between two writings, s, at least."""
 
 

@@ -12,12 +12,11 @@ import pytest
 from analyse.models import LORENZ, MATHIEU, made
 from tracewire.analyse import Plane, bifurcation, lyapunov, stability_chart, sweep
 from tracewire.solve import Interrupted
-from tracewire.solve.limits import PauseLimits
 
 
 @pytest.fixture(autouse=True)
 def _tell_each(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tracewire.solve.progress.PAUSE", PauseLimits(told_every=0.0))
+    monkeypatch.setattr("tracewire.solve.progress.PAUSE.told_every", 0.0)
 
 
 class Stop:

@@ -26,7 +26,6 @@ from tracewire.analyse import floquet, periodic_orbit, stability_chart
 from tracewire.analyse.drive import rising_edges
 from tracewire.errors import AnalysisError, OptionError
 from tracewire.solve import Passage
-from tracewire.solve.limits import PauseLimits
 
 MATHIEU_MODEL, MEISSNER_MODEL = made(MATHIEU), made(MEISSNER)
 
@@ -89,9 +88,7 @@ def test_the_chart_of_mathieu_has_its_edges_at_the_characteristic_values() -> No
 def test_an_interrupted_chart_goes_on_where_it_was(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(
-        "tracewire.solve.progress.PAUSE", PauseLimits(told_every=0.0)
-    )  # each point is told
+    monkeypatch.setattr("tracewire.solve.progress.PAUSE.told_every", 0.0)  # each point is told
     file = tmp_path / "chart.npz"
     axes: Any = (("a", np.linspace(0, 3, 7)), ("q", np.linspace(0, 1, 5)))
     whole = stability_chart(MATHIEU_MODEL, *axes, "pi")

@@ -15,7 +15,6 @@ from tracewire.analyse import Plane, bifurcation, section, sweep
 from tracewire.analyse.clusters import count_clusters, is_irregular
 from tracewire.errors import AnalysisError, OptionError, SimulationError, TracewireError
 from tracewire.solve import simulate
-from tracewire.solve.limits import PauseLimits
 
 LOGISTIC = """
 title: Logistic map on a clock
@@ -188,7 +187,7 @@ def test_the_state_is_carried_from_value_to_value() -> None:
 def test_an_interrupted_diagram_goes_on_with_the_carried_state(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("tracewire.solve.progress.PAUSE", PauseLimits(told_every=0.0))
+    monkeypatch.setattr("tracewire.solve.progress.PAUSE.told_every", 0.0)
     file = tmp_path / "hysteresis.npz"
     p = np.linspace(-0.6, 0.6, 13)
     options: Any = {"direction": "up_down", "skip": 40, "keep": 3}
@@ -291,7 +290,7 @@ def test_a_sweep_has_the_shape_of_its_grid() -> None:
 
 
 def test_a_sweep_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tracewire.solve.progress.PAUSE", PauseLimits(told_every=0.0))
+    monkeypatch.setattr("tracewire.solve.progress.PAUSE.told_every", 0.0)
     file, grid = tmp_path / "sweep.npz", {"k": np.linspace(1, 4, 12)}
 
     def stop(part: float, left: float) -> None:

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 from tracewire.cli import main
-from tracewire.cli.limits import CommandLimits
 
 BALL = """\
 span: [0, 3]
@@ -70,7 +69,7 @@ def test_a_trace_takes_an_address_too(capsys: pytest.CaptureFixture[str]) -> Non
 def test_nobody_at_an_address_is_told(
     ball: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("tracewire.cli.executors.LIMITS", CommandLimits(scheduler=0.5))
+    monkeypatch.setattr("tracewire.cli.executors.LIMITS.scheduler", 0.5)
     assert main([*ball, "--executor", "dask://127.0.0.1:1"]) == 2
     assert "no dask scheduler answers at 'dask://127.0.0.1:1'" in capsys.readouterr().err
 

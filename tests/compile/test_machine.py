@@ -16,7 +16,6 @@ from hypothesis import strategies as st
 from library.values import library
 from solve.models import BALL, one
 from tracewire.compile import Model, compile, native
-from tracewire.compile.limits import CodeLimits
 from tracewire.diagram import read, read_text
 from tracewire.errors import OptionError
 from tracewire.library import Block
@@ -188,7 +187,8 @@ def chain(length: int) -> str:
 
 @pytest.mark.parametrize("large", [10**9, 0])
 def test_long_functions_are_compiled_in_parts(large: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(native, "CODE", CodeLimits(large=large, kept=0))
+    monkeypatch.setattr(native.CODE, "large", large)
+    monkeypatch.setattr(native.CODE, "kept", 0)
     native._kept.clear()
     agree(chain(60), range(2))
 

@@ -16,7 +16,6 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 from scipy.io import loadmat, savemat
 from tracewire.data import matfile, read_columns
-from tracewire.data.limits import FileLimits
 from tracewire.data.matfile import Cells, Damaged, Other, Structs, variables_of
 from tracewire.errors import DataError
 
@@ -159,7 +158,7 @@ def test_files_of_version_4_are_read(tmp_path: Path) -> None:
 
 
 def test_what_unpacks_to_too_much_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(matfile, "FILE", FileLimits(most_unpacked=1000))
+    monkeypatch.setattr(matfile.FILE, "most_unpacked", 1000)
     bomb = zlib.compress(b"\0" * 100_000)
     content = WHOLE[:128] + struct.pack("<II", 15, len(bomb)) + bomb
     with pytest.raises(Damaged, match="it holds more than"):

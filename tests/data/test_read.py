@@ -12,7 +12,6 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 from tracewire.data import Columns, read_columns, read_record
-from tracewire.data.limits import FileLimits
 from tracewire.errors import DataError, Location
 
 patient = settings(deadline=None)  # the first run may load scipy
@@ -156,7 +155,7 @@ def test_a_path_that_no_file_can_have() -> None:
 
 
 def test_too_large(write: Write, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tracewire.data.content.FILE", FileLimits(most_bytes=10))
+    monkeypatch.setattr("tracewire.data.content.FILE.most_bytes", 10)
     said = "the file is too large: 0 MB, and the limit is 0 MB. Split it, or keep every n-th row."
     assert problems(write(TWO), {"x": "x"}) == [(0, said)]
 

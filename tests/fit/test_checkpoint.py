@@ -102,7 +102,7 @@ def test_a_disk_that_becomes_full_does_not_cost_the_fit(
             raise OSError(28, "No space left on device")
         return usual(path, content)
 
-    monkeypatch.setattr(resume, "RESUME", resume.ResumeLimits(every=0.0))
+    monkeypatch.setattr(resume.RESUME, "every", 0.0)
     monkeypatch.setattr(resume, "write_file", full)
     found = fitted("least_squares", save=tmp_path / "fit.json")
     assert count > 1

@@ -254,8 +254,7 @@ def test_a_long_window_is_whitened_by_the_size_of_its_residuals_alone(
     segment = Segment(measured, 0.0, np.arange(1, 400))
     sizes = []
     for largest in (1500, 300):
-        limits = INPUT._replace(largest=largest)
-        monkeypatch.setattr("tracewire.residual.input_noise.INPUT", limits)
+        monkeypatch.setattr(INPUT, "largest", largest)
         covariance = InputCovariance({"x": SENSOR_NOISE}, model, [measured], 50)
         white = covariance.whitening(segment)
         assert white is not None

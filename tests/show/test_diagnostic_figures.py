@@ -13,7 +13,6 @@ from show.test_figures import texts
 from tracewire.errors import OptionError
 from tracewire.fit.profile import Profile
 from tracewire.show import diagnostic_figures, plot_diagnostics, plot_profiles
-from tracewire.show.limits import FitFigureLimits
 
 X = np.linspace(-3, 3, 13)
 CLOSED = Profile("k", 4 + 0.1 * X, X**2, {}, (3.8, 4.2), 4.0, "")
@@ -50,7 +49,7 @@ def test_the_correlation_with_inputs_is_drawn_where_there_are_some(tmp_path: Pat
 def test_a_residual_of_zero_and_many_signals_are_drawn(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(diagnostic_figures, "FIT", FitFigureLimits(most_residuals=2))
+    monkeypatch.setattr(diagnostic_figures.FIT, "most_residuals", 2)
     zero = compared("none", after=0.0)
     assert plot_diagnostics(made_fit(comparisons=(zero,)), tmp_path / "z.png").is_file()
     many = tuple(compared(f"run_{n}", count=12) for n in range(3))

@@ -13,7 +13,6 @@ from show.fits import compared
 from tracewire.fit import fminsearch, optimset
 from tracewire.fit.optimset import OptimValues
 from tracewire.show import live, optimplotfit, optimplotfval, optimplotx
-from tracewire.show.limits import LiveLimits
 from tracewire.show.live import FitPlot, LivePlot, PointPlot, ValuePlot
 
 POINT = np.array([1.0, -2.0])
@@ -93,7 +92,7 @@ def test_frames_thin_out_and_end(
 def test_the_number_of_frames_is_limited(
     tmp_path: Path, clock: list[float], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(live, "LIVE", LiveLimits(most_frames=3))
+    monkeypatch.setattr(live.LIVE, "most_frames", 3)
     plot = PointPlot(tmp_path)
     for n, state in zip(itertools.count(), ["init", *["iter"] * 20, "done"], strict=False):
         clock[0] = float(n)

@@ -21,7 +21,6 @@ from tracewire.show import (
     plot_parameters,
 )
 from tracewire.show.comparison_figures import _uncounted
-from tracewire.show.limits import FitFigureLimits
 from tracewire.show.style import cut
 
 FIT = made_fit()
@@ -126,7 +125,7 @@ def test_runs_that_failed_and_long_series_are_drawn(tmp_path: Path) -> None:
 def test_more_signals_than_are_readable_are_cut(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(comparison_figures, "FIT", FitFigureLimits(most_comparisons=2))
+    monkeypatch.setattr(comparison_figures.FIT, "most_comparisons", 2)
     said = texts(plot_comparisons(tmp_path / "c.svg", [compared(f"run_{n}") for n in range(3)]))
     assert "(the first 2 of 3 signals)" in said
     assert "run_2" not in said

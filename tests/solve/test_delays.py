@@ -30,7 +30,6 @@ from tracewire.solve import (
 from tracewire.solve.core import history as core_history
 from tracewire.solve.core import integrate
 from tracewire.solve.core_library import library
-from tracewire.solve.limits import MemoryLimits
 
 Vector = NDArray[np.float64]
 METHODS = ("auto", "dormand_prince", "dop853", "rosenbrock")
@@ -410,7 +409,7 @@ def test_steps_that_follow_the_past_of_a_guard_do_not_become_nothing() -> None:
 
 
 def test_a_past_that_takes_too_much_memory_ends_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(history, "MEMORY", MemoryLimits(past=200_000))
+    monkeypatch.setattr(history.MEMORY, "past", 200_000)
     text = LINEAR.replace("[0, 10]", "[0, 3000]").replace("0.7", "2999")
     text = text.replace("a*x + b*late", "cos(9*t) + 0*late")
     with pytest.raises(SimulationError, match=r"the past of what is delayed takes more than 0 GB"):

@@ -18,7 +18,7 @@ from tracewire.errors import SimulationError
 from tracewire.fit import fit
 from tracewire.solve import Interrupted, Limits, Run, integrator, simulate, simulate_many
 from tracewire.solve.integrator import next_budget
-from tracewire.solve.limits import PAUSE, PauseLimits
+from tracewire.solve.limits import PAUSE
 from tracewire.solve.spans import SpanProblem
 
 PENDULUM = Path(__file__).parents[2] / "diagrams/papers/a_torsion/pendulum.yaml"
@@ -96,7 +96,7 @@ def test_the_next_pause_comes_in_time() -> None:
 
 def test_progress_is_told_while_a_run_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     paused(monkeypatch, 10)
-    monkeypatch.setattr(integrator, "PAUSE", PauseLimits(seconds=0.0))
+    monkeypatch.setattr(integrator.PAUSE, "seconds", 0.0)
     told: list[tuple[float, float]] = []
     simulate(made(BALL), progress=lambda part, left: told.append((part, left)))
     parts = [part for part, _ in told]
@@ -125,7 +125,7 @@ def after(parts: int) -> Callable[[float, float], None]:
 
 def interrupted(monkeypatch: pytest.MonkeyPatch, model: Model, **options: Any) -> Interrupted:
     paused(monkeypatch, 40)
-    monkeypatch.setattr(integrator, "PAUSE", PauseLimits(seconds=0.0))
+    monkeypatch.setattr(integrator.PAUSE, "seconds", 0.0)
     with pytest.raises(Interrupted) as caught:
         simulate(model, progress=after(5), **options)
     return caught.value
@@ -181,7 +181,7 @@ def test_who_handles_the_signal_himself_keeps_that(monkeypatch: pytest.MonkeyPat
     heard: list[int] = []
     signal.signal(signal.SIGINT, lambda number, frame: heard.append(number))
     paused(monkeypatch, 10)
-    monkeypatch.setattr(integrator, "PAUSE", PauseLimits(seconds=0.0))
+    monkeypatch.setattr(integrator.PAUSE, "seconds", 0.0)
     run = simulate(made(BALL), progress=after(2))
     assert run.t[-1] == 12
     assert heard == [signal.SIGINT]

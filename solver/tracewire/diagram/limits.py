@@ -5,60 +5,60 @@ The numbers are judgements: far above what people write, and what a run can stil
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Final
 
 
-class DiagramLimits(NamedTuple):
+class DiagramLimits:
     """Limits of files, of texts, and of what stands in them; and what a message shows of it."""
 
-    most_bytes: int = 1_000_000
+    most_bytes: Final[int] = 1_000_000
     """Of a file."""
-    longest_path: int = 4096
+    longest_path: Final[int] = 4096
     """Characters of a path, as in Linux."""
-    most_nesting: int = 60
+    most_nesting: Final[int] = 60
     """Lists and mappings in each other."""
-    longest_key: int = 100
+    longest_key: Final[int] = 100
     """Characters."""
-    most_entries: int = 10_000
+    most_entries: Final[int] = 10_000
     """Of a vector or matrix: 100 x 100 compiles in seconds, 500 x 500 in hours."""
-    most_levels: int = 30
+    most_levels: Final[int] = 30
     """Of diagrams that extend each other, and of files that include each other."""
-    most_extended: int = 20_000
+    most_extended: Final[int] = 20_000
     """Values and lists of a subsystem that may be extended: those of 2000 blocks. A file that
     extends twice what another one does doubles with each file."""
-    most_blocks: int = 100_000
+    most_blocks: Final[int] = 100_000
     """Of a diagram, with all subsystems."""
-    most_copies: int = 10_000
+    most_copies: Final[int] = 10_000
     """In a row."""
-    most_parts: int = 200
+    most_parts: Final[int] = 200
     """Of a scene."""
-    most_values: int = 100_000
+    most_values: Final[int] = 100_000
     """Of an axis of a sweep."""
-    most_samples: int = 1_000_000
+    most_samples: Final[int] = 1_000_000
     """That a run records."""
-    most_problems: int = 100
+    most_problems: Final[int] = 100
     """That are told; of more only a count."""
-    most_compared: int = 20_000
+    most_compared: Final[int] = 20_000
     """Names that a wrong one is compared with, in all: a tenth of a millisecond each."""
-    longest_quote: int = 60
+    longest_quote: Final[int] = 60
     """Characters of a text that a message quotes."""
-    longest_loop: int = 100
+    longest_loop: Final[int] = 100
     """Names of a loop that a message lists."""
-    most_completions: int = 60
+    most_completions: Final[int] = 60
     """That an editor is offered."""
 
 
 LIMITS = DiagramLimits()
 
 
-class LayoutSizes(NamedTuple):
+class LayoutSizes:
     """Of a diagram as it is written, in characters."""
 
-    indent: int = 2
+    indent: Final[int] = 2
     """Blanks for each level."""
-    before_comment: int = 2
+    before_comment: Final[int] = 2
     """Blanks between a line and its comment."""
-    width: int = 100
+    width: Final[int] = 100
     """The longest line that a mapping in braces may take; a longer one gets a line for each
     entry."""
 

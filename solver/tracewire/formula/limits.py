@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Final
 
 
-class FormulaLimits(NamedTuple):
+class FormulaLimits:
     """Of formulas and units. The numbers are judgements, far above what people write."""
 
-    most_characters: int = 4000
+    most_characters: Final[int] = 4000
     """Of a formula."""
-    most_parts: int = 1000
+    most_parts: Final[int] = 1000
     """Of a formula: names, numbers, operations."""
-    most_nesting: int = 60
+    most_nesting: Final[int] = 60
     """Of its parts in each other."""
-    unit_characters: int = 60
+    unit_characters: Final[int] = 60
     """Of a unit."""
-    largest_power: float = 100.0
+    largest_power: Final[float] = 100.0
     """Of a unit."""
 
 

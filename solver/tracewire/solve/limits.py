@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Final
 
 from tracewire.errors import Problem, SimulationError
 
@@ -21,100 +21,100 @@ class Limits:
     max_step: float = math.inf
 
 
-class SampleLimits(NamedTuple):
+class SampleLimits:
     """Of the instants that a run records."""
 
-    most: int = 10_000_000
+    most: Final[int] = 10_000_000
     """Samples of a run, or instants of a stroboscopic section."""
-    close: float = 1e-12
+    close: Final[float] = 1e-12
     """Of a period: what an instant may lack to be within the span."""
 
 
 SAMPLE = SampleLimits()
 
 
-class StepLimits(NamedTuple):
+class StepLimits:
     """Of steps, and of the differences that are taken where no derivative is at hand."""
 
-    known_past: float = 0.98
+    known_past: Final[float] = 0.98
     """The longest step in units of a delay: one to a known time may be a little longer."""
-    passage: float = 10.0
+    passage: Final[float] = 10.0
     """The span of a passage in lengths to which instants are resolved and of which a step is a
     tenth at most."""
-    difference: float = 1e-3
+    difference: Final[float] = 1e-3
     """Of a parameter that others follow; what is left of the error is of order 6."""
 
 
 STEP = StepLimits()
 
 
-class PauseLimits(NamedTuple):
+class PauseLimits:
     """Of the work between two pauses, in which Ctrl-C is heard and progress is told."""
 
-    seconds: float = 0.1
+    seconds: Final[float] = 0.1
     """Between two pauses of a run, about."""
-    first_work: int = 200_000
+    first_work: Final[int] = 200_000
     """Signals times steps before the first one."""
-    growth: int = 8
+    growth: Final[int] = 8
     """How many times more steps are taken before the next one, at most."""
-    steps: int = 50_000
+    steps: Final[int] = 50_000
     """Of all spans that run together, between two pauses."""
-    told_every: float = 0.1
+    told_every: Final[float] = 0.1
     """Seconds between two tellings of what many runs have done, at least."""
 
 
 PAUSE = PauseLimits()
 
 
-class ParallelLimits(NamedTuple):
+class ParallelLimits:
     """Of runs in several processes or on several computers."""
 
-    chunk: float = 0.5
+    chunk: Final[float] = 0.5
     """Seconds of work that an executor is given at a time."""
-    ahead: int = 2
+    ahead: Final[int] = 2
     """Tasks that wait, for each worker."""
-    jobs: int = 8
+    jobs: Final[int] = 8
     """That a process keeps."""
-    patience: float = 2.0
+    patience: Final[float] = 2.0
     """Seconds until a worker is looked for that was killed while it wrote what it had done."""
 
 
 PARALLEL = ParallelLimits()
 
 
-class MemoryLimits(NamedTuple):
+class MemoryLimits:
     """Of arrays that a run works in, and of what is kept for the next one. In numbers of 8 bytes
     where nothing else is said."""
 
-    log: int = 1_000_000
+    log: Final[int] = 1_000_000
     """Of the log of the core, before it is emptied."""
-    stiff: int = 64
+    stiff: Final[int] = 64
     """Mode combinations of a run that are remembered as stiff."""
-    first_moves: int = 512
+    first_moves: Final[int] = 512
     """Rows for moves of a past at first; they double."""
-    first_points: int = 512
+    first_points: Final[int] = 512
     """The same of its points."""
-    steps: int = 32
+    steps: Final[int] = 32
     """Steps of the states that sensitivities follow at once."""
-    past: int = 250_000_000
+    past: Final[int] = 250_000_000
     """Of the past of what is delayed: 2 GB."""
-    workspaces: int = 16
+    workspaces: Final[int] = 16
     """Kinds of workspaces that a model keeps."""
-    models: int = 24
+    models: Final[int] = 24
     """Models that keep workspaces; of more, those that began first give theirs up."""
-    workspace: int = 500_000
+    workspace: Final[int] = 500_000
     """Of the samples and tables of one; larger ones are not kept."""
-    given: int = 100
+    given: Final[int] = 100
     """Kinds of given values for which a model keeps the values of all others."""
-    sensitivities: int = 200
+    sensitivities: Final[int] = 200
     """Kinds of what is asked for, of which a model keeps what moves."""
-    times: int = 64
+    times: Final[int] = 64
     """Spans whose default times are kept."""
-    core_files: int = 4
+    core_files: Final[int] = 4
     """Of other texts of the core: checkouts and branches take turns."""
-    code_wait: float = 600.0
+    code_wait: Final[float] = 600.0
     """Seconds for another process that makes the same code: then both do."""
-    code_soon: float = 1.0
+    code_soon: Final[float] = 1.0
     """Seconds after which that wait is told."""
 
 
