@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -75,10 +76,20 @@ def unit_of_effect(found: Found, effect: str, place: str, parameter: str) -> str
 
 
 def _places(found: Found) -> Mapping[str, Place]:
-    if not found.original.blocks:
+    """The places of the declared model by name; found once, as a report asks for each unit."""
+    if found not in _PLACES:
+        _PLACES[found] = _find_places(found.original)
+    return _PLACES[found]
+
+
+_PLACES: WeakKeyDictionary[Found, Mapping[str, Place]] = WeakKeyDictionary()
+
+
+def _find_places(diagram: Diagram) -> Mapping[str, Place]:
+    if not diagram.blocks:
         return {}
     try:
-        model = compile(found.original, backend="quick")
+        model = compile(diagram, backend="quick")
     except TracewireError:
         return {}
     return {place.name: place for place in find_places(model)}
