@@ -29,7 +29,7 @@ def restoring_forces(
 
     `needed` is what the effects give, and beside it the torque that takes the rest of the residual
     away (partial residuals, at the values of the best model): in each window, the ridge solution
-    for a torque of free values at its samples. `fitted` is the linearisation of the windows of the
+    for a torque of free values at its nodes. `fitted` is the linearisation of the windows of the
     fit, which are long enough to tell a small torque from noise: the means are estimated there.
     """
     options = linearisation.options
@@ -43,9 +43,9 @@ def restoring_forces(
         if name not in names:
             continue
         place = names[name]
-        needed = missing_torques(linearisation, [place], bend, options.screen.torque_level)[
-            place.name
-        ]
+        needed = missing_torques(
+            linearisation, [place], bend, options.screen.torque_level, options.map.force_nodes
+        )[place.name]
         given_by_effects = _effect_torques(best, linearisation.windows, place, rtol)
         means = () if fitted is None else _means(fitted, best, place, rtol)
         parts = []

@@ -277,14 +277,12 @@ def _find_experiments(search: Search, final: FinalModels) -> tuple[Experiment, .
 @one_blas_thread()
 def _find_forces(search: Search, best: Trial) -> tuple[Force, ...]:
     """The restoring-force picture of the places that got an effect."""
-    if not any(effect.candidate.block for effect in best.effects) or not search.steps:
+    named = {effect.candidate.place.name for effect in best.effects}
+    places = [place for place in search.places if place.name in named]
+    if not any(place.kind == "sum" for place in places) or not search.steps:
         return ()
     problem = search.problem
     windows = problem.windows_on(best, search.windows(search.data_split.train, search.short_length))
-    linearisation = TorqueLinearisation(
-        best.diagram, windows, search.places, problem.rtol, search.options
-    )
-    fitted = TorqueLinearisation(
-        best.diagram, best.windows, search.places, problem.rtol, search.options
-    )
+    linearisation = TorqueLinearisation(best.diagram, windows, places, problem.rtol, search.options)
+    fitted = TorqueLinearisation(best.diagram, best.windows, places, problem.rtol, search.options)
     return restoring_forces(linearisation, best, problem.rtol, fitted)

@@ -1,6 +1,6 @@
 """The torques at places that take the residual of windows away.
 
-In each window, with w_p the torque at place p, straight between a few nodes or free at each sample:
+In each window, with w_p the torque at place p, free at some nodes and straight between them:
 
     w = argmin |r + A w|^2 + sum over p of |D2 w_p|^2/s_p^2 + |l w_p|^2/s_p^2,
 
@@ -27,19 +27,19 @@ def missing_torques(
     places: Sequence[Place],
     bend: Callable[[Vector], float],
     level: float,
-    nodes: int | None = None,
+    nodes: int,
 ) -> dict[str, list[Vector]]:
     """By place the torque at the samples of each series, (N,), nan where no window is.
 
-    `bend` gives s_p, in the unit of the place, from the signal of the place along a series; `nodes`
-    are those of a window, one at each sample where none are given.
+    `bend` gives s_p, in the unit of the place, from the signal of the place along a series; a
+    window has `nodes` at equal distances, and one at each sample where it has fewer of these.
     """
     runs = linearisation.trajectories
     found = {place.name: [np.full(len(run.t), np.nan) for run in runs] for place in places}
     for window, number in zip(linearisation.window_pieces, linearisation.series, strict=True):
         samples = np.unique(window.samples)
-        count = len(samples) if nodes is None else min(nodes, len(samples))
-        edges = np.linspace(samples[0], samples[-1], count) if nodes is not None else samples
+        count = min(nodes, len(samples))
+        edges = np.linspace(samples[0], samples[-1], count) if count < len(samples) else samples
         hats = np.stack([np.interp(samples, edges, one) for one in np.eye(count)], axis=1)
         given = [np.zeros((len(run.t), count)) for run in runs]
         given[number][samples] = hats
