@@ -29,8 +29,8 @@ def fill_pool(pool: ModelPool, declared: Finalist) -> None:
     """Models of one, two and three effects, and those without declared terms."""
     options = pool.options
     numbers = range(len(pool.horizons.each))
-    pool.first = [pool.screen(declared, number) for number in numbers]
     for number in numbers:
+        pool.first.append(pool.screen(declared, number))
         singles, pairs = pool.worthwhile_count(options.singles) // len(numbers), options.pairs
         proposals = pool.select_promising(number, pool.first[number], singles, pairs)
         along = _along_data(pool, declared, number, singles, pairs)
@@ -106,9 +106,11 @@ def _extend_beside(pool: ModelPool, parent: Finalist) -> None:
     """A model with the most promising effects and pairs: what shows in short windows is looked
     for in those of the declared model."""
     options, pairs = pool.options, max(pool.options.beside - 2, 0)
-    for number, screen in enumerate([*pool.first[:-1], pool.screen(parent, -1)]):
+    last = len(pool.first) - 1
+    for number in range(last + 1):
+        screen = pool.screen(parent, number) if number == last else pool.first[number]
         along = _along_data(pool, parent, number, options.beside, pairs)
-        if along and number < len(pool.first) - 1:  # that screen is of the declared model
+        if along and number < last:  # that screen is of the declared model
             pool.extend(parent, number, along)
             continue
         proposals = pool.select_promising(number, screen, options.beside, pairs)

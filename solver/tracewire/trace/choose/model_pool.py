@@ -42,6 +42,9 @@ class ModelPool:
     """The models that have converged."""
     _freed: dict[Key, Finalist] = field(default_factory=dict)
     """The models that were refitted below bounds that are a guess, as they were then."""
+    _sparse: dict[int, tuple[Trial, Trial]] = field(default_factory=dict)
+    """By horizon, the last model of which some windows were asked for, and these: a screen, one
+    along the data, and the refits that they ask for begin there."""
 
     def fit_declared(self, declared_fit: Trial) -> Finalist:
         """The declared model at each horizon, from a fit of it."""
@@ -92,9 +95,12 @@ class ModelPool:
 
     def on_sparse_windows(self, parent: Finalist, number: int) -> Trial:
         """A model on the windows of a horizon on which effects are screened."""
-        return self.search.problem.on_some_windows(
-            parent.trials[number], self.sparse_windows[number]
-        )
+        whole = parent.trials[number]
+        known = self._sparse.get(number)
+        if known is None or known[0] is not whole:
+            part = self.search.problem.on_some_windows(whole, self.sparse_windows[number])
+            known = self._sparse[number] = whole, part
+        return known[1]
 
     def screen(self, parent: Finalist, number: int) -> Screen:
         """The screen beside a model at a horizon."""
