@@ -1,9 +1,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
+import tracewire as tw
 from diagram.small_library import LIBRARY, PENDULUM, made
 from tracewire.compile import compile as compile_model
 from tracewire.diagram import Value, Wire, find_parameter, read, read_text
@@ -263,3 +266,10 @@ blocks:
         "body.x": "a",
         "body.v": "-b",
     }
+
+
+@pytest.mark.parametrize("use", [tw.simulate, tw.fit, tw.trace])
+def test_a_diagram_in_the_place_of_a_model_says_so(use: Callable[[Any], object]) -> None:
+    diagram = made(PENDULUM)
+    with pytest.raises(AttributeError, match=r"Where a model is meant: tracewire\.compile"):
+        use(diagram)

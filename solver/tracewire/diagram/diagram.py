@@ -6,7 +6,7 @@ import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from tracewire.errors import Location
 from tracewire.formula import Expression
@@ -354,6 +354,12 @@ class Diagram:
     bodies: Mapping[str, Diagram] = field(default_factory=dict)
     sources: tuple[Path, ...] = ()
     expect: tuple[Statement, ...] = ()
+
+    if not TYPE_CHECKING:  # which knows the attributes that there are
+
+        def __getattr__(self, name: str) -> Any:
+            what = f"a diagram has no attribute '{name}'"
+            raise AttributeError(f"{what}. Where a model is meant: tracewire.compile(diagram).")
 
     def _repr_svg_(self) -> str:
         """The picture of the diagram, as a notebook shows it."""
