@@ -61,4 +61,4 @@ def _one(problem: Problem, preset: str, options: Options) -> Result:
     if why:
         return Result(title, COLUMNS, [*rows, ("a run, C, same algorithm", "", "", why)], [])
     over = base / entrants[1].seconds
-    return Result(title, COLUMNS, rows, [Promise(f"{title}, in runs of C", over, 1.3, most=True)])
+    return Result(title, COLUMNS, rows, [Promise(f"{title}, in runs of C", over, 1.25, most=True)])

@@ -134,7 +134,8 @@ def _set_sensitivities(arrays: Arrays, problem: InitialValueProblem) -> None:
         address = sensitivity.address[OF_STARTS]
         invoke(address, 0.0, nothing, flow.m, flow.c, flow.k, rows.reshape(-1))
         s[:] = rows[:, n + 1 :] @ sensitivity.chain
-        s[[state in given for state in states]] = 0.0
+        if given:
+            s[[state in given for state in states]] = 0.0
     for j, name in enumerate(problem.sensitivities):
         if name not in problem.model.flat.parameters:
             s[:, j] = 0.0

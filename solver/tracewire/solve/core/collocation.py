@@ -26,7 +26,7 @@ from tracewire.solve.core.linear import factor, put_rows, substitute_all
 from tracewire.solve.core.rows import add_row, add_two, put_three
 from tracewire.solve.core.stages import NODES, RADAU, eliminate, solve_stages
 from tracewire.solve.core.trail import step_at
-from tracewire.solve.core.units import helper, unit
+from tracewire.solve.core.units import helper, inlined, unit
 from tracewire.solve.core.variation import field
 
 ROOT = math.sqrt(6.0)
@@ -58,13 +58,23 @@ INSIDE = _weights_inside()
 
 @unit
 def _slopes(core: int, node: int, t: float) -> None:
-    """J S + f_p at a node, at the time t, with S where the interval begins.
+    """J S + f_p at a node, at the time t, with S where the interval begins."""
+    n = len(sensitivity_of(core).s)
+    if n == 4:
+        _fill_slopes(core, node, t, 4)
+    else:
+        _fill_slopes(core, node, t, n)
+
+
+@inlined
+def _fill_slopes(core: int, node: int, t: float, n: int) -> None:
+    """The same, built in with the number of states.
 
     What is the same at all nodes is filled in at the first one only.
     """
     sensitivity = sensitivity_of(core)
     order = sensitivity.order
-    n, a = len(sensitivity.s), len(sensitivity.chain)
+    a = len(sensitivity.chain)
     counts = flow_of(core).counts
     some_held = counts[SLIDING] + counts[RESTING] > 0
     if is_delayed(core):
@@ -78,12 +88,19 @@ def _slopes(core: int, node: int, t: float) -> None:
         if not some_held:
             begin, behind = sensitivity.reads[state, 0], sensitivity.reads[state, 1]
         derivatives, s = sensitivity.nodes[row], sensitivity.s
-        put_total(core, derivatives, begin, behind, s, sensitivity.slopes, row)
+        put_total(core, derivatives, begin, behind, s, sensitivity.slopes, row, n)
 
 
-@helper
+@inlined
 def put_total(
-    core: int, derivatives: Vector, begin: int, behind: int, s: Matrix, out: Matrix, into: int
+    core: int,
+    derivatives: Vector,
+    begin: int,
+    behind: int,
+    s: Matrix,
+    out: Matrix,
+    into: int,
+    n: int,
 ) -> None:
     """Let a row of `out` be what derivatives (w,) in x, t and parameters are in all, t fixed.
 
@@ -91,7 +108,7 @@ def put_total(
     """
     sensitivity = sensitivity_of(core)
     chain, filled = sensitivity.chain, sensitivity.filled
-    weights, picks, n, count = sensitivity.weights, sensitivity.picks, len(s), 0
+    weights, picks, count = sensitivity.weights, sensitivity.picks, 0
     for k in range(n):
         if derivatives[k] != 0.0:
             weights[count], picks[count] = derivatives[k], k

@@ -217,7 +217,7 @@ def sample(core: int, row: int, t: float, x: Vector, s: Matrix) -> None:
         if state >= 0:
             copy(s[state], one[0])
         else:
-            put_total(core, rows[column], 0, len(sensitivity.chain), s, one, 0)
+            put_total(core, rows[column], 0, len(sensitivity.chain), s, one, 0, len(s))
         for j in range(q):
             value = one[0, j]
             if not math.isfinite(value):
