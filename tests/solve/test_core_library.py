@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.integrate import DOP853
 from solve.models import BALL
-from tracewire import compile, read_text, simulate
+from tracewire import compile, read, read_text, simulate
 from tracewire.errors import SimulationError
+from tracewire.shipped import shipped
 from tracewire.solve import integrator
 from tracewire.solve.core import integrate
 from tracewire.solve.core.methods import dop853_coefficients as written
@@ -24,6 +26,14 @@ blocks:
   friction: {type: coulomb, rate: v, level: 0.5}
   a: {type: expression, formula: "-5*x - c*v + friction"}
 """
+
+SHIPPED = [
+    file
+    for file in sorted(shipped("diagrams").rglob("*.yaml"))
+    if "\nblocks:" in file.read_text(encoding="utf-8")
+    and "real" not in file.parts  # these need their records
+]
+STEPS = 20  # Python takes 10 ms and more for each
 
 
 def by_python(core: int) -> int:
@@ -44,6 +54,26 @@ def test_python_and_machine_code_agree_to_the_last_bit(
     assert same.events == run.events
     assert run.events
     assert same.final == run.final
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("file", SHIPPED, ids=lambda file: file.stem)
+def test_they_agree_where_each_shipped_diagram_begins(
+    file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    model = compile(read(file))
+    whole = simulate(model)
+    begin, end = float(whole.t[0]), float(whole.t[-1])
+    part = min(1.0, STEPS / max(whole.statistics.steps, 1))
+    span = (begin, begin + part * (end - begin))
+    run = simulate(model, span=span)
+    assert run.statistics.steps > 0
+    monkeypatch.setattr(integrator, "library", lambda: replace(library(), advance=by_python))
+    same = simulate(model, span=span)
+    assert same.final == run.final
+    assert same.events == run.events
+    for name, values in run.signals.items():
+        assert np.array_equal(same[name], values), name
 
 
 def test_an_error_inside_of_the_machine_code_is_told() -> None:
