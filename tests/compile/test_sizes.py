@@ -78,4 +78,4 @@ blocks:
   s: {{type: expression, formula: "sign({formula})"}}
 """
     )
-    assert model.routines.has_pace == has
+    assert model.routines.has_pace == (has, False)

@@ -183,6 +183,42 @@ events:
     assert np.max(result["x"]) > 0.1
 
 
+TURNING = """
+span: [0, 3]
+blocks:
+  x: {type: integrator, of: v}
+  v: {type: integrator, of: a}
+  y: {type: integrator, of: speed, start: 1.5707963267948966}
+  speed: {type: constant, value: 60}
+"""
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_force_that_turns_with_a_state_breaks_a_held_body_loose_at_each_turn(method: str) -> None:
+    """The state is a line, so that its error allows steps of many turns."""
+    text = f"""{TURNING}
+  friction: {{type: coulomb, rate: v, level: 1.9}}
+  a: {{type: expression, formula: "2*cos(y) + friction"}}
+"""
+    result = run(text, method=method, **TIGHT)
+    loose = (np.arange(1, 58) * math.pi - math.acos(0.95) - math.pi / 2) / 60
+    found = [event.time for event in result.events if event.kind == "slip"]
+    assert found == pytest.approx(loose.tolist(), abs=1e-9)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_force_that_turns_with_a_state_lifts_a_ball_that_lies_at_each_turn(method: str) -> None:
+    text = f"""{TURNING}
+  a: {{type: expression, formula: "10.1*cos(y) - 10"}}
+events:
+  - {{when: x, crosses: down, set: {{v: 0}}}}
+"""
+    result = run(text, method=method, **TIGHT)
+    loose = (np.arange(1, 29) * 2 * math.pi - math.acos(10 / 10.1) - math.pi / 2) / 60
+    found = [event.time for event in result.events if event.kind == "slip"]
+    assert found == pytest.approx(loose.tolist(), abs=1e-9)
+
+
 def test_the_instant_at_a_held_force_moves_with_its_parameters() -> None:
     """At 0.5/pull z begins to rise: dz/dpull = 0.5/pull**2; the written force is 0.5 always."""
     text = f"""{PULLED}{KEPT}

@@ -179,8 +179,8 @@ class Routines:
 
     def _paces(self) -> list[int]:
         """The largest pace of what is searched for zeros: of the guards, and of the fractions of
-        slides and the forces of contacts while these hold, as far as these read t: else they
-        follow the states, as steps do."""
+        slides and the forces of contacts while these hold. Steps that follow the states do not see
+        how often a force turns that reads the cosine of a state."""
         low = self.lowered
         searched = [m.guard for m in low.modes if not m.timed and m.kind != "memory"]
         hit = sorted(
@@ -188,8 +188,7 @@ class Routines:
         )
         forces = self.along_the_flow([self.guard_rates[i] for i in hit], 1)
         forces += [self.guard_rates[i] for i in sorted(self.holding)]
-        time = {low.entries["t"]: self.tape.constant(1.0)}
-        return [pace(self.tape, searched, self.flow), pace(self.tape, forces, time)]
+        return [pace(self.tape, entries, self.flow) for entries in (searched, forces)]
 
     @cached_property
     def watched_delays(self) -> frozenset[int]:
@@ -221,10 +220,11 @@ class Routines:
         return tuple(None if found is None else tuple(found) for found in self._weights)
 
     @property
-    def has_pace(self) -> bool:
-        """Whether guards, or what is held, may turn faster than the states say: what `pace` tells
-        is not always 0."""
-        return any(self.tape.value(entry) != 0.0 for entry in self.eager["pace"].roots.values())
+    def has_pace(self) -> tuple[bool, bool]:
+        """Whether guards, and whether what is held, may turn faster than the states say: the two
+        numbers of `pace` are not always 0."""
+        guards, held = (self.tape.value(e) != 0.0 for e in self.eager["pace"].roots.values())
+        return guards, held
 
     @property
     def reads_held(self) -> bool:

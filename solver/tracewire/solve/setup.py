@@ -21,12 +21,15 @@ from tracewire.solve.core.arrays import (
     Watch,
 )
 from tracewire.solve.core.codes import (
+    ALWAYS,
     CHATTER_EVENTS,
     DIRECTIONS,
     EVENTS,
     KINDS,
     LOG_HEAD,
+    NEVER,
     PACED,
+    WHILE_HELD,
 )
 from tracewire.solve.core.flow import FREE, FUNCTIONS, READING
 from tracewire.solve.core.methods import METHODS
@@ -155,7 +158,8 @@ def new_arrays(model: Model, kind: Kind) -> Arrays:
     flow = _new_flow(model, kind.tables)
     progress = _new_progress(model, kind.samples, len(plan.direct))
     flow.counts[READING] = model.routines.reads_held
-    progress.now[PACED] = model.routines.has_pace
+    guards_turn, forces_turn = model.routines.has_pace
+    progress.now[PACED] = ALWAYS if guards_turn else WHILE_HELD if forces_turn else NEVER
     most = 3 * modes  # a guard has two levels at most, and held it has a force or two fractions
 
     def ints(size: int) -> NDArray[np.int64]:

@@ -32,6 +32,7 @@ from tracewire.solve.core.codes import (
     LOG_FULL,
     LOGGED,
     LONGEST,
+    NEVER,
     PACED,
     PASSED,
     PAUSED,
@@ -46,6 +47,7 @@ from tracewire.solve.core.codes import (
     TIME,
     UNDEFINED,
     UNDERFLOW,
+    WHILE_HELD,
     H,
     T,
 )
@@ -265,13 +267,14 @@ def _remember(core: int, x: Vector) -> None:
 @helper
 def _longest_step(core: int, t: float, x: Vector) -> float:
     """The longest step in which guards and forces that the states do not feel are seen to turn."""
-    now = progress_of(core).now
-    if now[PACED] == 0.0:
+    now, counts = progress_of(core).now, flow_of(core).counts
+    holds = counts[SLIDING] + counts[RESTING] > 0
+    if now[PACED] == NEVER or (now[PACED] == WHILE_HELD and not holds):
         return now[LONGEST]
-    paces, counts = trial_of(core).paces, flow_of(core).counts
+    paces = trial_of(core).paces
     evaluate(core, PACE, t, x, paces)
     pace = paces[0]
-    if counts[SLIDING] + counts[RESTING]:  # until what is held breaks loose
+    if holds:  # until it breaks loose
         pace = max(pace, paces[1])
     if not pace > 0.0:
         return min(now[LONGEST], LARGEST_PART * now[LENGTH])
